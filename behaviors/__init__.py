@@ -1,0 +1,13 @@
+"""Behaviours that ship, each a plug-in like any other."""
+
+from mesa_mobility.behaviors.interference import Interference
+from mesa_mobility.behaviors.speed import Displacement, PreferredSpeed
+from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
+
+__all__ = [
+    "Displacement",
+    "FacingDeviation",
+    "Interference",
+    "PreferredSpeed",
+    "TargetDistance",
+]

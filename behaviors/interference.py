@@ -1,0 +1,40 @@
+"""Keeping away from neighbours: equation (2)."""
+
+import math
+
+from mesa_mobility.crowd import CompiledTerm, pair_kernel
+
+
+@pair_kernel
+def _interference(x, y, heading, duration, speed, nx, ny, nvx, nvy, p):  # type: ignore[no-untyped-def]
+    dx = nx + nvx * duration - x
+    dy = ny + nvy * duration - y
+    if speed <= 0.0 or dx * math.cos(heading) + dy * math.sin(heading) < 0.0:
+        return 0.0
+    return p[0] * math.exp(-math.sqrt(dx * dx + dy * dy) / (p[1] * speed))
+
+
+class Interference(CompiledTerm):
+    """Sum over neighbours of P = a exp(-d / (b v)), equation (2).
+
+    d is the distance from the mobility point to where the neighbour will be by then at
+    constant velocity, v the speed of the option: who moves slowly accepts to be closer, and
+    P tends to 0 with v.  Neighbours behind the mobility point do not count.
+
+    Args:
+        weight: w_P.
+        a: cost at contact; the paper's 10.5.
+        b: range in seconds; the paper's 0.09.
+    """
+
+    name = "interference"
+    kernel = _interference
+
+    def __init__(self, weight: float | None = None, a: float = 10.5, b: float = 0.09) -> None:
+        super().__init__(weight)
+        self.a = a
+        self.b = b
+
+    def parameters(self) -> tuple[float, ...]:
+        """``(a, b)``."""
+        return (self.a, self.b)

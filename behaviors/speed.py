@@ -1,0 +1,35 @@
+"""How far to go in one option: as far as possible, or as far as one likes."""
+
+from mesa_mobility.crowd import CompiledTerm, option_kernel
+
+
+@option_kernel
+def _displacement(x, y, heading, displacement, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+    return -displacement
+
+
+@option_kernel
+def _preferred_speed(x, y, heading, displacement, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+    return 1.5 * abs(speed - preferred)
+
+
+class Displacement(CompiledTerm):
+    """-S of equation (1): minus the displacement in metres, which rewards speed without limit.
+
+    On its own it makes everybody walk as fast as the recorded person ever did.
+    """
+
+    name = "displacement"
+    kernel = _displacement
+
+
+class PreferredSpeed(CompiledTerm):
+    """|S - v0 t| x 1.5 / t: how far an option's displacement is from the pedestrian's own speed.
+
+    In metres over the paper's 1.5 s whatever the option's duration t, so that options of
+    different durations compare.  Takes the place of ``Displacement``.
+    """
+
+    name = "preferred_speed"
+    default_weight = 2.0
+    kernel = _preferred_speed

@@ -1,0 +1,78 @@
+"""Pedestrian crowds driven by recorded human movement, on Mesa.
+
+Names are imported when they are first used, so that ``import mesa_mobility``
+and the command line start at once.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd import (
+        Candidates,
+        Capability,
+        CompiledTerm,
+        CostTerm,
+        Pedestrian,
+        PedestrianModel,
+        PedestrianType,
+        option_kernel,
+        pair_kernel,
+    )
+    from mesa_mobility.errors import MobilityError
+    from mesa_mobility.floorplan import Exit, FloorPlan, Gate
+    from mesa_mobility.mobility import MobilityMap, MotionGraph
+    from mesa_mobility.results import Trajectories
+
+__version__ = version("mesa-mobility")
+
+_ROOMS = {
+    "Candidates": "crowd",
+    "Capability": "crowd",
+    "CompiledTerm": "crowd",
+    "CostTerm": "crowd",
+    "Exit": "floorplan",
+    "FloorPlan": "floorplan",
+    "Gate": "floorplan",
+    "MobilityError": "errors",
+    "MobilityMap": "mobility",
+    "MotionGraph": "mobility",
+    "Pedestrian": "crowd",
+    "PedestrianModel": "crowd",
+    "PedestrianType": "crowd",
+    "Trajectories": "results",
+    "option_kernel": "crowd",
+    "pair_kernel": "crowd",
+}
+
+__all__ = [
+    "Candidates",
+    "Capability",
+    "CompiledTerm",
+    "CostTerm",
+    "Exit",
+    "FloorPlan",
+    "Gate",
+    "MobilityError",
+    "MobilityMap",
+    "MotionGraph",
+    "Pedestrian",
+    "PedestrianModel",
+    "PedestrianType",
+    "Trajectories",
+    "option_kernel",
+    "pair_kernel",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ROOMS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_ROOMS[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -1,0 +1,1 @@
+"""Recordings of people: readers, skeletons, resampling and mirroring."""

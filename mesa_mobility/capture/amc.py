@@ -1,0 +1,161 @@
+"""Reading AMC files: the motion of an ASF skeleton.
+
+With ``C`` the rotation of a bone's own axes against the file's and ``M`` the rotation that the frame
+gives about those axes, the bone turns by ``C M C^-1`` against its parent.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from mesa_mobility.capture.asf import ROOT, AsfSkeleton, Bone, read_asf
+from mesa_mobility.capture.motion import root_to_world, to_world
+from mesa_mobility.capture.recording import Recording
+from mesa_mobility.capture.text import decode, numbers, quote, read_bytes
+from mesa_mobility.errors import CaptureError
+
+FRAME_RATE = 120.0
+"""Frames a second of CMU's files.  The format has no place for it."""
+
+
+def read_amc(
+    path: str | Path,
+    *,
+    asf: str | Path | None = None,
+    unit_to_m: float,
+    frame_rate: float = FRAME_RATE,
+) -> Recording:
+    """Read a y-up AMC file.
+
+    Args:
+        path: the file.
+        asf: its skeleton; without one, the file in the same folder that has the subject's name
+            (``16.asf`` for ``16_11.amc``) or the clip's, or else the only one there.
+        unit_to_m: metres in one unit of the file.
+        frame_rate: frames a second, which the format does not tell.
+
+    Returns:
+        The recording in the z-up world.  Joints are named after the bones that start there.
+
+    Raises:
+        CaptureError: one of the files is missing, truncated, no AMC or ASF, or has numbers that
+            are not finite; a frame lacks a bone, has one twice or with too few values.
+    """
+    path = Path(path)
+    return parse_amc(
+        read_bytes(path), path, asf=asf, unit_to_m=unit_to_m, frame_rate=frame_rate
+    )
+
+
+def parse_amc(
+    data: bytes,
+    path: Path,
+    *,
+    asf: str | Path | None = None,
+    unit_to_m: float,
+    frame_rate: float = FRAME_RATE,
+) -> Recording:
+    """Read the content of an AMC file; ``path`` gives the name and stands in errors."""
+    text = decode(data, path)
+    rig = read_asf(find_asf(path) if asf is None else asf, unit_to_m=unit_to_m)
+    motion, degrees = _read_motion(text, rig, str(path))
+    identity = np.tile([0.0, 0.0, 0.0, 1.0], (len(motion[ROOT]), 1))
+    rotations = [
+        _rotation(bone, motion[name], degrees) if bone.dof else identity
+        for name, bone in rig.bones.items()
+    ]
+    rotations += [identity] * (len(rig.skeleton) - len(rotations))
+    rotations[0] = root_to_world(rotations[0])
+    position = np.zeros((len(identity), 3))
+    for column, channel in enumerate(rig.bones[ROOT].dof):
+        if channel.startswith("t"):
+            position[:, "xyz".index(channel[1])] = motion[ROOT][:, column] * unit_to_m
+    return Recording(
+        path.stem, rig.skeleton, frame_rate, to_world(position), np.stack(rotations, axis=1)
+    )
+
+
+def find_asf(path: Path) -> Path:
+    """The skeleton that belongs to an AMC file, by the rules of :func:`read_amc`.
+
+    Raises:
+        CaptureError: there is none, or several and none by name.
+    """
+    found = sorted(p for p in path.parent.iterdir() if p.suffix.lower() == ".asf")
+    for name in (path.stem, path.stem.split("_")[0]):
+        for candidate in found:
+            if candidate.stem == name:
+                return candidate
+    if len(found) == 1:
+        return found[0]
+    seen = ", ".join(p.name for p in found) or "no .asf file"
+    expected = f"{path.stem.split('_')[0]}.asf"
+    raise CaptureError(f"{path}: AMC without its ASF, expected {expected} beside it, found {seen}")
+
+
+def _rotation(
+    bone: Bone, values: NDArray[np.float64], degrees: bool
+) -> NDArray[np.float64]:
+    """(F, 4) rotation of a bone against its parent."""
+    turns = [(i, channel[1]) for i, channel in enumerate(bone.dof) if channel.startswith("r")]
+    if not turns:
+        return np.tile([0.0, 0.0, 0.0, 1.0], (len(values), 1))
+    # Lower-case letters: about fixed axes, in the order of the channels.
+    order = "".join(axis for _, axis in turns)
+    moved = Rotation.from_euler(order, values[:, [i for i, _ in turns]], degrees=degrees)
+    return (bone.axis * moved * bone.axis.inv()).as_quat()
+
+
+def _read_motion(
+    text: str, rig: AsfSkeleton, where: str
+) -> tuple[dict[str, NDArray[np.float64]], bool]:
+    """(F, channels) of every bone that has channels, and whether angles are in degrees."""
+    degrees = rig.degrees
+    widths = {name: len(bone.dof) for name, bone in rig.bones.items() if bone.dof}
+    frames: list[dict[str, list[float]]] = []
+    starts: list[int] = []
+    last = 0
+    for line, raw in enumerate(text.splitlines(), start=1):
+        words = raw.split()
+        if not words or words[0].startswith("#"):
+            continue
+        last = line
+        if words[0].startswith(":"):
+            if words[0].upper() in (":DEGREES", ":RADIANS"):
+                degrees = words[0].upper() == ":DEGREES"
+        elif len(words) == 1 and words[0].isdecimal():
+            if frames:
+                _require_all(frames[-1], widths, where, starts[-1])
+                if int(words[0]) != number + 1:
+                    raise CaptureError(
+                        f"{where}, line {line}: frame {words[0]}, expected {number + 1}"
+                    )
+            number = int(words[0])
+            frames.append({})
+            starts.append(line)
+        else:
+            name = words[0]
+            at = f"{where}, line {line}"
+            if not frames:
+                raise CaptureError(f"{at}: {quote(raw.strip())}, expected the number of a frame")
+            if name not in widths:
+                raise CaptureError(f"{at}: {quote(name)} is no bone with channels in the ASF")
+            if name in frames[-1]:
+                raise CaptureError(f"{at}: bone {quote(name)} occurs twice in the frame")
+            frames[-1][name] = numbers(words[1:], widths[name], f"{at}, {name}")
+    if not frames:
+        raise CaptureError(f"{where}: no frames (truncated?)")
+    _require_all(frames[-1], widths, where, starts[-1])
+    return {name: np.array([frame[name] for frame in frames]) for name in widths}, degrees
+
+
+def _require_all(
+    frame: dict[str, list[float]], widths: dict[str, int], where: str, line: int
+) -> None:
+    if len(frame) < len(widths):
+        missing = ", ".join(name for name in widths if name not in frame)
+        raise CaptureError(f"{where}, line {line}: frame without {missing} (truncated?)")

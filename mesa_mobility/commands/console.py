@@ -1,0 +1,70 @@
+"""What commands say, and where: answers on standard output, the rest on standard error."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, Protocol
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
+from rich.table import Table
+
+
+class Report(Protocol):
+    """Tells how far a long work has come."""
+
+    def __call__(self, what: str, done: float, total: float) -> None:
+        """`what` is being done, `done` of `total`."""
+
+
+def say(message: str) -> None:
+    """One line on standard error."""
+    print(message, file=sys.stderr)
+
+
+def answer_json(values: Mapping[str, Any]) -> None:
+    """One JSON object on one line of standard output."""
+    from mesa_mobility.results.files import json_text
+
+    sys.stderr.flush()
+    print(json_text(values), flush=True)
+
+
+def answer_table(rows: Mapping[str, str]) -> None:
+    """A table of two columns, what and how much, on standard output."""
+    table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, value in rows.items():
+        table.add_row(name, value)
+    Console(highlight=False, markup=False).print(table)
+
+
+@contextmanager
+def progress_bar(*, shown: bool = True) -> Iterator[Report]:
+    """A progress bar on standard error; nothing is drawn where that is not a terminal."""
+    console = Console(stderr=True)
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        console=console,
+        disable=not shown or not console.is_terminal,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("starting", total=None)
+
+        def report(what: str, done: float, total: float) -> None:
+            bar.update(task, description=what, completed=done, total=total)
+
+        yield report

@@ -1,0 +1,40 @@
+"""Ctrl-C that lets a running simulation come to a point where its state is whole."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from mesa_mobility.commands.console import say
+
+
+class Stopped(Exception):
+    """The user asked to stop, and the simulation has come to a whole step."""
+
+
+@contextmanager
+def gentle_interrupt() -> Iterator[Callable[[], None]]:
+    """Within, the first Ctrl-C is only noted; a second one interrupts at once.
+
+    Gives a function to call between steps: it raises `Stopped` once Ctrl-C has been pressed.
+    """
+    asked = False
+
+    def note(number: int, frame: FrameType | None) -> None:
+        nonlocal asked
+        if asked:
+            raise KeyboardInterrupt
+        asked = True
+        say("\nstopping at the next whole second; Ctrl-C again stops at once and writes nothing")
+
+    def stop_here() -> None:
+        if asked:
+            raise Stopped
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield stop_here
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,40 @@
+"""`mesa-mobility models` and `mesa-mobility behaviors`: what is installed."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+
+from rich.console import Console
+from rich.table import Table
+
+from mesa_mobility import registry
+from mesa_mobility.commands.console import say
+from mesa_mobility.errors import ModelError
+
+
+def models() -> None:
+    """List the installed models, plug-ins included."""
+    _list(registry.models())
+
+
+def behaviors() -> None:
+    """List the installed behaviours (cost terms), plug-ins included."""
+    _list(registry.behaviors())
+
+
+def _list(plugins: Mapping[str, registry.Plugin]) -> None:
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for heading in ("Name", "What it is", "From"):
+        table.add_column(heading, overflow="fold")
+    broken: list[str] = []
+    for plugin in plugins.values():
+        try:
+            description = (inspect.getdoc(plugin.load()) or "").partition("\n")[0]
+        except ModelError as error:
+            broken.append(str(error))
+        else:
+            table.add_row(plugin.name, description, plugin.package)
+    Console(highlight=False, markup=False).print(table)
+    for message in broken:
+        say(f"broken: {message}")

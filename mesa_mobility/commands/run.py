@@ -1,0 +1,151 @@
+"""`mesa-mobility run`: run a model, check it, say and write what came out."""
+
+from __future__ import annotations
+
+import math
+import secrets
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mesa_mobility.commands.console import answer_json, answer_table, progress_bar, say
+from mesa_mobility.commands.interrupt import Stopped, gentle_interrupt
+from mesa_mobility.errors import ModelError
+
+STALLED, INTERRUPTED = 1, 130
+
+
+def run(
+    model: Annotated[str, typer.Argument(help="Name of a model, see `mesa-mobility models`.")],
+    seconds: Annotated[
+        float | None,
+        typer.Option(help="Simulated time at most; without it until everybody is out."),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Makes a run repeatable; drawn and told if left out.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
+    ] = None,
+    preset: Annotated[str, typer.Option(help="default or paper.")] = "default",
+    map_file: Annotated[
+        Path | None, typer.Option("--map", help="Mobility map instead of the shipped one.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for summary, trajectories, floor plan and pictures."),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="One JSON object as the last line of output.")
+    ] = False,
+    no_progress: Annotated[bool, typer.Option("--no-progress", help="No progress bar.")] = False,
+) -> None:
+    """Run a model and report its figures.
+
+    Ends with status 1 if the evacuation stalled with people left inside.
+    """
+    if seconds is not None and not (math.isfinite(seconds) and seconds > 0):
+        raise ModelError(f"--seconds {seconds:g}: expected a positive number")
+    seed = secrets.randbelow(2**31) if seed is None else seed
+    simulation = _create(model, settings or [], preset, map_file, seed)
+
+    from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run
+
+    if out is not None:
+        check_writable(out)
+    wall, cpu, interrupted = _simulate(simulation, seconds, shown=not no_progress)
+    trajectories = Trajectories.of(simulation)
+    safety = check_safety(trajectories, simulation.floor_plan.walls)
+    summary = {
+        **simulation.summary(),
+        "model": model,
+        "preset": preset,
+        "seed": seed,
+        "wall_s": round(wall, 3),
+        "cpu_s": round(cpu, 3),
+        "overlaps": safety.overlaps,
+        "min_distance_m": safety.min_distance_m,
+        "wall_crossings": safety.wall_crossings,
+        "stalled": bool(simulation.stalled),
+        "interrupted": interrupted,
+    }
+    if out is not None:
+        write_run(
+            out,
+            summary=summary,
+            trajectories=trajectories,
+            plan=simulation.floor_plan,
+            reference_occupancy=simulation.reference_occupancy,
+        )
+        say(f"written to {out}")
+    if as_json:
+        answer_json(summary)
+    else:
+        answer_table(_figures(summary))
+    if interrupted:
+        say(f"interrupted after {simulation.elapsed:.1f} simulated seconds: results up to there")
+        raise typer.Exit(INTERRUPTED)
+    if simulation.stalled:
+        say(f"stalled: {simulation.inside} people left inside after {simulation.elapsed:.1f} s")
+        raise typer.Exit(STALLED)
+
+
+def _create(name: str, settings: list[str], preset: str, map_file: Path | None, seed: int) -> Any:
+    from mesa_mobility.commands.parameters import chosen, parameters
+    from mesa_mobility.registry import load_model
+
+    kind = load_model(name)
+    keywords = chosen(kind, name, settings)
+    keywords |= {"preset": preset, "rng": seed, "record": True}
+    if map_file is not None:
+        keywords["mobility_map"] = str(map_file)
+    missing = [key for key in keywords if key not in parameters(kind)]
+    if missing:
+        raise ModelError(f"model {name}: its constructor does not take {', '.join(missing)}")
+    return kind(**keywords)
+
+
+def _simulate(simulation: Any, seconds: float | None, *, shown: bool) -> tuple[float, float, bool]:
+    """Run; returns wall and CPU seconds, and whether the user stopped it."""
+    people = simulation.inside
+    interrupted = False
+    with progress_bar(shown=shown) as report, gentle_interrupt() as stop_here:
+
+        def progress(elapsed: float, inside: int) -> None:
+            # Whichever end comes first, that of the time or that of the people.
+            done = 1.0 - inside / people if people else 1.0
+            if seconds is not None:
+                done = max(done, elapsed / seconds)
+            report(f"{inside} people inside, {elapsed:.0f} s simulated", done, 1.0)
+            stop_here()
+
+        wall, cpu = time.perf_counter(), time.process_time()
+        try:
+            simulation.run(max_seconds=seconds, progress=progress)
+        except Stopped:
+            interrupted = True
+        return time.perf_counter() - wall, time.process_time() - cpu, interrupted
+
+
+def _figures(summary: dict[str, Any]) -> dict[str, str]:
+    egress = summary["egress_s"]
+    distance, speed = summary["min_distance_m"], summary["mean_speed_mps"]
+    return {
+        "Model": f"{summary['model']}, preset {summary['preset']}, seed {summary['seed']}",
+        "People": f"{summary['pedestrians']}",
+        "Simulated": f"{summary['simulated_s']:.1f} s",
+        "Everybody out": f"after {egress:.1f} s"
+        if egress is not None
+        else f"no: {summary['left_inside']} left inside",
+        "Mean speed": "-" if speed is None else f"{speed:.2f} m/s",
+        "Decisions": f"{summary['decisions']}",
+        "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
+        f"{summary['fallback_time_share']:.1%} of the time",
+        "Overlaps": f"{summary['overlaps']}",
+        "Smallest distance": "-" if distance is None else f"{distance:.3f} m",
+        "Wall crossings": f"{summary['wall_crossings']}",
+        "Wall time": f"{summary['wall_s']:.1f} s ({summary['cpu_s']:.1f} s of CPU)",
+    }

@@ -1,0 +1,24 @@
+"""Pedestrians, their capability, the cost of their options, and the choice."""
+
+from mesa_mobility.crowd.candidates import Candidates
+from mesa_mobility.crowd.capability import Capability
+from mesa_mobility.crowd.kernels import option_kernel, pair_kernel
+from mesa_mobility.crowd.model import PedestrianModel
+from mesa_mobility.crowd.pedestrian import Pedestrian
+from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.presets import PRESETS, Preset
+from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
+
+__all__ = [
+    "PRESETS",
+    "Candidates",
+    "Capability",
+    "CompiledTerm",
+    "CostTerm",
+    "Pedestrian",
+    "PedestrianModel",
+    "PedestrianType",
+    "Preset",
+    "option_kernel",
+    "pair_kernel",
+]

@@ -1,0 +1,91 @@
+"""Candidates of a batch of pedestrians, laid out from the crowd's arrays."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.candidates import Candidates
+from mesa_mobility.crowd.capability import FRAME_SECONDS, OptionTable
+from mesa_mobility.crowd.neighbours import Grid, neighbours_of
+from mesa_mobility.crowd.state import CrowdState
+
+
+def make_candidates(
+    rows: NDArray[np.int64],
+    table: OptionTable,
+    state: CrowdState,
+    grid: Grid,
+    search_radius: float,
+) -> Candidates:
+    """All options of the pedestrians in ``rows``, each with its neighbours within the radius."""
+    clusters = state.cluster[rows]
+    counts = table.offsets[clusters + 1] - table.offsets[clusters]
+    offsets = np.concatenate([[0], np.cumsum(counts)])
+    owner = np.repeat(np.arange(len(rows)), counts)
+    options = np.arange(offsets[-1]) - offsets[owner] + table.offsets[clusters][owner]
+    x, y, heading = _lay_ends(rows, owner, options, table, state)
+    neighbour_offsets, neighbours = _all_neighbours(rows, grid, state.x, state.y, search_radius)
+    displacements = table.displacement[options]
+    durations = table.frames[options] * FRAME_SECONDS
+    return Candidates(
+        points=np.column_stack([x, y]),
+        headings=heading,
+        displacements=displacements,
+        durations=durations,
+        speeds=displacements / durations,
+        options=options,
+        owner=owner,
+        offsets=offsets,
+        pedestrians=rows,
+        positions=np.column_stack([state.x[rows], state.y[rows]]),
+        facings=state.heading[rows],
+        targets=np.column_stack([state.target_x[rows], state.target_y[rows]]),
+        preferred_speeds=state.preferred[rows],
+        types=state.kind[rows].astype(np.int64),
+        neighbour_offsets=neighbour_offsets,
+        neighbours=neighbours,
+        neighbour_positions=np.column_stack([state.x[neighbours], state.y[neighbours]]),
+        neighbour_velocities=np.column_stack([state.vx[neighbours], state.vy[neighbours]]),
+    )
+
+
+@njit(cache=True)
+def _lay_ends(
+    rows: NDArray[np.int64],
+    owner: NDArray[np.int64],
+    options: NDArray[np.int64],
+    table: OptionTable,
+    state: CrowdState,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    n = len(options)
+    x, y, heading = np.empty(n), np.empty(n), np.empty(n)
+    for k in range(n):
+        i, o = rows[owner[k]], options[k]
+        c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+        x[k] = state.x[i] + c * table.x[o] - s * table.y[o]
+        y[k] = state.y[i] + s * table.x[o] + c * table.y[o]
+        heading[k] = state.heading[i] + table.heading[o]
+    return x, y, heading
+
+
+@njit(cache=True)
+def _all_neighbours(
+    rows: NDArray[np.int64],
+    grid: Grid,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    radius: float,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    found = np.empty(len(grid.people), np.int64)
+    offsets = np.zeros(len(rows) + 1, np.int64)
+    for d in range(len(rows)):
+        offsets[d + 1] = offsets[d] + neighbours_of(grid, rows[d], x, y, radius, found)
+    everyone = np.empty(offsets[-1], np.int64)
+    for d in range(len(rows)):
+        count = neighbours_of(grid, rows[d], x, y, radius, found)
+        everyone[offsets[d] : offsets[d + 1]] = found[:count]
+    return offsets, everyone

@@ -1,0 +1,214 @@
+"""Does a path hit anything: walls, exits, and the paths that others are committed to.
+
+Everything moves in straight lines between knots, so the closest approach
+between two knots has a closed form, and what is checked is exactly what
+happens.  Whoever's movement ends first is taken to stand where it ends until
+the other's ends, both ways round; standing still is then always safe.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.floorplan.kernels import segment_segment_distance2
+
+MARGIN = 1e-4
+"""Metres added to every clearance, so that results written in fewer digits still show none lost."""
+
+
+class Surroundings(NamedTuple):
+    """Walls near a place, and the ways out.
+
+    Fields: ``segments`` (w, 4) walls; ``x0``, ``y0``, ``nx``, ``ny``, ``size`` a grid of square
+    cells; ``offsets`` (nx * ny + 1,) and ``indices``: walls near each cell; ``exits`` (e, 4);
+    ``leads_out`` (destinations, e): whether people of a destination may leave there.
+    """
+
+    segments: NDArray[np.float64]
+    x0: float
+    y0: float
+    nx: int
+    ny: int
+    size: float
+    offsets: NDArray[np.int64]
+    indices: NDArray[np.int32]
+    exits: NDArray[np.float64]
+    leads_out: NDArray[np.bool_]
+
+
+@njit(cache=True)
+def near_walls(
+    around: Surroundings, x: float, y: float, destination: int, reach: float
+) -> NDArray[np.float64]:
+    """Walls within ``reach`` of (x, y): rows x1, y1, x2, y2, squared distance.
+
+    An exit that does not lead out for this person is a wall to it.
+    """
+    cx = min(max(int((x - around.x0) / around.size), 0), around.nx - 1)
+    cy = min(max(int((y - around.y0) / around.size), 0), around.ny - 1)
+    cell = cy * around.nx + cx
+    first, last = around.offsets[cell], around.offsets[cell + 1]
+    found = np.empty((last - first + len(around.exits), 5))
+    count = 0
+    for k in range(last - first + len(around.exits)):
+        if k < last - first:
+            wall = around.segments[around.indices[first + k]]
+        else:
+            e = k - (last - first)
+            if around.leads_out[destination, e]:
+                continue
+            wall = around.exits[e]
+        d2 = segment_segment_distance2(x, y, x, y, wall[0], wall[1], wall[2], wall[3])
+        if d2 <= reach * reach:
+            found[count, :4] = wall
+            found[count, 4] = d2
+            count += 1
+    return found[:count]
+
+
+@njit(cache=True)
+def hits_wall(
+    path: NDArray[np.float64],
+    segments: int,
+    walls: NDArray[np.float64],
+    radius: float,
+    reach: float,
+) -> bool:
+    """Whether a disc moved along the first ``segments`` pieces of a path touches a wall.
+
+    A disc that touches one to begin with (an obstacle put down next to it, say) may
+    stay as close as it is but not come closer.
+    """
+    r = radius + MARGIN
+    for w in range(len(walls)):
+        d2 = walls[w, 4]
+        if d2 > (reach + r) * (reach + r):
+            continue
+        limit = min(r * r, d2 * (1.0 - 1e-9))
+        ax, ay, bx, by = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
+        x0, x1 = min(ax, bx) - r, max(ax, bx) + r
+        y0, y1 = min(ay, by) - r, max(ay, by) + r
+        for k in range(segments):
+            px, py, qx, qy = path[k, 0], path[k, 1], path[k + 1, 0], path[k + 1, 1]
+            if (px < x0 and qx < x0) or (px > x1 and qx > x1):
+                continue
+            if (py < y0 and qy < y0) or (py > y1 and qy > y1):
+                continue
+            if segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by) < limit:
+                return True
+    return False
+
+
+@njit(cache=True)
+def crosses_exit(
+    path: NDArray[np.float64], segments: int, around: Surroundings, destination: int
+) -> tuple[int, float]:
+    """First piece of a path that crosses an exit of the person's destination, and where on it.
+
+    Returns (-1, 0) if none does.
+    """
+    for k in range(segments):
+        best = 2.0
+        for e in range(len(around.exits)):
+            if not around.leads_out[destination, e]:
+                continue
+            ax, ay, bx, by = around.exits[e]
+            ux, uy = path[k + 1, 0] - path[k, 0], path[k + 1, 1] - path[k, 1]
+            vx, vy = bx - ax, by - ay
+            det = ux * vy - uy * vx
+            if det == 0.0:
+                continue
+            wx, wy = ax - path[k, 0], ay - path[k, 1]
+            u = (wx * vy - wy * vx) / det
+            v = (wx * uy - wy * ux) / det
+            if 0.0 < u <= 1.0 and 0.0 <= v <= 1.0 and u < best:
+                best = u
+        if best <= 1.0:
+            return k, best
+    return -1, 0.0
+
+
+@njit(cache=True)
+def position_at(state: CrowdState, j: int, time: float) -> tuple[float, float]:
+    """Where pedestrian j is at a time in frames, standing once its movement has ended."""
+    last = state.knots[j] - 1
+    u = (time - state.start[j]) / state.spacing[j]
+    k = int(u)
+    if k >= last:
+        return state.path[j, last, 0], state.path[j, last, 1]
+    u -= k
+    ax, ay = state.path[j, k, 0], state.path[j, k, 1]
+    return ax + u * (state.path[j, k + 1, 0] - ax), ay + u * (state.path[j, k + 1, 1] - ay)
+
+
+@njit(cache=True)
+def hits_neighbour(
+    path: NDArray[np.float64],
+    segments: int,
+    spacing: int,
+    frame: int,
+    gone: int,
+    state: CrowdState,
+    j: int,
+    clearance: float,
+) -> bool:
+    """Whether a path from ``frame`` on comes closer than ``clearance`` to pedestrian j's.
+
+    The path has ``segments`` pieces of ``spacing`` frames; ``gone`` is the frame at
+    which it has crossed an exit, or -1.
+    """
+    my_end = frame + spacing * segments
+    their_end = state.end[j]
+    stop = max(my_end, their_end)
+    if gone >= 0:
+        stop = min(stop, gone)
+    if state.gone[j] >= 0:
+        stop = min(stop, state.gone[j])
+    c = clearance + MARGIN
+    limit = c * c
+    jx, jy = position_at(state, j, frame)
+    rx, ry = path[0, 0] - jx, path[0, 1] - jy
+    now = rx * rx + ry * ry
+    if now < limit:  # closer than allowed to begin with: may stay, not come closer
+        limit = now * (1.0 - 1e-9)
+    t = frame
+    k = 0
+    while t < stop:
+        following = stop
+        if t < my_end:
+            following = min(following, frame + spacing * (k + 1))
+        if t < their_end:
+            past = (t - state.start[j]) // state.spacing[j]
+            following = min(following, state.start[j] + state.spacing[j] * (past + 1))
+        if following >= my_end:
+            mx, my = path[segments, 0], path[segments, 1]
+        else:
+            k = (following - frame) // spacing
+            u = (following - frame - spacing * k) / spacing
+            mx = path[k, 0] + u * (path[k + 1, 0] - path[k, 0])
+            my = path[k, 1] + u * (path[k + 1, 1] - path[k, 1])
+        jx, jy = position_at(state, j, following)
+        qx, qy = mx - jx, my - jy
+        dx, dy = qx - rx, qy - ry
+        length2 = dx * dx + dy * dy
+        u = 0.0
+        if length2 > 0.0:
+            u = min(max(-(rx * dx + ry * dy) / length2, 0.0), 1.0)
+        nx, ny = rx + u * dx, ry + u * dy
+        if nx * nx + ny * ny < limit:
+            return True
+        rx, ry = qx, qy
+        t = following
+    return False
+
+
+@njit(cache=True)
+def gone_frame(frame: int, spacing: int, piece: int, where: float) -> int:
+    """First whole frame at which an exit crossed on a piece of a path lies behind."""
+    return frame + max(1, int(math.ceil(spacing * (piece + where))))

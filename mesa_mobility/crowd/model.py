@@ -1,0 +1,377 @@
+"""The Mesa model: a floor plan, a crowd on it, and time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import mesa
+import numpy as np
+from mesa.datacollection import DataCollector
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.crowd.batch import make_candidates
+from mesa_mobility.crowd.candidates import Candidates
+from mesa_mobility.crowd.capability import FRAME_SECONDS, Capability, stack_tables
+from mesa_mobility.crowd.choice import Rules, decide, move
+from mesa_mobility.crowd.neighbours import Grid, build_grid
+from mesa_mobility.crowd.pedestrian import Pedestrian
+from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.crowd.recorder import Recorder
+from mesa_mobility.crowd.space import CrowdSpace
+from mesa_mobility.crowd.state import NO_OPTION, CrowdState, empty_state, grown
+from mesa_mobility.crowd.summary import summarise
+from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.crowd.terms import CostTerm
+from mesa_mobility.crowd.terms_table import compile_terms, extra_costs
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.mobility import MobilityMap
+
+STALL_SECONDS = 60.0
+"""An evacuation has stalled when for so long nobody left and nobody came nearer to an exit."""
+
+STALL_PROGRESS = 1.0
+"""Metres of route, summed over everybody, that count as coming nearer."""
+
+
+class PedestrianModel(mesa.Model):
+    """Pedestrians on a floor plan, driven by recorded movement.
+
+    Concrete models build a floor plan, call this constructor and then
+    ``add_pedestrians``.
+
+    Args:
+        floor_plan: where people walk.
+        preset: "default" or "paper".
+        mobility_map: a map, its file, or None for the able-bodied one that ships; stands
+            for a single pedestrian type with default speeds.
+        pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
+        behaviors: cost terms instead of the preset's.
+        frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
+        record: keep every frame in ``recorder``.
+        rng: seed or NumPy generator.
+
+    Attributes:
+        space: Mesa's continuous space with everybody inside.
+        crowd: the crowd's arrays; see ``CrowdState``.
+        terms: the cost terms; may be added to, removed and re-weighted at run time.
+        frame: frames since the start.
+        occupancy: (seconds, people inside) each simulated second.
+        last_left: seconds at which somebody last left.
+        stalled: nobody left or came nearer to an exit for a minute.
+        datacollector: time, people inside, mean speed and fallback share after each step.
+
+    Raises:
+        ModelError: an unknown preset or a parameter out of range.
+        MapError: an unusable map file.
+    """
+
+    reference_occupancy: dict[float, int] | None = None
+    """People inside at given seconds as published for this scenario, if any."""
+
+    def __init__(
+        self,
+        floor_plan: FloorPlan,
+        *,
+        preset: str = "default",
+        mobility_map: MobilityMap | str | Path | None = None,
+        pedestrian_types: Sequence[PedestrianType] | None = None,
+        behaviors: Iterable[CostTerm] | None = None,
+        frames_per_step: int = 3,
+        record: bool = False,
+        rng: Any = None,
+    ) -> None:
+        super().__init__(rng=rng)
+        if frames_per_step < 1:
+            raise ModelError(f"frames_per_step: got {frames_per_step}, expected 1 or more")
+        rules = preset_named(preset)
+        if pedestrian_types is None:
+            if not isinstance(mobility_map, MobilityMap):
+                mobility_map = MobilityMap.load(mobility_map)
+            pedestrian_types = [PedestrianType(mobility_map=mobility_map)]
+        elif mobility_map is not None:
+            raise ModelError("mobility_map and pedestrian_types: got both, expected one of them")
+        self.preset = rules.name
+        self.floor_plan = floor_plan
+        self.pedestrian_types = tuple(pedestrian_types)
+        self.capabilities = tuple(
+            Capability(kind.mobility_map, rules.durations) for kind in self.pedestrian_types
+        )
+        self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
+        self.frames_per_step = frames_per_step
+        self.frame = 0
+        self.recorder = Recorder() if record else None
+        self.crowd: CrowdState = empty_state(64)
+        self.count = 0
+
+        counts = [capability.n_clusters for capability in self.capabilities]
+        self.first_cluster = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int32)
+        self._table = stack_tables(self.capabilities)
+        reach = max(capability.longest_reach for capability in self.capabilities)
+        core = max(kind.core_radius for kind in self.pedestrian_types)
+        standing = [c.standing for c in self.capabilities] + self.first_cluster
+        self._rules = Rules(
+            search_radius=2.0 * (reach + core) + 0.01,
+            cores=rules.cores,
+            standing=standing.astype(np.int32),
+        )
+        self._site = Site(floor_plan, reach=reach + core + 0.02, body=core)
+        x0, y0, x1, y1 = floor_plan.bounds
+        self.space = CrowdSpace(
+            # Whoever crosses an exit ends up a step outside.
+            [[x0 - reach, x1 + reach], [y0 - reach, y1 + reach]],
+            random=self.random,
+            n_agents=64,
+        )
+        self._rows = np.empty(0, dtype=np.int64)
+        self._agent_of: dict[int, Pedestrian] = {}
+        self._stall_mark = (0, 0, np.inf)
+        self.stalled = False
+        self.last_left = 0.0
+        self.occupancy: list[tuple[float, int]] = []
+        self._walked = 0.0
+        self.datacollector = DataCollector(
+            model_reporters={
+                "elapsed": lambda model: model.elapsed,
+                "inside": lambda model: model.inside,
+                "mean_speed": lambda model: model.mean_speed(),
+                "fallback_time_share": lambda model: model.fallback_time_share,
+            }
+        )
+
+    # -- people ---------------------------------------------------------------------------------
+
+    def add_pedestrians(
+        self,
+        positions: ArrayLike,
+        *,
+        headings: ArrayLike | None = None,
+        preferred_speeds: ArrayLike | None = None,
+        exits: Sequence[str] | None = None,
+        kind: int = 0,
+    ) -> list[Pedestrian]:
+        """Put people on the floor, standing.
+
+        Args:
+            positions: (n, 2) metres, on free floor.
+            headings: (n,) radians; by default everybody faces its first target.
+            preferred_speeds: (n,) m/s; by default drawn from the type.
+            exits: names of the exits they may leave by; by default the nearest of all.
+            kind: index of their type in ``pedestrian_types``.
+
+        Raises:
+            ModelError: positions off the floor, or arrays of other lengths.
+        """
+        points = np.asarray(positions, dtype=np.float64).reshape(-1, 2)
+        n = len(points)
+        if not self.floor_plan.contains(points).all():
+            k = int(np.argmin(self.floor_plan.contains(points)))
+            raise ModelError(
+                f"pedestrian {k} at {points[k].tolist()}: expected a place on the floor"
+            )
+        ptype = self.pedestrian_types[kind]
+        if preferred_speeds is None:
+            preferred_speeds = ptype.draw_speeds(n, self.rng)
+        rows = np.arange(self.count, self.count + n)
+        if self.count + n > len(self.crowd.x):
+            self.crowd = grown(self.crowd, max(self.count + n, 2 * len(self.crowd.x)))
+        state = self.crowd
+        state.x[rows], state.y[rows] = points.T
+        state.preferred[rows] = _column("preferred_speeds", preferred_speeds, n)
+        state.core[rows] = ptype.core_radius
+        state.kind[rows] = kind
+        state.destination[rows] = self._site.destination(None if exits is None else tuple(exits))
+        targets = self._site.targets(points, state.destination[rows])
+        state.target_x[rows], state.target_y[rows] = targets.points.T
+        state.route[rows] = targets.distances
+        if headings is None:
+            aim = targets.points - points
+            headings = np.arctan2(aim[:, 1], aim[:, 0])
+        state.heading[rows] = _column("headings", headings, n)
+        state.vx[rows] = state.vy[rows] = 0.0
+        state.active[rows] = True
+        state.option[rows], state.gone[rows] = NO_OPTION, -1
+        state.cluster[rows] = self._rules.standing[kind]
+        state.start[rows] = state.end[rows] = self.frame
+        state.spacing[rows] = state.knots[rows] = 1
+        state.path[rows, 0] = np.column_stack([points, state.heading[rows]])
+        state.box[rows] = np.column_stack([points, points])
+        self.count += n
+        self._rows = np.concatenate([self._rows, rows])
+        people = [Pedestrian(self, int(row)) for row in rows]
+        self._agent_of.update(zip(rows.tolist(), people, strict=True))
+        self._write_space()
+        return people
+
+    def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
+        """Take people out of the model."""
+        leaving = list(people)
+        for person in leaving:
+            self.crowd.active[person.row] = False
+            self.deregister_agent(person)
+            del self._agent_of[person.row]
+        self.space.remove_agents(leaving)
+        self._rows = self._rows[self.crowd.active[self._rows]]
+
+    @property
+    def rows(self) -> NDArray[np.int64]:
+        """Rows of the people inside, in the order of ``space.active_agents``."""
+        return self._rows
+
+    @property
+    def core_radii(self) -> NDArray[np.float64]:
+        """(n,) core radius of everybody who was ever in the model, metres."""
+        return self.crowd.core[: self.count].copy()
+
+    # -- time -----------------------------------------------------------------------------------
+
+    @property
+    def frame_rate(self) -> float:
+        """Frames a second."""
+        return 1.0 / FRAME_SECONDS
+
+    @property
+    def elapsed(self) -> float:
+        """Simulated seconds since the start."""
+        return self.frame * FRAME_SECONDS
+
+    @property
+    def inside(self) -> int:
+        """People inside."""
+        return len(self._rows)
+
+    def step(self) -> None:
+        """Advance ``frames_per_step`` frames."""
+        rows = self._rows
+        for _ in range(self.frames_per_step):
+            rows = self._advance(rows)
+        if len(rows) < len(self._rows):
+            stay = self.crowd.active[self._rows]
+            self.remove_pedestrians([self._agent_of[int(row)] for row in self._rows[~stay]])
+        self._write_space()
+        self._watch_for_stall()
+        self.datacollector.collect(self)
+        if self.inside == 0:
+            self.running = False
+
+    def run(
+        self,
+        max_seconds: float | None = None,
+        progress: Callable[[float, int], None] | None = None,
+    ) -> None:
+        """Step until everybody has left, the evacuation stalls or time is up.
+
+        Args:
+            max_seconds: simulated seconds at most.
+            progress: called as ``progress(elapsed, inside)`` each simulated second.
+        """
+        told = 0
+        while self.running and (max_seconds is None or self.elapsed < max_seconds - 1e-9):
+            self.step()
+            if self.stalled:
+                break
+            if progress is not None and int(self.elapsed) > told:
+                told = int(self.elapsed)
+                progress(self.elapsed, self.inside)
+
+    def _advance(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        if self.frame == 0:
+            self.occupancy.append((0.0, len(rows)))
+            if self.recorder is not None:
+                self.recorder.add(0, rows, self.crowd)
+        deciding = rows[self.crowd.end[rows] <= self.frame]
+        if len(deciding):
+            self._decide(deciding, rows)
+        self.frame += 1
+        self._walked += float(np.hypot(self.crowd.vx[rows], self.crowd.vy[rows]).sum())
+        left = move(rows, self.frame, self.crowd)
+        if self.recorder is not None:
+            self.recorder.add(self.frame, rows, self.crowd)
+        if left:
+            self.last_left = self.elapsed
+            rows = rows[self.crowd.active[rows]]
+        if self.frame % round(self.frame_rate) == 0:
+            self.occupancy.append((self.elapsed, len(rows)))
+        return rows
+
+    def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
+        state = self.crowd
+        points = np.column_stack([state.x[deciding], state.y[deciding]])
+        targets = self._site.targets(points, state.destination[deciding])
+        state.target_x[deciding], state.target_y[deciding] = targets.points.T
+        state.route[deciding] = targets.distances
+        # Those nearest to where they go decide first: that frees space for those behind.
+        order = deciding[np.lexsort((deciding, targets.distances))]
+        grid = build_grid(rows, state.x, state.y)
+        compiled, others = compile_terms(self.terms)
+        extra, extra_offsets = extra_costs(
+            others, order, self._table, state, grid, self._rules.search_radius
+        )
+        decide(
+            order, self.frame, self._table, state, grid, self._site.surroundings, compiled, extra,
+            extra_offsets, self._rules,
+        )  # fmt: skip
+
+    def candidates(self, rows: NDArray[np.int64]) -> Candidates:
+        """Movement options of the people in ``rows``, were they to decide here and now."""
+        return make_candidates(
+            rows, self._table, self.crowd, self._grid(), self._rules.search_radius
+        )
+
+    def _grid(self) -> Grid:
+        return build_grid(self._rows, self.crowd.x, self.crowd.y)
+
+    def _write_space(self) -> None:
+        if self.inside:
+            positions = self.space.agent_positions
+            positions[:, 0] = self.crowd.x[self._rows]
+            positions[:, 1] = self.crowd.y[self._rows]
+
+    def _watch_for_stall(self) -> None:
+        frame, inside, route = self._stall_mark
+        left = float(self.crowd.route[self._rows].sum())
+        if inside != self.inside or left < route - STALL_PROGRESS:
+            self._stall_mark = (self.frame, self.inside, left)
+        elif (self.frame - frame) * FRAME_SECONDS >= STALL_SECONDS:
+            self.stalled = True
+
+    # -- measures -------------------------------------------------------------------------------
+
+    def mean_speed(self) -> float:
+        """Mean speed of the movements under way, m/s; 0 if nobody is inside."""
+        rows = self._rows
+        if len(rows) == 0:
+            return 0.0
+        return float(np.hypot(self.crowd.vx[rows], self.crowd.vy[rows]).mean())
+
+    @property
+    def mean_speed_so_far(self) -> float:
+        """Mean speed over all pedestrian-time so far, m/s."""
+        total = int(self.crowd.active_frames.sum())
+        return self._walked / total if total else 0.0
+
+    @property
+    def fallback_time_share(self) -> float:
+        """Share of pedestrian-time spent in the fallback."""
+        total = int(self.crowd.active_frames.sum())
+        return float(self.crowd.fallback_frames.sum()) / total if total else 0.0
+
+    @property
+    def fallback_decision_share(self) -> float:
+        """Share of decisions that ended in the fallback."""
+        total = int(self.crowd.decisions.sum())
+        return float(self.crowd.fallbacks.sum()) / total if total else 0.0
+
+    def summary(self) -> dict[str, Any]:
+        """Figures of the run so far, ready for JSON."""
+        return summarise(self)
+
+
+def _column(name: str, values: ArrayLike, n: int) -> NDArray[np.float64]:
+    column = np.asarray(values, dtype=np.float64)
+    if column.shape not in ((n,), ()) or not np.isfinite(column).all():
+        raise ModelError(f"{name}: shape {column.shape}, expected {n} finite numbers")
+    return column

@@ -1,0 +1,73 @@
+"""Neighbours: a uniform grid over the crowd, rebuilt for each frame that has decisions."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+CELL_SIZE = 1.5
+
+
+class Grid(NamedTuple):
+    """People sorted by cell: cell c holds ``people[offsets[c]:offsets[c + 1]]``, in order of row."""
+
+    x0: float
+    y0: float
+    nx: int
+    ny: int
+    offsets: NDArray[np.int64]
+    people: NDArray[np.int64]
+
+
+@njit(cache=True)
+def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.float64]) -> Grid:
+    """Sort the pedestrians in rows ``active`` into cells (counting sort)."""
+    x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
+    for i in active:
+        x0, x1 = min(x0, x[i]), max(x1, x[i])
+        y0, y1 = min(y0, y[i]), max(y1, y[i])
+    nx = int((x1 - x0) / CELL_SIZE) + 1
+    ny = int((y1 - y0) / CELL_SIZE) + 1
+    offsets = np.zeros(nx * ny + 1, np.int64)
+    cell = np.empty(len(active), np.int64)
+    for a, i in enumerate(active):
+        cell[a] = int((y[i] - y0) / CELL_SIZE) * nx + int((x[i] - x0) / CELL_SIZE)
+        offsets[cell[a] + 1] += 1
+    offsets = np.cumsum(offsets)
+    fill = offsets[:-1].copy()
+    people = np.empty(len(active), np.int64)
+    for a, i in enumerate(active):
+        people[fill[cell[a]]] = i
+        fill[cell[a]] += 1
+    return Grid(x0, y0, nx, ny, offsets, people)
+
+
+@njit(cache=True)
+def neighbours_of(
+    grid: Grid,
+    i: int,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    radius: float,
+    found: NDArray[np.int64],
+) -> int:
+    """Write the people within ``radius`` of pedestrian i, itself left out; return their number.
+
+    ``found`` must have room for everybody: there is no cap on neighbours.
+    """
+    cx0 = max(int((x[i] - radius - grid.x0) / CELL_SIZE), 0)
+    cx1 = min(int((x[i] + radius - grid.x0) / CELL_SIZE), grid.nx - 1)
+    cy0 = max(int((y[i] - radius - grid.y0) / CELL_SIZE), 0)
+    cy1 = min(int((y[i] + radius - grid.y0) / CELL_SIZE), grid.ny - 1)
+    count = 0
+    for cy in range(cy0, cy1 + 1):
+        for a in range(grid.offsets[cy * grid.nx + cx0], grid.offsets[cy * grid.nx + cx1 + 1]):
+            j = grid.people[a]
+            dx, dy = x[j] - x[i], y[j] - y[i]
+            if j != i and dx * dx + dy * dy <= radius * radius:
+                found[count] = j
+                count += 1
+    return count

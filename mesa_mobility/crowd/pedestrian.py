@@ -1,0 +1,96 @@
+"""A pedestrian: a Mesa agent that is a view of one row of the crowd's arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from mesa.experimental.continuous_space import ContinuousSpaceAgent
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.candidates import Candidates
+from mesa_mobility.crowd.capability import FRAME_SECONDS, Capability
+from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.state import FALLBACK
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.model import PedestrianModel
+
+
+class Pedestrian(ContinuousSpaceAgent):
+    """One person.
+
+    Attributes:
+        row: row of this person in the crowd's arrays, the same for ever.
+    """
+
+    def __init__(self, model: PedestrianModel, row: int) -> None:
+        super().__init__(model.space, model)
+        self.row = row
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """(2,) where the person is, metres."""
+        state = self.model.crowd
+        return np.array([state.x[self.row], state.y[self.row]])
+
+    @property
+    def heading(self) -> float:
+        """Facing, radians counter-clockwise from +x."""
+        return float(self.model.crowd.heading[self.row])
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """(2,) mean velocity of the movement under way, m/s."""
+        state = self.model.crowd
+        return np.array([state.vx[self.row], state.vy[self.row]])
+
+    @property
+    def speed(self) -> float:
+        """Mean speed of the movement under way, m/s."""
+        return float(np.hypot(*self.velocity))
+
+    @property
+    def preferred_speed(self) -> float:
+        """Speed at which the person likes to walk, m/s."""
+        return float(self.model.crowd.preferred[self.row])
+
+    @property
+    def target(self) -> NDArray[np.float64]:
+        """(2,) where the person was heading for when it last decided, metres."""
+        state = self.model.crowd
+        return np.array([state.target_x[self.row], state.target_y[self.row]])
+
+    @property
+    def pedestrian_type(self) -> PedestrianType:
+        """The person's type."""
+        return self.model.pedestrian_types[int(self.model.crowd.kind[self.row])]
+
+    @property
+    def capability(self) -> Capability:
+        """The component through which the person consults its type's mobility map."""
+        return self.model.capabilities[int(self.model.crowd.kind[self.row])]
+
+    @property
+    def cluster(self) -> int:
+        """Cluster, in the type's map, of the pose in which the movement under way ends."""
+        kind = int(self.model.crowd.kind[self.row])
+        return int(self.model.crowd.cluster[self.row]) - int(self.model.first_cluster[kind])
+
+    @property
+    def in_fallback(self) -> bool:
+        """Whether the movement under way is the fallback."""
+        return bool(self.model.crowd.option[self.row] == FALLBACK)
+
+    @property
+    def next_decision(self) -> float:
+        """Seconds until the person decides again."""
+        return float(self.model.crowd.end[self.row] - self.model.frame) * FRAME_SECONDS
+
+    def movement_options(self) -> Candidates:
+        """The person's movement options, were it to decide here and now."""
+        return self.model.candidates(np.array([self.row]))
+
+    def remove(self) -> None:
+        """Take the person out of the model."""
+        self.model.remove_pedestrians([self])

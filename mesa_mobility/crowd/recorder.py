@@ -1,0 +1,36 @@
+"""What happened, frame by frame, as arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.state import CrowdState
+
+
+class Recorder:
+    """Keeps position and heading of everybody inside, one block of arrays a frame."""
+
+    def __init__(self) -> None:
+        self._blocks: list[tuple[NDArray[np.generic], ...]] = []
+
+    def add(self, frame: int, rows: NDArray[np.int64], state: CrowdState) -> None:
+        """Keep the people in ``rows`` at ``frame``."""
+        self._blocks.append(
+            (
+                np.full(len(rows), frame, dtype=np.int32),
+                rows.astype(np.int32),
+                state.x[rows],
+                state.y[rows],
+                state.heading[rows],
+            )
+        )
+
+    def arrays(self) -> dict[str, NDArray[np.generic]]:
+        """``frame``, ``person``, ``x``, ``y``, ``heading``: one row a person and frame, in order."""
+        names = ("frame", "person", "x", "y", "heading")
+        if not self._blocks:
+            kinds = (np.int32, np.int32, np.float64, np.float64, np.float64)
+            return {name: np.empty(0, kind) for name, kind in zip(names, kinds, strict=True)}
+        columns = zip(*self._blocks, strict=True)
+        return {name: np.concatenate(c) for name, c in zip(names, columns, strict=True)}

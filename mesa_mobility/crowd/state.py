@@ -1,0 +1,98 @@
+"""The state of the crowd: one set of arrays that the model owns.
+
+A pedestrian keeps its row for ever; rows of people who left are simply not
+active any more.  ``Pedestrian`` objects are views of a row.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAX_KNOTS = 16
+"""Knots of a committed path: its start and 15 samples."""
+
+
+class CrowdState(NamedTuple):
+    """Arrays with one row a pedestrian.
+
+    Now: ``x``, ``y``, ``heading`` (metres, radians), ``vx``, ``vy`` (mean velocity of the movement
+    under way, m/s), ``active`` (in the model).  Person: ``preferred`` speed (m/s), ``core`` radius
+    (m), ``kind`` (index of the pedestrian type), ``destination`` (the router's number).  Movement
+    under way: ``option`` (row of the option table; -1 none yet, -2 fallback), ``cluster`` (at its
+    end), ``start`` and ``end`` frames, ``gone`` (frame at which the person has crossed an exit,
+    or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``path`` (n, 16, 3) world
+    x, y, heading at the knots, ``box`` (n, 4) what the path covers: least x, least y, greatest x,
+    greatest y.  Where to: ``target_x``, ``target_y``, ``route`` (metres left).
+    Counters: ``decisions``, ``fallbacks``, ``fallback_frames``, ``active_frames``.
+    """
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    heading: NDArray[np.float64]
+    vx: NDArray[np.float64]
+    vy: NDArray[np.float64]
+    active: NDArray[np.bool_]
+    preferred: NDArray[np.float64]
+    core: NDArray[np.float64]
+    kind: NDArray[np.int32]
+    destination: NDArray[np.int32]
+    option: NDArray[np.int64]
+    cluster: NDArray[np.int32]
+    start: NDArray[np.int64]
+    end: NDArray[np.int64]
+    gone: NDArray[np.int64]
+    spacing: NDArray[np.int32]
+    knots: NDArray[np.int32]
+    path: NDArray[np.float64]
+    box: NDArray[np.float64]
+    target_x: NDArray[np.float64]
+    target_y: NDArray[np.float64]
+    route: NDArray[np.float64]
+    decisions: NDArray[np.int64]
+    fallbacks: NDArray[np.int64]
+    fallback_frames: NDArray[np.int64]
+    active_frames: NDArray[np.int64]
+
+
+NO_OPTION = -1
+FALLBACK = -2
+
+
+def empty_state(capacity: int) -> CrowdState:
+    """Arrays for ``capacity`` people, none of them active."""
+    floats = {
+        name: np.zeros(capacity)
+        for name in (
+            "x", "y", "heading", "vx", "vy", "preferred", "core", "target_x", "target_y", "route",
+        )
+    }  # fmt: skip
+    longs = {
+        name: np.zeros(capacity, dtype=np.int64)
+        for name in (
+            "option", "start", "end", "gone", "decisions", "fallbacks", "fallback_frames",
+            "active_frames",
+        )
+    }  # fmt: skip
+    ints = {
+        name: np.zeros(capacity, dtype=np.int32)
+        for name in ("kind", "destination", "cluster", "spacing", "knots")
+    }
+    return CrowdState(
+        active=np.zeros(capacity, dtype=np.bool_),
+        path=np.zeros((capacity, MAX_KNOTS, 3)),
+        box=np.zeros((capacity, 4)),
+        **floats,
+        **longs,
+        **ints,
+    )
+
+
+def grown(state: CrowdState, capacity: int) -> CrowdState:
+    """The same people in larger arrays."""
+    larger = empty_state(capacity)
+    for old, new in zip(state, larger, strict=True):
+        new[: len(old)] = old
+    return larger

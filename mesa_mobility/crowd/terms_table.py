@@ -1,0 +1,84 @@
+"""Cost terms as the choice wants them: kernels in tables, all others as numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.batch import make_candidates
+from mesa_mobility.crowd.capability import OptionTable
+from mesa_mobility.crowd.choice import Terms
+from mesa_mobility.crowd.kernels import PairKernel
+from mesa_mobility.crowd.neighbours import Grid
+from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
+from mesa_mobility.errors import ModelError
+
+BATCH = 256
+"""Pedestrians whose options are laid out at once for terms in NumPy; bounds memory."""
+
+
+def compile_terms(terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
+    """Split terms into the table of compiled ones and the list of the others."""
+    option: list[CompiledTerm] = []
+    pair: list[CompiledTerm] = []
+    others: list[CostTerm] = []
+    for term in terms:
+        if not isinstance(term, CompiledTerm):
+            others.append(term)
+        elif isinstance(term.kernel, PairKernel):
+            pair.append(term)
+        else:
+            option.append(term)
+    return Terms(*_table(option), *_table(pair)), others
+
+
+def _table(
+    terms: Sequence[CompiledTerm],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    width = max([1] + [len(term.parameters()) for term in terms])
+    parameters = np.zeros((len(terms), width))
+    for row, term in enumerate(terms):
+        parameters[row, : len(term.parameters())] = term.parameters()
+    addresses = np.array([term.kernel.address for term in terms], dtype=np.int64)
+    return addresses, np.array([term.weight for term in terms], dtype=np.float64), parameters
+
+
+def extra_costs(
+    terms: Sequence[CostTerm],
+    rows: NDArray[np.int64],
+    table: OptionTable,
+    state: CrowdState,
+    grid: Grid,
+    search_radius: float,
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Weighted sum of terms in NumPy over all options of the pedestrians in ``rows``.
+
+    Returns:
+        The costs, options of each pedestrian in turn, and where each one's part starts; the
+        former empty if there are no such terms.
+
+    Raises:
+        ModelError: a term gives another number of costs than there are options, or not numbers.
+    """
+    if not terms:
+        return np.empty(0), np.zeros(len(rows) + 1, dtype=np.int64)
+    parts = []
+    counts = []
+    for start in range(0, len(rows), BATCH):
+        candidates = make_candidates(rows[start : start + BATCH], table, state, grid, search_radius)
+        total = np.zeros(len(candidates))
+        for term in terms:
+            cost = np.asarray(term.cost(candidates), dtype=np.float64)
+            if cost.shape != total.shape or not np.isfinite(cost).all():
+                raise ModelError(
+                    f"behaviour {term.name!r}: cost() gave an array of shape {cost.shape}, "
+                    f"expected {len(total)} finite numbers"
+                )
+            total += term.weight * cost
+        parts.append(total)
+        counts.append(np.diff(candidates.offsets))
+    offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
+    return np.concatenate(parts), offsets

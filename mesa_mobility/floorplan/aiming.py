@@ -1,0 +1,207 @@
+"""Compiled search for what each person should aim at now."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan.kernels import segments_cross
+from mesa_mobility.floorplan.nodes import EXIT, GATE
+from mesa_mobility.floorplan.routes import IN_LINE, Ways, in_view, side
+from mesa_mobility.floorplan.sight import Sight, clear_line, free_length
+from mesa_mobility.floorplan.views import Views, nodes_maybe_in_view
+
+# A target behind a gate lies at least this far behind it, however near the next wall is (metres).
+_LEAST_BEYOND = 0.3
+
+
+@njit(cache=True)
+def aim(
+    sight: Sight,
+    ways: Ways,
+    views: Views,
+    positions: NDArray[np.float64],
+    destinations: NDArray[np.int64],
+    distances: NDArray[np.float64],
+):
+    """Targets (n, 2), gates (n,) and route lengths (n,); see `Router.targets`.
+
+    `distances` is (destinations, nodes), route length from each node in metres.
+    """
+    n = len(positions)
+    nodes = len(ways.kind)
+    points = np.empty((n, 2))
+    gates = np.full(n, -1, dtype=np.int64)
+    lengths = np.full(n, np.inf)
+    keys = np.empty(nodes)
+    seen = np.empty(nodes, dtype=np.int64)
+    for person in range(n):
+        x, y = positions[person]
+        to_go = distances[destinations[person]]
+        points[person, 0] = x
+        points[person, 1] = y
+        node = -1
+        maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
+        for clearance in (ways.view_clearance, 0.0):
+            node = _first_in_view(sight, ways, x, y, to_go, clearance, maybe, keys)
+            if node >= 0:
+                break
+        if node < 0:
+            # Squeezed out of everybody's view: the nearest node is the likeliest to be reached.
+            nearest = np.inf
+            for i in range(nodes):
+                away = np.hypot(ways.xy[i, 0] - x, ways.xy[i, 1] - y)
+                if away < nearest and np.isfinite(to_go[i]):
+                    nearest = away
+                    node = i
+            if node < 0:
+                continue
+        _aim_at(sight, ways, x, y, node, to_go[node], person, points, gates, lengths)
+    return points, gates, lengths
+
+
+@njit(cache=True)
+def _first_in_view(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    to_go: NDArray[np.float64],
+    clearance: float,
+    maybe: NDArray[np.int64],
+    keys: NDArray[np.float64],
+):
+    """The node in view with the shortest way through it, -1 where none is.
+
+    `maybe` lists the nodes to look at; `keys` is space to work in.
+    """
+    count = len(maybe)
+    for k in range(count):
+        i = maybe[k]
+        keys[k] = np.inf
+        if ways.kind[i] == GATE and side(ways, i, x, y) > -IN_LINE:
+            continue
+        dx = ways.xy[i, 0] - x
+        dy = ways.xy[i, 1] - y
+        # Of nodes in one line the farther goes first, whatever rounding says.
+        keys[k] = np.sqrt(dx * dx + dy * dy) + to_go[i] * (1.0 + 1e-6)
+    for _ in range(count):
+        k = int(np.argmin(keys[:count]))
+        if not np.isfinite(keys[k]):
+            break
+        keys[k] = np.inf
+        i = maybe[k]
+        if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance):
+            return i
+    return -1
+
+
+@njit(cache=True)
+def _aim_at(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    node: int,
+    to_go: float,
+    person: int,
+    points: NDArray[np.float64],
+    gates: NDArray[np.int64],
+    lengths: NDArray[np.float64],
+):
+    qx, qy = ways.xy[node]
+    if ways.kind[node] == GATE or ways.kind[node] == EXIT:
+        qx, qy = _nearest_in_view(sight, ways, x, y, node)
+        lengths[person] = np.hypot(qx - x, qy - y) + to_go
+        gates[person] = ways.opening[node]
+        px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], ways.kind[node] == EXIT)
+    else:
+        lengths[person] = np.hypot(qx - x, qy - y) + to_go
+        px, py = qx, qy
+    gate = _gate_on_the_way(ways, x, y, px, py)
+    if gate >= 0 and gate != gates[person]:
+        gates[person] = gate
+        px, py = _through(sight, ways, x, y, px, py, gate)
+    points[person, 0] = px
+    points[person, 1] = py
+
+
+@njit(cache=True)
+def _nearest(ends: NDArray[np.float64], x: float, y: float):
+    ax, ay, bx, by = ends
+    length2 = (bx - ax) ** 2 + (by - ay) ** 2
+    t = 0.0
+    if length2 > 0.0:
+        t = min(1.0, max(0.0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / length2))
+    return ax + t * (bx - ax), ay + t * (by - ay)
+
+
+@njit(cache=True)
+def _nearest_in_view(sight: Sight, ways: Ways, x: float, y: float, node: int):
+    """The nearest place of the node's opening where it is in view, else the node's own place."""
+    qx, qy = _nearest(ways.ends[ways.opening[node]], x, y)
+    if in_view(sight, ways, x, y, node, qx, qy, ways.view_clearance):
+        return qx, qy
+    return ways.xy[node, 0], ways.xy[node, 1]
+
+
+@njit(cache=True)
+def _beyond(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    qx: float,
+    qy: float,
+    normal: NDArray[np.float64],
+    leaves: bool,
+):
+    """The target behind place q of an opening, on the straight way there."""
+    away = np.hypot(qx - x, qy - y)
+    ux, uy = normal[0], normal[1]
+    if away > 0.05 and (qx - x) * ux + (qy - y) * uy > 0.0:
+        ux, uy = (qx - x) / away, (qy - y) / away
+    length = ways.beyond
+    if not leaves:
+        seen = free_length(sight, qx, qy, qx + length * ux, qy + length * uy)
+        if seen < length:
+            length = max(_LEAST_BEYOND, seen - ways.view_clearance)
+    return qx + length * ux, qy + length * uy
+
+
+@njit(cache=True)
+def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float):
+    """The first gate that the straight way to a target crosses just before it, -1 for none."""
+    first = -1
+    nearest = np.inf
+    way = np.hypot(px - x, py - y)
+    for gate in range(len(ways.passable)):
+        if not ways.passable[gate] or ways.curtains[gate] >= 0:
+            continue
+        ax, ay, bx, by = ways.lines[gate]
+        if not segments_cross(x, y, px, py, ax, ay, bx, by):
+            continue
+        width = np.hypot(bx - ax, by - ay)
+        before = abs((x - ax) * (by - ay) - (y - ay) * (bx - ax)) / width
+        behind = abs((px - ax) * (by - ay) - (py - ay) * (bx - ax)) / width
+        to_gate = way * before / (before + behind)
+        if before > IN_LINE and way - to_gate < ways.beyond and to_gate < nearest:
+            nearest = to_gate
+            first = gate
+    return first
+
+
+@njit(cache=True)
+def _through(sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int):
+    """Target behind a gate that lies on the straight way to (px, py)."""
+    ax, ay, bx, by = ways.lines[gate]
+    width = np.hypot(bx - ax, by - ay)
+    normal = np.array([-(by - ay) / width, (bx - ax) / width])
+    ahead = (px - x) * normal[0] + (py - y) * normal[1]
+    if ahead < 0.0:
+        normal = -normal
+    qx, qy = _nearest(ways.ends[gate], x, y)
+    if not clear_line(sight, x, y, qx, qy, ways.view_clearance, True, -1):
+        share = ((ax - x) * normal[0] + (ay - y) * normal[1]) / abs(ahead)
+        qx = x + share * (px - x)
+        qy = y + share * (py - y)
+    return _beyond(sight, ways, x, y, qx, qy, normal, False)

@@ -1,0 +1,127 @@
+"""What a floor plan must satisfy; each check raises FloorPlanError with one line."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import shapely
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.openings import Exit, Gate, Opening
+
+EDGE_TOLERANCE = 0.01
+"""An exit lies on the edge of the walkable area when no point of it is farther away (metres)."""
+
+STANDING_ROOM = 0.1
+"""A piece of free area with no point this far from its edge (metres) can hold nobody."""
+
+_CONTACT = 0.1
+
+
+def read_polygon(value: Polygon | str, what: str) -> Polygon:
+    """`value` (shapely polygon or WKT) as a valid, finite, non-empty 2D polygon.
+
+    `what` names it in error messages.
+    """
+    geometry = value
+    if isinstance(value, str):
+        try:
+            geometry = shapely.from_wkt(value)
+        except shapely.errors.GEOSException as error:
+            text = " ".join(str(error).split())
+            raise FloorPlanError(f"{what}: the WKT cannot be read ({text})") from None
+    if not isinstance(geometry, BaseGeometry):
+        raise FloorPlanError(
+            f"{what} must be a shapely Polygon or its WKT, found {type(value).__name__}"
+        )
+    if geometry.geom_type == "MultiPolygon":
+        raise FloorPlanError(
+            f"{what} must be one connected polygon, found {len(geometry.geoms)} pieces"
+        )
+    if geometry.geom_type != "Polygon":
+        raise FloorPlanError(f"{what} must be a Polygon, found a {geometry.geom_type}")
+    if geometry.is_empty:
+        raise FloorPlanError(f"{what} is empty")
+    if not np.isfinite(shapely.get_coordinates(geometry)).all():
+        raise FloorPlanError(f"{what} has coordinates that are not finite")
+    geometry = shapely.force_2d(geometry)
+    if not geometry.is_valid:
+        raise FloorPlanError(f"{what} is not valid: {shapely.is_valid_reason(geometry)}")
+    if geometry.area == 0.0:
+        raise FloorPlanError(f"{what} has no area")
+    return geometry
+
+
+def check_names(openings: Sequence[Opening]) -> None:
+    """Gates and exits must have different names, for they are opened and closed by name."""
+    seen: set[str] = set()
+    for opening in openings:
+        if opening.name in seen:
+            raise FloorPlanError(f"{opening.kind} name {opening.name!r} is used twice")
+        seen.add(opening.name)
+
+
+def check_exits(walkable: Polygon, exits: Sequence[Exit]) -> None:
+    """There must be an exit; each lies on the edge of the walkable area; none overlap."""
+    if not exits:
+        raise FloorPlanError("the floor plan has no exit")
+    edge = walkable.boundary
+    near_edge = edge.buffer(EDGE_TOLERANCE)
+    for i, opening in enumerate(exits):
+        if not isinstance(opening, Exit):
+            raise FloorPlanError(f"exits must be Exit objects, found {type(opening).__name__}")
+        if not near_edge.covers(opening.line):
+            away = max(edge.distance(shapely.Point(p)) for p in (opening.a, opening.midpoint, opening.b))
+            raise FloorPlanError(
+                f"exit {opening.name!r} is not on the edge of the walkable area: "
+                f"it is up to {away:.3f} m away, at most {EDGE_TOLERANCE} m is accepted"
+            )
+        for other in exits[:i]:
+            shared = opening.line.intersection(other.line.buffer(EDGE_TOLERANCE)).length
+            if shared > 3 * EDGE_TOLERANCE:
+                raise FloorPlanError(f"exits {other.name!r} and {opening.name!r} overlap")
+
+
+def check_gates(walkable: Polygon, gates: Iterable[Gate]) -> None:
+    """Each gate must lie in the walkable area."""
+    room = walkable.buffer(EDGE_TOLERANCE)
+    for gate in gates:
+        if not isinstance(gate, Gate):
+            raise FloorPlanError(f"gates must be Gate objects, found {type(gate).__name__}")
+        if not room.covers(gate.line):
+            outside = gate.line.difference(room).length
+            raise FloorPlanError(
+                f"gate {gate.name!r} is not inside the walkable area: {outside:.2f} m of it lie outside"
+            )
+
+
+def free_area(walkable: Polygon, obstacles: Sequence[Polygon], exits: Sequence[Exit]) -> BaseGeometry:
+    """Walkable area minus obstacles, without pockets that can hold nobody.
+
+    Raises
+    ------
+    FloorPlanError
+        Nothing is left, or a piece that is left touches no exit.
+    """
+    free = walkable.difference(shapely.union_all(list(obstacles)))
+    pieces = [
+        piece
+        for piece in shapely.get_parts(free)
+        if piece.geom_type == "Polygon" and not piece.buffer(-STANDING_ROOM).is_empty
+    ]
+    if not pieces:
+        raise FloorPlanError("the obstacles leave no walkable area")
+    for piece in pieces:
+        if not any(_touches(piece, opening) for opening in exits):
+            spot = piece.representative_point()
+            raise FloorPlanError(
+                f"a piece of {piece.area:.2f} m² around ({spot.x:.2f}, {spot.y:.2f}) "
+                "is disconnected from every exit"
+            )
+    return pieces[0] if len(pieces) == 1 else shapely.MultiPolygon(pieces)
+
+
+def _touches(piece: Polygon, opening: Exit) -> bool:
+    contact = piece.boundary.buffer(2 * EDGE_TOLERANCE).intersection(opening.line).length
+    return contact >= min(_CONTACT, opening.length / 2)

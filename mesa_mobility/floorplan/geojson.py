@@ -1,0 +1,153 @@
+"""Floor plans as GeoJSON: one FeatureCollection, coordinates in metres."""
+
+import contextlib
+import json
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import shapely
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.openings import Exit, Gate, Opening
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+KINDS = ("walkable", "obstacle", "gate", "exit")
+"""What the property `kind` of a feature can be."""
+
+
+@dataclass
+class Content:
+    """What a FeatureCollection says, before the geometry is checked as a floor plan."""
+
+    walkable: Polygon
+    name: str
+    exits: list[Exit] = field(default_factory=list)
+    gates: list[Gate] = field(default_factory=list)
+    obstacles: list[Polygon] = field(default_factory=list)
+    closed: list[str] = field(default_factory=list)
+
+
+def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
+    """The plan as a FeatureCollection; see `FloorPlan.to_geojson`."""
+    features = [_feature("walkable", plan.name, plan.walkable)]
+    features += [
+        _feature("obstacle", str(i), polygon) for i, polygon in enumerate(plan.obstacles.values())
+    ]
+    for opening in plan.openings():
+        feature = _feature(opening.kind, opening.name, opening.line)
+        if not plan.is_open(opening.name):
+            feature["properties"]["closed"] = True
+        features.append(feature)
+    return {"type": "FeatureCollection", "features": features}
+
+
+def write(collection: Mapping[str, Any], path: "str | os.PathLike[str]") -> None:
+    """Write a FeatureCollection to `path` by way of a temporary file beside it."""
+    target = Path(path)
+    temporary = ""
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
+        ) as file:
+            temporary = file.name
+            json.dump(collection, file, indent=1)
+            file.write("\n")
+        os.replace(temporary, target)
+    except OSError as error:
+        if temporary:
+            with contextlib.suppress(OSError):
+                os.unlink(temporary)
+        raise FloorPlanError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
+    """Read a FeatureCollection from a file or a mapping.
+
+    Raises
+    ------
+    FloorPlanError
+        The file cannot be read, is not JSON or not a FeatureCollection, or a feature
+        has an unknown kind or the wrong geometry; the message names file and feature.
+    """
+    if isinstance(source, Mapping):
+        return _content(source, "GeoJSON")
+    try:
+        text = Path(source).read_text(encoding="utf-8")
+    except OSError as error:
+        raise FloorPlanError(f"{source}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise FloorPlanError(f"{source}: is not text, expected GeoJSON") from None
+    try:
+        data = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        detail = f"line {error.lineno}: {error.msg}" if hasattr(error, "lineno") else "too deep"
+        raise FloorPlanError(f"{source}: is not JSON ({detail})") from None
+    return _content(data, str(source))
+
+
+def _content(data: object, where: str) -> Content:
+    if not isinstance(data, Mapping) or data.get("type") != "FeatureCollection":
+        raise FloorPlanError(f"{where}: expected a GeoJSON FeatureCollection")
+    features = data.get("features")
+    if not isinstance(features, list):
+        raise FloorPlanError(f"{where}: features must be a list")
+    found: list[tuple[str, str, BaseGeometry, bool, str]] = []
+    for number, feature in enumerate(features):
+        found.append((*_parse(feature, f"{where}: feature {number}"), f"{where}: feature {number}"))
+    areas = [(name, geometry) for kind, name, geometry, _, _ in found if kind == "walkable"]
+    if len(areas) != 1:
+        raise FloorPlanError(f"{where}: expected one feature of kind walkable, found {len(areas)}")
+    content = Content(name=areas[0][0], walkable=areas[0][1])
+    for kind, name, geometry, closed, at in found:
+        if kind == "obstacle":
+            content.obstacles.append(geometry)
+        elif kind in ("gate", "exit"):
+            opening = _opening(Gate if kind == "gate" else Exit, name, geometry, at)
+            (content.gates if kind == "gate" else content.exits).append(opening)
+            if closed:
+                content.closed.append(name)
+    return content
+
+
+def _feature(kind: str, name: str, geometry: BaseGeometry) -> dict[str, Any]:
+    return {
+        "type": "Feature",
+        "properties": {"kind": kind, "name": name},
+        "geometry": json.loads(json.dumps(shapely.geometry.mapping(geometry))),
+    }
+
+
+def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, bool]:
+    if not isinstance(feature, Mapping):
+        raise FloorPlanError(f"{at}: expected a Feature, found {type(feature).__name__}")
+    properties = feature.get("properties") or {}
+    kind = properties.get("kind") if isinstance(properties, Mapping) else None
+    if kind not in KINDS:
+        raise FloorPlanError(f"{at}: property kind must be one of {', '.join(KINDS)}, found {kind!r}")
+    try:
+        geometry = shapely.geometry.shape(feature.get("geometry"))
+    except Exception as error:  # shapely raises whatever the malformed mapping led it into
+        raise FloorPlanError(f"{at}: the geometry cannot be read ({error})") from None
+    expected = "Polygon" if kind in ("walkable", "obstacle") else "LineString"
+    if geometry.geom_type != expected:
+        raise FloorPlanError(f"{at}: {kind} must be a {expected}, found {geometry.geom_type}")
+    return kind, str(properties.get("name", "")), geometry, properties.get("closed") is True
+
+
+def _opening(cls: type[Any], name: str, geometry: BaseGeometry, at: str) -> Any:
+    xy = shapely.get_coordinates(geometry)
+    if len(xy) != 2:
+        raise FloorPlanError(f"{at}: a {cls.__name__.lower()} has two points, found {len(xy)}")
+    try:
+        opening: Opening = cls(name, tuple(xy[0].tolist()), tuple(xy[1].tolist()))
+    except FloorPlanError as error:
+        raise FloorPlanError(f"{at}: {error}") from None
+    return opening

@@ -1,0 +1,200 @@
+"""The places that routes lead through: corners, gates and exits."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan.openings import Exit, Opening
+from mesa_mobility.floorplan.sight import Sight, wall_distance
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+CORNER, GATE, EXIT = 0, 1, 2
+"""Kinds of nodes."""
+
+# Corners may stand this share of the clearance from their walls where the passage is narrow.
+_LEAST_CLEARANCE = 0.7
+
+# Curved walls are thinned to corners with this share of the clearance between wall and chord.
+_SIMPLIFY = 0.1
+
+# Beyond a right angle and a bit, one corner far ahead of a sharp tip is replaced by two beside it.
+_SHARP = np.deg2rad(100.0)
+
+_POINTS_PER_OPENING = 9
+_POINT_SPACING = 0.5
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """The nodes of a route graph.
+
+    Attributes
+    ----------
+    kind
+        (n,) CORNER, GATE or EXIT.
+    xy
+        (n, 2) metres.
+    opening
+        (n,) number of the gate or exit in `FloorPlan.openings()`, -1 for corners.
+    normal
+        (n, 2) unit direction in which the gate or exit is crossed, 0 for corners. Every
+        point of a gate is two nodes, one for either direction.
+    clearance
+        (n,) distance to the nearest wall in metres, at most the router's clearance.
+    """
+
+    kind: NDArray[np.int64]
+    xy: NDArray[np.float64]
+    opening: NDArray[np.int64]
+    normal: NDArray[np.float64]
+    clearance: NDArray[np.float64]
+
+
+def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
+    """The nodes of a plan for bodies that keep `clearance` metres from walls."""
+    corners = np.unique(np.concatenate(_corners(plan, sight, clearance)).round(3), axis=0)
+    kinds = [np.zeros(len(corners), np.int64)]
+    points, normals = [corners], [np.zeros((len(corners), 2))]
+    numbers = [np.full(len(corners), -1)]
+    for number, opening in enumerate(plan.openings()):
+        if not plan.is_open(opening.name):
+            continue
+        places = _places(plan, sight, opening, clearance)
+        directions = [outward(plan, opening)] if isinstance(opening, Exit) else _both_ways(opening)
+        for direction in directions:
+            kinds.append(np.full(len(places), EXIT if isinstance(opening, Exit) else GATE))
+            points.append(places)
+            normals.append(np.tile(direction, (len(places), 1)))
+            numbers.append(np.full(len(places), number))
+    xy = np.ascontiguousarray(np.concatenate(points))
+    own = np.array([wall_distance(sight, x, y, clearance) for x, y in xy], dtype=np.float64)
+    return Nodes(
+        np.concatenate(kinds).astype(np.int64),
+        xy,
+        np.concatenate(numbers).astype(np.int64),
+        np.ascontiguousarray(np.concatenate(normals)),
+        own,
+    )
+
+
+def shrunk(opening: Opening, clearance: float) -> NDArray[np.float64]:
+    """(2, 2) ends of an opening drawn in by the clearance, at most to its middle."""
+    a, b = np.array(opening.a), np.array(opening.b)
+    share = min(0.5, clearance / opening.length)
+    return np.stack([a + share * (b - a), b + share * (a - b)])
+
+
+def outward(plan: "FloorPlan", opening: Exit) -> NDArray[np.float64]:
+    """(2,) unit normal of an exit, away from the free area."""
+    normal = _both_ways(opening)[0]
+    along = np.linspace(0.05, 0.95, 10)[:, None]
+    places = np.array(opening.a) + along * (np.array(opening.b) - np.array(opening.a))
+    # Two centimetres: farther than an exit may lie from the edge.
+    ahead, behind = (shapely.intersects_xy(plan.walkable, *(places + side * 0.02 * normal).T) for side in (1, -1))
+    return -normal if ahead.sum() > behind.sum() else normal
+
+
+def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
+    along = (np.array(opening.b) - np.array(opening.a)) / opening.length
+    normal = np.array([-along[1], along[0]])
+    return [normal, -normal]
+
+
+def _places(plan: "FloorPlan", sight: Sight, opening: Opening, clearance: float) -> NDArray[np.float64]:
+    """Points along the passable part of a gate or exit."""
+    a, b = shrunk(opening, clearance)
+    length = float(np.hypot(*(b - a)))
+    count = 1 if length < 1e-6 else min(_POINTS_PER_OPENING, 2 + int(length / _POINT_SPACING))
+    share = np.linspace(0, 1, count)[:, None] if count > 1 else np.array([[0.5]])
+    places = a + share * (b - a)
+    inside = shapely.dwithin(plan.free, shapely.points(places), 0.02)
+    return places[inside & _passable(sight, places, clearance)]
+
+
+def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> NDArray[np.bool_]:
+    least = _LEAST_CLEARANCE * clearance
+    # At the bound itself counts, whatever the last bit.
+    return np.array([wall_distance(sight, x, y, clearance) > least - 1e-9 for x, y in places], dtype=bool)
+
+
+def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
+    bases, offsets = _wall_ends(plan, clearance)
+    for ring in _rings(plan, _SIMPLIFY * clearance):
+        for base, offset in _reflex(ring, clearance):
+            bases.append(base)
+            offsets.append(offset)
+    waiting_base = np.array(bases, dtype=np.float64).reshape(-1, 2)
+    waiting_offset = np.array(offsets, dtype=np.float64).reshape(-1, 2)
+    found = [np.empty((0, 2))]
+    # In a narrow passage a corner is put nearer to its wall.
+    for share in (1.0, 0.85, _LEAST_CLEARANCE):
+        places = waiting_base + share * waiting_offset
+        good = plan.contains(places) & _passable(sight, places, clearance)
+        found.append(places[good])
+        waiting_base, waiting_offset = waiting_base[~good], waiting_offset[~good]
+    return found
+
+
+def _rings(plan: "FloorPlan", tolerance: float) -> list[NDArray[np.float64]]:
+    """Rings of the free area, the free side on the left, without their closing point."""
+    rings = []
+    for part in shapely.get_parts(plan.free.simplify(tolerance)):
+        oriented = shapely.geometry.polygon.orient(part, 1.0)
+        rings += [shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(oriented)]
+    return rings
+
+
+def _reflex(ring: NDArray[np.float64], clearance: float) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """The vertices of a ring that routes bend around, with where to stand beside each."""
+    arriving = ring - np.roll(ring, 1, axis=0)
+    arriving /= np.hypot(*arriving.T)[:, None]
+    leaving = np.roll(arriving, -1, axis=0)
+    turn = np.arctan2(
+        arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
+        (arriving * leaving).sum(axis=1),
+    )
+    result = []
+    for i in np.flatnonzero(turn < -1e-6):
+        angle = -turn[i]
+        if angle <= _SHARP:
+            ahead = arriving[i] + leaving[i]
+            normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+            result.append((ring[i], normal * clearance / np.cos(angle / 2)))
+        else:
+            outwards = (arriving[i] - leaving[i]) / np.hypot(*(arriving[i] - leaving[i]))
+            result += [(ring[i], offset) for offset in _cap(outwards, np.pi - angle, clearance)]
+    return result
+
+
+def _cap(outwards: NDArray[np.float64], solid: float, clearance: float) -> list[NDArray[np.float64]]:
+    """Two corners beside a tip of the given solid angle, as on a square cap around it."""
+    beside = clearance * (1 - np.sin(solid / 2)) / np.cos(solid / 2)
+    across = np.array([-outwards[1], outwards[0]])
+    return [clearance * outwards + beside * across, clearance * outwards - beside * across]
+
+
+def _wall_ends(
+    plan: "FloorPlan", clearance: float
+) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
+    """Ends of walls that are no vertex of the free area: beside open exits, loose closed gates."""
+    bases, offsets = [], []
+    for opening in plan.open_exits():
+        a, b = np.array(opening.a), np.array(opening.b)
+        along = (b - a) / opening.length * min(clearance, opening.length / 2)
+        inward = -clearance * outward(plan, opening)
+        bases += [a, b]
+        offsets += [inward + along, inward - along]
+    edge = plan.free.boundary
+    for opening in plan.closed_gates():
+        a, b = np.array(opening.a), np.array(opening.b)
+        for end, other in ((a, b), (b, a)):
+            if edge.distance(shapely.Point(end)) > 0:
+                for offset in _cap((end - other) / opening.length, 0.0, clearance):
+                    bases.append(end)
+                    offsets.append(offset)
+    return bases, offsets

@@ -1,0 +1,195 @@
+"""Routes: where each person should aim now, and how far it is to the exit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import networkx as nx
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.aiming import aim
+from mesa_mobility.floorplan.edges import opening_segments
+from mesa_mobility.floorplan.nodes import EXIT, Nodes, find_nodes, shrunk
+from mesa_mobility.floorplan.openings import Exit
+from mesa_mobility.floorplan.routes import VIEW_SHARE, Ways, edges_in_view
+from mesa_mobility.floorplan.sight import Sight, sight_of
+from mesa_mobility.floorplan.views import no_views
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+_KIND_NAMES = ("corner", "gate", "exit")
+
+
+@dataclass(frozen=True)
+class Targets:
+    """What each of n people should aim at.
+
+    Attributes
+    ----------
+    points
+        (n, 2) metres. A corner to walk around, or a point behind a gate or exit to
+        cross. A person whose destination cannot be reached gets its own position.
+    gates
+        (n,) the gate or exit aimed through, as its number in `FloorPlan.openings()`
+        (gates first, then exits); -1 for a corner.
+    distances
+        (n,) length of the route to the exit's line in metres; inf where there is none.
+    """
+
+    points: NDArray[np.float64]
+    gates: NDArray[np.int64]
+    distances: NDArray[np.float64]
+
+
+class Router:
+    """Shortest routes to the exits of a floor plan, kept up to date with it.
+
+    Routes bend at corners that stand `clearance` from the walls and lead through
+    gates and exits. A person aims at the node in view with the shortest way through
+    it; of a gate or exit, at a point `beyond` its line, for it is to be crossed.
+
+    Parameters
+    ----------
+    plan
+        The floor plan; changes to it are followed.
+    clearance
+        Distance in metres that routes keep from walls, above 0. Gaps narrower than
+        1.4 times this are no way.
+    beyond
+        How far behind a gate or exit the target lies, metres, above 0; less where a
+        wall is nearer.
+
+    Raises
+    ------
+    FloorPlanError
+        Clearance or beyond out of range.
+    """
+
+    def __init__(self, plan: "FloorPlan", *, clearance: float = 0.2, beyond: float = 2.0) -> None:
+        if not (np.isfinite([clearance, beyond]).all() and clearance > 0 and beyond > 0):
+            raise FloorPlanError(
+                f"a router needs clearance > 0 and beyond > 0, found {clearance} and {beyond}"
+            )
+        self._plan = plan
+        self._clearance = float(clearance)
+        self._beyond = float(beyond)
+        self._destinations: list[tuple[str, ...] | None] = [None]
+        self._version = -1
+        self._distances: dict[int, NDArray[np.float64]] = {}
+        self._update()
+
+    @property
+    def graph(self) -> nx.DiGraph:
+        """The route graph: nodes with `kind`, `position`, `opening`; edges with `weight` (metres)."""
+        self._update()
+        return self._graph
+
+    def destination(self, exit_names: Sequence[str] | None = None) -> int:
+        """A number for "the nearest of these exits"; None is all exits, number 0.
+
+        Raises FloorPlanError for a name that is not an exit's, or for no names.
+        """
+        if exit_names is None:
+            return 0
+        names = (exit_names,) if isinstance(exit_names, str) else tuple(dict.fromkeys(exit_names))
+        if not names:
+            raise FloorPlanError("a destination needs at least one exit name")
+        for name in names:
+            if not isinstance(self._plan.gate(name), Exit):
+                raise FloorPlanError(f"{name!r} is a gate, a destination needs exits")
+        key = tuple(sorted(names))
+        if key not in self._destinations:
+            self._destinations.append(key)
+        return self._destinations.index(key)
+
+    def distances(self, destination: int) -> NDArray[np.float64]:
+        """(nodes,) length of the route from every node of `graph` in metres; inf where none."""
+        self._update()
+        if not 0 <= destination < len(self._destinations):
+            raise FloorPlanError(
+                f"there is no destination {destination}; there are {len(self._destinations)}"
+            )
+        if destination not in self._distances:
+            self._distances[destination] = self._shortest(self._destinations[destination])
+        return self._distances[destination]
+
+    def targets(self, positions: ArrayLike, destinations: ArrayLike) -> Targets:
+        """Where people at (n, 2) `positions` with (n,) `destinations` should aim now."""
+        self._update()
+        xy = np.ascontiguousarray(np.asarray(positions, dtype=np.float64).reshape(-1, 2))
+        numbers = np.ascontiguousarray(np.asarray(destinations, dtype=np.int64).reshape(-1))
+        if len(xy) != len(numbers):
+            raise FloorPlanError(
+                f"targets need a destination for each position, found {len(numbers)} for {len(xy)}"
+            )
+        used, rows = np.unique(numbers, return_inverse=True)
+        if len(xy) == 0:
+            return Targets(xy, numbers, np.empty(0))
+        table = np.stack([self.distances(int(i)) for i in used])
+        return Targets(*aim(self._sight, self._ways, self._views, xy, rows, table))
+
+    def _shortest(self, exit_names: tuple[str, ...] | None) -> NDArray[np.float64]:
+        names = {e.name for e in self._plan.exits} if exit_names is None else set(exit_names)
+        sources = {n for n, data in self._graph.nodes(data=True) if data["kind"] == "exit" and data["opening"] in names}
+        result = np.full(self._graph.number_of_nodes(), np.inf)
+        if sources:
+            backwards = self._graph.reverse(copy=False)
+            for node, length in nx.multi_source_dijkstra_path_length(backwards, sources).items():
+                result[node] = length
+        return result
+
+    def _update(self) -> None:
+        if self._version == self._plan.version:
+            return
+        plan = self._plan
+        walls = plan.walls
+        self._sight: Sight = sight_of(walls, opening_segments(plan.open_exits()), self._clearance)
+        nodes = find_nodes(plan, self._sight, self._clearance)
+        self._ways = self._prepare(nodes, len(walls))
+        edges = edges_in_view(self._sight, self._ways)
+        self._graph = self._network(nodes, np.array(edges, dtype=np.int64).reshape(-1, 2))
+        self._views = no_views(plan.bounds, len(nodes.kind))
+        self._distances = {}
+        self._version = plan.version
+
+    def _prepare(self, nodes: Nodes, walls: int) -> Ways:
+        openings = self._plan.openings()
+        curtains = np.full(len(openings), -1, dtype=np.int64)
+        for k, opening in enumerate(self._plan.open_exits()):
+            curtains[openings.index(opening)] = walls + k
+        passable = np.zeros(len(openings), dtype=np.bool_)
+        passable[nodes.opening[nodes.opening >= 0]] = True
+        return Ways(
+            nodes.kind,
+            nodes.xy,
+            nodes.opening,
+            nodes.normal,
+            nodes.clearance,
+            opening_segments(openings),
+            np.array([shrunk(o, self._clearance).ravel() for o in openings]),
+            passable,
+            curtains,
+            VIEW_SHARE * self._clearance,
+            self._beyond,
+        )
+
+    def _network(self, nodes: Nodes, edges: NDArray[np.int64]) -> nx.DiGraph:
+        openings = self._plan.openings()
+        graph = nx.DiGraph()
+        for i, (x, y) in enumerate(nodes.xy.tolist()):
+            number = int(nodes.opening[i])
+            graph.add_node(
+                i,
+                kind=_KIND_NAMES[nodes.kind[i]],
+                position=(x, y),
+                opening=openings[number].name if number >= 0 else None,
+            )
+        step = nodes.xy[edges[:, 1]] - nodes.xy[edges[:, 0]]
+        lengths = np.hypot(step[:, 0], step[:, 1])
+        graph.add_weighted_edges_from(
+            zip(edges[:, 0].tolist(), edges[:, 1].tolist(), lengths.tolist(), strict=True)
+        )
+        return graph

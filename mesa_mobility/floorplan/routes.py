@@ -1,0 +1,116 @@
+"""The route graph as compiled functions take it: who follows whom, and what is in view."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan.nodes import EXIT, GATE
+from mesa_mobility.floorplan.sight import Sight, clear_line
+
+# People walk a little nearer to walls than the corners of their route stand, so that
+# a corner in line with the next wall does not hide what comes after it.
+VIEW_SHARE = 0.85
+
+# Whoever is this near to a gate's line stands in it and has passed it (metres).
+IN_LINE = 0.01
+
+# Views of an exit end this far inside it: the line itself is where the area ends (metres).
+_INSIDE = 1e-4
+
+
+class Ways(NamedTuple):
+    """A route graph as the compiled functions take it; see `Nodes` for the node arrays.
+
+    Of every gate and exit, in the order of `FloorPlan.openings()`: `lines`
+    (openings, 4) its line, `ends` (openings, 4) the line drawn in by the clearance,
+    `passable` (openings,) whether it has nodes, `curtains` (openings,) its number
+    among the walls of the sight, -1 for gates.
+    """
+
+    kind: NDArray[np.int64]
+    xy: NDArray[np.float64]
+    opening: NDArray[np.int64]
+    normal: NDArray[np.float64]
+    clearance: NDArray[np.float64]
+    lines: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    passable: NDArray[np.bool_]
+    curtains: NDArray[np.int64]
+    view_clearance: float
+    beyond: float
+
+
+@njit(cache=True)
+def side(ways: Ways, node: int, x: float, y: float):
+    """How far (x, y) is past the line of a gate or exit node, in its crossing direction."""
+    return (x - ways.xy[node, 0]) * ways.normal[node, 0] + (y - ways.xy[node, 1]) * ways.normal[
+        node, 1
+    ]
+
+
+@njit(cache=True)
+def _curtain(ways: Ways, node: int):
+    return ways.curtains[ways.opening[node]] if ways.kind[node] == EXIT else -1
+
+
+@njit(cache=True)
+def edges_in_view(sight: Sight, ways: Ways):
+    """All directed edges (from, to) between nodes that see each other, as a list of pairs."""
+    n = len(ways.kind)
+    edges = [(0, 0) for _ in range(0)]
+    for i in range(n):
+        if ways.kind[i] == EXIT:
+            continue
+        for j in range(n):
+            # Between nodes that can be walked both ways, one view serves both.
+            both = ways.kind[i] != EXIT and ways.kind[j] != EXIT
+            if i == j or (both and j < i):
+                continue
+            there = _may_follow(ways, i, j)
+            back = both and _may_follow(ways, j, i)
+            if not there and not back:
+                continue
+            clearance = VIEW_SHARE * min(ways.clearance[i], ways.clearance[j])
+            x, y = ways.xy[j]
+            if ways.kind[j] == EXIT:
+                x -= _INSIDE * ways.normal[j, 0]
+                y -= _INSIDE * ways.normal[j, 1]
+            if clear_line(
+                sight, ways.xy[i, 0], ways.xy[i, 1], x, y, clearance, False, _curtain(ways, j)
+            ):
+                if there:
+                    edges.append((i, j))
+                if back:
+                    edges.append((j, i))
+    return edges
+
+
+@njit(cache=True)
+def _may_follow(ways: Ways, i: int, j: int):
+    """Whether j can come after i as far as the directions of their gates go."""
+    if ways.kind[i] == GATE and side(ways, i, ways.xy[j, 0], ways.xy[j, 1]) < IN_LINE:
+        return False
+    if ways.kind[j] == GATE or ways.kind[j] == EXIT:
+        return side(ways, j, ways.xy[i, 0], ways.xy[i, 1]) < -IN_LINE
+    return True
+
+
+@njit(cache=True)
+def in_view(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    node: int,
+    qx: float,
+    qy: float,
+    clearance: float,
+):
+    """Whether (qx, qy), the place of a node or another place in the same opening, is in view."""
+    if ways.kind[node] == EXIT:
+        qx -= _INSIDE * ways.normal[node, 0]
+        qy -= _INSIDE * ways.normal[node, 1]
+    wanted = min(clearance, VIEW_SHARE * ways.clearance[node])
+    return clear_line(sight, x, y, qx, qy, wanted, True, _curtain(ways, node))

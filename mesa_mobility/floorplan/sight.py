@@ -1,0 +1,218 @@
+"""Line of sight: whether a body can go straight from one point to another."""
+
+from typing import TYPE_CHECKING, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.kernels import (
+    point_segment_distance2,
+    segment_segment_distance2,
+    segments_cross,
+)
+from mesa_mobility.floorplan.walls import CellTable, WallIndex
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+TOUCH = 1e-9
+"""A line nearer to a wall than this touches it (metres)."""
+
+# Walking straight along a wall must not count as coming nearer to it by rounding.
+_OWN_DISTANCE = 0.98
+
+
+class Sight(NamedTuple):
+    """Wall segments and their grid, as the compiled functions take them.
+
+    The first `solid` rows of `walls` are walls; the others are lines that no view
+    crosses but that need no clearance.
+    """
+
+    walls: NDArray[np.float64]
+    solid: int
+    table: CellTable
+
+
+def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
+    """Prepare walls (m, 4), and lines not to be crossed (k, 4), for views of clearance `reach`."""
+    solid = np.asarray(walls, dtype=np.float64).reshape(-1, 4)
+    index = WallIndex(np.concatenate([solid, np.asarray(curtains, dtype=np.float64).reshape(-1, 4)]))
+    rows = index.segments
+    extent = float(np.ptp(rows.reshape(-1, 2), axis=0).max()) if len(rows) else 1.0
+    # The extra millimetre keeps walls that rounding would put just out of reach of a cell.
+    return Sight(rows, len(solid), index.cell_table(max(0.5, extent / 400), reach + 1e-3))
+
+
+@njit(cache=True)
+def rows_crossed(table: CellTable, py: float, qy: float):
+    """First and last row of the grid that a segment from height py to qy meets."""
+    first = int(np.floor((min(py, qy) - table.y0) / table.cell_size))
+    last = int(np.floor((max(py, qy) - table.y0) / table.cell_size))
+    return max(0, first), min(table.ny - 1, last)
+
+
+@njit(cache=True)
+def cells_in_row(table: CellTable, row: int, px: float, py: float, qx: float, qy: float):
+    """First and last column of the cells of one row that the segment pq meets."""
+    cell = table.cell_size
+    t0 = 0.0
+    t1 = 1.0
+    if py != qy:
+        ta = (table.y0 + row * cell - py) / (qy - py)
+        tb = (table.y0 + (row + 1) * cell - py) / (qy - py)
+        t0 = min(1.0, max(0.0, min(ta, tb)))
+        t1 = max(0.0, min(1.0, max(ta, tb)))
+    xa = px + t0 * (qx - px)
+    xb = px + t1 * (qx - px)
+    first = int(np.floor((min(xa, xb) - table.x0) / cell))
+    last = int(np.floor((max(xa, xb) - table.x0) / cell))
+    return max(0, first), min(table.nx - 1, last)
+
+
+@njit(cache=True)
+def clear_line(
+    sight: Sight,
+    px: float,
+    py: float,
+    qx: float,
+    qy: float,
+    clearance: float,
+    from_body: bool,
+    ignored: int,
+):
+    """Whether the segment pq stays `clearance` metres (and more than `TOUCH`) from the walls.
+
+    With `from_body`, a wall that p is already near counts only where the segment
+    comes nearer to it than p is. Then what is in view from p stays in view on the
+    straight way there. The wall with number `ignored` does not count (-1: all count).
+    """
+    walls, solid, table = sight
+    first_row, last_row = rows_crossed(table, py, qy)
+    for step in range(last_row - first_row + 1):
+        # From p outwards: most views are blocked by something near.
+        row = first_row + step if py <= qy else last_row - step
+        first, last = cells_in_row(table, row, px, py, qx, qy)
+        for k in range(last - first + 1):
+            column = first + k if px <= qx else last - k
+            at = row * table.nx + column
+            for j in range(table.offsets[at], table.offsets[at + 1]):
+                wall = table.indices[j]
+                if wall == ignored:
+                    continue
+                ax, ay, bx, by = walls[wall]
+                limit = TOUCH
+                if wall < solid and clearance > TOUCH:
+                    limit = clearance
+                distance2 = segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by)
+                if distance2 >= limit * limit:
+                    continue
+                if from_body:
+                    own2 = point_segment_distance2(px, py, ax, ay, bx, by)
+                    if distance2 >= _OWN_DISTANCE * _OWN_DISTANCE * own2 and own2 > 0.0:
+                        continue
+                return False
+    return True
+
+
+@njit(cache=True)
+def wall_distance(sight: Sight, x: float, y: float, at_most: float):
+    """Distance in metres from a point to the nearest wall, or `at_most` where none is nearer.
+
+    `at_most` must not exceed the reach that the sight was prepared for.
+    """
+    walls, solid, table = sight
+    column = int(np.floor((x - table.x0) / table.cell_size))
+    row = int(np.floor((y - table.y0) / table.cell_size))
+    best = at_most * at_most
+    if 0 <= column < table.nx and 0 <= row < table.ny:
+        at = row * table.nx + column
+        for j in range(table.offsets[at], table.offsets[at + 1]):
+            wall = table.indices[j]
+            if wall < solid:
+                ax, ay, bx, by = walls[wall]
+                best = min(best, point_segment_distance2(x, y, ax, ay, bx, by))
+    return np.sqrt(best)
+
+
+@njit(cache=True)
+def free_length(sight: Sight, px: float, py: float, qx: float, qy: float):
+    """How far in metres one can look from p towards q before a wall, at most to q."""
+    walls, _, table = sight
+    dx = qx - px
+    dy = qy - py
+    nearest = 1.0
+    first_row, last_row = rows_crossed(table, py, qy)
+    for row in range(first_row, last_row + 1):
+        first, last = cells_in_row(table, row, px, py, qx, qy)
+        for column in range(first, last + 1):
+            at = row * table.nx + column
+            for j in range(table.offsets[at], table.offsets[at + 1]):
+                ax, ay, bx, by = walls[table.indices[j]]
+                if segments_cross(px, py, qx, qy, ax, ay, bx, by):
+                    t = ((ax - px) * (by - ay) - (ay - py) * (bx - ax)) / (
+                        dx * (by - ay) - dy * (bx - ax)
+                    )
+                    nearest = min(nearest, t)
+    return nearest * np.sqrt(dx * dx + dy * dy)
+
+
+def line_of_sight(
+    plan_or_walls: "FloorPlan | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
+) -> bool:
+    """Whether the straight line from p to q (x, y in metres) stays `clearance` from all walls.
+
+    A line that touches a wall has no clearance: it is not in view. `plan_or_walls`
+    is a FloorPlan or an (m, 4) array of wall segments.
+    """
+    ends = [np.asarray(end, dtype=np.float64).reshape(1, 2) for end in (p, q)]
+    return bool(lines_of_sight(plan_or_walls, ends[0], ends[1], clearance)[0])
+
+
+def lines_of_sight(
+    plan_or_walls: "FloorPlan | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
+) -> NDArray[np.bool_]:
+    """(n,) `line_of_sight` for every pair of rows of two (n, 2) arrays.
+
+    Raises FloorPlanError for points that are not finite, arrays of different
+    length, or a negative clearance.
+    """
+    starts = np.ascontiguousarray(np.asarray(p, dtype=np.float64).reshape(-1, 2))
+    ends = np.ascontiguousarray(np.asarray(q, dtype=np.float64).reshape(-1, 2))
+    if len(starts) != len(ends) or not (np.isfinite(starts).all() and np.isfinite(ends).all()):
+        raise FloorPlanError(
+            "lines of sight need two arrays of finite points of the same length, "
+            f"found {len(starts)} and {len(ends)} points"
+        )
+    if not (np.isfinite(clearance) and clearance >= 0):
+        raise FloorPlanError(f"clearance must be at least 0 m, found {clearance}")
+    return _clear_lines(_prepared(plan_or_walls, float(clearance)), starts, ends, float(clearance))
+
+
+@njit(cache=True)
+def _clear_lines(
+    sight: Sight, starts: NDArray[np.float64], ends: NDArray[np.float64], clearance: float
+):
+    clear = np.empty(len(starts), dtype=np.bool_)
+    for i in range(len(starts)):
+        px, py = starts[i]
+        qx, qy = ends[i]
+        clear[i] = clear_line(sight, px, py, qx, qy, clearance, False, -1)
+    return clear
+
+
+_CACHE: "WeakKeyDictionary[FloorPlan, tuple[int, float, Sight]]" = WeakKeyDictionary()
+
+
+def _prepared(plan_or_walls: "FloorPlan | ArrayLike", clearance: float) -> Sight:
+    if not hasattr(plan_or_walls, "walls"):
+        return sight_of(plan_or_walls, (), clearance)
+    plan = plan_or_walls
+    found = _CACHE.get(plan)
+    if found is None or found[0] != plan.version or found[1] < clearance:
+        found = (plan.version, clearance, sight_of(plan.walls, (), clearance))
+        _CACHE[plan] = found
+    return found[2]

@@ -1,0 +1,111 @@
+"""Which nodes can be in view from each part of the floor, worked out where people come.
+
+Most nodes of a hall full of seat rows are hidden from most of it. A square of
+floor is hidden from a node where one wall crosses the lines from the node to all
+four corners of the square: then it crosses the line to every point in between.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan.kernels import segments_cross
+from mesa_mobility.floorplan.sight import Sight, cells_in_row, rows_crossed
+
+_CELL = 0.5
+_MOST_WORDS = 1 << 22
+
+
+class Views(NamedTuple):
+    """For each square of floor, one bit per node: set where the node may be in view.
+
+    `known` (cells,) tells which squares have been worked out; `bits` is
+    (cells, words) with node i in bit i % 64 of word i // 64.
+    """
+
+    x0: float
+    y0: float
+    nx: int
+    ny: int
+    cell_size: float
+    known: NDArray[np.bool_]
+    bits: NDArray[np.uint64]
+
+
+def no_views(bounds: tuple[float, float, float, float], nodes: int) -> Views:
+    """Views of a floor with these bounds (metres), none worked out yet."""
+    words = max(1, -(-nodes // 64))
+    xmin, ymin, xmax, ymax = bounds
+    cell = _CELL
+    while ((xmax - xmin) / cell + 1) * ((ymax - ymin) / cell + 1) * words > _MOST_WORDS:
+        cell *= 2
+    nx, ny = int((xmax - xmin) / cell) + 1, int((ymax - ymin) / cell) + 1
+    return Views(
+        xmin, ymin, nx, ny, cell, np.zeros(nx * ny, np.bool_), np.zeros((nx * ny, words), np.uint64)
+    )
+
+
+@njit(cache=True)
+def nodes_maybe_in_view(
+    sight: Sight, views: Views, places: NDArray[np.float64], x: float, y: float, found: NDArray[np.int64]
+):
+    """Write the nodes that may be in view from (x, y) to `found`; returns how many.
+
+    `places` is (nodes, 2) metres.
+    """
+    nodes = len(places)
+    column = int(np.floor((x - views.x0) / views.cell_size))
+    row = int(np.floor((y - views.y0) / views.cell_size))
+    if not (0 <= column < views.nx and 0 <= row < views.ny):
+        for i in range(nodes):
+            found[i] = i
+        return nodes
+    cell = row * views.nx + column
+    if not views.known[cell]:
+        left = views.x0 + column * views.cell_size
+        low = views.y0 + row * views.cell_size
+        for i in range(nodes):
+            if not _hidden(sight, left, low, views.cell_size, places[i, 0], places[i, 1]):
+                views.bits[cell, i // 64] |= np.uint64(1) << np.uint64(i % 64)
+        views.known[cell] = True
+    count = 0
+    for word in range(views.bits.shape[1]):
+        bits = views.bits[cell, word]
+        i = 64 * word
+        while bits != np.uint64(0):
+            if bits & np.uint64(1):
+                found[count] = i
+                count += 1
+            bits >>= np.uint64(1)
+            i += 1
+    return count
+
+
+@njit(cache=True)
+def _hidden(sight: Sight, left: float, low: float, side: float, qx: float, qy: float):
+    """Whether one wall hides the whole square from q."""
+    walls, solid, table = sight
+    px = left + side / 2
+    py = low + side / 2
+    first_row, last_row = rows_crossed(table, py, qy)
+    for row in range(first_row, last_row + 1):
+        first, last = cells_in_row(table, row, px, py, qx, qy)
+        for column in range(first, last + 1):
+            at = row * table.nx + column
+            for j in range(table.offsets[at], table.offsets[at + 1]):
+                wall = table.indices[j]
+                # An exit lies in its own curtain, which must not hide it.
+                if wall >= solid:
+                    continue
+                ax, ay, bx, by = walls[wall]
+                if (
+                    segments_cross(px, py, qx, qy, ax, ay, bx, by)
+                    and segments_cross(left, low, qx, qy, ax, ay, bx, by)
+                    and segments_cross(left + side, low, qx, qy, ax, ay, bx, by)
+                    and segments_cross(left, low + side, qx, qy, ax, ay, bx, by)
+                    and segments_cross(left + side, low + side, qx, qy, ax, ay, bx, by)
+                ):
+                    return True
+    return False

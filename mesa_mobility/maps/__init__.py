@@ -1,0 +1,1 @@
+"""The mobility maps that ship."""

@@ -1,0 +1,199 @@
+"""The map file: one .npz with plain arrays and JSON metadata, the same bytes for the same map.
+
+Paths are kept as whole steps of half a millimetre and 0.2 milliradians, each
+sample as its difference from the one before, so that a file of some 200,000
+options stays near ten megabytes.  End points and end headings stand beside
+the paths: a reader replays each path and compares.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import zipfile
+import zlib
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.errors import MapError
+from mesa_mobility.mobility.map import HEADING_STEP, POSITION_STEP, MobilityMap
+
+FORMAT_VERSION = 1
+
+COST_STEP = 1e-4
+
+_STEPS = np.array([POSITION_STEP, POSITION_STEP, HEADING_STEP])
+_PLAIN = ("offsets", "durations", "path_clusters", "mean_poses", "centres", "sizes", "mean_speeds")
+_DTYPES: dict[str, str] = {
+    "offsets": "int64",
+    "durations": "int16",
+    "costs": "uint16",
+    "end_points": "int16",
+    "end_headings": "int16",
+    "end_clusters": "uint16",
+    "path_steps": "int16",
+    "path_clusters": "uint16",
+    "mean_poses": "float32",
+    "centres": "float32",
+    "sizes": "int64",
+    "mean_speeds": "float32",
+    "metadata": "uint8",
+}
+
+
+def shipped_map_path(name: str) -> Path:
+    """Path of a map that ships with the package.
+
+    Raises:
+        MapError: there is no such map.
+    """
+    folder = Path(str(files("mesa_mobility.maps")))
+    path = folder / f"{name}.npz"
+    if not path.is_file():
+        known = sorted(p.stem for p in folder.glob("*.npz"))
+        raise MapError(f"no map named {name!r} ships with the package, expected one of {known}")
+    return path
+
+
+def quantise_paths(paths: NDArray[np.floating]) -> NDArray[np.float32]:
+    """Round (p, 3) samples to the steps of the file, so that a saved map reads back unchanged."""
+    return (np.rint(np.asarray(paths, dtype=np.float64) / _STEPS) * _STEPS).astype(np.float32)
+
+
+def quantise_costs(costs: NDArray[np.floating]) -> NDArray[np.float32]:
+    """Round costs to the step of the file."""
+    return (np.rint(np.asarray(costs, dtype=np.float64) / COST_STEP) * COST_STEP).astype(np.float32)
+
+
+def write_map(map_: MobilityMap, path: str | Path) -> None:
+    """Write a map to ``path``: complete or not at all.
+
+    Raises:
+        MapError: the file cannot be written, or a path is too long to be stored.
+    """
+    path = Path(path)
+    whole = np.rint(map_.paths.astype(np.float64) / _STEPS)
+    starts = map_.path_offsets[:-1]
+    steps = np.diff(whole, axis=0, prepend=0.0)
+    steps[starts] = whole[starts]
+    ends = whole[map_.path_offsets[1:] - 1]
+    if max(np.abs(steps).max(), np.abs(ends).max()) > np.iinfo(np.int16).max:
+        raise MapError(f"{path}: an option leads further than 16 m, expected a person's movement")
+    metadata = {"format_version": FORMAT_VERSION, **map_.metadata}
+    arrays: dict[str, NDArray[Any]] = {name: getattr(map_, name) for name in _PLAIN}
+    arrays["costs"] = np.rint(map_.costs.astype(np.float64) / COST_STEP)
+    arrays["end_points"] = ends[:, :2]
+    arrays["end_headings"] = ends[:, 2]
+    arrays["end_clusters"] = map_.end_clusters
+    arrays["path_steps"] = steps.T  # x, y and heading apart compress better
+    text = json.dumps(metadata, sort_keys=True, ensure_ascii=False).encode()
+    arrays["metadata"] = np.frombuffer(text, dtype=np.uint8)
+
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        with zipfile.ZipFile(temporary, "w") as archive:
+            for name, dtype in _DTYPES.items():
+                buffer = io.BytesIO()
+                np.lib.format.write_array(
+                    buffer, np.ascontiguousarray(arrays[name].astype(dtype)), allow_pickle=False
+                )
+                # A fixed date: the same map gives the same bytes on any day.
+                entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+                archive.writestr(entry, buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=9)
+        os.replace(temporary, path)
+    except OSError as error:
+        raise MapError(f"{path}: cannot be written ({error.strerror or error})") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read_map(path: str | Path) -> MobilityMap:
+    """Read and check a map file.
+
+    Raises:
+        MapError: naming the file and what is wrong with it.
+    """
+    path = Path(path)
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            if not isinstance(archive, np.lib.npyio.NpzFile):
+                raise MapError(f"{path}: a single array, expected a mobility map (.npz)")
+            missing = sorted(set(_DTYPES) - set(archive.files))
+            if missing:
+                raise MapError(f"{path}: not a mobility map, arrays missing: {', '.join(missing)}")
+            arrays = {name: archive[name] for name in _DTYPES}
+    except MapError:
+        raise
+    except FileNotFoundError:
+        raise MapError(f"{path}: no such file, expected a mobility map (.npz)") from None
+    except OSError as error:
+        raise MapError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except (ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
+            RuntimeError, MemoryError, TypeError, SyntaxError) as error:  # fmt: skip
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise MapError(f"{path}: not a readable mobility map ({reason})") from error
+    try:
+        return _decode(arrays)
+    except MapError as error:
+        raise MapError(f"{path}: {error}") from None
+
+
+def _decode(arrays: dict[str, NDArray[Any]]) -> MobilityMap:
+    for name, dtype in _DTYPES.items():
+        if arrays[name].dtype != np.dtype(dtype):
+            raise MapError(f"array {name!r}: type {arrays[name].dtype}, expected {dtype}")
+    metadata = _decode_metadata(arrays["metadata"])
+    durations, steps = arrays["durations"], arrays["path_steps"]
+    m = len(durations) if durations.ndim == 1 else -1
+    samples = durations.astype(np.int64) // 3
+    shapes = {
+        "durations": (m,),
+        "path_steps": (3, int(samples.sum()) if m >= 0 else -1),
+        "end_points": (m, 2),
+        "end_headings": (m,),
+        "end_clusters": (m,),
+    }
+    for name, shape in shapes.items():
+        if arrays[name].shape != shape:
+            raise MapError(f"array {name!r}: shape {arrays[name].shape}, expected {shape}")
+    if m < 1 or (samples < 1).any():
+        raise MapError("array 'durations': expected at least one option, each of 3 frames or more")
+    path_offsets = np.concatenate([[0], np.cumsum(samples)])
+    running = np.cumsum(steps, axis=1, dtype=np.int64)
+    before = np.concatenate(
+        [np.zeros((3, 1), np.int64), running[:, path_offsets[1:-1] - 1]], axis=1
+    )
+    whole = (running - np.repeat(before, samples, axis=1)).T
+    ends = np.column_stack([arrays["end_points"], arrays["end_headings"]])
+    last = path_offsets[1:] - 1
+    wrong = (whole[last] != ends).any(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise MapError(f"option {row}: its path ends elsewhere than its end point says")
+    if arrays["path_clusters"].shape == (len(whole),):
+        wrong = arrays["path_clusters"][last] != arrays["end_clusters"]
+        if wrong.any():
+            raise MapError(f"option {int(np.argmax(wrong))}: its path ends in another cluster")
+    return MobilityMap(
+        costs=(arrays["costs"] * COST_STEP).astype(np.float32),
+        path_offsets=path_offsets,
+        paths=(whole * _STEPS).astype(np.float32),
+        metadata=metadata,
+        **{name: arrays[name] for name in _PLAIN},
+    )
+
+
+def _decode_metadata(raw: NDArray[np.uint8]) -> dict[str, Any]:
+    try:
+        metadata = json.loads(raw.tobytes().decode())
+    except ValueError:
+        raise MapError("array 'metadata': not JSON, expected an object") from None
+    version = metadata.pop("format_version", None) if isinstance(metadata, dict) else None
+    if version != FORMAT_VERSION:
+        raise MapError(f"format version {version!r}, expected {FORMAT_VERSION}")
+    return metadata

@@ -1,0 +1,245 @@
+"""Least-cost paths of exactly 12, 24 and 45 frames through the motion graph.
+
+The paper takes all-pairs shortest paths and keeps those of 45 frames.  Taken
+literally that yields next to nothing: an unconstrained least-cost path between
+two poses is hundreds of frames long, and one in some thousands has exactly 45.
+What a pedestrian needs is every pose reachable in exactly 45 frames at least
+cost: a layered dynamic programme, one layer a frame, bounded by a budget of
+transition cost.  The layers at 12 and 24 frames give the shorter options.
+
+Poses of one cluster share their options (section 5 of the paper): the options
+of all poses of a cluster are thinned together, one for each cell of end point
+and end heading, the cheapest kept.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.mobility.clusters import Clusters
+from mesa_mobility.mobility.graph import MotionGraph
+
+DURATIONS = (12, 24, 45)
+"""Option durations in frames; 45 frames, 1.5 s, is the paper's time step."""
+
+SAMPLE_EVERY = 3
+"""Frames between the stored samples of a path."""
+
+TRANSITION_PENALTY = 1.0
+"""Fixed cost of leaving the recording, in units of the transition threshold."""
+
+BUDGET = 3.0
+"""Most that a path may cost: one poor and one good transition, or two fair ones."""
+
+CELL = (0.10, 0.10, np.deg2rad(15.0))
+"""Cell of thinning: metres, metres, radians of the end point and end heading."""
+
+_CHUNK = 48
+
+
+@dataclass(frozen=True)
+class ReachableOptions:
+    """Thinned options of all clusters, in order of cluster, duration and cell.
+
+    Attributes:
+        offsets: (k + 1,) int64; options of cluster c are ``offsets[c]:offsets[c + 1]``.
+        durations: (m,) int16; frames.
+        costs: (m,) float32; cost of the path in the motion graph.
+        paths: (m, 15, 3) float32; x, y in metres and heading in radians every 3 frames
+            from the third on, relative to the start; rows past the end are zero.
+        path_clusters: (m, 15) int32; cluster of the pose at each sample.
+    """
+
+    offsets: NDArray[np.int64]
+    durations: NDArray[np.int16]
+    costs: NDArray[np.float32]
+    paths: NDArray[np.float32]
+    path_clusters: NDArray[np.int32]
+
+
+def reachable_options(
+    graph: MotionGraph,
+    clusters: Clusters,
+    progress: Callable[[int, int], None] | None = None,
+) -> ReachableOptions:
+    """Options of every cluster: all places its poses can reach, thinned.
+
+    Args:
+        graph: the motion graph.
+        clusters: the clusters of its poses.
+        progress: called as ``progress(poses done, poses)``.
+    """
+    order = np.argsort(clusters.labels, kind="stable")
+    order = order[clusters.labels[order] >= 0].astype(np.int32)
+    bounds = np.searchsorted(clusters.labels[order], np.arange(len(clusters) + 1))
+    chunks = [
+        (cluster, order[start : min(start + _CHUNK, bounds[cluster + 1])])
+        for cluster in range(len(clusters))
+        for start in range(bounds[cluster], bounds[cluster + 1], _CHUNK)
+    ]
+    step = graph.poses.step
+    longest_step = float(np.hypot(step[:, 0], step[:, 1]).max())
+    half_cells = int(np.ceil(DURATIONS[-1] * longest_step / CELL[0])) + 1
+    durations = np.array(DURATIONS, dtype=np.int64)
+    cell = np.array(CELL)
+
+    def collect(chunk: NDArray[np.int32]) -> tuple[NDArray, ...]:
+        return _collect(
+            chunk, graph.offsets, graph.successors, graph.via, graph.costs, step,
+            clusters.labels, durations, BUDGET, TRANSITION_PENALTY, cell, half_cells,
+        )  # fmt: skip
+
+    found: list[list[tuple[NDArray, ...]]] = [[] for _ in range(len(clusters))]
+    done = 0
+    # One worker a processor; results are taken in order, so their number changes nothing.
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for (cluster, chunk), result in zip(
+            chunks, pool.map(collect, (c for _, c in chunks)), strict=True
+        ):
+            found[cluster].append(result)
+            done += len(chunk)
+            if progress is not None:
+                progress(done, len(order))
+    merged = [_merge(parts) for parts in found]
+    counts = [len(part[0]) for part in merged]
+    columns = [np.concatenate(column) for column in zip(*merged, strict=True)]
+    keys, costs, paths, path_clusters = columns
+    return ReachableOptions(
+        offsets=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        durations=np.array(DURATIONS, dtype=np.int16)[keys],
+        costs=costs,
+        paths=paths,
+        path_clusters=path_clusters,
+    )
+
+
+def _merge(parts: list[tuple[NDArray, ...]]) -> tuple[NDArray, ...]:
+    """Thin the parts of one cluster together; earlier parts win ties."""
+    cells, layers, costs, paths, path_clusters = (
+        np.concatenate(column) for column in zip(*parts, strict=True)
+    )
+    order = np.lexsort((np.arange(len(cells)), costs, cells, layers))
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = (np.diff(cells[order]) != 0) | (np.diff(layers[order]) != 0)
+    order = order[first]
+    return layers[order], costs[order], paths[order], path_clusters[order]
+
+
+@njit(cache=True, nogil=True)
+def _collect(
+    sources: NDArray[np.int32],
+    offsets: NDArray[np.int64],
+    successors: NDArray[np.int32],
+    via: NDArray[np.int32],
+    costs: NDArray[np.float32],
+    step: NDArray[np.float64],
+    labels: NDArray[np.int32],
+    durations: NDArray[np.int64],
+    budget: float,
+    penalty: float,
+    cell: NDArray[np.float64],
+    half_cells: int,
+) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
+    """Options of some poses of one cluster, thinned; see ``ReachableOptions``."""
+    n = len(labels)
+    frames = durations[-1]
+    nodes = np.empty((frames + 1, n), np.int32)
+    parents = np.empty((frames + 1, n), np.int32)
+    vias = np.empty((frames + 1, n), np.int32)
+    spent = np.empty((frames + 1, n), np.float64)
+    place = np.empty((frames + 1, n, 3), np.float64)
+    slot_in_layer = np.full(n, -1, np.int32)
+
+    headings = int(np.ceil(2.0 * np.pi / cell[2]))
+    side = 2 * half_cells + 1
+    slot_of_cell = np.full((len(durations), side * side * headings), -1, np.int32)
+    samples = frames // SAMPLE_EVERY
+    capacity, used = 4096, 0
+    out_cell = np.empty(capacity, np.int64)
+    out_layer = np.empty(capacity, np.int64)
+    out_cost = np.empty(capacity, np.float32)
+    out_path = np.zeros((capacity, samples, 3), np.float32)
+    out_cluster = np.zeros((capacity, samples), np.int32)
+
+    for source in sources:
+        nodes[0, 0], parents[0, 0], spent[0, 0] = source, -1, 0.0
+        place[0, 0, :] = 0.0
+        count = 1
+        layer = 0
+        for frame in range(1, frames + 1):
+            # Relax every edge from the layer before.
+            following = 0
+            for a in range(count):
+                node = nodes[frame - 1, a]
+                for e in range(offsets[node], offsets[node + 1]):
+                    c = spent[frame - 1, a] + costs[e]
+                    if via[e] != node:
+                        c += penalty
+                    if c > budget:
+                        continue
+                    successor = successors[e]
+                    s = slot_in_layer[successor]
+                    if s < 0:
+                        s = following
+                        following += 1
+                        slot_in_layer[successor] = s
+                        nodes[frame, s] = successor
+                    elif c >= spent[frame, s]:
+                        continue
+                    spent[frame, s], parents[frame, s], vias[frame, s] = c, a, via[e]
+            count = following
+            for a in range(count):
+                slot_in_layer[nodes[frame, a]] = -1
+                p, v = parents[frame, a], vias[frame, a]
+                heading = place[frame - 1, p, 2]
+                ch, sh = np.cos(heading), np.sin(heading)
+                place[frame, a, 0] = place[frame - 1, p, 0] + ch * step[v, 0] - sh * step[v, 1]
+                place[frame, a, 1] = place[frame - 1, p, 1] + sh * step[v, 0] + ch * step[v, 1]
+                place[frame, a, 2] = heading + step[v, 2]
+            if frame != durations[layer]:
+                continue
+            for a in range(count):
+                ix = int(np.floor(place[frame, a, 0] / cell[0] + 0.5)) + half_cells
+                iy = int(np.floor(place[frame, a, 1] / cell[1] + 0.5)) + half_cells
+                ih = int(np.floor(place[frame, a, 2] / cell[2] + 0.5)) % headings
+                key = (ix * side + iy) * headings + ih
+                slot = slot_of_cell[layer, key]
+                if slot >= 0 and spent[frame, a] >= out_cost[slot]:
+                    continue
+                if slot < 0:
+                    if used == capacity:
+                        out_cell = np.concatenate((out_cell, np.empty_like(out_cell)))
+                        out_layer = np.concatenate((out_layer, np.empty_like(out_layer)))
+                        out_cost = np.concatenate((out_cost, np.empty_like(out_cost)))
+                        out_path = np.concatenate((out_path, np.zeros_like(out_path)))
+                        out_cluster = np.concatenate((out_cluster, np.zeros_like(out_cluster)))
+                        capacity *= 2
+                    slot = used
+                    used += 1
+                    slot_of_cell[layer, key] = slot
+                    out_cell[slot] = key
+                    out_layer[slot] = layer
+                out_cost[slot] = spent[frame, a]
+                b = a
+                for f in range(frame, 0, -1):
+                    if f % SAMPLE_EVERY == 0:
+                        out_path[slot, f // SAMPLE_EVERY - 1, 0] = place[f, b, 0]
+                        out_path[slot, f // SAMPLE_EVERY - 1, 1] = place[f, b, 1]
+                        out_path[slot, f // SAMPLE_EVERY - 1, 2] = place[f, b, 2]
+                        out_cluster[slot, f // SAMPLE_EVERY - 1] = labels[nodes[f, b]]
+                    b = parents[f, b]
+            layer += 1
+    return (
+        out_cell[:used],
+        out_layer[:used],
+        out_cost[:used],
+        out_path[:used],
+        out_cluster[:used],
+    )

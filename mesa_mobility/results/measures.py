@@ -1,0 +1,195 @@
+"""What is measured on trajectories: occupancy, egress, speed, crossings, flow and density."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.trajectories import Trajectories
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Crossings:
+    """Passages over a line, in order of time.
+
+    Attributes:
+        time: (k,) float64, seconds, interpolated between frames.
+        person: (k,) int32.
+        direction: (k,) int8: +1 from the right-hand to the left-hand side of the line as seen
+            from its first end, -1 the other way.
+    """
+
+    time: FloatArray
+    person: NDArray[np.int32]
+    direction: NDArray[np.int8]
+
+
+def occupancy(trajectories: Trajectories, every: float = 1.0) -> list[list[float]]:
+    """How many people are inside, as [[t, inside], ...].
+
+    Args:
+        trajectories: the run.
+        every: seconds between the entries; the first is at 0, the last not after the end.
+
+    Raises:
+        ResultsError: `every` is shorter than a frame.
+    """
+    if not every * trajectories.frame_rate >= 1.0:
+        raise ResultsError(
+            f"occupancy every {every} s asked of {trajectories.frame_rate} frames a second"
+        )
+    ticks = np.arange(int(trajectories.duration / every + 1e-9) + 1)
+    frames = np.rint(ticks * every * trajectories.frame_rate).astype(np.int64)
+    inside = trajectories.inside()[frames]
+    return [[float(tick * every), int(count)] for tick, count in zip(ticks, inside, strict=True)]
+
+
+def departures(trajectories: Trajectories) -> FloatArray:
+    """When people left: (k,) seconds in rising order, the frame that found each outside."""
+    frames = trajectories.exit_frames
+    return np.sort(frames[frames >= 0]) / trajectories.frame_rate
+
+
+def egress_time(trajectories: Trajectories) -> float | None:
+    """Seconds until the floor was empty; None when it was not, or nobody was ever inside."""
+    if not len(trajectories) or len(trajectories.remaining):
+        return None
+    return float(departures(trajectories)[-1])
+
+
+def speeds(trajectories: Trajectories, window: float = 1.0) -> FloatArray:
+    """Speed of everybody in every frame that has a position `window` seconds later.
+
+    Returns:
+        (k,) m/s, by person, then frame: straight displacement over the window, divided by it. A
+        window of about a gait cycle leaves out the pelvis's side-to-side motion.
+    """
+    frames = _frames(window, trajectories, "window")
+    start, end = trajectories.steps(frames)
+    dx = trajectories.x[end] - trajectories.x[start]
+    dy = trajectories.y[end] - trajectories.y[start]
+    return np.hypot(dx, dy) * (trajectories.frame_rate / frames)
+
+
+def mean_speed(trajectories: Trajectories, window: float = 1.0) -> float | None:
+    """Mean of :func:`speeds` over people and frames, m/s; None where nobody stayed that long."""
+    values = speeds(trajectories, window)
+    return float(values.mean()) if len(values) else None
+
+
+def direction_changes(
+    trajectories: Trajectories, interval: float = 1.5, minimum_m: float = 0.3
+) -> FloatArray:
+    """By how much people's direction of travel changes from one interval to the next.
+
+    Each person's track is cut into steps of `interval` seconds from its first frame on. Works on
+    positions alone, as measured tracks of heads do, not on headings.
+
+    Args:
+        trajectories: the run.
+        interval: seconds.
+        minimum_m: steps shorter than this have no direction and are left out, metres.
+
+    Returns:
+        (k,) radians in [-pi, pi), positive to the left.
+    """
+    frames = _frames(interval, trajectories, "interval")
+    start, end = trajectories.steps(frames)
+    first_frame = np.full(int(trajectories.person.max(initial=-1)) + 1, -1, dtype=np.int64)
+    backwards = slice(None, None, -1)
+    first_frame[trajectories.person[backwards]] = trajectories.frame[backwards]
+    on_grid = (trajectories.frame[start] - first_frame[trajectories.person[start]]) % frames == 0
+    start, end = start[on_grid], end[on_grid]
+    dx = trajectories.x[end] - trajectories.x[start]
+    dy = trajectories.y[end] - trajectories.y[start]
+    angle, long_enough = np.arctan2(dy, dx), np.hypot(dx, dy) >= minimum_m
+    follows = (end[:-1] == start[1:]) & long_enough[:-1] & long_enough[1:]
+    change = np.diff(angle)[follows]
+    return (change + np.pi) % (2 * np.pi) - np.pi
+
+
+def crossings(trajectories: Trajectories, a: ArrayLike, b: ArrayLike) -> Crossings:
+    """Passages of people over the segment from a to b.
+
+    A position exactly on the line counts as on its left, so that nobody is counted twice.
+
+    Args:
+        trajectories: the run.
+        a: (2,) metres.
+        b: (2,) metres.
+
+    Raises:
+        ResultsError: the two ends coincide.
+    """
+    a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    along = b - a
+    length2 = float(along @ along)
+    if not length2 > 0:
+        raise ResultsError(f"a line to cross needs two ends, both are {tuple(a.tolist())}")
+    dx, dy = trajectories.x - a[0], trajectories.y - a[1]
+    side = along[0] * dy - along[1] * dx
+    at = (along[0] * dx + along[1] * dy) / length2
+    start, end = trajectories.steps()
+    change = (side[end] >= 0).astype(np.int8) - (side[start] >= 0).astype(np.int8)
+    start, end, change = start[change != 0], end[change != 0], change[change != 0]
+    share = side[start] / (side[start] - side[end])
+    where = at[start] + share * (at[end] - at[start])
+    on = (where >= 0) & (where <= 1)
+    time = (trajectories.frame[start[on]] + share[on]) / trajectories.frame_rate
+    order = np.argsort(time, kind="stable")
+    return Crossings(time[order], trajectories.person[start[on]][order], change[on][order])
+
+
+def flow(times: ArrayLike) -> float | None:
+    """Mean flow of passages at the given times, people a second.
+
+    J = (N - 1) / (t_N - t_1): the time before the first person arrives does not count. None for
+    fewer than two passages.
+    """
+    ordered = np.sort(np.asarray(times, dtype=np.float64))
+    if len(ordered) < 2 or ordered[-1] == ordered[0]:
+        return None
+    return float((len(ordered) - 1) / (ordered[-1] - ordered[0]))
+
+
+def density(
+    trajectories: Trajectories, area: shapely.Polygon, every: float = 1.0
+) -> list[list[float]]:
+    """People in an area divided by its size, as [[t, people / m2], ...].
+
+    The classic density N / A; PedPy computes Voronoi densities from `Trajectories.to_pedpy()`.
+
+    Args:
+        trajectories: the run.
+        area: measuring polygon, metres.
+        every: seconds between the entries.
+
+    Raises:
+        ResultsError: an area without size.
+    """
+    if not area.area > 0:
+        raise ResultsError("the measuring area of a density has no size")
+    shapely.prepare(area)
+    offsets = trajectories.frame_offsets
+    result: list[list[float]] = []
+    for tick, _ in occupancy(trajectories, every):
+        frame = round(tick * trajectories.frame_rate)
+        rows = slice(offsets[frame], offsets[frame + 1])
+        inside = shapely.contains_xy(area, trajectories.x[rows], trajectories.y[rows])
+        result.append([tick, float(np.count_nonzero(inside) / area.area)])
+    return result
+
+
+def _frames(seconds: float, trajectories: Trajectories, name: str) -> int:
+    frames = round(seconds * trajectories.frame_rate)
+    if frames < 1:
+        raise ResultsError(
+            f"{name} of {seconds} s is shorter than a frame at {trajectories.frame_rate} Hz"
+        )
+    return frames

@@ -1,0 +1,98 @@
+"""Trajectories as a Parquet file."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.files import replacing
+from mesa_mobility.results.trajectories import Trajectories
+
+FORMAT_VERSION = 1
+METADATA_KEY = b"mesa_mobility"
+SCHEMA = pa.schema(
+    [
+        ("frame", pa.int32()),
+        ("person", pa.int32()),
+        ("x", pa.float64()),
+        ("y", pa.float64()),
+        ("heading", pa.float64()),
+    ]
+)
+
+
+def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
+    """Write columns frame, person, x (m), y (m), heading (rad), compressed with zstd.
+
+    The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
+    last_frame, core_radius by person, inside_at_end. Equal trajectories give equal bytes.
+
+    Raises:
+        ResultsError: the file cannot be written.
+    """
+    metadata = {
+        "format_version": FORMAT_VERSION,
+        "frame_rate": float(trajectories.frame_rate),
+        "last_frame": trajectories.frames - 1,
+        "core_radius": trajectories.radii.tolist(),
+        "inside_at_end": trajectories.remaining.tolist(),
+    }
+    schema = SCHEMA.with_metadata({METADATA_KEY: json.dumps(metadata, sort_keys=True).encode()})
+    table = pa.table([getattr(trajectories, name) for name in SCHEMA.names], schema=schema)
+    with replacing(path) as temporary:
+        # Neighbouring values of a double share their high bytes: split, they compress better.
+        pq.write_table(
+            table,
+            temporary,
+            compression="zstd",
+            use_dictionary=["frame", "person"],
+            use_byte_stream_split=["x", "y", "heading"],
+        )
+
+
+def read_parquet(path: str | os.PathLike[str]) -> Trajectories:
+    """Read what :func:`write_parquet` wrote.
+
+    Raises:
+        ResultsError: no such file, not a Parquet file, columns or metadata missing, or rows that
+            are not trajectories.
+    """
+    source = Path(path)
+    try:
+        table = pq.read_table(source)
+    except FileNotFoundError as error:
+        raise ResultsError(f"{source}: no such file") from error
+    except (OSError, pa.ArrowException) as error:
+        reason = str(error).splitlines()[0]
+        raise ResultsError(f"{source}: not a readable Parquet file: {reason}") from error
+    missing = [name for name in SCHEMA.names if name not in table.column_names]
+    if missing:
+        raise ResultsError(f"{source}: no column {missing[0]}, expected {', '.join(SCHEMA.names)}")
+    metadata = (table.schema.metadata or {}).get(METADATA_KEY)
+    if metadata is None:
+        raise ResultsError(f"{source}: no {METADATA_KEY.decode()} metadata in its schema")
+    try:
+        values = json.loads(metadata)
+        version = values["format_version"]
+        if version != FORMAT_VERSION:
+            raise ResultsError(f"{source}: format version {version}, expected {FORMAT_VERSION}")
+        columns = table.select(SCHEMA.names).cast(SCHEMA)
+        return Trajectories(
+            **{name: columns[name].to_numpy() for name in SCHEMA.names},
+            frame_rate=float(values["frame_rate"]),
+            core_radius=np.asarray(values["core_radius"], dtype=np.float64),
+            last_frame=int(values["last_frame"]),
+            inside_at_end=np.asarray(values["inside_at_end"], dtype=np.int64),
+        )
+    except (KeyError, TypeError, ValueError, pa.ArrowException) as error:
+        raise ResultsError(f"{source}: damaged trajectories: {error}") from error
+    except ResultsError as error:
+        if str(error).startswith(str(source)):
+            raise
+        raise ResultsError(f"{source}: {error}") from error

@@ -1,0 +1,266 @@
+"""Pictures of a run: where people walked, how many were inside, who stood where when.
+
+Figures are made without pyplot, so that no window and no global state is involved.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.files import replacing
+from mesa_mobility.results.floor import draw_floor, floor_figure
+from mesa_mobility.results.trajectories import Trajectories
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan import FloorPlan
+
+# Pieces of track in one picture: more cannot be told apart and take long to draw.
+MOST_PIECES = 120_000
+PAPER = "paper (Casburn et al. 2005, Fig. 7)"
+# Without the green of exits, the blue of doors and the pale yellow that is lost on white.
+TRACK_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.9, 256)))
+BODY, LEFT_INSIDE, REFERENCE = "#2166ac", "#000000", "#d6604d"
+STILL_INSIDE = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 5,
+    "markeredgecolor": "white",
+    "markeredgewidth": 0.6,
+    "color": LEFT_INSIDE,
+}
+
+
+def plot_trajectories(
+    trajectories: Trajectories,
+    plan: FloorPlan,
+    path: str | os.PathLike[str],
+    *,
+    title: str = "",
+) -> None:
+    """Draw everybody's track on the floor plan, coloured by time.
+
+    Args:
+        trajectories: the run.
+        plan: the floor plan; walls are drawn dark, obstacles grey, doors and exits coloured.
+        path: picture to write; its suffix chooses the format (.png, .svg, .pdf).
+        title: first line of the picture.
+
+    Raises:
+        ResultsError: the file cannot be written.
+    """
+    figure, axes = floor_figure(plan, rows=1, columns=1)
+    handles = draw_floor(axes[0], plan)
+    tracks = _tracks(trajectories)
+    axes[0].add_collection(tracks)
+    bar = figure.colorbar(tracks, ax=axes[0], shrink=0.8, aspect=30, pad=0.02)
+    bar.set_label("time since the start (s)")
+    # Drawn faint so that crossing tracks show; the scale itself is not faint.
+    if bar.solids is not None:
+        bar.solids.set_alpha(1.0)
+    last = _rows_at(trajectories, trajectories.frames - 1)
+    left = np.flatnonzero(np.isin(trajectories.person[last], trajectories.remaining)) + last.start
+    if len(left):
+        axes[0].plot(
+            trajectories.x[left],
+            trajectories.y[left],
+            **STILL_INSIDE,
+            zorder=6,
+        )
+        label = f"still inside after {trajectories.duration:.1f} s"
+        handles.append(Line2D([], [], **STILL_INSIDE, label=label))
+    _finish(figure, handles, title or f"Tracks of {trajectories.people} people", path)
+
+
+def plot_snapshots(
+    trajectories: Trajectories,
+    plan: FloorPlan,
+    path: str | os.PathLike[str],
+    *,
+    times: Sequence[float],
+    title: str = "",
+) -> None:
+    """Draw who stood where at given times: body cores as discs, a stroke for the facing.
+
+    Args:
+        trajectories: the run.
+        plan: the floor plan.
+        path: picture to write.
+        times: seconds, one panel each.
+        title: first line of the picture.
+
+    Raises:
+        ResultsError: no times, a time outside the run, or the file cannot be written.
+    """
+    if not times or not all(0 <= time <= trajectories.duration for time in times):
+        raise ResultsError(
+            f"snapshots at {list(times)} s asked of a run of {trajectories.duration:.2f} s"
+        )
+    figure, axes = floor_figure(plan, rows=(len(times) + 1) // 2, columns=min(2, len(times)))
+    for panel in axes[len(times) :]:
+        panel.set_axis_off()
+    for panel, time in zip(axes, times, strict=False):
+        handles = draw_floor(panel, plan)
+        rows = _rows_at(trajectories, round(time * trajectories.frame_rate))
+        _draw_bodies(panel, trajectories, rows)
+        panel.set_title(f"{time:g} s: {rows.stop - rows.start} people inside", fontsize=10)
+    handles.append(
+        Line2D([], [], linestyle="none", marker="o", color=BODY, label="person, facing the stroke")
+    )
+    _finish(figure, handles, title, path)
+
+
+def plot_occupancy(
+    occupancy: Sequence[Sequence[float]],
+    path: str | os.PathLike[str],
+    *,
+    reference: Mapping[float, float] | None = None,
+    reference_label: str = PAPER,
+    title: str = "",
+) -> None:
+    """Draw how many people were inside against time.
+
+    Args:
+        occupancy: [[t, inside], ...], seconds and people.
+        path: picture to write.
+        reference: people inside at some times (s), drawn as points to compare with.
+        reference_label: whose they are.
+        title: first line of the picture.
+
+    Raises:
+        ResultsError: an empty occupancy, or the file cannot be written.
+    """
+    if not len(occupancy):
+        raise ResultsError("there is no occupancy to draw")
+    time, inside = np.asarray(occupancy, dtype=np.float64).T
+    figure = Figure(figsize=(8, 4.5), dpi=150, layout="constrained")
+    axes = figure.subplots()
+    axes.fill_between(time, inside, color=BODY, alpha=0.12, linewidth=0)
+    axes.plot(time, inside, color=BODY, linewidth=2, label="this run")
+    if inside[-1] == 0:
+        out = time[np.flatnonzero(inside == 0)[0]]
+        axes.plot([out], [0], marker="o", color=BODY, clip_on=False, zorder=5)
+        # High enough to stay clear of a reference point beside it.
+        axes.annotate(
+            f"all out: {out:.0f} s",
+            (out, 0),
+            (0, 38),
+            textcoords="offset points",
+            ha="center",
+            color=BODY,
+            arrowprops={"arrowstyle": "-", "color": BODY, "linewidth": 0.8},
+        )
+    if reference:
+        axes.plot(
+            list(reference),
+            list(reference.values()),
+            linestyle="none",
+            marker="D",
+            markersize=7,
+            markerfacecolor="white",
+            markeredgewidth=1.8,
+            color=REFERENCE,
+            label=reference_label,
+            clip_on=False,
+            zorder=5,
+        )
+        for t, people in reference.items():
+            axes.annotate(
+                f"{people:g}",
+                (t, people),
+                (8, 6),
+                textcoords="offset points",
+                color=REFERENCE,
+                fontsize=9,
+            )
+        axes.legend(frameon=False)
+    axes.set_xlim(0, max(time[-1], *(reference or {0.0: 0.0}), 1e-9) * 1.03)
+    axes.set_ylim(0, max(inside.max(), *(reference or {0.0: 0.0}).values(), 1) * 1.05)
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=8, integer=True, steps=[1, 2, 5, 10]))
+    axes.set_xlabel("time since the start (s)")
+    axes.set_ylabel("people inside")
+    axes.grid(alpha=0.25)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_title(title or "People inside", loc="left", fontsize=11)
+    _save(figure, path)
+
+
+def _rows_at(trajectories: Trajectories, frame: int) -> slice:
+    offsets = trajectories.frame_offsets
+    return slice(int(offsets[frame]), int(offsets[frame + 1]))
+
+
+def _tracks(trajectories: Trajectories) -> LineCollection:
+    every = max(1, round(trajectories.frame_rate / 10), -(-len(trajectories) // MOST_PIECES))
+    start, end = trajectories.steps(every)
+    # Each person's every-th row only: its pieces then join end to end.
+    kept = trajectories.frame[start] % every == 0
+    start, end = start[kept], end[kept]
+    pieces = np.empty((len(start), 2, 2))
+    pieces[:, 0, 0], pieces[:, 0, 1] = trajectories.x[start], trajectories.y[start]
+    pieces[:, 1, 0], pieces[:, 1, 1] = trajectories.x[end], trajectories.y[end]
+    few = trajectories.people <= 100
+    tracks = LineCollection(
+        list(pieces),
+        cmap=TRACK_COLOURS,
+        linewidths=1.0 if few else 0.6,
+        alpha=0.9 if few else 0.7,
+        capstyle="round",
+        rasterized=True,
+        zorder=3,
+    )
+    tracks.set_array(trajectories.frame[start] / trajectories.frame_rate)
+    tracks.set_clim(0.0, max(trajectories.duration, 1.0 / trajectories.frame_rate))
+    return tracks
+
+
+def _draw_bodies(axes: Axes, trajectories: Trajectories, rows: slice) -> None:
+    radius = trajectories.radii[trajectories.person[rows]]
+    centre = np.column_stack((trajectories.x[rows], trajectories.y[rows]))
+    heading = trajectories.heading[rows]
+    tip = centre + 1.8 * radius[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
+    axes.add_collection(
+        LineCollection(list(np.stack((centre, tip), axis=1)), colors="black", linewidths=0.8)
+    )
+    axes.add_collection(
+        EllipseCollection(
+            2 * radius,
+            2 * radius,
+            np.zeros(len(radius)),
+            units="xy",
+            offsets=centre,
+            offset_transform=axes.transData,
+            facecolors=BODY,
+            edgecolors="white",
+            linewidths=0.3,
+            zorder=4,
+        )
+    )
+
+
+def _finish(
+    figure: Figure, handles: list[Line2D | Patch], title: str, path: str | os.PathLike[str]
+) -> None:
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=9
+    )
+    if title:
+        figure.suptitle(title, fontsize=12)
+    _save(figure, path)
+
+
+def _save(figure: Figure, path: str | os.PathLike[str]) -> None:
+    with replacing(path) as temporary:
+        figure.savefig(temporary)

@@ -1,0 +1,84 @@
+"""The folder of files that a run leaves behind."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.files import check_writable, json_text
+from mesa_mobility.results.measures import occupancy
+from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
+from mesa_mobility.results.trajectories import Trajectories
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan import FloorPlan
+
+RUN_FILES = (
+    "summary.json",
+    "trajectories.parquet",
+    "floorplan.geojson",
+    "occupancy.png",
+    "trajectories.png",
+)
+
+
+def write_run(
+    directory: str | os.PathLike[str],
+    *,
+    summary: Mapping[str, Any],
+    trajectories: Trajectories,
+    plan: FloorPlan,
+    reference_occupancy: Mapping[float, float] | None = None,
+) -> None:
+    """Write summary.json, trajectories.parquet, floorplan.geojson and two pictures.
+
+    Everything is first written to a temporary folder inside `directory` and moved to its place
+    when all of it is complete.
+
+    Args:
+        directory: folder to write to, created if need be.
+        summary: figures of the run; `model`, `seed` and `preset` go into the pictures' titles.
+        trajectories: the run.
+        plan: its floor plan.
+        reference_occupancy: time (s) -> people inside, drawn beside the run's.
+
+    Raises:
+        ResultsError: the folder or a file cannot be written.
+    """
+    folder = check_writable(directory)
+    title = _title(summary, trajectories)
+    try:
+        with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder) as name:
+            temporary = Path(name)
+            text = json_text(summary, indent=2) + "\n"
+            (temporary / "summary.json").write_text(text, encoding="utf-8")
+            trajectories.to_parquet(temporary / "trajectories.parquet")
+            plan.write_geojson(temporary / "floorplan.geojson")
+            plot_occupancy(
+                occupancy(trajectories),
+                temporary / "occupancy.png",
+                reference=reference_occupancy,
+                title=title,
+            )
+            plot_trajectories(trajectories, plan, temporary / "trajectories.png", title=title)
+            for file in RUN_FILES:
+                os.replace(temporary / file, folder / file)
+    except OSError as error:
+        raise ResultsError(f"{folder}: cannot be written: {error.strerror or error}") from error
+
+
+def _title(summary: Mapping[str, Any], trajectories: Trajectories) -> str:
+    egress = summary.get("egress_s")
+    left = summary.get("left_inside", 0)
+    ending = (
+        f"all out after {egress:.0f} s"
+        if egress is not None
+        else f"{left} still inside after {trajectories.duration:.0f} s"
+    )
+    run = ", ".join(f"{key} {summary[key]}" for key in ("preset", "seed") if key in summary)
+    name = str(summary.get("model", "run")).replace("_", " ")
+    return f"{name}: {trajectories.people} people, {ending}" + (f" ({run})" if run else "")

@@ -1,0 +1,152 @@
+"""Bodies that overlap and steps through walls, counted over finished trajectories.
+
+The count shares nothing with the code that keeps people apart while they walk: it takes positions
+as they were written and asks SciPy's k-d tree and shapely.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.trajectories import Trajectories
+
+# Rounding of floats may bring two bodies that just touch this much closer, metres.
+TOLERANCE_M = 1e-5
+# How many of the overlaps and crossings a report names one by one.
+NAMED = 10
+# Steps looked at together: bounds the memory that shapely's objects take.
+CHUNK = 200_000
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """Two bodies closer than the sum of their cores in one frame; distance in metres."""
+
+    frame: int
+    first: int
+    second: int
+    distance_m: float
+
+
+@dataclass(frozen=True)
+class WallCrossing:
+    """A step of one person, from `frame` to the next, that meets a wall segment."""
+
+    frame: int
+    person: int
+    wall: int
+
+
+@dataclass(frozen=True)
+class SafetyReport:
+    """What the independent check found.
+
+    Attributes:
+        overlaps: pairs of bodies closer than their cores, counted over all frames.
+        overlapping_pairs: the first few of them.
+        min_distance_m: smallest distance between the centres of two people in any frame, metres;
+            None when two people were never inside together.
+        wall_crossings: steps between consecutive frames that meet a wall.
+        crossings: the first few of them.
+    """
+
+    overlaps: int
+    overlapping_pairs: tuple[Overlap, ...]
+    min_distance_m: float | None
+    wall_crossings: int
+    crossings: tuple[WallCrossing, ...]
+
+    @property
+    def passed(self) -> bool:
+        """True without a single overlap or wall crossing."""
+        return self.overlaps == 0 and self.wall_crossings == 0
+
+
+def check_safety(trajectories: Trajectories, walls: ArrayLike) -> SafetyReport:
+    """Count overlapping bodies and steps through walls.
+
+    Args:
+        trajectories: the run; its `core_radius` says how close two people may come.
+        walls: (m, 4) segments x1, y1, x2, y2 in metres (`FloorPlan.walls`), open exits cut out.
+
+    Returns:
+        A report. Distances below the sum of two core radii by less than 1e-5 m are rounding.
+
+    Raises:
+        ResultsError: walls of another shape or not finite.
+    """
+    segments = np.asarray(walls, dtype=np.float64)
+    if segments.size == 0:
+        segments = segments.reshape(0, 4)
+    if segments.ndim != 2 or segments.shape[1] != 4 or not np.all(np.isfinite(segments)):
+        raise ResultsError(f"walls have shape {segments.shape}, expected (m, 4) finite numbers")
+    overlaps, pairs, nearest = _overlaps(trajectories)
+    count, crossings = _wall_crossings(trajectories, segments)
+    return SafetyReport(
+        overlaps=overlaps,
+        overlapping_pairs=tuple(pairs),
+        min_distance_m=nearest,
+        wall_crossings=count,
+        crossings=tuple(crossings),
+    )
+
+
+def _overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | None]:
+    offsets = trajectories.frame_offsets
+    positions = np.column_stack((trajectories.x, trajectories.y))
+    radii = trajectories.radii[trajectories.person]
+    count, named, nearest = 0, list[Overlap](), np.inf
+    for frame in range(trajectories.frames):
+        rows = slice(offsets[frame], offsets[frame + 1])
+        if rows.stop - rows.start < 2:
+            continue
+        points, cores = positions[rows], radii[rows]
+        tree = cKDTree(points)
+        nearest_here = float(tree.query(points, k=2)[0][:, 1].min())
+        nearest = min(nearest, nearest_here)
+        reach = 2.0 * cores.max()
+        if nearest_here >= reach:
+            continue
+        a, b = tree.query_pairs(reach, output_type="ndarray").T
+        distance = np.hypot(*(points[a] - points[b]).T)
+        close = np.flatnonzero(distance < cores[a] + cores[b] - TOLERANCE_M)
+        count += len(close)
+        people = trajectories.person[rows]
+        for k in close[: NAMED - len(named)] if len(named) < NAMED else ():
+            pair = sorted((int(people[a[k]]), int(people[b[k]])))
+            named.append(Overlap(frame, pair[0], pair[1], float(distance[k])))
+    return count, named, float(nearest) if np.isfinite(nearest) else None
+
+
+def _wall_crossings(
+    trajectories: Trajectories, walls: NDArray[np.float64]
+) -> tuple[int, list[WallCrossing]]:
+    if not len(walls):
+        return 0, []
+    tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
+    start, end = trajectories.steps()
+    hits, hit_walls = list[NDArray[np.int64]](), list[NDArray[np.int64]]()
+    for first in range(0, len(start), CHUNK):
+        ends = np.stack((start[first : first + CHUNK], end[first : first + CHUNK]), axis=1)
+        lines = shapely.linestrings(trajectories.x[ends], trajectories.y[ends])
+        step, wall = tree.query(lines, predicate="intersects")
+        # A step through a corner meets two walls and is one crossing.
+        step, once = np.unique(step, return_index=True)
+        hits.append(step + first)
+        hit_walls.append(wall[once])
+    rows = start[np.concatenate(hits)] if hits else np.empty(0, dtype=np.int64)
+    wall_of = np.concatenate(hit_walls) if hits else rows
+    in_order = np.argsort(rows, kind="stable")[:NAMED]
+    named = [
+        WallCrossing(
+            int(trajectories.frame[rows[k]]), int(trajectories.person[rows[k]]), int(wall_of[k])
+        )
+        for k in in_order
+    ]
+    return len(rows), named

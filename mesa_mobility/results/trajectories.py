@@ -1,0 +1,270 @@
+"""Where everybody was, frame by frame: the one form in which results pass on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.errors import ResultsError
+
+if TYPE_CHECKING:
+    import os
+
+    import pedpy
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectories:
+    """One row for each person in each frame that the person spent inside.
+
+    Somebody who leaves has one row more, in the frame that found it beyond the exit: with it,
+    the step over the exit is part of the track. Rows are sorted by (frame, person); unsorted
+    input is sorted. The arrays are read-only.
+
+    Attributes:
+        frame: (n,) int32, frame number, 0 at the start of the run.
+        person: (n,) int32, identity of the person, 0 or more, the same in all its frames.
+        x: (n,) float64, metres.
+        y: (n,) float64, metres, growing upwards in the plan.
+        heading: (n,) float64, radians, facing direction, 0 = +x, counter-clockwise.
+        frame_rate: frames a second.
+        core_radius: (m,) float64, metres: the radius of the hard body core of person p is
+            ``core_radius[p]``. A single number stands for everybody.
+        last_frame: last frame that was simulated. Later than the last row when the floor was
+            empty by then; None means the last row's frame.
+        inside_at_end: (k,) int32, the people still inside in the last frame; None means
+            everybody who has a row in it.
+
+    Raises:
+        ResultsError: columns of unequal length, values that are not finite, a person twice in
+            one frame, a negative frame or person, a radius that is missing or not positive,
+            somebody inside at the end without a row in the last frame.
+    """
+
+    frame: IntArray
+    person: IntArray
+    x: FloatArray
+    y: FloatArray
+    heading: FloatArray
+    frame_rate: float = 30.0
+    core_radius: FloatArray | float = 0.15
+    last_frame: int | None = None
+    inside_at_end: IntArray | None = None
+
+    def __post_init__(self) -> None:
+        columns: dict[str, NDArray[Any]] = {
+            "frame": _whole_numbers("frame", self.frame),
+            "person": _whole_numbers("person", self.person),
+            "x": _real_numbers("x", self.x),
+            "y": _real_numbers("y", self.y),
+            "heading": _real_numbers("heading", self.heading),
+        }
+        lengths = {name: len(values) for name, values in columns.items()}
+        if len(set(lengths.values())) != 1:
+            raise ResultsError(f"trajectories: columns of unequal length: {lengths}")
+        columns = _sorted(columns)
+        for name, values in columns.items():
+            object.__setattr__(self, name, _read_only(values))
+        if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
+            raise ResultsError(
+                f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
+            )
+        object.__setattr__(self, "core_radius", _radii(self.core_radius, columns["person"]))
+        last = int(columns["frame"][-1]) if lengths["frame"] else 0
+        if self.last_frame is None:
+            object.__setattr__(self, "last_frame", last)
+        elif self.last_frame < last:
+            raise ResultsError(
+                f"trajectories: last_frame is {self.last_frame}, but there are rows of frame {last}"
+            )
+        present = self.person[self.frame == self.last_frame]
+        if self.inside_at_end is None:
+            object.__setattr__(self, "inside_at_end", present)
+        inside = np.unique(_whole_numbers("inside_at_end", self.remaining))
+        absent = np.setdiff1d(inside, present)
+        if len(absent):
+            raise ResultsError(
+                f"trajectories: person {absent[0]} is said to be inside at the end, but has no "
+                f"row in frame {self.last_frame}"
+            )
+        object.__setattr__(self, "inside_at_end", _read_only(inside))
+
+    @classmethod
+    def of(cls, model: Any) -> Trajectories:
+        """The trajectories that a model has recorded so far.
+
+        Args:
+            model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading),
+                ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
+                ``rows`` (the people inside now).
+
+        Raises:
+            ResultsError: the model was not recording.
+        """
+        recorder = getattr(model, "recorder", None)
+        if recorder is None:
+            raise ResultsError("the model has recorded nothing: create it with record=True")
+        return cls(
+            **recorder.arrays(),
+            frame_rate=float(model.frame_rate),
+            core_radius=np.asarray(model.core_radii, dtype=np.float64),
+            last_frame=round(model.elapsed * model.frame_rate),
+            inside_at_end=model.rows,
+        )
+
+    def __len__(self) -> int:
+        return len(self.frame)
+
+    @cached_property
+    def people(self) -> int:
+        """How many different people appear."""
+        return len(np.unique(self.person))
+
+    @property
+    def frames(self) -> int:
+        """How many frames were simulated, the first included."""
+        return self._last_frame + 1
+
+    @property
+    def duration(self) -> float:
+        """Simulated time from the first to the last frame, seconds."""
+        return self._last_frame / self.frame_rate
+
+    @cached_property
+    def frame_offsets(self) -> NDArray[np.int64]:
+        """(frames + 1,) int64: frame f has the rows ``frame_offsets[f]:frame_offsets[f + 1]``."""
+        return np.searchsorted(self.frame, np.arange(self.frames + 1)).astype(np.int64)
+
+    @cached_property
+    def by_person(self) -> NDArray[np.int64]:
+        """(n,) int64: the rows ordered by (person, frame)."""
+        return np.argsort(self.person, kind="stable").astype(np.int64)
+
+    @property
+    def radii(self) -> FloatArray:
+        """(m,) float64, metres: core radius by person, always an array."""
+        assert isinstance(self.core_radius, np.ndarray)
+        return self.core_radius
+
+    @property
+    def remaining(self) -> IntArray:
+        """(k,) int32: the people still inside in the last frame, always an array."""
+        assert self.inside_at_end is not None
+        return self.inside_at_end
+
+    @cached_property
+    def exit_frames(self) -> NDArray[np.int64]:
+        """(m,) int64: frame in which person p was found outside; -1 if inside at the end."""
+        frames = np.full(int(self.person.max(initial=-1)) + 1, -1, dtype=np.int64)
+        # Rows come in order of frames: each person's last row is the one that stays.
+        frames[self.person] = self.frame
+        frames[self.remaining] = -1
+        return frames
+
+    def inside(self) -> NDArray[np.int64]:
+        """(frames,) int64: how many people were inside in each frame."""
+        left = self.exit_frames[self.exit_frames >= 0]
+        rows = np.diff(self.frame_offsets)
+        return rows - np.bincount(left, minlength=self.frames)
+
+    @property
+    def _last_frame(self) -> int:
+        assert self.last_frame is not None
+        return self.last_frame
+
+    def steps(self, frames: int = 1) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Pairs of rows of one person exactly `frames` frames apart, by person, then frame.
+
+        Returns:
+            (k,) rows, and the (k,) rows of the same people `frames` frames later.
+        """
+        start, end = self.by_person[:-frames], self.by_person[frames:]
+        same = (self.person[start] == self.person[end]) & (
+            self.frame[end] - self.frame[start] == frames
+        )
+        return start[same], end[same]
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Write a Parquet file: see :func:`mesa_mobility.results.parquet.write_parquet`."""
+        from mesa_mobility.results.parquet import write_parquet
+
+        write_parquet(self, path)
+
+    def to_pedpy(self) -> pedpy.TrajectoryData:
+        """As PedPy's trajectory data: see :func:`mesa_mobility.results.export.to_pedpy`."""
+        from mesa_mobility.results.export import to_pedpy
+
+        return to_pedpy(self)
+
+
+def _whole_numbers(name: str, values: ArrayLike) -> NDArray[np.int32]:
+    array = _one_dimensional(name, values)
+    if array.size and not np.issubdtype(array.dtype, np.integer):
+        raise ResultsError(f"trajectories: {name} holds {array.dtype}, expected whole numbers")
+    if array.size and (array.min() < 0 or array.max() > np.iinfo(np.int32).max):
+        raise ResultsError(
+            f"trajectories: {name} runs from {array.min()} to {array.max()}, expected 0 or more"
+        )
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def _real_numbers(name: str, values: ArrayLike) -> FloatArray:
+    array = np.ascontiguousarray(_one_dimensional(name, values), dtype=np.float64)
+    wrong = np.flatnonzero(~np.isfinite(array))
+    if len(wrong):
+        raise ResultsError(
+            f"trajectories: {name} of row {wrong[0]} is {array[wrong[0]]}, expected a number"
+        )
+    return array
+
+
+def _one_dimensional(name: str, values: ArrayLike) -> NDArray[Any]:
+    array = np.asarray(values)
+    if array.ndim != 1:
+        raise ResultsError(f"trajectories: {name} has shape {array.shape}, expected (n,)")
+    return array
+
+
+def _sorted(columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    # One 64-bit key for a row makes both the check and the sort a single pass.
+    key = (columns["frame"].astype(np.int64) << 32) | columns["person"]
+    if np.any(np.diff(key) <= 0):
+        order = np.argsort(key, kind="stable")
+        columns = {name: values[order] for name, values in columns.items()}
+        twice = np.flatnonzero(np.diff(key[order]) == 0)
+        if len(twice):
+            row = int(twice[0])
+            raise ResultsError(
+                f"trajectories: person {columns['person'][row]} is twice in frame "
+                f"{columns['frame'][row]}"
+            )
+    return columns
+
+
+def _radii(value: ArrayLike, person: IntArray) -> FloatArray:
+    people = int(person.max()) + 1 if len(person) else 0
+    radii = np.asarray(value, dtype=np.float64)
+    if radii.ndim == 0:
+        radii = np.full(people, float(radii))
+    if radii.ndim != 1 or len(radii) < people:
+        raise ResultsError(
+            f"trajectories: core_radius has shape {radii.shape}, expected one for each of "
+            f"{people} people"
+        )
+    if not np.all((radii > 0) & np.isfinite(radii)):
+        raise ResultsError("trajectories: core_radius must be positive for everybody")
+    return _read_only(radii)
+
+
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    # A view, so that the caller's own array stays writable.
+    view = array.view()
+    view.flags.writeable = False
+    return view

@@ -1,0 +1,155 @@
+"""The paper's auditorium with adjacent offices (Figure 7): 750 people leave at once."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely import Polygon, box, union_all
+
+from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
+from mesa_mobility.errors import ModelError
+
+WIDTH = 28.0
+HALL = 24.0
+FOYER = 5.0
+OFFICE = 4.0
+WALL = 0.2
+OFFICES = 6
+PEOPLE_PER_OFFICE = 10
+
+AISLE = 1.5
+BLOCKS = ((1.5, 8.5), (10.0, 18.0), (19.5, 26.5))
+"""Seat blocks, from x to x; aisles run between them and along the walls."""
+
+ROWS = 19
+FIRST_ROW = 3.5
+ROW_PITCH = 0.95
+SEAT_DEPTH = 0.42
+SEAT_WIDTH = 0.55
+
+HALL_DOOR = 1.8
+EXIT_DOOR = 0.9
+OFFICE_DOOR = 0.9
+
+FORECOURT = (3.0, 8.0)
+"""Depth and width of the paved area outside each exit door; whoever has crossed it has left."""
+
+
+class Auditorium(PedestrianModel):
+    """A nearly full auditorium and six offices; everybody starts at once, nearest exit.
+
+    The paper prints no plan.  This one has 19 rows of seats in three blocks, two double doors
+    at the back that open to a foyer, offices on the foyer's far side, and an exit door of 0.9
+    m at each end of the foyer; through both together pass the paper's three people a second.
+
+    Args:
+        pedestrians: people; a twelfth of them, but no more than ten an office, are in the offices.
+        preset: "default" or "paper".
+        mobility_map: a map or its file; by default the able-bodied one that ships.
+        frames_per_step: frames that one step advances; 3 are 0.1 s.
+        record: keep every frame.
+        rng: seed or NumPy generator.
+    """
+
+    reference_occupancy = {5.49: 746, 71.43: 552, 181.31: 222, 307.67: 9}  # noqa: RUF012
+
+    def __init__(
+        self,
+        pedestrians: int = 750,
+        preset: str = "default",
+        mobility_map: MobilityMap | str | None = None,
+        frames_per_step: int = 3,
+        record: bool = False,
+        rng: int | np.random.Generator | None = None,
+    ) -> None:
+        seats = seat_places()
+        most = len(seats) + OFFICES * PEOPLE_PER_OFFICE
+        if not 1 <= pedestrians <= most:
+            raise ModelError(f"pedestrians: got {pedestrians}, expected 1 to {most}")
+        plan = auditorium_plan()
+        super().__init__(
+            plan,
+            preset=preset,
+            mobility_map=mobility_map,
+            frames_per_step=frames_per_step,
+            record=record,
+            rng=rng,
+        )
+        in_offices = max(min(round(pedestrians / 12), OFFICES * PEOPLE_PER_OFFICE),
+                         pedestrians - len(seats))  # fmt: skip
+        taken = self.rng.choice(len(seats), pedestrians - in_offices, replace=False)
+        taken.sort()
+        facing_stage = np.full(len(taken), -np.pi / 2)
+        self.add_pedestrians(seats[taken], headings=facing_stage)
+        for office in range(OFFICES):
+            count = in_offices // OFFICES + (office < in_offices % OFFICES)
+            if count:
+                places = plan.random_points(
+                    count, self.rng, within=office_floor(office), spacing=0.7, clearance=0.35
+                )
+                headings = self.rng.uniform(-np.pi, np.pi, count)
+                self.add_pedestrians(places, headings=headings)
+
+
+def seat_places() -> NDArray[np.float64]:
+    """(n, 2) where those who sit stand up: in front of each seat, in the gap between two rows."""
+    places = []
+    for row in range(ROWS):
+        y = FIRST_ROW + ROW_PITCH * row - (ROW_PITCH - SEAT_DEPTH) / 2
+        for left, right in BLOCKS:
+            count = int((right - left) / SEAT_WIDTH)
+            offset = ((right - left) - count * SEAT_WIDTH) / 2
+            x = left + offset + SEAT_WIDTH * (np.arange(count) + 0.5)
+            places.append(np.column_stack([x, np.full(count, y)]))
+    return np.concatenate(places)
+
+
+def office_floor(office: int) -> Polygon:
+    """Floor of one office."""
+    width = WIDTH / OFFICES
+    low = HALL + WALL + FOYER + WALL
+    return box(office * width + WALL / 2, low, (office + 1) * width - WALL / 2, low + OFFICE)
+
+
+def auditorium_plan() -> FloorPlan:
+    """Hall (y 0 to 24 m, stage below), foyer, and a row of offices."""
+    foyer_low, foyer_high = HALL + WALL, HALL + WALL + FOYER
+    hall_doors = [((a[1] + b[0]) / 2, HALL) for a, b in zip(BLOCKS, BLOCKS[1:], strict=False)]
+    parts = [box(0, 0, WIDTH, HALL), box(0, foyer_low, WIDTH, foyer_high)]
+    gates = []
+    for k, (x, y) in enumerate(hall_doors):
+        a, b = x - HALL_DOOR / 2, x + HALL_DOOR / 2
+        parts.append(box(a, y, b, y + WALL))
+        gates.append(Gate(f"hall door {k + 1}", (a, y + WALL / 2), (b, y + WALL / 2)))
+    for office in range(OFFICES):
+        floor = office_floor(office)
+        x = floor.centroid.x
+        a, b = x - OFFICE_DOOR / 2, x + OFFICE_DOOR / 2
+        parts += [floor, box(a, foyer_high, b, foyer_high + WALL)]
+        y = foyer_high + WALL / 2
+        gates.append(Gate(f"office door {office + 1}", (a, y), (b, y)))
+    seats = [
+        box(left, FIRST_ROW + ROW_PITCH * row, right, FIRST_ROW + ROW_PITCH * row + SEAT_DEPTH)
+        for row in range(ROWS)
+        for left, right in BLOCKS
+    ]
+    middle = (foyer_low + foyer_high) / 2
+    low, high = middle - EXIT_DOOR / 2, middle + EXIT_DOOR / 2
+    depth, width = FORECOURT
+    exits = []
+    for side, wall, out in (("left", 0.0, -1.0), ("right", WIDTH, 1.0)):
+        outside, end = wall + out * WALL, wall + out * (WALL + depth)
+        parts.append(box(min(wall, outside), low, max(wall, outside), high))
+        parts.append(
+            box(min(outside, end), middle - width / 2, max(outside, end), middle + width / 2)
+        )
+        x = wall + out * WALL / 2
+        gates.append(Gate(f"{side} exit door", (x, low), (x, high)))
+        exits.append(Exit(f"{side} exit", (end, middle - width / 2), (end, middle + width / 2)))
+    return FloorPlan(
+        union_all(parts),
+        obstacles=seats,
+        exits=exits,
+        gates=gates,
+        name="auditorium",
+    )

@@ -1,0 +1,126 @@
+import errno
+import json
+import math
+
+import numpy as np
+import pytest
+
+from mesa_mobility.errors import FloorPlanError, ResultsError
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.results import check_writable, read_parquet, write_run
+from mesa_mobility.results.files import json_text, replacing
+
+RUN_FILES = [
+    "floorplan.geojson",
+    "occupancy.png",
+    "summary.json",
+    "trajectories.parquet",
+    "trajectories.png",
+]
+SUMMARY = {
+    "model": "doorway",
+    "preset": "default",
+    "seed": 3,
+    "egress_s": None,
+    "left_inside": 1,
+    "min_distance_m": np.float64(0.31),
+}
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_an_interrupted_writer_leaves_the_old_file(tmp_path):
+    path = tmp_path / "old.txt"
+    path.write_text("old")
+
+    def write():
+        with replacing(path) as temporary:
+            temporary.write_text("half")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        write()
+    assert path.read_text() == "old"
+    assert names(tmp_path) == ["old.txt"]
+
+
+def test_a_full_disk_is_one_line(tmp_path):
+    with pytest.raises(ResultsError) as caught, replacing(tmp_path / "new.txt"):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert str(caught.value) == f"{tmp_path}/new.txt: cannot be written: No space left on device"
+    assert names(tmp_path) == []
+
+
+def test_folders_are_made_as_needed(tmp_path):
+    assert check_writable(tmp_path / "a" / "b").is_dir()
+    assert names(tmp_path / "a" / "b") == []
+
+
+def test_a_file_is_no_folder(tmp_path):
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(ResultsError, match="taken: is not a folder"):
+        check_writable(tmp_path / "taken")
+    with pytest.raises(ResultsError, match="inside: cannot be written"):
+        check_writable(tmp_path / "taken" / "inside")
+
+
+def test_json_has_plain_numbers_and_null():
+    values = {
+        "share": np.float32(0.5),
+        "count": np.int64(3),
+        "flag": np.bool_(True),
+        "nothing": math.nan,
+        "rows": np.array([[0.0, 2.0]]),
+        "pairs": ((1, math.inf),),
+    }
+    assert json.loads(json_text(values)) == {
+        "share": 0.5,
+        "count": 3,
+        "flag": True,
+        "nothing": None,
+        "rows": [[0.0, 2.0]],
+        "pairs": [[1, None]],
+    }
+    assert "\n" not in json_text(values)
+
+
+def test_json_refuses_what_it_cannot_say():
+    with pytest.raises(TypeError, match="object"):
+        json_text({"thing": object()})
+
+
+def test_a_run_leaves_five_files(two_leave_one_stays, room, tmp_path):
+    folder = tmp_path / "out"
+    write_run(folder, summary=SUMMARY, trajectories=two_leave_one_stays, plan=room)
+    assert names(folder) == RUN_FILES
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary == SUMMARY | {"min_distance_m": 0.31}
+    assert read_parquet(folder / "trajectories.parquet").people == 3
+    plan = FloorPlan.from_geojson(folder / "floorplan.geojson")
+    assert plan.free.equals(room.free)
+
+
+def test_a_second_run_replaces_the_first(two_leave_one_stays, room, tmp_path):
+    for seed in (3, 4):
+        write_run(
+            tmp_path, summary=SUMMARY | {"seed": seed}, trajectories=two_leave_one_stays, plan=room
+        )
+    assert json.loads((tmp_path / "summary.json").read_text())["seed"] == 4
+    assert names(tmp_path) == RUN_FILES
+
+
+def test_a_run_that_cannot_be_written_leaves_what_was_there(
+    two_leave_one_stays, room, tmp_path, monkeypatch
+):
+    (tmp_path / "summary.json").write_text("before")
+
+    def fail(self, path):
+        raise FloorPlanError("no room")
+
+    monkeypatch.setattr(FloorPlan, "write_geojson", fail)
+    with pytest.raises(FloorPlanError):
+        write_run(tmp_path, summary=SUMMARY, trajectories=two_leave_one_stays, plan=room)
+    assert names(tmp_path) == ["summary.json"]
+    assert (tmp_path / "summary.json").read_text() == "before"

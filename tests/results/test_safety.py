@@ -1,0 +1,154 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results import Overlap, Trajectories, WallCrossing, check_safety
+from mesa_mobility.results.safety import NAMED
+
+NO_WALLS = np.empty((0, 4))
+# A wall along x = 0 with an opening between y = 1 and y = 2, and a corner at its lower end.
+WALLS = [[0, 0, 0, 1], [0, 2, 0, 3], [0, 0, 3, 0]]
+
+
+@pytest.mark.parametrize(
+    ("distance", "overlaps"),
+    [(0.30, 0), (0.299995, 0), (0.29998, 1), (0.1, 1), (0.0, 1)],
+)
+def test_bodies_may_touch_but_not_overlap(walk, distance, overlaps):
+    run = walk({0: (0, [(0.0, 0.0)]), 1: (0, [(distance, 0.0)])}, core_radius=0.15)
+    report = check_safety(run, NO_WALLS)
+    assert report.overlaps == overlaps
+    assert report.min_distance_m == pytest.approx(distance)
+    assert report.passed is (overlaps == 0)
+
+
+def test_each_pair_counts_in_each_frame(walk):
+    # Three people on one spot for two frames are 3 pairs x 2 frames; in the third they part.
+    spot, apart = (1.0, 1.0), [(0.0, 0.0), (3.0, 4.0), (6.0, 8.0)]
+    run = walk({p: (0, [spot, spot, apart[p]]) for p in range(3)})
+    report = check_safety(run, NO_WALLS)
+    assert report.overlaps == 6
+    assert report.overlapping_pairs[0] == Overlap(frame=0, first=0, second=1, distance_m=0.0)
+    assert {(o.frame, o.first, o.second) for o in report.overlapping_pairs} == {
+        (frame, *pair) for frame in (0, 1) for pair in ((0, 1), (0, 2), (1, 2))
+    }
+
+
+def test_each_person_has_its_own_radius(walk):
+    # 0.15 + 0.25 = 0.40 between 0 and 1; 0.15 + 0.15 = 0.30 between 0 and 2.
+    run = walk(
+        {0: (0, [(0.0, 0.0)]), 1: (0, [(0.39, 0.0)]), 2: (0, [(-0.31, 0.0)])},
+        core_radius=np.array([0.15, 0.25, 0.15]),
+    )
+    report = check_safety(run, NO_WALLS)
+    assert [(o.first, o.second) for o in report.overlapping_pairs] == [(0, 1)]
+    assert report.min_distance_m == pytest.approx(0.31)
+
+
+def test_the_smallest_distance_is_over_all_frames(walk):
+    run = walk({0: (0, [(0.0, 0.0)] * 3), 1: (0, [(9.0, 0.0), (3.0, 4.0), (6.0, 8.0)])})
+    assert check_safety(run, NO_WALLS).min_distance_m == pytest.approx(5.0)
+
+
+def test_people_never_inside_together_have_no_distance(walk):
+    run = walk({0: (0, [(0.0, 0.0)]), 1: (1, [(0.0, 0.0)])})
+    report = check_safety(run, NO_WALLS)
+    assert report.min_distance_m is None
+    assert report.overlaps == 0
+
+
+@pytest.mark.parametrize(
+    ("track", "crossed"),
+    [
+        ([(-1.0, 0.5), (1.0, 0.5)], 1),  # through the lower part
+        ([(-1.0, 1.5), (1.0, 1.5)], 0),  # through the opening
+        ([(-1.0, 0.5), (-0.1, 0.5), (-1.0, 0.5)], 0),  # up to the wall and back
+        ([(-1.0, 0.5), (1.0, 0.5), (-1.0, 0.5)], 2),  # there and back
+        ([(-1.0, 0.5), (0.0, 0.5)], 1),  # onto the wall
+        ([(-1.0, 1.0), (1.0, -1.0)], 1),  # through the corner of two walls
+    ],
+)
+def test_steps_through_walls(walk, track, crossed):
+    report = check_safety(walk({0: (0, track)}), WALLS)
+    assert report.wall_crossings == crossed
+    assert report.passed is (crossed == 0)
+
+
+def test_a_crossing_says_where(walk):
+    run = walk({4: (7, [(-1.0, 1.5), (1.0, 1.5), (1.0, 2.5), (-1.0, 2.5)])})
+    assert check_safety(run, WALLS).crossings == (WallCrossing(frame=9, person=4, wall=1),)
+
+
+def test_somebody_away_in_between_makes_no_step(walk):
+    run = Trajectories(frame=[0, 2], person=[0, 0], x=[-1, 1], y=[0.5, 0.5], heading=[0, 0])
+    assert check_safety(run, WALLS).wall_crossings == 0
+
+
+def test_only_the_first_few_are_named(walk):
+    run = walk({0: (0, [(0.0, 0.0)] * 50), 1: (0, [(0.1, 0.0)] * 50)})
+    report = check_safety(run, [[0, -1, 0, 1]])
+    assert (report.overlaps, len(report.overlapping_pairs)) == (50, NAMED)
+    assert (report.wall_crossings, len(report.crossings)) == (49, NAMED)
+    assert [crossing.frame for crossing in report.crossings] == list(range(NAMED))
+
+
+@pytest.mark.parametrize("walls", [[[0, 0, 1]], [0, 0, 1, 1], [[0, 0, 1, math.nan]]])
+def test_walls_of_another_shape_are_refused(walk, walls):
+    with pytest.raises(ResultsError, match="walls have shape"):
+        check_safety(walk({0: (0, [(0.0, 0.0)])}), walls)
+
+
+cell = st.integers(0, 6)
+people = st.lists(st.lists(st.tuples(cell, cell), min_size=4, max_size=4), min_size=1, max_size=5)
+segments = st.lists(
+    st.tuples(cell, cell, cell, cell).filter(lambda s: s[:2] != s[2:]), min_size=1, max_size=4
+)
+
+
+@given(people=people, walls=segments, radius=st.sampled_from([0.4, 0.5, 0.75, 1.1]))
+@settings(max_examples=60)
+def test_agrees_with_counting_one_by_one(people, walls, radius):
+    run = Trajectories(
+        frame=np.tile(np.arange(4), len(people)),
+        person=np.repeat(np.arange(len(people)), 4),
+        x=[p[0] for track in people for p in track],
+        y=[p[1] for track in people for p in track],
+        heading=np.zeros(4 * len(people)),
+        core_radius=radius,
+    )
+    squared = [
+        (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
+        for frame in range(4)
+        for i, first in enumerate(people)
+        for second in people[:i]
+        for a, b in [(first[frame], second[frame])]
+    ]
+    report = check_safety(run, walls)
+    # Squares of whole distances against (2 r - 1e-5)^2: 0.64, 1, 2.25, 4.84 less a little.
+    assert report.overlaps == sum(d2 < (2 * radius - 1e-5) ** 2 for d2 in squared)
+    assert report.wall_crossings == sum(
+        any(meets(track[k], track[k + 1], wall[:2], wall[2:]) for wall in walls)
+        for track in people
+        for k in range(3)
+    )
+
+
+def meets(p, q, a, b):
+    """Whether two segments with whole coordinates share a point, exactly."""
+
+    def side(u, v, w):
+        turn = (v[0] - u[0]) * (w[1] - u[1]) - (v[1] - u[1]) * (w[0] - u[0])
+        return (turn > 0) - (turn < 0)
+
+    def between(u, v, w):
+        return all(min(u[k], v[k]) <= w[k] <= max(u[k], v[k]) for k in range(2))
+
+    ends = (side(p, q, a), side(p, q, b), side(a, b, p), side(a, b, q))
+    if p != q and ends[0] * ends[1] < 0 and ends[2] * ends[3] < 0:
+        return True
+    on_line = ((p, q, a, ends[0]), (p, q, b, ends[1]), (a, b, p, ends[2]), (a, b, q, ends[3]))
+    return any(turn == 0 and between(u, v, w) for u, v, w, turn in on_line)
