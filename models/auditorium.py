@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon, box, union_all
@@ -114,7 +116,7 @@ def office_floor(office: int) -> Polygon:
 def auditorium_plan() -> FloorPlan:
     """Hall (y 0 to 24 m, stage below), foyer, and a row of offices."""
     foyer_low, foyer_high = HALL + WALL, HALL + WALL + FOYER
-    hall_doors = [((a[1] + b[0]) / 2, HALL) for a, b in zip(BLOCKS, BLOCKS[1:], strict=False)]
+    hall_doors = [((a[1] + b[0]) / 2, HALL) for a, b in pairwise(BLOCKS)]
     parts = [box(0, 0, WIDTH, HALL), box(0, foyer_low, WIDTH, foyer_high)]
     gates = []
     for k, (x, y) in enumerate(hall_doors):

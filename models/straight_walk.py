@@ -42,7 +42,8 @@ class StraightWalk(PedestrianModel):
             raise ModelError(f"pedestrians: got {pedestrians}, expected 1 or more")
         if not 0.0 < slowest <= fastest:
             raise ModelError(
-                f"slowest and fastest: got {slowest} and {fastest} m/s, expected 0 < slowest <= fastest"
+                f"slowest and fastest: got {slowest} and {fastest} m/s, "
+                "expected 0 < slowest <= fastest"
             )
         if not length >= 5.0:
             raise ModelError(f"length: got {length}, expected 5 m or more")

@@ -1,1 +1,28 @@
 """Recordings of people: readers, skeletons, resampling and mirroring."""
+
+from mesa_mobility.capture.amc import read_amc
+from mesa_mobility.capture.bvh import read_bvh
+from mesa_mobility.capture.legs import LegJoints, leg_joints
+from mesa_mobility.capture.loading import LoadedClips, load_clips, read_recording
+from mesa_mobility.capture.manifest import Clip, Manifest, read_manifest
+from mesa_mobility.capture.recording import Recording
+from mesa_mobility.capture.skeleton import Skeleton
+from mesa_mobility.capture.transforms import mirror, resample, trim
+
+__all__ = [
+    "Clip",
+    "LegJoints",
+    "LoadedClips",
+    "Manifest",
+    "Recording",
+    "Skeleton",
+    "leg_joints",
+    "load_clips",
+    "mirror",
+    "read_amc",
+    "read_bvh",
+    "read_manifest",
+    "read_recording",
+    "resample",
+    "trim",
+]

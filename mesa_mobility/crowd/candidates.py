@@ -74,6 +74,9 @@ class Candidates:
     def predicted(
         self, rows: NDArray[np.int64], neighbours: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """(r, 2) where each neighbour of a pair will be when the option ends, at constant velocity."""
+        """(r, 2) where the neighbour of each pair will be when the option ends.
+
+        At constant velocity, in metres.
+        """
         velocity = self.neighbour_velocities[neighbours]
         return self.neighbour_positions[neighbours] + velocity * self.durations[rows, None]

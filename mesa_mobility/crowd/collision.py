@@ -211,4 +211,4 @@ def hits_neighbour(
 @njit(cache=True)
 def gone_frame(frame: int, spacing: int, piece: int, where: float) -> int:
     """First whole frame at which an exit crossed on a piece of a path lies behind."""
-    return frame + max(1, int(math.ceil(spacing * (piece + where))))
+    return frame + max(1, math.ceil(spacing * (piece + where)))

@@ -12,7 +12,7 @@ CELL_SIZE = 1.5
 
 
 class Grid(NamedTuple):
-    """People sorted by cell: cell c holds ``people[offsets[c]:offsets[c + 1]]``, in order of row."""
+    """People by cell: cell c holds ``people[offsets[c]:offsets[c + 1]]``, in order of row."""
 
     x0: float
     y0: float

@@ -27,7 +27,7 @@ class Recorder:
         )
 
     def arrays(self) -> dict[str, NDArray[np.generic]]:
-        """``frame``, ``person``, ``x``, ``y``, ``heading``: one row a person and frame, in order."""
+        """``frame``, ``person``, ``x``, ``y``, ``heading``: a row for each person and frame."""
         names = ("frame", "person", "x", "y", "heading")
         if not self._blocks:
             kinds = (np.int32, np.int32, np.float64, np.float64, np.float64)

@@ -5,13 +5,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.floorplan.kernels import segments_cross
-from mesa_mobility.floorplan.nodes import EXIT, GATE
+from mesa_mobility.floorplan.nodes import CORNER, EXIT, GATE
 from mesa_mobility.floorplan.routes import IN_LINE, Ways, in_view, side
 from mesa_mobility.floorplan.sight import Sight, clear_line, free_length
 from mesa_mobility.floorplan.views import Views, nodes_maybe_in_view
 
 # A target behind a gate lies at least this far behind it, however near the next wall is (metres).
 _LEAST_BEYOND = 0.3
+
+# How far past a corner people may aim, as shares of the distance beyond a gate; the first that
+# keeps the next node in view is taken.
+_PAST_CORNER = (0.5, 0.25, 0.125)
 
 
 @njit(cache=True)
@@ -22,10 +26,12 @@ def aim(
     positions: NDArray[np.float64],
     destinations: NDArray[np.int64],
     distances: NDArray[np.float64],
+    follow: NDArray[np.int64],
 ):
     """Targets (n, 2), gates (n,) and route lengths (n,); see `Router.targets`.
 
-    `distances` is (destinations, nodes), route length from each node in metres.
+    For every destination and node, `distances` is the route length in metres and
+    `follow` the next node of the route (-1 at exits).
     """
     n = len(positions)
     nodes = len(ways.kind)
@@ -55,7 +61,10 @@ def aim(
                     node = i
             if node < 0:
                 continue
-        _aim_at(sight, ways, x, y, node, to_go[node], person, points, gates, lengths)
+        after = follow[destinations[person], node]
+        lengths[person], gates[person], points[person, 0], points[person, 1] = _aim_at(
+            sight, ways, x, y, node, to_go[node], after
+        )
     return points, gates, lengths
 
 
@@ -92,37 +101,54 @@ def _first_in_view(
         i = maybe[k]
         if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance):
             return i
+        if ways.kind[i] != CORNER:
+            qx, qy = _nearest(ways.ends[ways.opening[i]], x, y)
+            if in_view(sight, ways, x, y, i, qx, qy, clearance):
+                return i
     return -1
 
 
 @njit(cache=True)
-def _aim_at(
-    sight: Sight,
-    ways: Ways,
-    x: float,
-    y: float,
-    node: int,
-    to_go: float,
-    person: int,
-    points: NDArray[np.float64],
-    gates: NDArray[np.int64],
-    lengths: NDArray[np.float64],
-):
-    qx, qy = ways.xy[node]
-    if ways.kind[node] == GATE or ways.kind[node] == EXIT:
-        qx, qy = _nearest_in_view(sight, ways, x, y, node)
-        lengths[person] = np.hypot(qx - x, qy - y) + to_go
-        gates[person] = ways.opening[node]
-        px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], ways.kind[node] == EXIT)
+def _aim_at(sight: Sight, ways: Ways, x: float, y: float, node: int, to_go: float, after: int):
+    """Route length, gate and target of a person who goes by `node` to the node `after`."""
+    nx, ny = ways.xy[node]
+    length = np.hypot(nx - x, ny - y) + to_go
+    opening = ways.opening[node]
+    if ways.kind[node] == CORNER:
+        px, py = _past_corner(sight, ways, x, y, node, after)
     else:
-        lengths[person] = np.hypot(qx - x, qy - y) + to_go
-        px, py = qx, qy
+        qx, qy = _nearest_in_view(sight, ways, x, y, node)
+        if ways.kind[node] == EXIT:
+            length = np.hypot(qx - x, qy - y)
+        px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], ways.kind[node] == EXIT)
     gate = _gate_on_the_way(ways, x, y, px, py)
-    if gate >= 0 and gate != gates[person]:
-        gates[person] = gate
+    if gate >= 0 and gate != opening:
+        opening = gate
         px, py = _through(sight, ways, x, y, px, py, gate)
-    points[person, 0] = px
-    points[person, 1] = py
+    return length, opening, px, py
+
+
+@njit(cache=True)
+def _past_corner(sight: Sight, ways: Ways, x: float, y: float, node: int, after: int):
+    """The target at a corner: straight past it, as far as the next node stays in view.
+
+    A corner is there to be passed. Whoever aims at the corner itself slows down to
+    stop on it, since every step on leads away from it.
+    """
+    nx, ny = ways.xy[node]
+    away = np.hypot(nx - x, ny - y)
+    if away < 1e-6:
+        return nx, ny
+    for share in _PAST_CORNER:
+        px = nx + share * ways.beyond * (nx - x) / away
+        py = ny + share * ways.beyond * (ny - y) / away
+        if ways.kind[after] != CORNER and side(ways, after, px, py) > -IN_LINE:
+            continue
+        if clear_line(sight, nx, ny, px, py, ways.view_clearance, True, -1) and in_view(
+            sight, ways, px, py, after, ways.xy[after, 0], ways.xy[after, 1], ways.view_clearance
+        ):
+            return px, py
+    return nx, ny
 
 
 @njit(cache=True)

@@ -16,8 +16,12 @@ if TYPE_CHECKING:
 CORNER, GATE, EXIT = 0, 1, 2
 """Kinds of nodes."""
 
-# Corners may stand this share of the clearance from their walls where the passage is narrow.
-_LEAST_CLEARANCE = 0.7
+# Nodes stand the clearance from walls, in narrow passages at least this share of it. Views
+# between nodes need a little less, and views of nodes by people less again: so a person near
+# a node has in view what the node has, and need not hit it to see how the route goes on.
+NODE_SHARE = 0.85
+EDGE_SHARE = 0.8
+VIEW_SHARE = 0.65
 
 # Curved walls are thinned to corners with this share of the clearance between wall and chord.
 _SIMPLIFY = 0.1
@@ -44,20 +48,18 @@ class Nodes:
     normal
         (n, 2) unit direction in which the gate or exit is crossed, 0 for corners. Every
         point of a gate is two nodes, one for either direction.
-    clearance
-        (n,) distance to the nearest wall in metres, at most the router's clearance.
     """
 
     kind: NDArray[np.int64]
     xy: NDArray[np.float64]
     opening: NDArray[np.int64]
     normal: NDArray[np.float64]
-    clearance: NDArray[np.float64]
 
 
 def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
     """The nodes of a plan for bodies that keep `clearance` metres from walls."""
-    corners = np.unique(np.concatenate(_corners(plan, sight, clearance)).round(3), axis=0)
+    corners = np.concatenate(_corners(plan, sight, clearance))
+    corners = corners[np.unique(corners.round(3), axis=0, return_index=True)[1]]
     kinds = [np.zeros(len(corners), np.int64)]
     points, normals = [corners], [np.zeros((len(corners), 2))]
     numbers = [np.full(len(corners), -1)]
@@ -71,14 +73,11 @@ def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
             points.append(places)
             normals.append(np.tile(direction, (len(places), 1)))
             numbers.append(np.full(len(places), number))
-    xy = np.ascontiguousarray(np.concatenate(points))
-    own = np.array([wall_distance(sight, x, y, clearance) for x, y in xy], dtype=np.float64)
     return Nodes(
         np.concatenate(kinds).astype(np.int64),
-        xy,
+        np.ascontiguousarray(np.concatenate(points)),
         np.concatenate(numbers).astype(np.int64),
         np.ascontiguousarray(np.concatenate(normals)),
-        own,
     )
 
 
@@ -117,7 +116,7 @@ def _places(plan: "FloorPlan", sight: Sight, opening: Opening, clearance: float)
 
 
 def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> NDArray[np.bool_]:
-    least = _LEAST_CLEARANCE * clearance
+    least = NODE_SHARE * clearance
     # At the bound itself counts, whatever the last bit.
     return np.array([wall_distance(sight, x, y, clearance) > least - 1e-9 for x, y in places], dtype=bool)
 
@@ -132,7 +131,7 @@ def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[
     waiting_offset = np.array(offsets, dtype=np.float64).reshape(-1, 2)
     found = [np.empty((0, 2))]
     # In a narrow passage a corner is put nearer to its wall.
-    for share in (1.0, 0.85, _LEAST_CLEARANCE):
+    for share in (1.0, 0.9, NODE_SHARE):
         places = waiting_base + share * waiting_offset
         good = plan.contains(places) & _passable(sight, places, clearance)
         found.append(places[good])

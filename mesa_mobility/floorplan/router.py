@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.aiming import aim
 from mesa_mobility.floorplan.edges import opening_segments
-from mesa_mobility.floorplan.nodes import EXIT, Nodes, find_nodes, shrunk
+from mesa_mobility.floorplan.nodes import EDGE_SHARE, VIEW_SHARE, Nodes, find_nodes, shrunk
 from mesa_mobility.floorplan.openings import Exit
-from mesa_mobility.floorplan.routes import VIEW_SHARE, Ways, edges_in_view
+from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
 from mesa_mobility.floorplan.views import no_views
 
@@ -79,6 +79,7 @@ class Router:
         self._destinations: list[tuple[str, ...] | None] = [None]
         self._version = -1
         self._distances: dict[int, NDArray[np.float64]] = {}
+        self._follow: dict[int, NDArray[np.int64]] = {}
         self._update()
 
     @property
@@ -113,7 +114,9 @@ class Router:
                 f"there is no destination {destination}; there are {len(self._destinations)}"
             )
         if destination not in self._distances:
-            self._distances[destination] = self._shortest(self._destinations[destination])
+            lengths = self._shortest(self._destinations[destination])
+            self._distances[destination] = lengths
+            self._follow[destination] = self._next_nodes(lengths)
         return self._distances[destination]
 
     def targets(self, positions: ArrayLike, destinations: ArrayLike) -> Targets:
@@ -128,8 +131,9 @@ class Router:
         used, rows = np.unique(numbers, return_inverse=True)
         if len(xy) == 0:
             return Targets(xy, numbers, np.empty(0))
-        table = np.stack([self.distances(int(i)) for i in used])
-        return Targets(*aim(self._sight, self._ways, self._views, xy, rows, table))
+        lengths = np.stack([self.distances(int(i)) for i in used])
+        follow = np.stack([self._follow[int(i)] for i in used])
+        return Targets(*aim(self._sight, self._ways, self._views, xy, rows, lengths, follow))
 
     def _shortest(self, exit_names: tuple[str, ...] | None) -> NDArray[np.float64]:
         names = {e.name for e in self._plan.exits} if exit_names is None else set(exit_names)
@@ -141,6 +145,17 @@ class Router:
                 result[node] = length
         return result
 
+    def _next_nodes(self, lengths: NDArray[np.float64]) -> NDArray[np.int64]:
+        """(nodes,) the node that comes next on the route from each, -1 at its end."""
+        follow = np.full(len(lengths), -1, dtype=np.int64)
+        start, end = self._edges.T
+        through = self._edge_lengths + lengths[end]
+        order = np.lexsort((end, through, start))
+        first = order[np.unique(start[order], return_index=True)[1]]
+        first = first[np.isfinite(through[first])]
+        follow[start[first]] = end[first]
+        return follow
+
     def _update(self) -> None:
         if self._version == self._plan.version:
             return
@@ -149,10 +164,13 @@ class Router:
         self._sight: Sight = sight_of(walls, opening_segments(plan.open_exits()), self._clearance)
         nodes = find_nodes(plan, self._sight, self._clearance)
         self._ways = self._prepare(nodes, len(walls))
-        edges = edges_in_view(self._sight, self._ways)
-        self._graph = self._network(nodes, np.array(edges, dtype=np.int64).reshape(-1, 2))
+        edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
+        self._edges = np.array(edges, dtype=np.int64).reshape(-1, 2)
+        step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
+        self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
+        self._graph = self._network(nodes)
         self._views = no_views(plan.bounds, len(nodes.kind))
-        self._distances = {}
+        self._distances, self._follow = {}, {}
         self._version = plan.version
 
     def _prepare(self, nodes: Nodes, walls: int) -> Ways:
@@ -167,7 +185,6 @@ class Router:
             nodes.xy,
             nodes.opening,
             nodes.normal,
-            nodes.clearance,
             opening_segments(openings),
             np.array([shrunk(o, self._clearance).ravel() for o in openings]),
             passable,
@@ -176,7 +193,7 @@ class Router:
             self._beyond,
         )
 
-    def _network(self, nodes: Nodes, edges: NDArray[np.int64]) -> nx.DiGraph:
+    def _network(self, nodes: Nodes) -> nx.DiGraph:
         openings = self._plan.openings()
         graph = nx.DiGraph()
         for i, (x, y) in enumerate(nodes.xy.tolist()):
@@ -187,9 +204,6 @@ class Router:
                 position=(x, y),
                 opening=openings[number].name if number >= 0 else None,
             )
-        step = nodes.xy[edges[:, 1]] - nodes.xy[edges[:, 0]]
-        lengths = np.hypot(step[:, 0], step[:, 1])
-        graph.add_weighted_edges_from(
-            zip(edges[:, 0].tolist(), edges[:, 1].tolist(), lengths.tolist(), strict=True)
-        )
+        pairs = zip(*self._edges.T.tolist(), self._edge_lengths.tolist(), strict=True)
+        graph.add_weighted_edges_from(pairs)
         return graph

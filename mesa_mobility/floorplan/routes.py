@@ -9,10 +9,6 @@ from numpy.typing import NDArray
 from mesa_mobility.floorplan.nodes import EXIT, GATE
 from mesa_mobility.floorplan.sight import Sight, clear_line
 
-# People walk a little nearer to walls than the corners of their route stand, so that
-# a corner in line with the next wall does not hide what comes after it.
-VIEW_SHARE = 0.85
-
 # Whoever is this near to a gate's line stands in it and has passed it (metres).
 IN_LINE = 0.01
 
@@ -33,7 +29,6 @@ class Ways(NamedTuple):
     xy: NDArray[np.float64]
     opening: NDArray[np.int64]
     normal: NDArray[np.float64]
-    clearance: NDArray[np.float64]
     lines: NDArray[np.float64]
     ends: NDArray[np.float64]
     passable: NDArray[np.bool_]
@@ -56,8 +51,8 @@ def _curtain(ways: Ways, node: int):
 
 
 @njit(cache=True)
-def edges_in_view(sight: Sight, ways: Ways):
-    """All directed edges (from, to) between nodes that see each other, as a list of pairs."""
+def edges_in_view(sight: Sight, ways: Ways, clearance: float):
+    """All directed edges (from, to) between nodes in view of each other, as a list of pairs."""
     n = len(ways.kind)
     edges = [(0, 0) for _ in range(0)]
     for i in range(n):
@@ -72,7 +67,6 @@ def edges_in_view(sight: Sight, ways: Ways):
             back = both and _may_follow(ways, j, i)
             if not there and not back:
                 continue
-            clearance = VIEW_SHARE * min(ways.clearance[i], ways.clearance[j])
             x, y = ways.xy[j]
             if ways.kind[j] == EXIT:
                 x -= _INSIDE * ways.normal[j, 0]
@@ -112,5 +106,4 @@ def in_view(
     if ways.kind[node] == EXIT:
         qx -= _INSIDE * ways.normal[node, 0]
         qy -= _INSIDE * ways.normal[node, 1]
-    wanted = min(clearance, VIEW_SHARE * ways.clearance[node])
-    return clear_line(sight, x, y, qx, qy, wanted, True, _curtain(ways, node))
+    return clear_line(sight, x, y, qx, qy, clearance, True, _curtain(ways, node))

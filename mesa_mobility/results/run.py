@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.files import check_writable, json_text
-from mesa_mobility.results.measures import occupancy
+from mesa_mobility.results.measures import egress_time, occupancy
 from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 from mesa_mobility.results.trajectories import Trajectories
 
@@ -59,7 +59,7 @@ def write_run(
             trajectories.to_parquet(temporary / "trajectories.parquet")
             plan.write_geojson(temporary / "floorplan.geojson")
             plot_occupancy(
-                occupancy(trajectories),
+                _curve(trajectories),
                 temporary / "occupancy.png",
                 reference=reference_occupancy,
                 title=title,
@@ -69,6 +69,12 @@ def write_run(
                 os.replace(temporary / file, folder / file)
     except OSError as error:
         raise ResultsError(f"{folder}: cannot be written: {error.strerror or error}") from error
+
+
+def _curve(trajectories: Trajectories) -> list[list[float]]:
+    curve, egress = occupancy(trajectories), egress_time(trajectories)
+    # The last one rarely leaves on a full second.
+    return curve if egress is None or egress <= curve[-1][0] else [*curve, [egress, 0]]
 
 
 def _title(summary: Mapping[str, Any], trajectories: Trajectories) -> str:

@@ -1,0 +1,167 @@
+"""Which joints are the legs, and which is the left of which right, by the names in use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.capture.skeleton import END, Skeleton
+from mesa_mobility.errors import CaptureError
+
+Names = tuple[str, str, str, tuple[str, ...]]
+
+CONVENTIONS: tuple[tuple[str, Names, Names], ...] = (
+    (
+        "CMU and ACCAD BVH, Mixamo",
+        ("LeftUpLeg", "LeftLeg", "LeftFoot", ("LeftToeBase", "LeftToe")),
+        ("RightUpLeg", "RightLeg", "RightFoot", ("RightToeBase", "RightToe")),
+    ),
+    (
+        "CMU ASF",
+        ("lfemur", "ltibia", "lfoot", ("ltoes",)),
+        ("rfemur", "rtibia", "rfoot", ("rtoes",)),
+    ),
+    (
+        "Bandai-Namco",
+        ("UpperLeg_L", "LowerLeg_L", "Foot_L", ("Toes_L",)),
+        ("UpperLeg_R", "LowerLeg_R", "Foot_R", ("Toes_R",)),
+    ),
+    (
+        "joints named after the joint",
+        ("LeftHip", "LeftKnee", "LeftAnkle", ("LeftToe", "LeftToeBase", "LeftAnkle" + END)),
+        ("RightHip", "RightKnee", "RightAnkle", ("RightToe", "RightToeBase", "RightAnkle" + END)),
+    ),
+    (
+        "Xsens",
+        ("LeftUpperLeg", "LeftLowerLeg", "LeftFoot", ("LeftToe", "LeftToeBase")),
+        ("RightUpperLeg", "RightLowerLeg", "RightFoot", ("RightToe", "RightToeBase")),
+    ),
+)
+"""For each way of naming: (hip, knee, ankle, toe or its alternatives), left and right."""
+
+
+@dataclass(frozen=True)
+class LegJoints:
+    """Indices of (hip, knee, ankle, toe base) among the joints of a skeleton."""
+
+    left: tuple[int, int, int, int]
+    right: tuple[int, int, int, int]
+
+
+def leg_joints(skeleton: Skeleton) -> LegJoints:
+    """Find the legs of a skeleton by the names of its joints.
+
+    Known are the names of CMU (BVH and ASF), ACCAD, Bandai-Namco, Mixamo and Xsens files; what
+    stands before a colon, as in ``mixamorig:LeftLeg``, is left out of the comparison.
+
+    Raises:
+        CaptureError: the names belong to no known convention, or the joints found do not hang
+            one from the other.
+    """
+    plain = {_plain(name): j for j, name in enumerate(skeleton.names)}
+    for _, left, right in CONVENTIONS:
+        legs = [_leg(names, plain) for names in (left, right)]
+        if legs[0] is not None and legs[1] is not None:
+            for leg in (legs[0], legs[1]):
+                _require_chain(skeleton, leg)
+            return LegJoints(legs[0], legs[1])
+    expected = "; ".join(
+        f"{', '.join(left[:3])}, {left[3][0]} and the same of the right ({label})"
+        for label, left, _ in CONVENTIONS
+    )
+    raise CaptureError(
+        f"no legs among the joints {', '.join(skeleton.names)}: expected {expected}"
+    )
+
+
+def _leg(names: Names, plain: dict[str, int]) -> tuple[int, int, int, int] | None:
+    hip, knee, ankle, toes = names
+    toe = next((plain[name] for name in toes if name in plain), None)
+    if toe is None or not {hip, knee, ankle} <= plain.keys():
+        return None
+    return plain[hip], plain[knee], plain[ankle], toe
+
+
+def _require_chain(skeleton: Skeleton, leg: Iterable[int]) -> None:
+    hip, *below = leg
+    for joint in below:
+        j = joint
+        while j > hip:
+            j = int(skeleton.parents[j])
+        if j != hip:
+            raise CaptureError(
+                f"joint {skeleton.names[joint]!r} does not hang from {skeleton.names[hip]!r}: "
+                "expected hip, knee, ankle and toe in one chain"
+            )
+        hip = joint
+
+
+def leg_length(skeleton: Skeleton) -> float:
+    """Length of thigh and shank together, mean of both legs, metres (or units of the offsets).
+
+    Raises:
+        CaptureError: no legs.
+    """
+    legs = leg_joints(skeleton)
+    lengths = []
+    for hip, knee, ankle, _ in (legs.left, legs.right):
+        joint = ankle
+        length = 0.0
+        while joint != hip:
+            if joint not in (knee, ankle):
+                pass
+            length += float(np.linalg.norm(skeleton.offsets[joint]))
+            joint = int(skeleton.parents[joint])
+        lengths.append(length)
+    return sum(lengths) / 2
+
+
+def counterparts(skeleton: Skeleton) -> NDArray[np.int64]:
+    """(J,) index of each joint's counterpart on the other side; the joint itself if it has none.
+
+    Sides are told by ``Left``/``Right`` anywhere in a name, ``_L``/``_R`` or ``.L``/``.R`` at its end, or
+    ``l``/``r`` (``L``/``R``) at its beginning, where both names occur.
+
+    Raises:
+        CaptureError: two joints are counterparts but their parents are not, so that left and
+            right cannot be exchanged.
+    """
+    index = {name: j for j, name in enumerate(skeleton.names)}
+    other = np.arange(len(skeleton))
+    for name, j in index.items():
+        for candidate in _other_side(name):
+            if candidate in index:
+                other[j] = index[candidate]
+                break
+    parents = skeleton.parents
+    for j in range(1, len(skeleton)):
+        if parents[other[j]] != other[parents[j]]:
+            raise CaptureError(
+                f"joints {skeleton.names[j]!r} and {skeleton.names[other[j]]!r} hang from "
+                f"{skeleton.names[parents[j]]!r} and {skeleton.names[parents[other[j]]]!r}: expected "
+                "the same structure left and right"
+            )
+    return other
+
+
+def _other_side(name: str) -> list[str]:
+    prefix, colon, bare = name.rpartition(":")
+    bare, end, number = bare.partition(END)
+    names = []
+    for here, there in (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT")):
+        for a, b in ((here, there), (there, here)):
+            if a in bare:
+                names.append(bare.replace(a, b))
+    swap = {"L": "R", "R": "L", "l": "r", "r": "l"}
+    if len(bare) > 2 and bare[-2] in "_." and bare[-1] in swap:
+        names.append(bare[:-1] + swap[bare[-1]])
+    if len(bare) > 1 and bare[0] in swap:
+        names.append(swap[bare[0]] + bare[1:])
+    return [prefix + colon + candidate + end + number for candidate in names]
+
+
+def _plain(name: str) -> str:
+    return name.rpartition(":")[2]

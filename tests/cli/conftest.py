@@ -1,0 +1,69 @@
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from mesa_mobility.cli import main
+
+PLUGIN = Path(__file__).parents[1] / "fixtures" / "plugin" / "corridor_plugin.py"
+ENTRY_POINTS = """\
+[mesa_mobility.models]
+corridor = corridor_plugin:Corridor
+forgetful = corridor_plugin:WithoutRecord
+absent = no_such_module:Model
+nameless = corridor_plugin:Missing
+number = corridor_plugin:not_a_class
+
+[mesa_mobility.behaviors]
+broken_term = no_such_module:Term
+"""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    status: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def install(tmp_path, monkeypatch) -> Callable[[str, str], None]:
+    """Installs a package of a given name that offers entry points."""
+
+    def make(package: str, entry_points: str) -> None:
+        folder = tmp_path / "site" / package
+        metadata = folder / f"{package}-1.2.dist-info"
+        metadata.mkdir(parents=True)
+        (metadata / "METADATA").write_text(
+            f"Metadata-Version: 2.1\nName: {package}\nVersion: 1.2\n"
+        )
+        (metadata / "entry_points.txt").write_text(entry_points)
+        monkeypatch.syspath_prepend(str(folder))
+
+    return make
+
+
+@pytest.fixture
+def plugins(install, tmp_path, monkeypatch) -> None:
+    """A plug-in package with good and broken models, as pip would have installed it."""
+    install("corridors", ENTRY_POINTS)
+    shutil.copy(PLUGIN, tmp_path / "site" / "corridors")
+    monkeypatch.delitem(sys.modules, "corridor_plugin", raising=False)
+
+
+@pytest.fixture
+def command(monkeypatch, capfd) -> Callable[..., Outcome]:
+    """Runs `mesa-mobility ARGUMENTS...` in this process."""
+
+    def call(*arguments: object) -> Outcome:
+        monkeypatch.setattr(sys, "argv", ["mesa-mobility", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        code = ended.value.code
+        output = capfd.readouterr()
+        return Outcome(0 if code is None else int(code), output.out, output.err)
+
+    return call
