@@ -7,8 +7,10 @@ used, so that help and errors come at once.
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 
 from mesa_mobility.commands import mobility_map, plugins
 from mesa_mobility.commands.run import run
@@ -16,8 +18,21 @@ from mesa_mobility.errors import MobilityError
 
 BAD_INPUT, INTERRUPTED = 2, 130
 
+
+class _Commands(TyperGroup):
+    """The commands; Ctrl-C in any of them is said, with the shell's own status for it."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            print("interrupted: nothing written", file=sys.stderr)
+            raise typer.Exit(INTERRUPTED) from None
+
+
 app = typer.Typer(
     name="mesa-mobility",
+    cls=_Commands,
     help="Pedestrian crowds driven by recorded human movement.",
     no_args_is_help=True,
     add_completion=False,
@@ -38,9 +53,6 @@ def main() -> None:
         app(prog_name="mesa-mobility")
     except MobilityError as error:
         _fail(str(error))
-    except KeyboardInterrupt:
-        print("interrupted: nothing written", file=sys.stderr)
-        sys.exit(INTERRUPTED)
     # What nobody foresaw: still one line, with the place for whoever reports it.
     except Exception as error:
         _fail(f"unexpected {type(error).__name__}: {error} [{_place(error)}]")

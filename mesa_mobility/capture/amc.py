@@ -1,7 +1,7 @@
 """Reading AMC files: the motion of an ASF skeleton.
 
-With ``C`` the rotation of a bone's own axes against the file's and ``M`` the rotation that the frame
-gives about those axes, the bone turns by ``C M C^-1`` against its parent.
+With ``C`` the rotation of a bone's own axes against the file's and ``M`` the rotation that the
+frame gives about those axes, the bone turns by ``C M C^-1`` against its parent.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from mesa_mobility.capture.asf import ROOT, AsfSkeleton, Bone, read_asf
 from mesa_mobility.capture.motion import root_to_world, to_world
 from mesa_mobility.capture.recording import Recording
-from mesa_mobility.capture.text import decode, numbers, quote, read_bytes
+from mesa_mobility.capture.text import quote, read_bytes, table, text_lines, whole_number
 from mesa_mobility.errors import CaptureError
 
 FRAME_RATE = 120.0
@@ -46,9 +46,7 @@ def read_amc(
             are not finite; a frame lacks a bone, has one twice or with too few values.
     """
     path = Path(path)
-    return parse_amc(
-        read_bytes(path), path, asf=asf, unit_to_m=unit_to_m, frame_rate=frame_rate
-    )
+    return parse_amc(read_bytes(path), path, asf=asf, unit_to_m=unit_to_m, frame_rate=frame_rate)
 
 
 def parse_amc(
@@ -60,9 +58,8 @@ def parse_amc(
     frame_rate: float = FRAME_RATE,
 ) -> Recording:
     """Read the content of an AMC file; ``path`` gives the name and stands in errors."""
-    text = decode(data, path)
     rig = read_asf(find_asf(path) if asf is None else asf, unit_to_m=unit_to_m)
-    motion, degrees = _read_motion(text, rig, str(path))
+    motion, degrees = _read_motion(text_lines(data, path), rig, str(path))
     identity = np.tile([0.0, 0.0, 0.0, 1.0], (len(motion[ROOT]), 1))
     rotations = [
         _rotation(bone, motion[name], degrees) if bone.dof else identity
@@ -97,9 +94,7 @@ def find_asf(path: Path) -> Path:
     raise CaptureError(f"{path}: AMC without its ASF, expected {expected} beside it, found {seen}")
 
 
-def _rotation(
-    bone: Bone, values: NDArray[np.float64], degrees: bool
-) -> NDArray[np.float64]:
+def _rotation(bone: Bone, values: NDArray[np.float64], degrees: bool) -> NDArray[np.float64]:
     """(F, 4) rotation of a bone against its parent."""
     turns = [(i, channel[1]) for i, channel in enumerate(bone.dof) if channel.startswith("r")]
     if not turns:
@@ -110,52 +105,66 @@ def _rotation(
     return (bone.axis * moved * bone.axis.inv()).as_quat()
 
 
+BoneRow = tuple[int, list[str]]
+"""Line number and the words behind the name of a bone."""
+
+
 def _read_motion(
-    text: str, rig: AsfSkeleton, where: str
+    lines: list[str], rig: AsfSkeleton, where: str
 ) -> tuple[dict[str, NDArray[np.float64]], bool]:
     """(F, channels) of every bone that has channels, and whether angles are in degrees."""
     degrees = rig.degrees
     widths = {name: len(bone.dof) for name, bone in rig.bones.items() if bone.dof}
-    frames: list[dict[str, list[float]]] = []
-    starts: list[int] = []
-    last = 0
-    for line, raw in enumerate(text.splitlines(), start=1):
+    frames: list[dict[str, BoneRow]] = []
+    number, begun = 0, 0
+    for line, raw in enumerate(lines, start=1):
         words = raw.split()
         if not words or words[0].startswith("#"):
             continue
-        last = line
         if words[0].startswith(":"):
             if words[0].upper() in (":DEGREES", ":RADIANS"):
                 degrees = words[0].upper() == ":DEGREES"
         elif len(words) == 1 and words[0].isdecimal():
             if frames:
-                _require_all(frames[-1], widths, where, starts[-1])
-                if int(words[0]) != number + 1:
-                    raise CaptureError(
-                        f"{where}, line {line}: frame {words[0]}, expected {number + 1}"
-                    )
-            number = int(words[0])
+                _require_all(frames[-1], widths, f"{where}, line {begun}")
+                expected = number + 1
+            number, begun = whole_number(words[0], f"{where}, line {line}"), line
+            if frames and number != expected:
+                raise CaptureError(f"{where}, line {line}: frame {number}, expected {expected}")
             frames.append({})
-            starts.append(line)
         else:
-            name = words[0]
-            at = f"{where}, line {line}"
-            if not frames:
-                raise CaptureError(f"{at}: {quote(raw.strip())}, expected the number of a frame")
-            if name not in widths:
-                raise CaptureError(f"{at}: {quote(name)} is no bone with channels in the ASF")
-            if name in frames[-1]:
-                raise CaptureError(f"{at}: bone {quote(name)} occurs twice in the frame")
-            frames[-1][name] = numbers(words[1:], widths[name], f"{at}, {name}")
+            _add(words, frames, widths, line, where)
     if not frames:
         raise CaptureError(f"{where}: no frames (truncated?)")
-    _require_all(frames[-1], widths, where, starts[-1])
-    return {name: np.array([frame[name] for frame in frames]) for name in widths}, degrees
+    _require_all(frames[-1], widths, f"{where}, line {begun}")
+    return {
+        name: table([frame[name] for frame in frames], width, where)
+        for name, width in widths.items()
+    }, degrees
 
 
-def _require_all(
-    frame: dict[str, list[float]], widths: dict[str, int], where: str, line: int
+def _add(
+    words: list[str],
+    frames: list[dict[str, BoneRow]],
+    widths: dict[str, int],
+    line: int,
+    where: str,
 ) -> None:
+    name = words[0]
+    if not frames:
+        raise CaptureError(
+            f"{where}, line {line}: {quote(' '.join(words))}, expected the number of a frame"
+        )
+    if name not in widths:
+        raise CaptureError(
+            f"{where}, line {line}: {quote(name)}, expected a bone that has channels in the ASF"
+        )
+    if name in frames[-1]:
+        raise CaptureError(f"{where}, line {line}: bone {quote(name)} occurs twice in the frame")
+    frames[-1][name] = (line, words[1:])
+
+
+def _require_all(frame: dict[str, BoneRow], widths: dict[str, int], where: str) -> None:
     if len(frame) < len(widths):
         missing = ", ".join(name for name in widths if name not in frame)
-        raise CaptureError(f"{where}, line {line}: frame without {missing} (truncated?)")
+        raise CaptureError(f"{where}: frame without {missing} (truncated?)")

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from mesa_mobility.capture.skeleton import END, Skeleton
-from mesa_mobility.capture.text import check_unit, decode, numbers, quote, read_bytes
+from mesa_mobility.capture.text import check_unit, numbers, quote, read_bytes, text_lines
 from mesa_mobility.errors import CaptureError
 
 ROOT = "root"
@@ -79,7 +79,7 @@ def read_asf(path: str | Path, *, unit_to_m: float) -> AsfSkeleton:
     """
     path = Path(path)
     check_unit(unit_to_m, str(path))
-    sections = _sections(decode(read_bytes(path), path), str(path))
+    sections = _sections(text_lines(read_bytes(path), path), str(path))
     root = _root(sections["root"], str(path))
     degrees = _degrees(sections.get("units", []))
     bones = {ROOT: root, **_bones(sections["bonedata"], str(path), degrees)}
@@ -87,17 +87,19 @@ def read_asf(path: str | Path, *, unit_to_m: float) -> AsfSkeleton:
     return _skeleton(bones, parents, degrees, unit_to_m)
 
 
-def _sections(text: str, where: str) -> dict[str, list[Row]]:
+def _sections(lines: list[str], where: str) -> dict[str, list[Row]]:
     sections: dict[str, list[Row]] = {}
     rows: list[Row] | None = None
-    for line, raw in enumerate(text.splitlines(), start=1):
+    for line, raw in enumerate(lines, start=1):
         words = raw.partition("#")[0].translate(_AS_SPACE).split()
         if not words:
             continue
         if words[0].startswith(":"):
             rows = sections.setdefault(words[0][1:].lower(), [])
         elif rows is None:
-            raise CaptureError(f"{where}, line {line}: {quote(raw.strip())}, expected an ASF keyword")
+            raise CaptureError(
+                f"{where}, line {line}: {quote(raw.strip())}, expected an ASF keyword"
+            )
         else:
             rows.append((f"{where}, line {line}", words))
     for needed in ("root", "bonedata", "hierarchy"):

@@ -12,6 +12,7 @@ the order in which they are listed, about the axes that the ones before have tur
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -19,17 +20,17 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from mesa_mobility.capture.bvh_hierarchy import BvhJoint, read_hierarchy
-from mesa_mobility.capture.motion import frame_rate_of, root_to_world, to_world
+from mesa_mobility.capture.motion import FRAME_TIME_S, frame_rate_of, root_to_world, to_world
 from mesa_mobility.capture.recording import Recording
 from mesa_mobility.capture.skeleton import Skeleton
 from mesa_mobility.capture.text import (
     check_unit,
-    decode,
     number,
-    numbers,
     quote,
     read_bytes,
     stem,
+    table,
+    text_lines,
     whole_number,
 )
 from mesa_mobility.errors import CaptureError
@@ -60,11 +61,11 @@ def read_bvh(path: str | Path, *, unit_to_m: float) -> Recording:
 def parse_bvh(data: bytes, path: Path, *, unit_to_m: float) -> Recording:
     """Read the content of a BVH file; ``path`` gives the name and stands in errors."""
     check_unit(unit_to_m, str(path))
-    lines = iter(list(enumerate(decode(data, path).splitlines(), start=1)))
+    lines = enumerate(text_lines(data, path), start=1)
     joints = read_hierarchy(lines, str(path))
     frame_time, motion = _read_motion(lines, joints, str(path))
     columns = np.cumsum([0, *(len(joint.channels or ()) for joint in joints)])
-    channels = [motion[:, a:b] for a, b in zip(columns[:-1], columns[1:], strict=True)]
+    channels = [motion[:, a:b] for a, b in pairwise(columns)]
     translations = np.stack(
         [_translation(j, c) for j, c in zip(joints, channels, strict=True)], axis=1
     )
@@ -85,29 +86,23 @@ def _read_motion(
         raise CaptureError(f"{where}, line {line}: {frames} frames, expected at least one")
     line, text = _header(lines, "Frame Time:", where)
     frame_time = number(text, f"{where}, line {line}, Frame Time")
-    if frame_time <= 0:
-        raise CaptureError(f"{where}, line {line}: frame time {frame_time:g} s, expected more than 0")
-    rows = [(line, text) for line, text in lines if text and not text.isspace()]
-    last = rows[-1][0] if rows else line
+    shortest, longest = FRAME_TIME_S
+    if not shortest <= frame_time <= longest:
+        raise CaptureError(
+            f"{where}, line {line}: frame time {frame_time:g} s, "
+            f"expected {shortest:g} to {longest:g} s"
+        )
+    rows = [(line, words) for line, text in lines if (words := text.split())]
     if len(rows) > frames:
         raise CaptureError(
             f"{where}, line {rows[frames][0]}: {len(rows)} rows of motion, expected {frames}"
         )
-    values = [row.split() for _, row in rows]
-    # One conversion of everything is fast; the slow way is for saying which line is at fault.
-    try:
-        motion = np.array(values, dtype=np.float64)
-    except ValueError:
-        motion = np.empty((0, 0))
-    if motion.shape != (len(rows), width) or not np.isfinite(motion).all():
-        for (at, _), row in zip(rows, values, strict=True):
-            numbers(row, width, f"{where}, line {at}")
     if len(rows) < frames:
         raise CaptureError(
-            f"{where}: ends at line {last} after {len(rows)} rows of motion, expected {frames} "
-            "(truncated?)"
+            f"{where}: ends at line {rows[-1][0] if rows else line} after {len(rows)} rows of "
+            f"motion, expected {frames} (truncated?)"
         )
-    return frame_time, motion
+    return frame_time, table(rows, width, where)
 
 
 def _header(lines: Iterator[tuple[int, str]], label: str, where: str) -> tuple[int, str]:
@@ -151,7 +146,8 @@ def _recording(
     offsets = np.median(translations, axis=0)
     drift = np.linalg.norm(translations - offsets, axis=2).max(axis=0)
     parents = np.array([joint.parent for joint in joints])
-    # Some programs put a "world" joint above the hips: the last of the chain that moves is the root.
+    # Some programs put a "world" joint above the hips: the root is the last joint of the chain
+    # that moves.
     root = max((j for j in _chain(parents) if drift[j] > STRETCH_TOLERANCE_M), default=0)
     position, turn = translations[:, 0], Rotation.from_quat(rotations[:, 0])
     for j in range(1, root + 1):

@@ -26,6 +26,8 @@ class BvhJoint:
         offset: three numbers in file units.
         channels: (axis, kind) in the order of the motion's columns; kind is "position" or
             "rotation".
+        opened: whether its brace has been opened.
+        is_end: whether it is the free end of a leaf.
     """
 
     name: str
@@ -56,6 +58,8 @@ class _Builder:
         parent = self.open_joints[-1] if self.open_joints else -1
         if parent >= 0:
             self._require_complete(self.joints[parent], at)
+            if self.joints[parent].is_end:
+                raise CaptureError(f"{at}: {keyword} inside of an End Site, expected '}}'")
         is_end = keyword == "END"
         if is_end:
             name = self._end_name(self.joints[parent].name)
@@ -84,7 +88,9 @@ class _Builder:
 
     def open(self, line: int) -> None:
         if not self.open_joints or self.joints[self.open_joints[-1]].opened:
-            raise CaptureError(f"{self.at(line)}: unexpected '{{', expected it after a joint's name")
+            raise CaptureError(
+                f"{self.at(line)}: unexpected '{{', expected it after a joint's name"
+            )
         self.joints[self.open_joints[-1]].opened = True
 
     def close(self, line: int) -> None:

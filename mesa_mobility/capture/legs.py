@@ -72,9 +72,7 @@ def leg_joints(skeleton: Skeleton) -> LegJoints:
         f"{', '.join(left[:3])}, {left[3][0]} and the same of the right ({label})"
         for label, left, _ in CONVENTIONS
     )
-    raise CaptureError(
-        f"no legs among the joints {', '.join(skeleton.names)}: expected {expected}"
-    )
+    raise CaptureError(f"no legs among the joints {', '.join(skeleton.names)}: expected {expected}")
 
 
 def _leg(names: Names, plain: dict[str, int]) -> tuple[int, int, int, int] | None:
@@ -100,30 +98,26 @@ def _require_chain(skeleton: Skeleton, leg: Iterable[int]) -> None:
 
 
 def leg_length(skeleton: Skeleton) -> float:
-    """Length of thigh and shank together, mean of both legs, metres (or units of the offsets).
+    """Length of thigh and shank together, the mean of both legs, in the unit of the offsets.
 
     Raises:
-        CaptureError: no legs.
+        CaptureError: no legs are known by name.
     """
     legs = leg_joints(skeleton)
-    lengths = []
-    for hip, knee, ankle, _ in (legs.left, legs.right):
+    length = 0.0
+    for hip, _, ankle, _ in (legs.left, legs.right):
         joint = ankle
-        length = 0.0
         while joint != hip:
-            if joint not in (knee, ankle):
-                pass
             length += float(np.linalg.norm(skeleton.offsets[joint]))
             joint = int(skeleton.parents[joint])
-        lengths.append(length)
-    return sum(lengths) / 2
+    return length / 2
 
 
 def counterparts(skeleton: Skeleton) -> NDArray[np.int64]:
     """(J,) index of each joint's counterpart on the other side; the joint itself if it has none.
 
-    Sides are told by ``Left``/``Right`` anywhere in a name, ``_L``/``_R`` or ``.L``/``.R`` at its end, or
-    ``l``/``r`` (``L``/``R``) at its beginning, where both names occur.
+    Sides are told by ``Left``/``Right`` anywhere in a name, ``_L``/``_R`` or ``.L``/``.R`` at its
+    end, or ``l``/``r`` (``L``/``R``) at its beginning, where both names occur.
 
     Raises:
         CaptureError: two joints are counterparts but their parents are not, so that left and
@@ -136,13 +130,14 @@ def counterparts(skeleton: Skeleton) -> NDArray[np.int64]:
             if candidate in index:
                 other[j] = index[candidate]
                 break
+    other = np.where(other[other] == np.arange(len(other)), other, np.arange(len(other)))
     parents = skeleton.parents
     for j in range(1, len(skeleton)):
         if parents[other[j]] != other[parents[j]]:
             raise CaptureError(
                 f"joints {skeleton.names[j]!r} and {skeleton.names[other[j]]!r} hang from "
-                f"{skeleton.names[parents[j]]!r} and {skeleton.names[parents[other[j]]]!r}: expected "
-                "the same structure left and right"
+                f"{skeleton.names[parents[j]]!r} and {skeleton.names[parents[other[j]]]!r}: "
+                "expected the same structure left and right"
             )
     return other
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-from mesa_mobility.capture.amc import FRAME_RATE, parse_amc
-from mesa_mobility.capture.bvh import parse_bvh
-from mesa_mobility.capture.manifest import Clip, Manifest
+from mesa_mobility.capture.legs import leg_joints
+from mesa_mobility.capture.manifest import UNKNOWN_TYPE, Clip, Manifest
+from mesa_mobility.capture.reading import parse_recording
 from mesa_mobility.capture.recording import Recording
-from mesa_mobility.capture.text import read_bytes
 from mesa_mobility.capture.transforms import mirror, resample, trim
 from mesa_mobility.errors import CaptureError
 
@@ -33,32 +31,6 @@ class LoadedClips:
     skipped: list[tuple[str, str]]
 
 
-def read_recording(
-    path: str | Path, *, unit_to_m: float, frame_rate: float = FRAME_RATE
-) -> Recording:
-    """Read a ``.bvh``, ``.bvh.xz`` or ``.amc`` file, told by its name.
-
-    Args:
-        path: the file.
-        unit_to_m: metres in one unit of the file.
-        frame_rate: frames a second of an AMC file, which does not tell.
-
-    Raises:
-        CaptureError: the name ends otherwise, or the file cannot be used.
-    """
-    path = Path(path)
-    return _parse(read_bytes(path), path, unit_to_m, frame_rate)
-
-
-def _parse(data: bytes, path: Path, unit_to_m: float, frame_rate: float) -> Recording:
-    suffix = "".join(path.suffixes[-2:]).lower()
-    if suffix.endswith((".bvh", ".bvh.xz")):
-        return parse_bvh(data, path, unit_to_m=unit_to_m)
-    if suffix.endswith(".amc"):
-        return parse_amc(data, path, unit_to_m=unit_to_m, frame_rate=frame_rate)
-    raise CaptureError(f"{path}: unknown kind of file, expected .bvh, .bvh.xz or .amc")
-
-
 def load_clips(
     manifest: Manifest,
     *,
@@ -71,8 +43,9 @@ def load_clips(
     """Read the clips of a manifest, cut to their usable frames and resampled.
 
     Args:
-        manifest: from :func:`read_manifest` or :func:`read_folder`.
-        pedestrian_type: only clips of this type; None for all.
+        manifest: from :func:`read_manifest`, :func:`read_folder` or :func:`find_clips`.
+        pedestrian_type: only clips of this type and those of a folder without a manifest,
+            whose type is not known; None for all.
         frame_rate: Hz.
         mirrored: follow each recording with its mirror image.
         minimum_frames: clips with fewer frames, after resampling, are skipped.
@@ -80,9 +53,13 @@ def load_clips(
 
     Raises:
         CaptureError: there is no clip of the type, a file cannot be used, has another sha256 or
-            frame rate than the manifest says, or ends before ``use_to``.
+            frame rate than the manifest says, ends before ``use_to``, or has no known legs.
     """
-    clips = [c for c in manifest if pedestrian_type is None or c.type == pedestrian_type]
+    clips = [
+        clip
+        for clip in manifest
+        if pedestrian_type is None or clip.type in (pedestrian_type, UNKNOWN_TYPE)
+    ]
     if not clips:
         known = ", ".join(sorted({clip.type for clip in manifest}))
         raise CaptureError(
@@ -105,7 +82,9 @@ def load_clips(
 
 
 def _read_clip(clip: Clip) -> Recording:
-    recording = _parse(clip.read(), clip.path, clip.unit_to_m, clip.native_fps)
+    recording = parse_recording(
+        clip.read(), clip.path, unit_to_m=clip.unit_to_m, frame_rate=clip.native_fps
+    )
     if abs(recording.frame_rate - clip.native_fps) > 0.01 * clip.native_fps:
         raise CaptureError(
             f"{clip.where}: native_fps {clip.native_fps:g}, but {clip.file} has "
@@ -115,4 +94,8 @@ def _read_clip(clip: Clip) -> Recording:
         raise CaptureError(
             f"{clip.where}: use_to {clip.use_to}, but {clip.file} has {recording.frames} frames"
         )
+    try:
+        leg_joints(recording.skeleton)
+    except CaptureError as error:
+        raise CaptureError(f"{clip.where}: {clip.file}: {error}") from None
     return replace(trim(recording, clip.use_from, clip.use_to), name=clip.clip, clip=clip)

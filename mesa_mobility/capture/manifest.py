@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from mesa_mobility.capture.text import decode, number, quote, read_bytes, whole_number
+from mesa_mobility.capture.motion import FRAME_TIME_S
+from mesa_mobility.capture.text import (
+    check_unit,
+    number,
+    quote,
+    read_bytes,
+    text_lines,
+    whole_number,
+)
 from mesa_mobility.errors import CaptureError
 
 COLUMNS = (
@@ -30,6 +37,12 @@ COLUMNS = (
     "sha256",
 )
 """Columns that a manifest must have, in any order; others are ignored."""
+
+
+UNKNOWN_TYPE = ""
+"""Pedestrian type of a clip that no manifest describes."""
+
+_CONVERTED = ("tags", "native_fps", "use_from", "use_to", "unit_to_m")
 
 
 @dataclass(frozen=True)
@@ -112,25 +125,33 @@ def read_manifest(path: str | Path) -> Manifest:
     are read.
 
     Raises:
-        CaptureError: the manifest cannot be read, lacks a column, has no clips, names a clip
+        CaptureError: the manifest cannot be read, lacks a column, has no clips, names a file
             twice, has a value that is out of range, or names a file that does not exist.
     """
     path = Path(path)
-    rows = csv.reader(decode(read_bytes(path), path).splitlines(), delimiter="\t", quoting=3)
-    header = next(rows)
+    lines = text_lines(read_bytes(path), path)
+    header = [column.strip() for column in lines[0].split("\t")]
     for column in COLUMNS:
         if column not in header:
             raise CaptureError(
                 f"{path}, line 1: no column {column!r}, expected {', '.join(COLUMNS)}"
             )
     clips: list[Clip] = []
-    for line, row in enumerate(rows, start=2):
-        if not any(cell.strip() for cell in row):
+    lines_of: dict[str, int] = {}
+    for line, text in enumerate(lines[1:], start=2):
+        if not text.strip():
             continue
         where = f"{path}, line {line}"
+        row = text.split("\t")
         if len(row) != len(header):
             raise CaptureError(f"{where}: {len(row)} columns, expected {len(header)}")
-        clips.append(_clip(dict(zip(header, row, strict=True)), path, where))
+        clip = _clip(dict(zip(header, row, strict=True)), path, where)
+        if clip.file in lines_of:
+            raise CaptureError(
+                f"{where}: file {quote(clip.file)} is on line {lines_of[clip.file]} too"
+            )
+        lines_of[clip.file] = line
+        clips.append(clip)
     if not clips:
         raise CaptureError(f"{path}: no clips, expected one line for each")
     return Manifest(path, tuple(clips))
@@ -143,15 +164,16 @@ def _clip(row: dict[str, str], path: Path, where: str) -> Clip:
             raise CaptureError(f"{where}: column {column} is empty")
     native_fps = number(row["native_fps"], f"{where}, native_fps")
     unit_to_m = number(row["unit_to_m"], f"{where}, unit_to_m")
-    for column, value in (("native_fps", native_fps), ("unit_to_m", unit_to_m)):
-        if value <= 0:
-            raise CaptureError(f"{where}: {column} {value:g}, expected more than 0")
+    shortest, longest = FRAME_TIME_S
+    if not 1 / longest <= native_fps <= 1 / shortest:
+        raise CaptureError(
+            f"{where}: native_fps {native_fps:g}, expected {1 / longest:g} to {1 / shortest:g} Hz"
+        )
+    check_unit(unit_to_m, f"{where}, unit_to_m")
     use_from = whole_number(row["use_from"], f"{where}, use_from")
     use_to = whole_number(row["use_to"], f"{where}, use_to")
     if not 0 <= use_from < use_to:
-        raise CaptureError(
-            f"{where}: frames {use_from}:{use_to}, expected 0 <= use_from < use_to"
-        )
+        raise CaptureError(f"{where}: frames {use_from}:{use_to}, expected 0 <= use_from < use_to")
     recording = path.parent / row["file"]
     if not recording.is_file():
         raise CaptureError(f"{where}: no file {quote(row['file'])} beside the manifest")
@@ -165,6 +187,3 @@ def _clip(row: dict[str, str], path: Path, where: str) -> Clip:
         path=recording,
         where=where,
     )
-
-
-_CONVERTED = ("tags", "native_fps", "use_from", "use_to", "unit_to_m")

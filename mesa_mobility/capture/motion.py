@@ -15,6 +15,9 @@ MIRROR_IN_FILE = np.diag([-1.0, 1.0, 1.0])
 MIRROR_IN_WORLD = np.diag([1.0, -1.0, 1.0])
 """Left-right reflection in the world, y -> -y."""
 
+FRAME_TIME_S = (1e-5, 10.0)
+"""Shortest and longest time between frames, seconds; what lies outside is a slip."""
+
 RATE_TOLERANCE = 5e-4
 """Relative error of a frame time of few digits, such as .00833 s for 120 Hz."""
 

@@ -15,6 +15,9 @@ from mesa_mobility.errors import CaptureError
 if TYPE_CHECKING:
     from mesa_mobility.capture.manifest import Clip
 
+UNIT_TOLERANCE = 1e-6
+"""How far the length of a unit quaternion may be from 1."""
+
 
 @dataclass(frozen=True, eq=False)
 class Recording:
@@ -32,8 +35,8 @@ class Recording:
         clip: the row of the manifest that the recording came from, if any.
 
     Raises:
-        CaptureError: no frames, shapes that disagree, values that are not finite, or a frame rate
-            that is not positive.
+        CaptureError: no frames, shapes that disagree, values that are not finite, quaternions that
+            are not of unit length, or a frame rate that is not positive.
     """
 
     name: str
@@ -48,7 +51,9 @@ class Recording:
         object.__setattr__(self, "root_position", read_only(self.root_position, np.float64))
         object.__setattr__(self, "rotations", read_only(self.rotations, np.float64))
         if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
-            raise CaptureError(f"{self.name}: frame rate {self.frame_rate}, expected more than 0 Hz")
+            raise CaptureError(
+                f"{self.name}: frame rate {self.frame_rate}, expected more than 0 Hz"
+            )
         frames, joints = len(self.root_position), len(self.skeleton)
         if frames == 0:
             raise CaptureError(f"{self.name}: no frames, expected at least one")
@@ -59,6 +64,8 @@ class Recording:
             )
         if not (np.isfinite(self.root_position).all() and np.isfinite(self.rotations).all()):
             raise CaptureError(f"{self.name}: positions or rotations that are not finite")
+        if np.abs(np.linalg.norm(self.rotations, axis=2) - 1).max() > UNIT_TOLERANCE:
+            raise CaptureError(f"{self.name}: rotations that are no unit quaternions")
 
     @property
     def frames(self) -> int:

@@ -7,6 +7,9 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mesa_mobility.errors import CaptureError
 
 
@@ -30,8 +33,8 @@ def read_bytes(path: Path) -> bytes:
     return data
 
 
-def decode(data: bytes, path: Path) -> str:
-    """Text of a file, in UTF-8 or else Latin-1.
+def text_lines(data: bytes, path: Path) -> list[str]:
+    """Lines of a text file, in UTF-8 or else Latin-1; line n of the file is item n - 1.
 
     Raises:
         CaptureError: the bytes are not text.
@@ -41,9 +44,15 @@ def decode(data: bytes, path: Path) -> str:
         line = data.count(b"\n", 0, at) + 1
         raise CaptureError(f"{path}, line {line}: zero byte, expected a text file")
     try:
-        return data.decode("utf-8-sig")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return data.decode("latin-1")
+        text = data.decode("latin-1")
+    # Not str.splitlines, which also cuts at characters that no editor counts as line ends.
+    return text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
+
+
+LARGEST = 1e9
+"""Numbers beyond this are no coordinates or angles, and overflow when computed with."""
 
 
 def quote(text: str) -> str:
@@ -52,16 +61,16 @@ def quote(text: str) -> str:
 
 
 def number(text: str, where: str) -> float:
-    """A finite number.
+    """A finite number, of a size that coordinates and angles have.
 
     Raises:
-        CaptureError: the text is no finite number; ``where`` says what file and line.
+        CaptureError: the text is no such number; ``where`` says what file and line.
     """
     try:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not math.isfinite(value):
+    if not abs(value) <= LARGEST:
         raise CaptureError(f"{where}: {quote(text)}, expected a finite number")
     return value
 
@@ -75,6 +84,27 @@ def numbers(texts: Sequence[str], count: int, where: str) -> list[float]:
     if len(texts) != count:
         raise CaptureError(f"{where}: {len(texts)} values, expected {count}")
     return [number(text, where) for text in texts]
+
+
+def table(rows: Sequence[tuple[int, list[str]]], width: int, where: str) -> NDArray[np.float64]:
+    """(rows, width) finite numbers.
+
+    Args:
+        rows: (line number, words) of each row.
+        width: numbers in each row.
+        where: what stands before the line number in errors.
+
+    Raises:
+        CaptureError: a row has more or fewer, or a word is no finite number.
+    """
+    try:
+        values = np.array([words for _, words in rows], dtype=np.float64)
+    except ValueError:
+        values = np.empty((0, 0))
+    if values.shape == (len(rows), width) and (np.abs(values) <= LARGEST).all():
+        return values
+    # One conversion of everything is fast; the slow way finds the line that is at fault.
+    return np.array([numbers(words, width, f"{where}, line {line}") for line, words in rows])
 
 
 def whole_number(text: str, where: str) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation, Slerp
+from scipy.spatial.transform import Rotation
 
 from mesa_mobility.capture.legs import counterparts
 from mesa_mobility.capture.motion import MIRROR_IN_FILE, MIRROR_IN_WORLD
@@ -17,6 +17,7 @@ MIRRORED = "~mirror"
 """Suffix of the name of a mirrored recording."""
 
 RATIO_TOLERANCE = 1e-6
+"""Relative error within which a ratio of frame rates counts as whole."""
 
 
 def trim(recording: Recording, use_from: int, use_to: int) -> Recording:
@@ -48,9 +49,7 @@ def resample(recording: Recording, frame_rate: float = 30.0) -> Recording:
         CaptureError: the frame rate is not positive.
     """
     if not (np.isfinite(frame_rate) and frame_rate > 0):
-        raise CaptureError(
-            f"{recording.name}: resampling to {frame_rate} Hz, expected more than 0"
-        )
+        raise CaptureError(f"{recording.name}: resampling to {frame_rate} Hz, expected more than 0")
     ratio = recording.frame_rate / frame_rate
     step = round(ratio)
     if step >= 1 and abs(ratio - step) <= RATIO_TOLERANCE * step:
@@ -62,24 +61,21 @@ def resample(recording: Recording, frame_rate: float = 30.0) -> Recording:
         )
     last = recording.frames - 1
     # The times, counted in old frames, at which the new ones fall.
-    times = np.arange(int(np.floor(last / ratio + RATIO_TOLERANCE)) + 1) * ratio
-    times = np.minimum(times, last)
-    before = np.minimum(times.astype(np.int64), max(last - 1, 0))
-    share = (times - before)[:, None]
-    position = recording.root_position
+    times = np.arange(int(last / ratio + RATIO_TOLERANCE) + 1) * ratio
+    before = np.minimum(times.astype(np.int64), last)
     after = np.minimum(before + 1, last)
-    rotations = np.empty((len(times), len(recording.skeleton), 4))
-    for j in range(len(recording.skeleton)):
-        if last == 0:
-            rotations[:, j] = recording.rotations[:, j]
-        else:
-            turns = Rotation.from_quat(recording.rotations[:, j])
-            rotations[:, j] = Slerp(np.arange(last + 1), turns)(times).as_quat()
+    share = np.clip(times - before, 0.0, 1.0)[:, None]
+    joints = len(recording.skeleton)
+    start = Rotation.from_quat(recording.rotations[before].reshape(-1, 4))
+    stop = Rotation.from_quat(recording.rotations[after].reshape(-1, 4))
+    part = np.repeat(share, joints, axis=0) * (start.inv() * stop).as_rotvec()
+    rotations = (start * Rotation.from_rotvec(part)).as_quat()
+    position = recording.root_position
     return replace(
         recording,
         frame_rate=frame_rate,
         root_position=(1 - share) * position[before] + share * position[after],
-        rotations=rotations,
+        rotations=rotations.reshape(len(times), joints, 4),
     )
 
 
@@ -93,7 +89,10 @@ def mirror(recording: Recording) -> Recording:
         CaptureError: the skeleton's left and right differ in structure.
     """
     skeleton = recording.skeleton
-    other = counterparts(skeleton)
+    try:
+        other = counterparts(skeleton)
+    except CaptureError as error:
+        raise CaptureError(f"{recording.name}: {error}") from None
     rotations = recording.rotations[:, other]
     # F R F with F = diag(-1, 1, 1) keeps the turn about the file's X and reverses the others.
     mirrored = rotations * [1.0, -1.0, -1.0, 1.0]

@@ -1,4 +1,4 @@
-"""Ctrl-C that lets a running simulation come to a point where its state is whole."""
+"""Ctrl-C that lets a long computation come to a point where its state is whole."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mesa_mobility.commands.console import say
 
 
 class Stopped(Exception):
-    """The user asked to stop, and the simulation has come to a whole step."""
+    """The user asked to stop, and the computation has come to a point where it can."""
 
 
 @contextmanager
@@ -20,6 +20,8 @@ def gentle_interrupt() -> Iterator[Callable[[], None]]:
 
     Gives a function to call between steps: it raises `Stopped` once Ctrl-C has been pressed.
     """
+    # An exception out of a signal handler may come anywhere, also while compiled code that runs
+    # on several threads hands its results over, which ends the process with a segmentation fault.
     asked = False
 
     def note(number: int, frame: FrameType | None) -> None:
@@ -27,7 +29,7 @@ def gentle_interrupt() -> Iterator[Callable[[], None]]:
         if asked:
             raise KeyboardInterrupt
         asked = True
-        say("\nstopping at the next whole second; Ctrl-C again stops at once and writes nothing")
+        say("\nstopping as soon as it can; Ctrl-C again stops at once and writes nothing")
 
     def stop_here() -> None:
         if asked:

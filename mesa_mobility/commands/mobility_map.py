@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import shlex
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from mesa_mobility.commands.console import answer_json, answer_table, progress_bar, say
-from mesa_mobility.errors import CaptureError, MapError
+from mesa_mobility.commands.interrupt import Stopped, gentle_interrupt
+from mesa_mobility.errors import MapError
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import LoadedClips
@@ -19,7 +22,6 @@ if TYPE_CHECKING:
 app = typer.Typer(help="Build, describe and judge mobility maps.", no_args_is_help=True)
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
-MANIFEST = "manifest.tsv"
 
 
 @app.command()
@@ -50,7 +52,7 @@ def build(
         raise MapError(f"{output}: is a folder, expected a file to write")
     check_writable(output.parent)
     wall, cpu = time.perf_counter(), time.process_time()
-    with progress_bar() as report:
+    with _stoppable_progress() as report:
         clips = _load(source, report, type_name=type_name, mirrored=mirrored)
         built = build_map(
             clips.recordings,
@@ -100,9 +102,73 @@ def coverage(
 
     mobility_map = MobilityMap.load(file)
     recordings = []
-    with progress_bar() as report:
+    with _stoppable_progress() as report:
         for source in sources:
             clips = _load(source, report, type_name=None, mirrored=False)
             recordings.extend(clips.recordings)
         report("comparing", 0, 1)
-        _answer({"file": str(file), **compare(mobility_map, recordings)}, as_json=as_json)
+        figures = compare(mobility_map, recordings)
+        report("comparing", 1, 1)
+    _answer({"file": str(file), **figures}, as_json=as_json)
+
+
+@contextmanager
+def _stoppable_progress() -> Iterator[Report]:
+    with progress_bar() as report, gentle_interrupt() as stop_here:
+
+        def progress(what: str, done: float, total: float) -> None:
+            report(what, done, total)
+            stop_here()
+
+        try:
+            yield progress
+        except Stopped:
+            raise KeyboardInterrupt from None
+
+
+def _load(source: Path, report: Report, *, type_name: str | None, mirrored: bool) -> LoadedClips:
+    from mesa_mobility.capture import find_clips, load_clips
+
+    loaded = load_clips(
+        find_clips(source),
+        pedestrian_type=type_name,
+        mirrored=mirrored,
+        progress=lambda done, total: report("reading recordings", done, total),
+    )
+    for clip, reason in loaded.skipped:
+        say(f"skipped {clip}: {reason}")
+    return loaded
+
+
+def _command(source: Path, type_name: str, clusters: int | None, mirrored: bool) -> str:
+    # Names without folders: the same recordings give the same map wherever they lie.
+    words = ["mesa-mobility", "map", "build", source.name, "-o", f"{type_name}.npz"]
+    words += ["--type", type_name]
+    words += [] if clusters is None else ["--clusters", str(clusters)]
+    words += [] if mirrored else ["--no-mirror"]
+    return shlex.join(words)
+
+
+def _answer(values: dict[str, Any], *, as_json: bool) -> None:
+    if as_json:
+        answer_json(values)
+    else:
+        answer_table(_lines(values))
+
+
+def _lines(values: dict[str, Any], prefix: str = "") -> dict[str, str]:
+    lines: dict[str, str] = {}
+    for name, value in values.items():
+        label = f"{prefix}{name}".replace("_", " ")
+        if isinstance(value, dict):
+            lines |= _lines(value, f"{label}: ")
+        elif isinstance(value, list) and not all(isinstance(each, int | float) for each in value):
+            lines[label] = f"{len(value)} entries, see --json"
+        else:
+            values_here = value if isinstance(value, list) else [value]
+            lines[label] = ", ".join(_text(each) for each in values_here) or "none"
+    return lines
+
+
+def _text(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

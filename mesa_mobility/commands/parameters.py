@@ -107,7 +107,8 @@ def _annotation(model: type, parameter: inspect.Parameter) -> Any:
         return annotation
     # A name imported for type checkers alone is unknown here; it stands for a type that no text
     # converts to, and the rest of the annotation counts.
-    namespace = vars(builtins) | getattr(inspect.unwrap(model.__init__), "__globals__", {})
+    constructor: Any = inspect.getattr_static(model, "__init__")
+    namespace = vars(builtins) | getattr(inspect.unwrap(constructor), "__globals__", {})
     try:
         return eval(annotation, {}, _Lenient(namespace))
     except Exception:
@@ -154,7 +155,7 @@ def _convert(text: str, kind: Any) -> Any:
 
 
 def _kinds_text(kinds: tuple[Any, ...]) -> str:
-    names = []
+    names: list[str] = []
     for kind in kinds:
         if isinstance(kind, tuple):
             names.extend(str(value) for value in kind)

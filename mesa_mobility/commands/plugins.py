@@ -25,8 +25,9 @@ def behaviors() -> None:
 
 def _list(plugins: Mapping[str, registry.Plugin]) -> None:
     table = Table(box=None, padding=(0, 2, 0, 0))
-    for heading in ("Name", "What it is", "From"):
-        table.add_column(heading, overflow="fold")
+    table.add_column("Name", no_wrap=True)
+    table.add_column("What it is", overflow="fold")
+    table.add_column("From", no_wrap=True)
     broken: list[str] = []
     for plugin in plugins.values():
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import secrets
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +19,10 @@ STALLED, INTERRUPTED = 1, 130
 
 
 def run(
-    model: Annotated[str, typer.Argument(help="Name of a model, see `mesa-mobility models`.")],
+    model: Annotated[
+        str,
+        typer.Argument(metavar="MODEL", help="Name of a model; `mesa-mobility models` lists them."),
+    ],
     seconds: Annotated[
         float | None,
         typer.Option(help="Simulated time at most; without it until everybody is out."),
@@ -56,30 +60,36 @@ def run(
 
     if out is not None:
         check_writable(out)
-    wall, cpu, interrupted = _simulate(simulation, seconds, shown=not no_progress)
-    trajectories = Trajectories.of(simulation)
-    safety = check_safety(trajectories, simulation.floor_plan.walls)
-    summary = {
-        **simulation.summary(),
-        "model": model,
-        "preset": preset,
-        "seed": seed,
-        "wall_s": round(wall, 3),
-        "cpu_s": round(cpu, 3),
-        "overlaps": safety.overlaps,
-        "min_distance_m": safety.min_distance_m,
-        "wall_crossings": safety.wall_crossings,
-        "stalled": bool(simulation.stalled),
-        "interrupted": interrupted,
-    }
+    # From here on there is something to lose: Ctrl-C stops the simulation, not the writing.
+    with gentle_interrupt() as stop_here:
+        wall, cpu, interrupted = _simulate(simulation, seconds, stop_here, shown=not no_progress)
+        with progress_bar(shown=not no_progress) as report:
+            report("checking distances and walls", 0, 1)
+            trajectories = Trajectories.of(simulation)
+            safety = check_safety(trajectories, simulation.floor_plan.walls)
+            summary = {
+                **simulation.summary(),
+                "model": model,
+                "preset": preset,
+                "seed": seed,
+                "wall_s": round(wall, 3),
+                "cpu_s": round(cpu, 3),
+                "overlaps": safety.overlaps,
+                "min_distance_m": safety.min_distance_m,
+                "wall_crossings": safety.wall_crossings,
+                "stalled": bool(simulation.stalled),
+                "interrupted": interrupted,
+            }
+            if out is not None:
+                report("writing files and pictures", 0, 1)
+                write_run(
+                    out,
+                    summary=summary,
+                    trajectories=trajectories,
+                    plan=simulation.floor_plan,
+                    reference_occupancy=simulation.reference_occupancy,
+                )
     if out is not None:
-        write_run(
-            out,
-            summary=summary,
-            trajectories=trajectories,
-            plan=simulation.floor_plan,
-            reference_occupancy=simulation.reference_occupancy,
-        )
         say(f"written to {out}")
     if as_json:
         answer_json(summary)
@@ -108,11 +118,13 @@ def _create(name: str, settings: list[str], preset: str, map_file: Path | None, 
     return kind(**keywords)
 
 
-def _simulate(simulation: Any, seconds: float | None, *, shown: bool) -> tuple[float, float, bool]:
+def _simulate(
+    simulation: Any, seconds: float | None, stop_here: Callable[[], None], *, shown: bool
+) -> tuple[float, float, bool]:
     """Run; returns wall and CPU seconds, and whether the user stopped it."""
     people = simulation.inside
     interrupted = False
-    with progress_bar(shown=shown) as report, gentle_interrupt() as stop_here:
+    with progress_bar(shown=shown) as report:
 
         def progress(elapsed: float, inside: int) -> None:
             # Whichever end comes first, that of the time or that of the people.

@@ -28,6 +28,7 @@ from mesa_mobility.crowd.collision import (
 )
 from mesa_mobility.crowd.kernels import call_kernel
 from mesa_mobility.crowd.neighbours import Grid, neighbours_of
+from mesa_mobility.crowd.screen import Screen, mark_bodies
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
 
 FALLBACK_FRAMES = 4
@@ -63,16 +64,16 @@ class Rules(NamedTuple):
 @njit(cache=True)
 def option_costs(
     i: int,
+    options: NDArray[np.int64],
     table: OptionTable,
     state: CrowdState,
     terms: Terms,
     out: NDArray[np.float64],
 ) -> None:
-    """Weighted sum of the option terms for every option of pedestrian i, added to ``out``."""
+    """Weighted sum of the option terms for some options of pedestrian i, added to ``out``."""
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
-    first = table.offsets[state.cluster[i]]
-    for k in range(len(out)):
-        o = first + k
+    for k in range(len(options)):
+        o = options[k]
         x = state.x[i] + c * table.x[o] - s * table.y[o]
         y = state.y[i] + s * table.x[o] + c * table.y[o]
         duration = table.frames[o] * FRAME_SECONDS
@@ -210,6 +211,7 @@ def decide(
     rows: NDArray[np.int64],
     frame: int,
     table: OptionTable,
+    screen: Screen,
     state: CrowdState,
     grid: Grid,
     around: Surroundings,
@@ -227,6 +229,7 @@ def decide(
         rows: pedestrians, in the order in which they decide.
         frame: now.
         table: options of all capabilities.
+        screen: where these options are at the times of screening.
         state: the crowd; targets must be set.
         grid: neighbours' grid of this frame.
         around: walls and exits.
@@ -241,6 +244,7 @@ def decide(
     velocity[:, 1] = state.vy
     found = np.empty(len(grid.people), np.int64)
     path = np.empty((16, 3))
+    marked = np.empty((3, screen.side * screen.side), np.bool_)
     eager = False
     for t in range(len(terms.pair_address)):
         eager = eager or terms.pair_weight[t] < 0.0
@@ -257,26 +261,37 @@ def decide(
         )
         exits_near = _exits_near(around, state.x[i], state.y[i], destination, farthest)
 
-        key = np.zeros(last - first)
+        item = np.empty(last - first, np.int64)
+        size = 0
+        # Whoever may leave by an exit may be out before it would meet anybody: no screening then.
+        screened = rules.cores and not exits_near
+        if screened:
+            marked[:] = False
+            mark_bodies(i, frame, near, state, farthest, screen.side, marked)
+        for o in range(first, last):
+            if screened and _is_marked(screen.cells[o], marked):
+                continue
+            item[size] = o
+            size += 1
+        item = item[:size]
+        key = np.zeros(size)
         if len(extra) > 0:
-            key[:] = extra[extra_offsets[d] : extra_offsets[d + 1]]
-        option_costs(i, table, state, terms, key)
+            for k in range(size):
+                key[k] = extra[extra_offsets[d] + item[k] - first]
+        option_costs(i, item, table, state, terms, key)
         complete = np.zeros(last - first, np.bool_)
         leaving = np.empty(last - first, np.int64)
-        item = np.arange(last - first)
-        size = len(key)
         if eager:
             for k in range(size):
-                key[k] += pair_cost(i, first + k, table, state, velocity, near, terms)
+                key[k] += pair_cost(i, item[k], table, state, velocity, near, terms)
         for root in range(size // 2 - 1, -1, -1):
             _sift_down(key, item, size, root)
         chosen = -1
         while size > 0:
-            k = item[0]
-            if complete[k]:
-                chosen = k
+            o = item[0]
+            if complete[o - first]:
+                chosen = o
                 break
-            o = first + k
             pieces = lay_path(i, o, table, state, path)
             gone = path_gone_or_blocked(
                 i, path, pieces, SAMPLE_FRAMES, table.reach[o], frame, state, walls, around, near,
@@ -286,8 +301,8 @@ def decide(
                 size -= 1
                 key[0], item[0] = key[size], item[size]
             else:
-                complete[k] = True
-                leaving[k] = gone
+                complete[o - first] = True
+                leaving[o - first] = gone
                 if not eager:
                     key[0] += pair_cost(i, o, table, state, velocity, near, terms)
             if size > 0:
@@ -295,11 +310,19 @@ def decide(
 
         state.decisions[i] += 1
         if chosen >= 0:
-            o = first + chosen
-            pieces = lay_path(i, o, table, state, state.path[i])
-            _commit(i, o, frame, pieces, SAMPLE_FRAMES, leaving[chosen], table.cluster[o], state)
+            pieces = lay_path(i, chosen, table, state, state.path[i])
+            gone = leaving[chosen - first]
+            _commit(i, chosen, frame, pieces, SAMPLE_FRAMES, gone, table.cluster[chosen], state)
         else:
             _fall_back(i, frame, state, walls, around, near, exits_near, rules)
+
+
+@njit(cache=True)
+def _is_marked(cells: NDArray[np.int32], marked: NDArray[np.bool_]) -> bool:
+    for level in range(len(cells)):
+        if cells[level] >= 0 and marked[level, cells[level]]:
+            return True
+    return False
 
 
 @njit(cache=True)

@@ -20,6 +20,7 @@ from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.recorder import Recorder
+from mesa_mobility.crowd.screen import make_screen
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state import NO_OPTION, CrowdState, empty_state, grown
 from mesa_mobility.crowd.summary import summarise
@@ -110,6 +111,7 @@ class PedestrianModel(mesa.Model):
         counts = [capability.n_clusters for capability in self.capabilities]
         self.first_cluster = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int32)
         self._table = stack_tables(self.capabilities)
+        self._screen = make_screen(self._table)
         reach = max(capability.longest_reach for capability in self.capabilities)
         core = max(kind.core_radius for kind in self.pedestrian_types)
         standing = [c.standing for c in self.capabilities] + self.first_cluster
@@ -311,7 +313,7 @@ class PedestrianModel(mesa.Model):
             others, order, self._table, state, grid, self._rules.search_radius
         )
         decide(
-            order, self.frame, self._table, state, grid, self._site.surroundings, compiled, extra,
+            order, self.frame, self._table, self._screen, state, grid, self._site.surroundings, compiled, extra,
             extra_offsets, self._rules,
         )  # fmt: skip
 

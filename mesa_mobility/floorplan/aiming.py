@@ -13,6 +13,10 @@ from mesa_mobility.floorplan.views import Views, nodes_maybe_in_view
 # A target behind a gate lies at least this far behind it, however near the next wall is (metres).
 _LEAST_BEYOND = 0.3
 
+# Whoever is this near to the place where the route crosses a gate goes for what comes after it,
+# lest a step straight through ends where that is out of view again (metres).
+_THROUGH = 0.05
+
 # How far past a corner people may aim, as shares of the distance beyond a gate; the first that
 # keeps the next node in view is taken.
 _PAST_CORNER = (0.5, 0.25, 0.125)
@@ -43,12 +47,13 @@ def aim(
     for person in range(n):
         x, y = positions[person]
         to_go = distances[destinations[person]]
+        after = follow[destinations[person]]
         points[person, 0] = x
         points[person, 1] = y
         node = -1
         maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
         for clearance in (ways.view_clearance, 0.0):
-            node = _first_in_view(sight, ways, x, y, to_go, clearance, maybe, keys)
+            node = _first_in_view(sight, ways, x, y, to_go, after, clearance, maybe, keys)
             if node >= 0:
                 break
         if node < 0:
@@ -61,9 +66,8 @@ def aim(
                     node = i
             if node < 0:
                 continue
-        after = follow[destinations[person], node]
         lengths[person], gates[person], points[person, 0], points[person, 1] = _aim_at(
-            sight, ways, x, y, node, to_go[node], after
+            sight, ways, x, y, node, to_go, after
         )
     return points, gates, lengths
 
@@ -75,6 +79,7 @@ def _first_in_view(
     x: float,
     y: float,
     to_go: NDArray[np.float64],
+    after: NDArray[np.int64],
     clearance: float,
     maybe: NDArray[np.int64],
     keys: NDArray[np.float64],
@@ -101,31 +106,53 @@ def _first_in_view(
         i = maybe[k]
         if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance):
             return i
-        if ways.kind[i] != CORNER:
-            qx, qy = _nearest(ways.ends[ways.opening[i]], x, y)
-            if in_view(sight, ways, x, y, i, qx, qy, clearance):
-                return i
+        if ways.kind[i] != CORNER and _nearest_serves(
+            sight, ways, x, y, i, after[i], clearance
+        ):
+            return i
     return -1
 
 
 @njit(cache=True)
-def _aim_at(sight: Sight, ways: Ways, x: float, y: float, node: int, to_go: float, after: int):
-    """Route length, gate and target of a person who goes by `node` to the node `after`."""
+def _aim_at(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    node: int,
+    to_go: NDArray[np.float64],
+    after: NDArray[np.int64],
+):
+    """Route length, gate and target of a person whose route starts with `node`."""
     nx, ny = ways.xy[node]
-    length = np.hypot(nx - x, ny - y) + to_go
+    length = np.hypot(nx - x, ny - y) + to_go[node]
+    qx, qy = _place(sight, ways, x, y, node, after[node])
+    if ways.kind[node] == GATE and np.hypot(qx - x, qy - y) < _THROUGH:
+        node = after[node]
+        qx, qy = _place(sight, ways, x, y, node, after[node])
     opening = ways.opening[node]
     if ways.kind[node] == CORNER:
-        px, py = _past_corner(sight, ways, x, y, node, after)
+        px, py = _past_corner(sight, ways, x, y, node, after[node])
     else:
-        qx, qy = _nearest_in_view(sight, ways, x, y, node)
-        if ways.kind[node] == EXIT:
+        leaves = ways.kind[node] == EXIT
+        if leaves:
             length = np.hypot(qx - x, qy - y)
-        px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], ways.kind[node] == EXIT)
+        px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], leaves)
     gate = _gate_on_the_way(ways, x, y, px, py)
     if gate >= 0 and gate != opening:
         opening = gate
         px, py = _through(sight, ways, x, y, px, py, gate)
     return length, opening, px, py
+
+
+@njit(cache=True)
+def _place(sight: Sight, ways: Ways, x: float, y: float, node: int, after: int):
+    """The place to go to at a node: itself, or the nearest place of its opening that will do."""
+    if ways.kind[node] != CORNER and _nearest_serves(
+        sight, ways, x, y, node, after, ways.view_clearance
+    ):
+        return _nearest(ways.ends[ways.opening[node]], x, y)
+    return ways.xy[node, 0], ways.xy[node, 1]
 
 
 @njit(cache=True)
@@ -162,12 +189,21 @@ def _nearest(ends: NDArray[np.float64], x: float, y: float):
 
 
 @njit(cache=True)
-def _nearest_in_view(sight: Sight, ways: Ways, x: float, y: float, node: int):
-    """The nearest place of the node's opening where it is in view, else the node's own place."""
+def _nearest_serves(
+    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int, clearance: float
+):
+    """Whether the nearest place in the opening of `node` will do as well as the node.
+
+    It must be in view and, in a gate, have the node `after` in view; otherwise people
+    would turn back once they are through.
+    """
     qx, qy = _nearest(ways.ends[ways.opening[node]], x, y)
-    if in_view(sight, ways, x, y, node, qx, qy, ways.view_clearance):
-        return qx, qy
-    return ways.xy[node, 0], ways.xy[node, 1]
+    if not in_view(sight, ways, x, y, node, qx, qy, clearance):
+        return False
+    if ways.kind[node] == EXIT:
+        return True
+    ax, ay = ways.xy[after]
+    return in_view(sight, ways, qx, qy, after, ax, ay, ways.view_clearance)
 
 
 @njit(cache=True)
@@ -210,7 +246,7 @@ def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float):
         before = abs((x - ax) * (by - ay) - (y - ay) * (bx - ax)) / width
         behind = abs((px - ax) * (by - ay) - (py - ay) * (bx - ax)) / width
         to_gate = way * before / (before + behind)
-        if before > IN_LINE and way - to_gate < ways.beyond and to_gate < nearest:
+        if before > _THROUGH and way - to_gate < ways.beyond and to_gate < nearest:
             nearest = to_gate
             first = gate
     return first
@@ -226,7 +262,10 @@ def _through(sight: Sight, ways: Ways, x: float, y: float, px: float, py: float,
     if ahead < 0.0:
         normal = -normal
     qx, qy = _nearest(ways.ends[gate], x, y)
-    if not clear_line(sight, x, y, qx, qy, ways.view_clearance, True, -1):
+    if not (
+        clear_line(sight, x, y, qx, qy, ways.view_clearance, True, -1)
+        and clear_line(sight, qx, qy, px, py, ways.view_clearance, True, -1)
+    ):
         share = ((ax - x) * normal[0] + (ay - y) * normal[1]) / abs(ahead)
         qx = x + share * (px - x)
         qy = y + share * (py - y)

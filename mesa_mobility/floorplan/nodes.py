@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
 from mesa_mobility.floorplan.openings import Exit, Opening
 from mesa_mobility.floorplan.sight import Sight, wall_distance
 
@@ -22,6 +23,9 @@ CORNER, GATE, EXIT = 0, 1, 2
 NODE_SHARE = 0.85
 EDGE_SHARE = 0.8
 VIEW_SHARE = 0.65
+
+# Shares of the clearance to try, widest first.
+_SHARES = (1.0, 0.92, NODE_SHARE)
 
 # Curved walls are thinned to corners with this share of the clearance between wall and chord.
 _SIMPLIFY = 0.1
@@ -66,7 +70,7 @@ def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
     for number, opening in enumerate(plan.openings()):
         if not plan.is_open(opening.name):
             continue
-        places = _places(plan, sight, opening, clearance)
+        places = _places(plan, opening, clearance)
         directions = [outward(plan, opening)] if isinstance(opening, Exit) else _both_ways(opening)
         for direction in directions:
             kinds.append(np.full(len(places), EXIT if isinstance(opening, Exit) else GATE))
@@ -104,15 +108,24 @@ def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
     return [normal, -normal]
 
 
-def _places(plan: "FloorPlan", sight: Sight, opening: Opening, clearance: float) -> NDArray[np.float64]:
-    """Points along the passable part of a gate or exit."""
-    a, b = shrunk(opening, clearance)
-    length = float(np.hypot(*(b - a)))
-    count = 1 if length < 1e-6 else min(_POINTS_PER_OPENING, 2 + int(length / _POINT_SPACING))
-    share = np.linspace(0, 1, count)[:, None] if count > 1 else np.array([[0.5]])
-    places = a + share * (b - a)
-    inside = shapely.dwithin(plan.free, shapely.points(places), 0.02)
-    return places[inside & _passable(sight, places, clearance)]
+def _places(plan: "FloorPlan", opening: Opening, clearance: float) -> NDArray[np.float64]:
+    """Points along the parts of a gate or exit that are clear of walls."""
+    walls = shapely.linestrings(plan.walls.reshape(-1, 2, 2))
+    near = shapely.union_all(walls[shapely.dwithin(walls, opening.line, clearance)])
+    # A little short of the area: an exit may lie that far outside its edge.
+    room = plan.free.buffer(2 * EDGE_TOLERANCE)
+    places = [np.empty((0, 2))]
+    for share in _SHARES:
+        # Round ends are polygons inside the circle: the hair more keeps what is left clear.
+        clear = opening.line.difference(near.buffer(1.001 * share * clearance, quad_segs=32))
+        for part in shapely.get_parts(clear.intersection(room)):
+            count = 1 + int(np.ceil(part.length / _POINT_SPACING)) if part.length > 0.05 else 1
+            share_along = np.linspace(0, 1, min(count, _POINTS_PER_OPENING)) if count > 1 else [0.5]
+            points = shapely.line_interpolate_point(part, share_along, normalized=True)
+            places.append(shapely.get_coordinates(points))
+        if len(places) > 1:
+            break
+    return np.concatenate(places)
 
 
 def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> NDArray[np.bool_]:
@@ -131,7 +144,7 @@ def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[
     waiting_offset = np.array(offsets, dtype=np.float64).reshape(-1, 2)
     found = [np.empty((0, 2))]
     # In a narrow passage a corner is put nearer to its wall.
-    for share in (1.0, 0.9, NODE_SHARE):
+    for share in _SHARES:
         places = waiting_base + share * waiting_offset
         good = plan.contains(places) & _passable(sight, places, clearance)
         found.append(places[good])

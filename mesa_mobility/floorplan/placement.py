@@ -29,10 +29,11 @@ def check_reachable(plan: "FloorPlan", points: ArrayLike, clearance: float) -> N
     xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
     if not np.isfinite(xy).all():
         raise FloorPlanError("points to check must be finite")
-    # Open exits are lengthened into short corridors, so that shrinking the area by the
-    # body leaves a piece touching the exit's line only where the body fits through it.
-    doorways = [LineString([e.a, e.b]).buffer(2 * clearance, cap_style="flat") for e in plan.open_exits()]
-    room = shapely.union_all([plan.free, *doorways]).buffer(-clearance, quad_segs=32)
+    # Open exits are lengthened outwards into short corridors, so that shrinking the area by
+    # the body leaves a piece touching the exit's line only where the body fits through it.
+    doorways = [e.line.buffer(2 * clearance, cap_style="flat") for e in plan.open_exits()]
+    outside = shapely.union_all(doorways).difference(plan.walkable)
+    room = shapely.union_all([plan.free, outside]).buffer(-clearance, quad_segs=32)
     closed = [g.line.buffer(clearance) for g in plan.closed_gates()]
     room = room.difference(shapely.union_all(closed))
     pieces = [

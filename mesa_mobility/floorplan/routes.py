@@ -12,9 +12,6 @@ from mesa_mobility.floorplan.sight import Sight, clear_line
 # Whoever is this near to a gate's line stands in it and has passed it (metres).
 IN_LINE = 0.01
 
-# Views of an exit end this far inside it: the line itself is where the area ends (metres).
-_INSIDE = 1e-4
-
 
 class Ways(NamedTuple):
     """A route graph as the compiled functions take it; see `Nodes` for the node arrays.
@@ -67,13 +64,9 @@ def edges_in_view(sight: Sight, ways: Ways, clearance: float):
             back = both and _may_follow(ways, j, i)
             if not there and not back:
                 continue
-            x, y = ways.xy[j]
-            if ways.kind[j] == EXIT:
-                x -= _INSIDE * ways.normal[j, 0]
-                y -= _INSIDE * ways.normal[j, 1]
-            if clear_line(
-                sight, ways.xy[i, 0], ways.xy[i, 1], x, y, clearance, False, _curtain(ways, j)
-            ):
+            ax, ay = ways.xy[i]
+            bx, by = ways.xy[j]
+            if clear_line(sight, ax, ay, bx, by, clearance, False, _curtain(ways, j)):
                 if there:
                     edges.append((i, j))
                 if back:
@@ -103,7 +96,4 @@ def in_view(
     clearance: float,
 ):
     """Whether (qx, qy), the place of a node or another place in the same opening, is in view."""
-    if ways.kind[node] == EXIT:
-        qx -= _INSIDE * ways.normal[node, 0]
-        qy -= _INSIDE * ways.normal[node, 1]
     return clear_line(sight, x, y, qx, qy, clearance, True, _curtain(ways, node))

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from mesa_mobility.mobility.apsp import ShortestPaths, shortest_paths
     from mesa_mobility.mobility.build import build_map
     from mesa_mobility.mobility.clusters import Clusters, cluster_poses
-    from mesa_mobility.mobility.held_out import coverage
     from mesa_mobility.mobility.graph import MotionGraph, motion_graph
+    from mesa_mobility.mobility.held_out import coverage
     from mesa_mobility.mobility.map import MobilityMap
     from mesa_mobility.mobility.mapfile import shipped_map_path
     from mesa_mobility.mobility.paths import ReachableOptions, reachable_options

@@ -17,6 +17,7 @@ from mesa_mobility.mobility.map import MobilityMap
 from mesa_mobility.mobility.mapfile import quantise_costs, quantise_paths
 from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
 from mesa_mobility.mobility.poses import FRAME_RATE, pose_table
+from mesa_mobility.mobility.provenance import acknowledgements, provenance
 
 DEFAULT_CLUSTERS = 350
 
@@ -70,7 +71,8 @@ def build_map(
             "body": {"core_radius_m": CORE_RADIUS},
             "frame_rate_hz": FRAME_RATE,
             "build": _build_parameters(graph, grouped),
-            "provenance": _provenance(recordings),
+            "provenance": provenance(recordings),
+            "acknowledgements": acknowledgements(recordings),
             **(metadata or {}),
         },
     )
@@ -119,24 +121,3 @@ def _build_parameters(graph: MotionGraph, grouped: Clusters) -> dict[str, Any]:
         "budget": paths.BUDGET,
         "cell": [round(float(size), 6) for size in paths.CELL],
     }
-
-
-def _provenance(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
-    """Where each clip came from; a mirrored clip stands with its original."""
-    entries: dict[str, dict[str, Any]] = {}
-    for recording in recordings:
-        clip = recording.clip
-        key = recording.name.removesuffix("~mirror")
-        entry = entries.setdefault(key, {"clip": key, "poses": recording.frames, "mirrored": False})
-        if recording.name != key:
-            entry["mirrored"] = True
-        if clip is not None:
-            entry.update(
-                session=clip.session,
-                subject=clip.subject,
-                description=clip.description,
-                licence=clip.licence,
-                source=f"{clip.source_repo}@{clip.source_commit}:{clip.source_path}",
-                sha256=clip.sha256,
-            )
-    return list(entries.values())

@@ -35,8 +35,8 @@ SAMPLE_EVERY = 3
 TRANSITION_PENALTY = 1.0
 """Fixed cost of leaving the recording, in units of the transition threshold."""
 
-BUDGET = 3.0
-"""Most that a path may cost: one poor and one good transition, or two fair ones."""
+BUDGET = 3.5
+"""Most that a path may cost: two transitions of any quality that is kept, or three good ones."""
 
 CELL = (0.10, 0.10, np.deg2rad(15.0))
 """Cell of thinning: metres, metres, radians of the end point and end heading."""

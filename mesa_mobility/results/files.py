@@ -47,7 +47,7 @@ def check_writable(directory: str | os.PathLike[str]) -> Path:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except FileExistsError as error:
-        raise ResultsError(f"{folder}: is not a folder, results cannot go there") from error
+        raise ResultsError(f"{folder}: is not a folder, nothing can be written there") from error
     except OSError as error:
         raise ResultsError(f"{folder}: cannot be written: {error.strerror or error}") from error
     return folder

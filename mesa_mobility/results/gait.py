@@ -12,8 +12,10 @@ from mesa_mobility.errors import ResultsError
 
 FloatArray = NDArray[np.float64]
 
-# Stride frequencies of walkers from very slow to very fast, Hz.
-STRIDE_HZ = (0.42, 1.35)
+# Stride frequencies of walkers, Hz: slow ones go down to the lower figure, those faster than
+# SLOW_MPS to the middle one.
+STRIDE_HZ = (0.42, 0.62, 1.35)
+SLOW_MPS = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +40,9 @@ def lateral_sway(x: ArrayLike, y: ArrayLike, frame_rate: float = 30.0) -> Sway:
     """Side-to-side motion of someone who walks straight on.
 
     The motion across the direction of walking (a straight line fitted to the path) loses its slow
-    drift (a cubic). The strongest frequency left between 0.42 and 1.35 Hz (Hann window) is the
-    stride's. What remains after subtracting the running mean over one stride is cut into strides.
+    drift (a cubic). The highest peak in the spectrum of its velocity (Hann window) between 0.62 Hz,
+    or 0.42 Hz below 0.7 m/s, and 1.35 Hz is the stride. What remains after subtracting the running
+    mean over one stride is cut into strides.
 
     Args:
         x: (n,) metres, path of the pelvis.
@@ -65,7 +68,9 @@ def lateral_sway(x: ArrayLike, y: ArrayLike, frame_rate: float = 30.0) -> Sway:
     drift = np.polynomial.polynomial.polyfit(time, across, 3)
     across = across - np.polynomial.polynomial.polyval(time, drift)
 
-    stride = _strongest_frequency(across, frame_rate)
+    speed = np.hypot(*(path[-1] - path[0])) * frame_rate / (len(path) - 1)
+    lowest = STRIDE_HZ[0] if speed < SLOW_MPS else STRIDE_HZ[1]
+    stride = _highest_peak(across, frame_rate, lowest, STRIDE_HZ[2])
     cycle = round(frame_rate / stride)
     swing = across - uniform_filter1d(across, cycle)
     # Half a window at either end has no full running mean.
@@ -74,10 +79,14 @@ def lateral_sway(x: ArrayLike, y: ArrayLike, frame_rate: float = 30.0) -> Sway:
     return Sway(stride, np.ptp(cycles, axis=1))
 
 
-def _strongest_frequency(signal: FloatArray, frame_rate: float) -> float:
+def _highest_peak(signal: FloatArray, frame_rate: float, lowest: float, highest: float) -> float:
     # Eight times padded: a short walk otherwise resolves its stride to 0.1 Hz only.
     size = 8 * len(signal)
-    power = np.abs(np.fft.rfft(signal * np.hanning(len(signal)), size))
     frequency = np.fft.rfftfreq(size, 1.0 / frame_rate)
-    band = np.flatnonzero((frequency >= STRIDE_HZ[0]) & (frequency <= STRIDE_HZ[1]))
-    return float(frequency[band[np.argmax(power[band])]])
+    # Of the velocity: what is left of the drift is slower than strides, and weighs less there.
+    strength = frequency * np.abs(np.fft.rfft(signal * np.hanning(len(signal)), size))
+    band = np.flatnonzero((frequency >= lowest) & (frequency <= highest))
+    # The slope of a peak outside the band may be higher than any peak within.
+    peaks = band[(strength[band] > strength[band - 1]) & (strength[band] >= strength[band + 1])]
+    candidates = peaks if len(peaks) else band
+    return float(frequency[candidates[np.argmax(strength[candidates])]])

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import colormaps
@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.files import replacing
@@ -28,12 +29,12 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
 # Pieces of track in one picture: more cannot be told apart and take long to draw.
-MOST_PIECES = 120_000
+MOST_PIECES = 250_000
 PAPER = "paper (Casburn et al. 2005, Fig. 7)"
 # Without the green of exits, the blue of doors and the pale yellow that is lost on white.
 TRACK_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.9, 256)))
 BODY, LEFT_INSIDE, REFERENCE = "#2166ac", "#000000", "#d6604d"
-STILL_INSIDE = {
+STILL_INSIDE: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
     "markersize": 5,
@@ -70,8 +71,7 @@ def plot_trajectories(
     # Drawn faint so that crossing tracks show; the scale itself is not faint.
     if bar.solids is not None:
         bar.solids.set_alpha(1.0)
-    last = _rows_at(trajectories, trajectories.frames - 1)
-    left = np.flatnonzero(np.isin(trajectories.person[last], trajectories.remaining)) + last.start
+    left = _inside_at(trajectories, trajectories.frames - 1)
     if len(left):
         axes[0].plot(
             trajectories.x[left],
@@ -113,9 +113,9 @@ def plot_snapshots(
         panel.set_axis_off()
     for panel, time in zip(axes, times, strict=False):
         handles = draw_floor(panel, plan)
-        rows = _rows_at(trajectories, round(time * trajectories.frame_rate))
+        rows = _inside_at(trajectories, round(time * trajectories.frame_rate))
         _draw_bodies(panel, trajectories, rows)
-        panel.set_title(f"{time:g} s: {rows.stop - rows.start} people inside", fontsize=10)
+        panel.set_title(f"{time:g} s: {len(rows)} people inside", fontsize=10)
     handles.append(
         Line2D([], [], linestyle="none", marker="o", color=BODY, label="person, facing the stroke")
     )
@@ -197,9 +197,9 @@ def plot_occupancy(
     _save(figure, path)
 
 
-def _rows_at(trajectories: Trajectories, frame: int) -> slice:
-    offsets = trajectories.frame_offsets
-    return slice(int(offsets[frame]), int(offsets[frame + 1]))
+def _inside_at(trajectories: Trajectories, frame: int) -> NDArray[np.int64]:
+    rows = np.arange(*trajectories.frame_offsets[frame : frame + 2])
+    return rows[trajectories.exit_frames[trajectories.person[rows]] != frame]
 
 
 def _tracks(trajectories: Trajectories) -> LineCollection:
@@ -208,6 +208,9 @@ def _tracks(trajectories: Trajectories) -> LineCollection:
     # Each person's every-th row only: its pieces then join end to end.
     kept = trajectories.frame[start] % every == 0
     start, end = start[kept], end[kept]
+    # Later pieces lie on top: where many passed, the colour tells when the last ones did.
+    in_time = np.argsort(trajectories.frame[start], kind="stable")
+    start, end = start[in_time], end[in_time]
     pieces = np.empty((len(start), 2, 2))
     pieces[:, 0, 0], pieces[:, 0, 1] = trajectories.x[start], trajectories.y[start]
     pieces[:, 1, 0], pieces[:, 1, 1] = trajectories.x[end], trajectories.y[end]
@@ -215,8 +218,8 @@ def _tracks(trajectories: Trajectories) -> LineCollection:
     tracks = LineCollection(
         list(pieces),
         cmap=TRACK_COLOURS,
-        linewidths=1.0 if few else 0.6,
-        alpha=0.9 if few else 0.7,
+        linewidths=1.0 if few else 0.4,
+        alpha=0.9 if few else 0.5,
         capstyle="round",
         rasterized=True,
         zorder=3,
@@ -226,7 +229,7 @@ def _tracks(trajectories: Trajectories) -> LineCollection:
     return tracks
 
 
-def _draw_bodies(axes: Axes, trajectories: Trajectories, rows: slice) -> None:
+def _draw_bodies(axes: Axes, trajectories: Trajectories, rows: NDArray[np.int64]) -> None:
     radius = trajectories.radii[trajectories.person[rows]]
     centre = np.column_stack((trajectories.x[rows], trajectories.y[rows]))
     heading = trajectories.heading[rows]

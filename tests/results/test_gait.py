@@ -9,11 +9,15 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import lateral_sway
 
 
-def walker(seconds=20.0, amplitude=0.03, stride=0.9, direction=0.0, drift=0.0, rate=30.0):
-    """Walks 1.3 m/s and sways like a sine of the given amplitude; drifts off like a parabola."""
+def walker(
+    seconds=20.0, amplitude=0.03, stride=0.9, direction=0.0, drift=0.0, speed=1.3, wander=0.0,
+    rate=30.0,
+):  # fmt: skip
+    """Sways like a sine of the given amplitude; drifts off like a parabola, wanders at 0.2 Hz."""
     t = np.arange(round(seconds * rate)) / rate
-    along = 1.3 * t
+    along = speed * t
     across = amplitude * np.sin(2 * math.pi * stride * t) + drift * (t / seconds) ** 2
+    across += wander * np.sin(2 * math.pi * 0.2 * t)
     c, s = math.cos(direction), math.sin(direction)
     return c * along - s * across, s * along + c * across
 
@@ -30,6 +34,17 @@ def test_a_sine_sways_twice_its_amplitude(amplitude, stride, direction, drift):
     sway = lateral_sway(x, y)
     assert sway.peak_to_peak == pytest.approx(2 * amplitude, rel=0.06)
     assert sway.stride_frequency == pytest.approx(stride, abs=0.02)
+
+
+def test_a_slow_walker_has_slow_strides():
+    assert lateral_sway(*walker(speed=0.5, stride=0.5)).stride_frequency == pytest.approx(
+        0.5, abs=0.02
+    )
+
+
+def test_wandering_ten_times_as_wide_is_not_taken_for_the_stride():
+    sway = lateral_sway(*walker(amplitude=0.03, wander=0.3, seconds=40.0))
+    assert sway.stride_frequency == pytest.approx(0.9, abs=0.02)
 
 
 def test_each_gait_cycle_has_its_own_figure():

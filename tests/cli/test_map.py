@@ -1,0 +1,107 @@
+import json
+
+import pytest
+
+from mesa_mobility.mobility import MobilityMap
+
+
+def last_line(outcome):
+    return json.loads(outcome.out.splitlines()[-1])
+
+
+def test_build_writes_a_map_and_says_what_is_in_it(command, recordings, map_file, tmp_path):
+    path = tmp_path / "again.npz"
+    outcome = command(
+        "map", "build", recordings, "-o", path, "--clusters", 12, "--type", "able_bodied", "--json"
+    )
+    assert outcome.status == 0, outcome.err
+    assert len(outcome.out.splitlines()) == 1
+    answer = last_line(outcome)
+    # Two clips of 270 frames, each with its mirror image.
+    expected = {"recordings": 4, "clusters": 12, "pedestrian_type": "able_bodied"}
+    assert {key: answer[key] for key in expected} == expected
+    assert answer["build"]["poses"] == 4 * 270
+    assert answer["skipped"] == [["short", "40 frames at 30 Hz, 46 needed"]]
+    assert "skipped short: 40 frames" in outcome.err
+    assert MobilityMap.load(path).n_clusters == 12
+    # Built by another process, under another name: the same bytes.
+    assert path.read_bytes() == map_file.read_bytes()
+
+
+def test_mirror_images_can_be_left_out(command, recordings, tmp_path):
+    path = tmp_path / "plain.npz"
+    outcome = command(
+        "map", "build", recordings, "-o", path, "--clusters", 12, "--no-mirror", "--json"
+    )
+    assert last_line(outcome)["build"]["poses"] == 2 * 270
+
+
+def test_the_map_says_how_it_was_made(command, recordings, map_file):
+    answer = last_line(command("map", "info", map_file, "--json"))
+    assert answer["command"] == (
+        f"mesa-mobility map build {recordings.name} -o able_bodied.npz --type able_bodied "
+        "--clusters 12"
+    )
+    assert {clip["clip"] for clip in answer["provenance"]} == {"slow", "brisk"}
+
+
+def test_info_for_people_to_read(command, map_file):
+    outcome = command("map", "info", map_file)
+    assert outcome.status == 0
+    lines = [" ".join(line.split()) for line in outcome.out.splitlines()]
+    assert "clusters 12" in lines
+    assert "build: durations frames 12, 24, 45" in lines
+    assert "provenance 2 entries, see --json" in lines
+
+
+def test_coverage_of_recordings_the_map_was_built_from(command, recordings, map_file):
+    outcome = command("map", "coverage", map_file, recordings, "--json")
+    answer = last_line(outcome)
+    # 270 - 45 poses of two clips have 45 frames to come.
+    assert answer["poses"] == 2 * (270 - 45)
+    assert set(answer["endpoint_error_m"]) == {"median", "p90", "p95"}
+    # Their own movements are among the options.
+    assert answer["endpoint_error_m"]["median"] < 0.05
+    assert 0.9 < answer["share_within_15cm_20deg"] <= 1.0
+
+
+def test_coverage_takes_several_recordings(command, recordings, map_file):
+    one = last_line(command("map", "coverage", map_file, recordings / "slow.bvh", "--json"))
+    both = last_line(
+        command(
+            "map", "coverage", map_file, recordings / "slow.bvh", recordings / "brisk.bvh", "--json"
+        )
+    )
+    assert (one["poses"], both["poses"]) == (225, 450)
+
+
+def test_bad_input_is_one_line_and_status_two(command, recordings, map_file, tmp_path):
+    (tmp_path / "text.npz").write_text("no map")
+    (tmp_path / "none.bvh").write_text("")
+    (tmp_path / "taken").write_text("mine")
+    output = ("-o", tmp_path / "new.npz")
+    for arguments, where in (
+        (("info", tmp_path / "text.npz"), "text.npz: "),
+        (("info", tmp_path / "absent.npz"), "absent.npz: "),
+        (("coverage", tmp_path / "text.npz", recordings), "text.npz: "),
+        (("coverage", map_file, tmp_path / "none.bvh"), "none.bvh: "),
+        (("coverage", map_file, tmp_path / "absent"), "absent: "),
+        (("build", tmp_path / "absent", *output), "absent: "),
+        (("build", tmp_path / "none.bvh", *output), "none.bvh: "),
+        (("build", recordings, "-o", tmp_path), "is a folder, expected a file"),
+        (("build", recordings, "-o", tmp_path / "taken" / "new.npz"), "taken: is not a folder"),
+    ):
+        outcome = command("map", *arguments)
+        assert outcome.status == 2, arguments
+        assert outcome.err.startswith("error: "), arguments
+        assert where in outcome.err, arguments
+        assert len(outcome.err.splitlines()) == 1, arguments
+        assert outcome.out == "", arguments
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["none.bvh", "taken", "text.npz"]
+
+
+@pytest.mark.parametrize(
+    "arguments", [["build", "x"], ["build", "x", "-o", "y", "--clusters", "1"], ["nothing"]]
+)
+def test_wrong_usage_has_status_two(command, arguments):
+    assert command("map", *arguments).status == 2
