@@ -12,6 +12,8 @@ from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
 from mesa_mobility.errors import ModelError
 
 WIDTH = 28.0
+WING = 3.0
+"""How much farther to the right the foyer reaches than the hall."""
 HALL = 24.0
 FOYER = 5.0
 OFFICE = 4.0
@@ -30,7 +32,7 @@ SEAT_DEPTH = 0.42
 SEAT_WIDTH = 0.55
 
 HALL_DOOR = 1.8
-EXIT_DOOR = 0.9
+EXIT_DOOR = 0.75
 OFFICE_DOOR = 0.9
 
 FORECOURT = (3.0, 8.0)
@@ -41,7 +43,7 @@ class Auditorium(PedestrianModel):
     """A nearly full auditorium and six offices; everybody starts at once, nearest exit.
 
     The paper prints no plan.  This one has 19 rows of seats in three blocks, two double doors
-    at the back that open to a foyer, offices on the foyer's far side, and an exit door of 0.9
+    at the back that open to a foyer, offices on the foyer's far side, and an exit door of 0.75
     m at each end of the foyer; through both together pass the paper's three people a second.
 
     Args:
@@ -117,7 +119,7 @@ def auditorium_plan() -> FloorPlan:
     """Hall (y 0 to 24 m, stage below), foyer, and a row of offices."""
     foyer_low, foyer_high = HALL + WALL, HALL + WALL + FOYER
     hall_doors = [((a[1] + b[0]) / 2, HALL) for a, b in pairwise(BLOCKS)]
-    parts = [box(0, 0, WIDTH, HALL), box(0, foyer_low, WIDTH, foyer_high)]
+    parts = [box(0, 0, WIDTH, HALL), box(0, foyer_low, WIDTH + WING, foyer_high)]
     gates = []
     for k, (x, y) in enumerate(hall_doors):
         a, b = x - HALL_DOOR / 2, x + HALL_DOOR / 2
@@ -139,7 +141,7 @@ def auditorium_plan() -> FloorPlan:
     low, high = middle - EXIT_DOOR / 2, middle + EXIT_DOOR / 2
     depth, width = FORECOURT
     exits = []
-    for side, wall, out in (("left", 0.0, -1.0), ("right", WIDTH, 1.0)):
+    for side, wall, out in (("left", 0.0, -1.0), ("right", WIDTH + WING, 1.0)):
         outside, end = wall + out * WALL, wall + out * (WALL + depth)
         parts.append(box(min(wall, outside), low, max(wall, outside), high))
         parts.append(

@@ -93,7 +93,7 @@ def chosen(model: type, name: str, settings: Iterable[str]) -> dict[str, Any]:
             )
         if key in values:
             raise ModelError(f"--set {setting}: {key} is set twice")
-        values[key] = taken[key].convert(text.strip(), name)
+        values[key] = taken[key].convert(text, name)
     return values
 
 

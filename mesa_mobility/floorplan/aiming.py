@@ -106,9 +106,7 @@ def _first_in_view(
         i = maybe[k]
         if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance):
             return i
-        if ways.kind[i] != CORNER and _nearest_serves(
-            sight, ways, x, y, i, after[i], clearance
-        ):
+        if ways.kind[i] != CORNER and _nearest_serves(sight, ways, x, y, i, after[i], clearance):
             return i
     return -1
 

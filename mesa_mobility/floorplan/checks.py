@@ -72,14 +72,16 @@ def check_exits(walkable: Polygon, exits: Sequence[Exit]) -> None:
         if not isinstance(opening, Exit):
             raise FloorPlanError(f"exits must be Exit objects, found {type(opening).__name__}")
         if not near_edge.covers(opening.line):
-            away = max(edge.distance(shapely.Point(p)) for p in (opening.a, opening.midpoint, opening.b))
+            away = max(
+                edge.distance(shapely.Point(p)) for p in (opening.a, opening.midpoint, opening.b)
+            )
             raise FloorPlanError(
                 f"exit {opening.name!r} is not on the edge of the walkable area: "
                 f"it is up to {away:.3f} m away, at most {EDGE_TOLERANCE} m is accepted"
             )
         for other in exits[:i]:
-            shared = opening.line.intersection(other.line.buffer(EDGE_TOLERANCE)).length
-            if shared > 3 * EDGE_TOLERANCE:
+            band = other.line.buffer(EDGE_TOLERANCE, cap_style="flat")
+            if opening.line.intersection(band).length > 1.5 * EDGE_TOLERANCE:
                 raise FloorPlanError(f"exits {other.name!r} and {opening.name!r} overlap")
 
 
@@ -96,7 +98,9 @@ def check_gates(walkable: Polygon, gates: Iterable[Gate]) -> None:
             )
 
 
-def free_area(walkable: Polygon, obstacles: Sequence[Polygon], exits: Sequence[Exit]) -> BaseGeometry:
+def free_area(
+    walkable: Polygon, obstacles: Sequence[Polygon], exits: Sequence[Exit]
+) -> BaseGeometry:
     """Walkable area minus obstacles, without pockets that can hold nobody.
 
     Raises

@@ -131,7 +131,9 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, bool]:
     properties = feature.get("properties") or {}
     kind = properties.get("kind") if isinstance(properties, Mapping) else None
     if kind not in KINDS:
-        raise FloorPlanError(f"{at}: property kind must be one of {', '.join(KINDS)}, found {kind!r}")
+        raise FloorPlanError(
+            f"{at}: property kind must be one of {', '.join(KINDS)}, found {kind!r}"
+        )
     try:
         geometry = shapely.geometry.shape(feature.get("geometry"))
     except Exception as error:  # shapely raises whatever the malformed mapping led it into

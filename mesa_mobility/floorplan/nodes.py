@@ -33,6 +33,9 @@ _SIMPLIFY = 0.1
 # Beyond a right angle and a bit, one corner far ahead of a sharp tip is replaced by two beside it.
 _SHARP = np.deg2rad(100.0)
 
+# Widest gap, in clearances, in which a corner beside one wall can be too near to the other.
+_NARROW = 2.5
+
 _POINTS_PER_OPENING = 9
 _POINT_SPACING = 0.5
 
@@ -85,20 +88,15 @@ def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
     )
 
 
-def shrunk(opening: Opening, clearance: float) -> NDArray[np.float64]:
-    """(2, 2) ends of an opening drawn in by the clearance, at most to its middle."""
-    a, b = np.array(opening.a), np.array(opening.b)
-    share = min(0.5, clearance / opening.length)
-    return np.stack([a + share * (b - a), b + share * (a - b)])
-
-
 def outward(plan: "FloorPlan", opening: Exit) -> NDArray[np.float64]:
     """(2,) unit normal of an exit, away from the free area."""
     normal = _both_ways(opening)[0]
     along = np.linspace(0.05, 0.95, 10)[:, None]
     places = np.array(opening.a) + along * (np.array(opening.b) - np.array(opening.a))
     # Two centimetres: farther than an exit may lie from the edge.
-    ahead, behind = (shapely.intersects_xy(plan.walkable, *(places + side * 0.02 * normal).T) for side in (1, -1))
+    ahead, behind = (
+        shapely.intersects_xy(plan.walkable, *(places + side * 0.02 * normal).T) for side in (1, -1)
+    )
     return -normal if ahead.sum() > behind.sum() else normal
 
 
@@ -131,7 +129,9 @@ def _places(plan: "FloorPlan", opening: Opening, clearance: float) -> NDArray[np
 def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> NDArray[np.bool_]:
     least = NODE_SHARE * clearance
     # At the bound itself counts, whatever the last bit.
-    return np.array([wall_distance(sight, x, y, clearance) > least - 1e-9 for x, y in places], dtype=bool)
+    return np.array(
+        [wall_distance(sight, x, y, clearance) > least - 1e-9 for x, y in places], dtype=bool
+    )
 
 
 def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
@@ -149,7 +149,28 @@ def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[
         good = plan.contains(places) & _passable(sight, places, clearance)
         found.append(places[good])
         waiting_base, waiting_offset = waiting_base[~good], waiting_offset[~good]
+    found.append(_middles(plan, sight, waiting_base, clearance))
     return found
+
+
+def _middles(
+    plan: "FloorPlan", sight: Sight, bases: NDArray[np.float64], clearance: float
+) -> NDArray[np.float64]:
+    """Corners for vertices in gaps too narrow for one beside them: the middle of the gap."""
+    walls = shapely.linestrings(plan.walls.reshape(-1, 2, 2))
+    tree = shapely.STRtree(walls)
+    found = [np.empty((0, 2))]
+    for base in shapely.points(bases):
+        opposite = walls[
+            np.sort(tree.query(base, predicate="dwithin", distance=_NARROW * clearance))
+        ]
+        across = shapely.shortest_line(base, opposite)
+        across = across[shapely.length(across) >= 2 * NODE_SHARE * clearance]
+        found.append(
+            shapely.get_coordinates(shapely.line_interpolate_point(across, 0.5, normalized=True))
+        )
+    places = np.concatenate(found)
+    return places[plan.contains(places) & _passable(sight, places, clearance)]
 
 
 def _rings(plan: "FloorPlan", tolerance: float) -> list[NDArray[np.float64]]:
@@ -161,7 +182,9 @@ def _rings(plan: "FloorPlan", tolerance: float) -> list[NDArray[np.float64]]:
     return rings
 
 
-def _reflex(ring: NDArray[np.float64], clearance: float) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+def _reflex(
+    ring: NDArray[np.float64], clearance: float
+) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
     """The vertices of a ring that routes bend around, with where to stand beside each."""
     arriving = ring - np.roll(ring, 1, axis=0)
     arriving /= np.hypot(*arriving.T)[:, None]
@@ -183,7 +206,9 @@ def _reflex(ring: NDArray[np.float64], clearance: float) -> list[tuple[NDArray[n
     return result
 
 
-def _cap(outwards: NDArray[np.float64], solid: float, clearance: float) -> list[NDArray[np.float64]]:
+def _cap(
+    outwards: NDArray[np.float64], solid: float, clearance: float
+) -> list[NDArray[np.float64]]:
     """Two corners beside a tip of the given solid angle, as on a square cap around it."""
     beside = clearance * (1 - np.sin(solid / 2)) / np.cos(solid / 2)
     across = np.array([-outwards[1], outwards[0]])

@@ -29,7 +29,9 @@ class Opening:
         for end in ("a", "b"):
             object.__setattr__(self, end, self._point(end, getattr(self, end)))
         if self.length == 0.0:
-            raise FloorPlanError(f"{self.kind} {self.name!r} has no length: a and b are both {self.a}")
+            raise FloorPlanError(
+                f"{self.kind} {self.name!r} has no length: a and b are both {self.a}"
+            )
 
     @property
     def kind(self) -> str:
@@ -59,7 +61,9 @@ class Opening:
                 f"{self.kind} {self.name!r}: {end} must be two numbers (x, y), found {value!r}"
             ) from None
         if not (math.isfinite(x) and math.isfinite(y)):
-            raise FloorPlanError(f"{self.kind} {self.name!r}: {end} must be finite, found ({x}, {y})")
+            raise FloorPlanError(
+                f"{self.kind} {self.name!r}: {end} must be finite, found ({x}, {y})"
+            )
         return (x, y)
 
 

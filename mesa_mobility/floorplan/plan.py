@@ -59,7 +59,8 @@ class FloorPlan:
         self._gates = tuple(gates)
         self._closed: set[str] = set()
         self._obstacles: dict[int, Polygon] = {
-            i: checks.read_polygon(obstacle, f"obstacle {i}") for i, obstacle in enumerate(obstacles)
+            i: checks.read_polygon(obstacle, f"obstacle {i}")
+            for i, obstacle in enumerate(obstacles)
         }
         self._next_obstacle = len(self._obstacles)
         checks.check_exits(self._walkable, self._exits)
@@ -193,7 +194,9 @@ class FloorPlan:
     def remove_obstacle(self, obstacle: int) -> None:
         """Take away the obstacle with this id; FloorPlanError where there is none."""
         if obstacle not in self._obstacles:
-            raise FloorPlanError(f"there is no obstacle {obstacle}; there are {list(self._obstacles)}")
+            raise FloorPlanError(
+                f"there is no obstacle {obstacle}; there are {list(self._obstacles)}"
+            )
         self._set_free({i: p for i, p in self._obstacles.items() if i != obstacle})
         self._changed()
 

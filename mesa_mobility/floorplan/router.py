@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.aiming import aim
 from mesa_mobility.floorplan.edges import opening_segments
-from mesa_mobility.floorplan.nodes import EDGE_SHARE, VIEW_SHARE, Nodes, find_nodes, shrunk
+from mesa_mobility.floorplan.nodes import EDGE_SHARE, VIEW_SHARE, Nodes, find_nodes
 from mesa_mobility.floorplan.openings import Exit
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
@@ -137,7 +137,11 @@ class Router:
 
     def _shortest(self, exit_names: tuple[str, ...] | None) -> NDArray[np.float64]:
         names = {e.name for e in self._plan.exits} if exit_names is None else set(exit_names)
-        sources = {n for n, data in self._graph.nodes(data=True) if data["kind"] == "exit" and data["opening"] in names}
+        sources = {
+            n
+            for n, data in self._graph.nodes(data=True)
+            if data["kind"] == "exit" and data["opening"] in names
+        }
         result = np.full(self._graph.number_of_nodes(), np.inf)
         if sources:
             backwards = self._graph.reverse(copy=False)
@@ -178,15 +182,20 @@ class Router:
         curtains = np.full(len(openings), -1, dtype=np.int64)
         for k, opening in enumerate(self._plan.open_exits()):
             curtains[openings.index(opening)] = walls + k
-        passable = np.zeros(len(openings), dtype=np.bool_)
-        passable[nodes.opening[nodes.opening >= 0]] = True
+        lines = opening_segments(openings)
+        ends, passable = lines.copy(), np.zeros(len(openings), dtype=np.bool_)
+        for number in np.unique(nodes.opening[nodes.opening >= 0]):
+            places = nodes.xy[nodes.opening == number]
+            along = np.argsort(((places - lines[number, :2]) ** 2).sum(axis=1), kind="stable")
+            ends[number] = *places[along[0]], *places[along[-1]]
+            passable[number] = True
         return Ways(
             nodes.kind,
             nodes.xy,
             nodes.opening,
             nodes.normal,
-            opening_segments(openings),
-            np.array([shrunk(o, self._clearance).ravel() for o in openings]),
+            lines,
+            ends,
             passable,
             curtains,
             VIEW_SHARE * self._clearance,

@@ -17,7 +17,7 @@ class Ways(NamedTuple):
     """A route graph as the compiled functions take it; see `Nodes` for the node arrays.
 
     Of every gate and exit, in the order of `FloorPlan.openings()`: `lines`
-    (openings, 4) its line, `ends` (openings, 4) the line drawn in by the clearance,
+    (openings, 4) its line, `ends` (openings, 4) the line from its first to its last node,
     `passable` (openings,) whether it has nodes, `curtains` (openings,) its number
     among the walls of the sight, -1 for gates.
     """

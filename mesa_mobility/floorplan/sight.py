@@ -40,7 +40,9 @@ class Sight(NamedTuple):
 def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
     """Prepare walls (m, 4), and lines not to be crossed (k, 4), for views of clearance `reach`."""
     solid = np.asarray(walls, dtype=np.float64).reshape(-1, 4)
-    index = WallIndex(np.concatenate([solid, np.asarray(curtains, dtype=np.float64).reshape(-1, 4)]))
+    index = WallIndex(
+        np.concatenate([solid, np.asarray(curtains, dtype=np.float64).reshape(-1, 4)])
+    )
     rows = index.segments
     extent = float(np.ptp(rows.reshape(-1, 2), axis=0).max()) if len(rows) else 1.0
     # The extra millimetre keeps walls that rounding would put just out of reach of a cell.

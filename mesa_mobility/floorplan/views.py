@@ -49,7 +49,12 @@ def no_views(bounds: tuple[float, float, float, float], nodes: int) -> Views:
 
 @njit(cache=True)
 def nodes_maybe_in_view(
-    sight: Sight, views: Views, places: NDArray[np.float64], x: float, y: float, found: NDArray[np.int64]
+    sight: Sight,
+    views: Views,
+    places: NDArray[np.float64],
+    x: float,
+    y: float,
+    found: NDArray[np.int64],
 ):
     """Write the nodes that may be in view from (x, y) to `found`; returns how many.
 

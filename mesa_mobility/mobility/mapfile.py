@@ -120,9 +120,10 @@ def read_map(path: str | Path) -> MobilityMap:
     """
     path = Path(path)
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise MapError(f"{path}: a single array, expected a mobility map (.npz)")
+        archive = np.load(path, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise MapError(f"{path}: a single array, expected a mobility map (.npz)")
+        with archive:
             missing = sorted(set(_DTYPES) - set(archive.files))
             if missing:
                 raise MapError(f"{path}: not a mobility map, arrays missing: {', '.join(missing)}")

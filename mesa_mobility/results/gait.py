@@ -40,8 +40,8 @@ def lateral_sway(x: ArrayLike, y: ArrayLike, frame_rate: float = 30.0) -> Sway:
     """Side-to-side motion of someone who walks straight on.
 
     The motion across the direction of walking (a straight line fitted to the path) loses its slow
-    drift (a cubic). The highest peak in the spectrum of its velocity (Hann window) between 0.62 Hz,
-    or 0.42 Hz below 0.7 m/s, and 1.35 Hz is the stride. What remains after subtracting the running
+    drift (a cubic). The highest peak of its spectrum (Hann window) between 0.62 Hz, or 0.42 Hz for
+    walkers below 0.7 m/s, and 1.35 Hz is the stride. What remains after subtracting the running
     mean over one stride is cut into strides.
 
     Args:
@@ -83,8 +83,7 @@ def _highest_peak(signal: FloatArray, frame_rate: float, lowest: float, highest:
     # Eight times padded: a short walk otherwise resolves its stride to 0.1 Hz only.
     size = 8 * len(signal)
     frequency = np.fft.rfftfreq(size, 1.0 / frame_rate)
-    # Of the velocity: what is left of the drift is slower than strides, and weighs less there.
-    strength = frequency * np.abs(np.fft.rfft(signal * np.hanning(len(signal)), size))
+    strength = np.abs(np.fft.rfft(signal * np.hanning(len(signal)), size))
     band = np.flatnonzero((frequency >= lowest) & (frequency <= highest))
     # The slope of a peak outside the band may be higher than any peak within.
     peaks = band[(strength[band] > strength[band - 1]) & (strength[band] >= strength[band + 1])]

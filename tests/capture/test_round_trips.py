@@ -1,10 +1,10 @@
-"""Recordings written out as text and read again, against kinematics worked out with matrices here."""
+"""Recordings written out as text and read again, against kinematics worked out here."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -53,9 +53,7 @@ def trees(draw: st.DrawFn) -> tuple[list[Joint], list[list[list[float]]]]:
         rotations = draw(st.permutations([(axis, "rotation") for axis in "XYZ"]))
         channels = rotations[: draw(st.integers(0, 3))]
         if j == 0:
-            channels = draw(
-                st.permutations([*channels, *((axis, "position") for axis in "XYZ")])
-            )
+            channels = draw(st.permutations([*channels, *((axis, "position") for axis in "XYZ")]))
         joints.append(Joint(f"j{j}", parent, draw(vectors), channels))
     frames = draw(st.integers(1, 3))
     values = [
@@ -198,7 +196,7 @@ def amc_text(order: list[str], bones: list[Bone], values: list, radians: bool) -
     return text
 
 
-def sequence(order: str, values: list[float]) -> Matrix:
+def sequence(order: str, values: Sequence[float]) -> Matrix:
     """Rotations about fixed axes, the first one first."""
     rotation = np.eye(3)
     for axis, value in zip(order, values, strict=True):
@@ -227,7 +225,7 @@ def test_amc_text_gives_back_every_bone_where_matrices_put_it(tmp_path_factory, 
         ends: list[tuple[Matrix, Matrix]] = []
         for bone, numbers in zip(bones, rest, strict=True):
             begin, frame_of_parent = ends[bone.parent] if bone.parent >= 0 else (start, base)
-            own = sequence(bone.axis_order, list(bone.axis[i] for i in axes_of(bone.axis_order)))
+            own = sequence(bone.axis_order, bone.axis)
             rotation = frame_of_parent @ own @ sequence(bone.dof, numbers) @ own.T
             direction = np.array(bone.direction) / np.linalg.norm(bone.direction)
             end = begin + rotation @ direction * bone.length

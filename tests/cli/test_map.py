@@ -1,4 +1,6 @@
 import json
+import os
+import signal
 
 import pytest
 
@@ -98,6 +100,21 @@ def test_bad_input_is_one_line_and_status_two(command, recordings, map_file, tmp
         assert len(outcome.err.splitlines()) == 1, arguments
         assert outcome.out == "", arguments
     assert sorted(path.name for path in tmp_path.iterdir()) == ["none.bvh", "taken", "text.npz"]
+
+
+def test_control_c_while_building_leaves_nothing(command, recordings, tmp_path, monkeypatch):
+    def pose_table(recordings, progress=None):
+        os.kill(os.getpid(), signal.SIGINT)
+        progress(1, 2)
+        raise AssertionError("went on after the next report of progress")
+
+    monkeypatch.setattr("mesa_mobility.mobility.build.pose_table", pose_table)
+    before = signal.getsignal(signal.SIGINT)
+    outcome = command("map", "build", recordings, "-o", tmp_path / "new.npz")
+    assert outcome.status == 130
+    assert outcome.err.endswith("interrupted: nothing written\n")
+    assert list(tmp_path.iterdir()) == []
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 @pytest.mark.parametrize(

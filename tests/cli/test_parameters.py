@@ -63,7 +63,8 @@ def value(setting):
         ("either=seven", "seven"),
         ("plan=hall.geojson", "hall.geojson"),
         ("free=text", "text"),
-        (" people = 5 ", 5),
+        (" people =5", 5),
+        ("name= a ", " a "),
     ],
 )
 def test_texts_become_what_the_parameter_takes(setting, expected):

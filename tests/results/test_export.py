@@ -1,3 +1,4 @@
+import binascii
 import math
 import sqlite3
 import sys
@@ -10,6 +11,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import (
     Trajectories,
     density,
+    export,
     to_pedpy,
     write_juelich_text,
     write_jupedsim_sqlite,
@@ -83,7 +85,10 @@ def test_jupedsim_database_has_what_its_viewer_asks_for(room, tmp_path):
     }  # fmt: skip
     # A frame without anybody is a frame too.
     assert [frame for frame, _ in frames] == [0, 1, 2]
-    assert {key for _, key in frames} == {geometry[0][0]}
+    # The same in every process: a checksum of the text.
+    assert (
+        {key for _, key in frames} == {geometry[0][0]} == {binascii.crc32(room.free.wkt.encode())}
+    )
     assert rows[0] == (0, 7, 1.0, 3.5, 1.0, 0.0)
     assert rows[1] == (2, 7, 2.0, 0.5, pytest.approx(0.0, abs=1e-12), 1.0)
 
@@ -113,6 +118,15 @@ def test_exports_are_whole_or_absent(writer, walk, run, room, tmp_path):
     with pytest.raises(ResultsError, match=r"away/run: cannot be written"):
         writer(run, tmp_path / "away" / "run", *area)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("writer", [write_juelich_text, write_jupedsim_sqlite])
+def test_rows_go_out_in_portions(writer, run, room, tmp_path, monkeypatch):
+    area = (room.free,) if writer is write_jupedsim_sqlite else ()
+    writer(run, tmp_path / "at once", *area)
+    monkeypatch.setattr(export, "CHUNK", 5)
+    writer(run, tmp_path / "in portions", *area)
+    assert (tmp_path / "in portions").read_bytes() == (tmp_path / "at once").read_bytes()
 
 
 @pytest.mark.parametrize("writer", [write_juelich_text, write_jupedsim_sqlite])

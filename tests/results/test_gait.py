@@ -47,6 +47,12 @@ def test_wandering_ten_times_as_wide_is_not_taken_for_the_stride():
     assert sway.stride_frequency == pytest.approx(0.9, abs=0.02)
 
 
+def test_wandering_is_not_sway():
+    # Of 5 cm of wandering at 0.2 Hz, the running mean over 1.1 s leaves 4 mm.
+    sway = lateral_sway(*walker(amplitude=0.03, wander=0.05, seconds=40.0))
+    assert sway.peak_to_peak == pytest.approx(0.06, rel=0.1)
+
+
 def test_each_gait_cycle_has_its_own_figure():
     # 20 s at 0.9 Hz are 18 cycles; the first and the last half are lost to the running mean.
     assert len(lateral_sway(*walker()).per_cycle) in (16, 17)

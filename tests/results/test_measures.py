@@ -89,6 +89,11 @@ def test_direction_change_is_the_short_way_round(walk):
     assert direction_changes(run, interval=1.0).tolist() == pytest.approx([math.radians(20)])
 
 
+def test_direction_changes_are_each_persons_own(walk):
+    run = walk({0: (0, [(0, 0), (1, 0)]), 1: (0, [(0, 5), (0, 6)])}, frame_rate=1.0)
+    assert direction_changes(run, interval=1.0).tolist() == []
+
+
 def test_direction_steps_start_where_each_person_starts(walk):
     # East for two frames, north for two: with steps of two frames one right angle, whichever
     # frame the person came in.

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results import Overlap, Trajectories, WallCrossing, check_safety
+from mesa_mobility.results import Overlap, Trajectories, WallCrossing, check_safety, safety
 from mesa_mobility.results.safety import NAMED
 
 NO_WALLS = np.empty((0, 4))
@@ -85,6 +85,17 @@ def test_a_crossing_says_where(walk):
 
 def test_somebody_away_in_between_makes_no_step(walk):
     run = Trajectories(frame=[0, 2], person=[0, 0], x=[-1, 1], y=[0.5, 0.5], heading=[0, 0])
+    assert check_safety(run, WALLS).wall_crossings == 0
+
+
+def test_crossings_are_found_however_many_steps_there_are(walk, monkeypatch):
+    monkeypatch.setattr(safety, "CHUNK", 2)
+    run = walk({0: (0, [(1.0, 0.5)] * 5 + [(-1.0, 0.5)] * 2)})
+    assert check_safety(run, WALLS).crossings == (WallCrossing(frame=4, person=0, wall=0),)
+
+
+def test_one_leaving_and_another_coming_make_no_step(walk):
+    run = walk({0: (0, [(-1.0, 0.5)] * 2), 1: (2, [(1.0, 0.5)] * 2)})
     assert check_safety(run, WALLS).wall_crossings == 0
 
 

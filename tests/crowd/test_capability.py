@@ -1,0 +1,89 @@
+import numpy as np
+import pytest
+
+from mesa_mobility import Capability, PedestrianType
+from mesa_mobility.errors import ModelError
+from tests.fixtures.maps import STANDING, WALKING, make_map, stand, straight, strider, through
+from tests.fixtures.scenes import corridor, model_of, put, statues
+
+
+def test_all_options_of_the_map():
+    capability = Capability(strider())
+    assert capability.n_clusters == 2
+    assert capability.standing == STANDING
+    assert list(capability.options(STANDING)) == [0, 1, 2, 3]
+    assert list(capability.options(WALKING)) == [4, 5, 6, 7]
+    assert capability.table.x.tolist() == [0.0, 0.5, 1.0, 1.875, 0.5, 1.0, 1.875, 0.0]
+    assert capability.table.frames.tolist() == [12, 12, 24, 45, 12, 24, 45, 12]
+    assert capability.table.cluster.tolist() == [0, 1, 1, 1, 1, 1, 1, 0]
+    assert capability.longest_reach == 1.875
+
+
+def test_options_of_some_durations():
+    capability = Capability(strider(), durations=(24, 45))
+    assert [list(capability.options(c)) for c in (STANDING, WALKING)] == [[0, 1], [2, 3]]
+    assert capability.table.x.tolist() == [1.0, 1.875, 1.0, 1.875]
+    assert capability.table.frames.tolist() == [24, 45, 24, 45]
+    assert capability.rows.tolist() == [2, 3, 5, 6]
+
+
+def test_paths_stay_with_their_options():
+    table = Capability(strider(), durations=(24,)).table
+    first = table.path[table.path_start[1] :][:8, 0]
+    assert first.tolist() == [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0]
+
+
+def test_reach_is_the_farthest_of_the_path_not_its_end():
+    far_and_back = [(0.5, 0.0, 0.0), (1.5, 2.0, 0.0), (0.5, 0.0, 0.0), (0.25, 0.0, 0.0)]
+    assert Capability(make_map([[stand(), through(far_and_back, to=0)]])).longest_reach == 2.5
+
+
+def test_a_cluster_without_options_of_these_durations_is_refused():
+    map_ = make_map([[stand(), straight(1.5, 45)], [straight(0.5, 12, to=0)]])
+    with pytest.raises(ModelError, match=r"cluster 1 .*45"):
+        Capability(map_, durations=(45,))
+
+
+def test_people_of_a_type_share_one_capability():
+    model = model_of(corridor(), [strider(), statues()])
+    a, b, c = put(model, 1, 1), put(model, 1, 2), put(model, 1, 3, kind=1)
+    assert a.capability is b.capability
+    assert a.capability is not c.capability
+    assert c.capability.longest_reach == 0.0
+    assert a.capability.map is a.pedestrian_type.mobility_map
+
+
+@pytest.mark.parametrize(("in_map", "radius"), [(0.1875, 0.1875), (None, 0.15)])
+def test_core_radius_is_the_maps_or_fifteen_centimetres(in_map, radius):
+    kind = PedestrianType(mobility_map=strider(core_radius=in_map))
+    assert kind.core_radius == radius
+    assert kind.name == "made by hand"
+
+
+def test_preferred_speeds_are_normal_and_clipped():
+    kind = PedestrianType(mobility_map=strider())
+    speeds = kind.draw_speeds(20_000, np.random.default_rng(1))
+    # Weidmann: 1.34 +- 0.26 m/s; clipping at 0.6 and 2.0 cuts off 0.8 % in all.
+    assert speeds.mean() == pytest.approx(1.34, abs=0.01)
+    assert speeds.std() == pytest.approx(0.26, abs=0.01)
+    assert speeds.min() == 0.6
+    assert speeds.max() == 2.0
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"core_radius": -0.1},
+        {"core_radius": 1.5},
+        {"core_radius": float("nan")},
+        {"speed_mean": 3.0},
+        {"speed_mean": float("nan")},
+        {"speed_sd": -0.1},
+        {"speed_range": (0.0, 2.0)},
+        {"speed_range": (2.0, 0.6)},
+    ],
+)
+def test_types_out_of_range_are_refused(wrong):
+    with pytest.raises(ModelError, match="type 'tall'") as refused:
+        PedestrianType(mobility_map=strider(), name="tall", **wrong)
+    assert "\n" not in str(refused.value)

@@ -1,0 +1,84 @@
+"""Whoever's movement ends first is taken to stand there until the other's has ended."""
+
+import math
+
+import numpy as np
+import pytest
+from shapely import box
+
+from mesa_mobility import Exit, FloorPlan
+from mesa_mobility.behaviors import Displacement
+from tests.fixtures.counting import overlaps
+from tests.fixtures.maps import make_map, stand, straight, wanderer
+from tests.fixtures.scenes import advance, corridor, follow, model_of, put
+
+
+@pytest.mark.parametrize(("gap", "metres"), [(1.0, 0.5), (2.0, 1.875)])
+def test_a_neighbour_held_at_its_end_while_mine_goes_on(gap, metres):
+    # The one in front commits to half a metre; were it to stop there, 1.875 m of mine, 1 m
+    # behind, would run into it - although at a steady walk it would be long gone.
+    short = make_map([[straight(0.5, 12, to=0)]])
+    either = make_map([[straight(0.5, 12, to=0), straight(1.875, 45, to=0)]])
+    model = model_of(corridor(), [short, either], behaviors=[Displacement()])
+    put(model, 5.0 + gap, 2.0)
+    behind = put(model, 5.0, 2.0, kind=1)
+    advance(model, 1)
+    advance(model, round(behind.next_decision * 30))
+    assert behind.position[0] - 5.0 == pytest.approx(metres, abs=1e-6)
+
+
+CROSSING = FloorPlan(
+    box(-3, 0, 3, 6), exits=[Exit("east", (3, 0), (3, 6)), Exit("north", (-3, 6), (3, 6))]
+)
+
+
+@pytest.mark.parametrize(("walker_y", "stays"), [(2.0, True), (2.31, False), (1.2, True)])
+def test_mine_held_at_its_end_while_the_neighbours_goes_on(walker_y, stays):
+    # The walker passes x = 1 at frame 24.  I could be at (1, 2) by frame 12, when it is half
+    # a metre away, but would be run over if I had to stand there.
+    long_way = make_map([[straight(1.875, 45, to=0)]])
+    dash = make_map([[stand(), straight(1.0, 12, to=0)]])
+    model = model_of(CROSSING, [long_way, dash], behaviors=[Displacement()])
+    walker = put(model, 0.0, walker_y, exits=["east"])
+    me = put(model, 1.0, 1.0, math.pi / 2, kind=1, exits=["north"])
+    if walker_y == 2.31:  # 0.31 m beyond my end: nothing in the way
+        pass
+    advance(model, 12)
+    assert walker.position[0] == pytest.approx(0.5)
+    assert (me.position[1] == pytest.approx(1.0)) == stays
+
+
+def test_somebody_who_leaves_is_not_in_the_way_after_that():
+    # The one in front leaves after 0.4 s; where its option would have ended does not matter.
+    short = make_map([[straight(0.5, 12, to=0)]])
+    either = make_map([[stand(), straight(1.875, 45, to=0)]])
+    model = model_of(corridor(length=6.0), [short, either], behaviors=[Displacement()])
+    put(model, 5.6, 2.0)
+    behind = put(model, 4.1, 2.0, kind=1)
+    advance(model, 1)
+    assert behind.speed == pytest.approx(1.25)
+
+
+def test_closest_approach_between_samples_of_two_who_move():
+    # Both run 3 m in 12 frames, crossing at right angles; at the samples, each 0.75 m on,
+    # they are 0.53 m apart at least, between two of them they meet.
+    dash = make_map([[stand(), straight(3.0, 12, to=0)]])
+    model = model_of(CROSSING, dash, behaviors=[Displacement()])
+    first = put(model, -1.125, 3.0, exits=["east"])
+    second = put(model, 0.0, 3.0 - 1.125, math.pi / 2, exits=["north"])
+    tracks = [follow(first, 1), follow(second, 0)]
+    assert len(tracks) == 2
+    speeds = sorted([first.speed, second.speed])
+    assert speeds == pytest.approx([0.0, 7.5])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_nobody_comes_closer_than_two_cores_in_a_crush(seed):
+    rng = np.random.default_rng(seed)
+    plan = FloorPlan(box(0, 0, 5, 5), exits=[Exit("east", (5, 2.2), (5, 2.8))])
+    model = model_of(plan, wanderer(seed + 50, options=25), rng=seed, frames_per_step=3)
+    model.add_pedestrians(plan.random_points(25, rng, spacing=0.5, clearance=0.3))
+    advance(model, 600)
+    rows = model.recorder.arrays()
+    assert len(rows["frame"]) > 600
+    assert overlaps(rows, 0.15, tolerance=0.0) == 0
