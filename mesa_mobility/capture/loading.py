@@ -12,8 +12,8 @@ from mesa_mobility.capture.recording import Recording
 from mesa_mobility.capture.transforms import mirror, resample, trim
 from mesa_mobility.errors import CaptureError
 
-MINIMUM_FRAMES = 46
-"""Poses of a clip that is of use: a movement option of 45 frames has 46."""
+MINIMUM_FRAMES = 45
+"""Poses that a clip must have: the length of a movement option, 1.5 s."""
 
 Progress = Callable[[int, int], None]
 

@@ -38,7 +38,6 @@ COLUMNS = (
 )
 """Columns that a manifest must have, in any order; others are ignored."""
 
-
 UNKNOWN_TYPE = ""
 """Pedestrian type of a clip that no manifest describes."""
 
@@ -65,7 +64,7 @@ class Clip:
         source_repo: where the file was published.
         source_commit: version of the publication.
         source_path: file in the publication.
-        sha256: of the uncompressed recording; empty where it is not known.
+        sha256: of the uncompressed recording.
         path: where the file is.
         where: manifest and line, for errors.
     """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
 
 
@@ -18,9 +17,10 @@ class CrowdSpace(ContinuousSpace):
     def remove_agents(self, leaving: Collection[ContinuousSpaceAgent]) -> None:
         """Remove agents, keeping the order of those that stay."""
         gone = set(leaving)
-        stay = np.array([agent not in gone for agent in self.active_agents], dtype=bool)
-        kept = self._agent_positions[: self._n_agents][stay]
-        self.active_agents = [a for a, s in zip(self.active_agents, stay, strict=True) if s]
+        agents: list[ContinuousSpaceAgent] = self.active_agents  # type: ignore[has-type]
+        stay = [k for k, agent in enumerate(agents) if agent not in gone]
+        kept = self._agent_positions[stay]
+        self.active_agents = [agents[k] for k in stay]
         self._n_agents = len(self.active_agents)
         self._agent_positions[: self._n_agents] = kept
         self._agent_to_index = {agent: k for k, agent in enumerate(self.active_agents)}

@@ -6,7 +6,7 @@ active any more.  ``Pedestrian`` objects are views of a row.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,36 +63,24 @@ FALLBACK = -2
 
 def empty_state(capacity: int) -> CrowdState:
     """Arrays for ``capacity`` people, none of them active."""
-    floats = {
-        name: np.zeros(capacity)
-        for name in (
-            "x", "y", "heading", "vx", "vy", "preferred", "core", "target_x", "target_y", "route",
-        )
-    }  # fmt: skip
-    longs = {
-        name: np.zeros(capacity, dtype=np.int64)
-        for name in (
-            "option", "start", "end", "gone", "decisions", "fallbacks", "fallback_frames",
-            "active_frames",
-        )
-    }  # fmt: skip
-    ints = {
-        name: np.zeros(capacity, dtype=np.int32)
-        for name in ("kind", "destination", "cluster", "spacing", "knots")
-    }
-    return CrowdState(
-        active=np.zeros(capacity, dtype=np.bool_),
-        path=np.zeros((capacity, MAX_KNOTS, 3)),
-        box=np.zeros((capacity, 4)),
-        **floats,
-        **longs,
-        **ints,
+    kinds: dict[str, type[np.generic]] = {"active": np.bool_}
+    kinds |= dict.fromkeys(("kind", "destination", "cluster", "spacing", "knots"), np.int32)
+    kinds |= dict.fromkeys(("option", "start", "end", "gone"), np.int64)
+    kinds |= dict.fromkeys(
+        ("decisions", "fallbacks", "fallback_frames", "active_frames"), np.int64
     )
+    shapes = {"path": (MAX_KNOTS, 3), "box": (4,)}
+    arrays: list[NDArray[Any]] = [
+        np.zeros((capacity, *shapes.get(name, ())), dtype=kinds.get(name, np.float64))
+        for name in CrowdState._fields
+    ]
+    return CrowdState(*arrays)
 
 
 def grown(state: CrowdState, capacity: int) -> CrowdState:
     """The same people in larger arrays."""
     larger = empty_state(capacity)
-    for old, new in zip(state, larger, strict=True):
-        new[: len(old)] = old
+    for name in CrowdState._fields:
+        old = getattr(state, name)
+        getattr(larger, name)[: len(old)] = old
     return larger

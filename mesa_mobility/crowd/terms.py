@@ -85,7 +85,7 @@ class CompiledTerm(CostTerm):
                 candidates.neighbour_positions[neighbours],
                 candidates.neighbour_velocities[neighbours], numbers,
             )  # fmt: skip
-            return np.bincount(rows, weights=costs, minlength=len(candidates))
+            return np.bincount(rows, costs, minlength=len(candidates)).astype(np.float64)
         assert isinstance(self.kernel, OptionKernel)
         return _each_option(
             self.kernel.address, candidates.points, candidates.headings,

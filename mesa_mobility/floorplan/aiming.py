@@ -31,7 +31,7 @@ def aim(
     destinations: NDArray[np.int64],
     distances: NDArray[np.float64],
     follow: NDArray[np.int64],
-):
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Targets (n, 2), gates (n,) and route lengths (n,); see `Router.targets`.
 
     For every destination and node, `distances` is the route length in metres and
@@ -83,7 +83,7 @@ def _first_in_view(
     clearance: float,
     maybe: NDArray[np.int64],
     keys: NDArray[np.float64],
-):
+) -> int:
     """The node in view with the shortest way through it, -1 where none is.
 
     `maybe` lists the nodes to look at; `keys` is space to work in.
@@ -120,7 +120,7 @@ def _aim_at(
     node: int,
     to_go: NDArray[np.float64],
     after: NDArray[np.int64],
-):
+) -> tuple[float, int, float, float]:
     """Route length, gate and target of a person whose route starts with `node`."""
     nx, ny = ways.xy[node]
     length = np.hypot(nx - x, ny - y) + to_go[node]
@@ -144,7 +144,9 @@ def _aim_at(
 
 
 @njit(cache=True)
-def _place(sight: Sight, ways: Ways, x: float, y: float, node: int, after: int):
+def _place(
+    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int
+) -> tuple[float, float]:
     """The place to go to at a node: itself, or the nearest place of its opening that will do."""
     if ways.kind[node] != CORNER and _nearest_serves(
         sight, ways, x, y, node, after, ways.view_clearance
@@ -154,7 +156,9 @@ def _place(sight: Sight, ways: Ways, x: float, y: float, node: int, after: int):
 
 
 @njit(cache=True)
-def _past_corner(sight: Sight, ways: Ways, x: float, y: float, node: int, after: int):
+def _past_corner(
+    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int
+) -> tuple[float, float]:
     """The target at a corner: straight past it, as far as the next node stays in view.
 
     A corner is there to be passed. Whoever aims at the corner itself slows down to
@@ -177,7 +181,7 @@ def _past_corner(sight: Sight, ways: Ways, x: float, y: float, node: int, after:
 
 
 @njit(cache=True)
-def _nearest(ends: NDArray[np.float64], x: float, y: float):
+def _nearest(ends: NDArray[np.float64], x: float, y: float) -> tuple[float, float]:
     ax, ay, bx, by = ends
     length2 = (bx - ax) ** 2 + (by - ay) ** 2
     t = 0.0
@@ -189,7 +193,7 @@ def _nearest(ends: NDArray[np.float64], x: float, y: float):
 @njit(cache=True)
 def _nearest_serves(
     sight: Sight, ways: Ways, x: float, y: float, node: int, after: int, clearance: float
-):
+) -> bool:
     """Whether the nearest place in the opening of `node` will do as well as the node.
 
     It must be in view and, in a gate, have the node `after` in view; otherwise people
@@ -214,7 +218,7 @@ def _beyond(
     qy: float,
     normal: NDArray[np.float64],
     leaves: bool,
-):
+) -> tuple[float, float]:
     """The target behind place q of an opening, on the straight way there."""
     away = np.hypot(qx - x, qy - y)
     ux, uy = normal[0], normal[1]
@@ -229,7 +233,7 @@ def _beyond(
 
 
 @njit(cache=True)
-def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float):
+def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float) -> int:
     """The first gate that the straight way to a target crosses just before it, -1 for none."""
     first = -1
     nearest = np.inf
@@ -251,7 +255,9 @@ def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float):
 
 
 @njit(cache=True)
-def _through(sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int):
+def _through(
+    sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int
+) -> tuple[float, float]:
     """Target behind a gate that lies on the straight way to (px, py)."""
     ax, ay, bx, by = ways.lines[gate]
     width = np.hypot(bx - ax, by - ay)

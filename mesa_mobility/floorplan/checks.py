@@ -94,7 +94,8 @@ def check_gates(walkable: Polygon, gates: Iterable[Gate]) -> None:
         if not room.covers(gate.line):
             outside = gate.line.difference(room).length
             raise FloorPlanError(
-                f"gate {gate.name!r} is not inside the walkable area: {outside:.2f} m of it lie outside"
+                f"gate {gate.name!r} is not inside the walkable area: "
+                f"{outside:.2f} m of it lie outside"
             )
 
 

@@ -87,9 +87,10 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
         raise FloorPlanError(f"{source}: is not text, expected GeoJSON") from None
     try:
         data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        detail = f"line {error.lineno}: {error.msg}" if hasattr(error, "lineno") else "too deep"
-        raise FloorPlanError(f"{source}: is not JSON ({detail})") from None
+    except json.JSONDecodeError as error:
+        raise FloorPlanError(f"{source}: is not JSON (line {error.lineno}: {error.msg})") from None
+    except RecursionError:
+        raise FloorPlanError(f"{source}: is not a floor plan (nested too deeply)") from None
     return _content(data, str(source))
 
 

@@ -8,7 +8,9 @@ from numba import njit
 
 
 @njit(cache=True)
-def point_segment_distance2(px: float, py: float, ax: float, ay: float, bx: float, by: float):
+def point_segment_distance2(
+    px: float, py: float, ax: float, ay: float, bx: float, by: float
+) -> float:
     """Squared distance (m²) from point p to the closed segment ab; ab may be a point."""
     dx = bx - ax
     dy = by - ay
@@ -25,7 +27,7 @@ def point_segment_distance2(px: float, py: float, ax: float, ay: float, bx: floa
 @njit(cache=True)
 def segments_cross(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
-):
+) -> bool:
     """True where the open segments ab and cd cross at one inner point.
 
     Segments that only touch (a shared end, an end on the other segment, an
@@ -47,7 +49,7 @@ def segments_cross(
 @njit(cache=True)
 def segment_segment_distance2(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
-):
+) -> float:
     """Squared distance (m²) between the closed segments ab and cd; 0 where they meet."""
     if segments_cross(ax, ay, bx, by, cx, cy, dx, dy):
         return 0.0
@@ -61,7 +63,7 @@ def segment_segment_distance2(
 @njit(cache=True)
 def segment_box_distance2(
     ax: float, ay: float, bx: float, by: float, xmin: float, ymin: float, xmax: float, ymax: float
-):
+) -> float:
     """Squared distance (m²) from the closed segment ab to the closed axis-parallel box."""
     if xmin <= ax <= xmax and ymin <= ay <= ymax:
         return 0.0

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
 from mesa_mobility.floorplan.openings import Exit, Opening
-from mesa_mobility.floorplan.sight import Sight, wall_distance
+from mesa_mobility.floorplan.sight import Sight, wall_distances
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -36,8 +37,9 @@ _SHARP = np.deg2rad(100.0)
 # Widest gap, in clearances, in which a corner beside one wall can be too near to the other.
 _NARROW = 2.5
 
-_POINTS_PER_OPENING = 9
+# Nodes along a gate or exit: so far apart (metres) and so many at most.
 _POINT_SPACING = 0.5
+_POINTS_PER_OPENING = 9
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,15 @@ def outward(plan: "FloorPlan", opening: Exit) -> NDArray[np.float64]:
     return -normal if ahead.sum() > behind.sum() else normal
 
 
+def _walls_near(plan: "FloorPlan", place: BaseGeometry, reach: float) -> NDArray[np.object_]:
+    """The walls within reach of a place, as shapely lines."""
+    xmin, ymin, xmax, ymax = place.bounds
+    index = plan.wall_index
+    rows = index.segments[index.near(xmin - reach, ymin - reach, xmax + reach, ymax + reach)]
+    lines = shapely.linestrings(rows.reshape(-1, 2, 2))
+    return lines[shapely.dwithin(lines, place, reach)]
+
+
 def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
     along = (np.array(opening.b) - np.array(opening.a)) / opening.length
     normal = np.array([-along[1], along[0]])
@@ -108,9 +119,8 @@ def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
 
 def _places(plan: "FloorPlan", opening: Opening, clearance: float) -> NDArray[np.float64]:
     """Points along the parts of a gate or exit that are clear of walls."""
-    walls = shapely.linestrings(plan.walls.reshape(-1, 2, 2))
-    near = shapely.union_all(walls[shapely.dwithin(walls, opening.line, clearance)])
-    # A little short of the area: an exit may lie that far outside its edge.
+    near = shapely.union_all(_walls_near(plan, opening.line, clearance))
+    # An exit may lie a little outside the edge of the area.
     room = plan.free.buffer(2 * EDGE_TOLERANCE)
     places = [np.empty((0, 2))]
     for share in _SHARES:
@@ -127,11 +137,8 @@ def _places(plan: "FloorPlan", opening: Opening, clearance: float) -> NDArray[np
 
 
 def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> NDArray[np.bool_]:
-    least = NODE_SHARE * clearance
     # At the bound itself counts, whatever the last bit.
-    return np.array(
-        [wall_distance(sight, x, y, clearance) > least - 1e-9 for x, y in places], dtype=bool
-    )
+    return wall_distances(sight, places, clearance) > NODE_SHARE * clearance - 1e-9
 
 
 def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
@@ -157,14 +164,9 @@ def _middles(
     plan: "FloorPlan", sight: Sight, bases: NDArray[np.float64], clearance: float
 ) -> NDArray[np.float64]:
     """Corners for vertices in gaps too narrow for one beside them: the middle of the gap."""
-    walls = shapely.linestrings(plan.walls.reshape(-1, 2, 2))
-    tree = shapely.STRtree(walls)
     found = [np.empty((0, 2))]
     for base in shapely.points(bases):
-        opposite = walls[
-            np.sort(tree.query(base, predicate="dwithin", distance=_NARROW * clearance))
-        ]
-        across = shapely.shortest_line(base, opposite)
+        across = shapely.shortest_line(base, _walls_near(plan, base, _NARROW * clearance))
         across = across[shapely.length(across) >= 2 * NODE_SHARE * clearance]
         found.append(
             shapely.get_coordinates(shapely.line_interpolate_point(across, 0.5, normalized=True))
@@ -227,11 +229,11 @@ def _wall_ends(
         bases += [a, b]
         offsets += [inward + along, inward - along]
     edge = plan.free.boundary
-    for opening in plan.closed_gates():
-        a, b = np.array(opening.a), np.array(opening.b)
+    for gate in plan.closed_gates():
+        a, b = np.array(gate.a), np.array(gate.b)
         for end, other in ((a, b), (b, a)):
             if edge.distance(shapely.Point(end)) > 0:
-                for offset in _cap((end - other) / opening.length, 0.0, clearance):
+                for offset in _cap((end - other) / gate.length, 0.0, clearance):
                     bases.append(end)
                     offsets.append(offset)
     return bases, offsets

@@ -1,7 +1,7 @@
 """The floor plan: where people can walk, what is in the way and where they leave."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,9 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import checks, edges, geojson, placement
-from mesa_mobility.floorplan.openings import Exit, Gate, Opening
+from mesa_mobility.floorplan import checks, edges, geojson, placement, reach
+from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.walls import WallIndex
 
 
 class FloorPlan:
@@ -66,6 +67,7 @@ class FloorPlan:
         checks.check_exits(self._walkable, self._exits)
         checks.check_gates(self._walkable, self._gates)
         checks.check_names([*self._exits, *self._gates])
+        self._wall_index = WallIndex(())
         self._set_free(self._obstacles)
         self._set_walls()
 
@@ -122,13 +124,18 @@ class FloorPlan:
 
     @property
     def free(self) -> BaseGeometry:
-        """Walkable area minus obstacles: a Polygon, or a MultiPolygon of pieces with an exit each."""
+        """Walkable area minus obstacles: a Polygon, or a MultiPolygon, an exit at each piece."""
         return self._free
 
     @property
     def walls(self) -> NDArray[np.float64]:
-        """(m, 4) x1, y1, x2, y2 in metres: the edge of `free` without open exits, and closed gates."""
+        """(m, 4) x1, y1, x2, y2 in metres: the edge of `free` less open exits, and closed gates."""
         return self._walls.copy()
+
+    @property
+    def wall_index(self) -> WallIndex:
+        """An R-tree of the walls, which follows every change; it has its own order of them."""
+        return self._wall_index
 
     @property
     def exits(self) -> tuple[Exit, ...]:
@@ -155,12 +162,16 @@ class FloorPlan:
         """Free area in square metres."""
         return self._free.area
 
+    def openings(self) -> tuple[Gate | Exit, ...]:
+        """Gates, then exits: the order in which `Targets.gates` counts them."""
+        return (*self._gates, *self._exits)
+
     def gate(self, name: str) -> Gate | Exit:
         """The gate or exit of this name; FloorPlanError lists the names there are."""
-        for opening in (*self._gates, *self._exits):
+        for opening in self.openings():
             if opening.name == name:
                 return opening
-        names = ", ".join(repr(o.name) for o in (*self._gates, *self._exits))
+        names = ", ".join(repr(opening.name) for opening in self.openings())
         raise FloorPlanError(f"there is no gate or exit {name!r}; there are {names}")
 
     def is_open(self, name: str) -> bool:
@@ -222,7 +233,7 @@ class FloorPlan:
 
         `points` is (n, 2) in metres.
         """
-        placement.check_reachable(self, points, clearance)
+        reach.check_reachable(self, points, clearance)
 
     def random_points(
         self,
@@ -236,7 +247,7 @@ class FloorPlan:
     ) -> NDArray[np.float64]:
         """(n, 2) random points in metres with room for people to stand.
 
-        Every point is at least `clearance` from walls and at least `spacing` from
+        Every point is at least `clearance` from walls and exits and at least `spacing` from
         the other points and from the (k, 2) points of `avoid`. The points are the
         same for the same state of `rng`. Points thrown one by one (random sequential
         placement) are tried first, a shaken hexagonal lattice where that fills up.
@@ -258,11 +269,8 @@ class FloorPlan:
     def _set_walls(self) -> None:
         edge = edges.cut_out(edges.boundary_segments(self._free), self.open_exits())
         self._walls = np.concatenate([edge, edges.opening_segments(self.closed_gates())])
+        self._wall_index.replace(self._walls)
 
     def _changed(self) -> None:
         self._set_walls()
         self.version += 1
-
-    def openings(self) -> Sequence[Opening]:
-        """Gates, then exits: the order in which `Targets.gates` counts them."""
-        return (*self._gates, *self._exits)

@@ -84,7 +84,7 @@ class Router:
 
     @property
     def graph(self) -> nx.DiGraph:
-        """The route graph: nodes with `kind`, `position`, `opening`; edges with `weight` (metres)."""
+        """The routes: nodes have `kind`, `position`, `opening`; edges have `weight` (metres)."""
         self._update()
         return self._graph
 

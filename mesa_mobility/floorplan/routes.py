@@ -35,7 +35,7 @@ class Ways(NamedTuple):
 
 
 @njit(cache=True)
-def side(ways: Ways, node: int, x: float, y: float):
+def side(ways: Ways, node: int, x: float, y: float) -> float:
     """How far (x, y) is past the line of a gate or exit node, in its crossing direction."""
     return (x - ways.xy[node, 0]) * ways.normal[node, 0] + (y - ways.xy[node, 1]) * ways.normal[
         node, 1
@@ -43,12 +43,12 @@ def side(ways: Ways, node: int, x: float, y: float):
 
 
 @njit(cache=True)
-def _curtain(ways: Ways, node: int):
+def _curtain(ways: Ways, node: int) -> int:
     return ways.curtains[ways.opening[node]] if ways.kind[node] == EXIT else -1
 
 
 @njit(cache=True)
-def edges_in_view(sight: Sight, ways: Ways, clearance: float):
+def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> list[tuple[int, int]]:
     """All directed edges (from, to) between nodes in view of each other, as a list of pairs."""
     n = len(ways.kind)
     edges = [(0, 0) for _ in range(0)]
@@ -75,7 +75,7 @@ def edges_in_view(sight: Sight, ways: Ways, clearance: float):
 
 
 @njit(cache=True)
-def _may_follow(ways: Ways, i: int, j: int):
+def _may_follow(ways: Ways, i: int, j: int) -> bool:
     """Whether j can come after i as far as the directions of their gates go."""
     if ways.kind[i] == GATE and side(ways, i, ways.xy[j, 0], ways.xy[j, 1]) < IN_LINE:
         return False
@@ -94,6 +94,6 @@ def in_view(
     qx: float,
     qy: float,
     clearance: float,
-):
+) -> bool:
     """Whether (qx, qy), the place of a node or another place in the same opening, is in view."""
     return clear_line(sight, x, y, qx, qy, clearance, True, _curtain(ways, node))

@@ -158,33 +158,32 @@ def _with_room(
 ) -> NDArray[np.bool_]:
     """Which points stay: the first `fixed` ones, then each that is `spacing` from all before it."""
     stays = np.zeros(len(points), dtype=np.bool_)
-    # Chains of points that stay in the same cell: `last` of each cell, `earlier` of each point.
-    last = dict()
+    # A hash table of chains: `last` point of each bucket, `earlier` point of each point.
+    # Cells that share a bucket only make its chain longer.
+    mask = 1
+    while mask < len(points):
+        mask = 2 * mask + 1
+    last = np.full(mask + 1, -1, dtype=np.int64)
     earlier = np.full(len(points), -1, dtype=np.int64)
-    width = cells[:, 0].max() + 3
     for i in range(len(points)):
-        cell = (cells[i, 1] + 1) * width + cells[i, 0] + 1
         room = True
         if i >= fixed:
-            for near in (
-                cell - width - 1,
-                cell - width,
-                cell - width + 1,
-                cell - 1,
-                cell,
-                cell + 1,
-                cell + width - 1,
-                cell + width,
-                cell + width + 1,
-            ):
-                j = last.get(near, np.int64(-1))
+            for k in range(9):
+                near = _bucket(cells[i, 0] + k % 3 - 1, cells[i, 1] + k // 3 - 1, mask)
+                j = last[near]
                 while j >= 0 and room:
                     dx = points[i, 0] - points[j, 0]
                     dy = points[i, 1] - points[j, 1]
                     room = dx * dx + dy * dy >= spacing * spacing
                     j = earlier[j]
         if room:
-            earlier[i] = last.get(cell, np.int64(-1))
-            last[cell] = np.int64(i)
+            bucket = _bucket(cells[i, 0], cells[i, 1], mask)
+            earlier[i] = last[bucket]
+            last[bucket] = i
             stays[i] = True
     return stays
+
+
+@njit(cache=True)
+def _bucket(column: int, row: int, mask: int) -> int:
+    return (column * 73856093 ^ row * 19349663) & mask

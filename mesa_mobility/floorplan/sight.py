@@ -1,6 +1,6 @@
 """Line of sight: whether a body can go straight from one point to another."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -13,7 +13,7 @@ from mesa_mobility.floorplan.kernels import (
     segment_segment_distance2,
     segments_cross,
 )
-from mesa_mobility.floorplan.walls import CellTable, WallIndex
+from mesa_mobility.floorplan.walls import CellTable, as_segments, cell_table
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -39,18 +39,15 @@ class Sight(NamedTuple):
 
 def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
     """Prepare walls (m, 4), and lines not to be crossed (k, 4), for views of clearance `reach`."""
-    solid = np.asarray(walls, dtype=np.float64).reshape(-1, 4)
-    index = WallIndex(
-        np.concatenate([solid, np.asarray(curtains, dtype=np.float64).reshape(-1, 4)])
-    )
-    rows = index.segments
+    solid = as_segments(walls)
+    rows = np.concatenate([solid, as_segments(curtains)])
     extent = float(np.ptp(rows.reshape(-1, 2), axis=0).max()) if len(rows) else 1.0
     # The extra millimetre keeps walls that rounding would put just out of reach of a cell.
-    return Sight(rows, len(solid), index.cell_table(max(0.5, extent / 400), reach + 1e-3))
+    return Sight(rows, len(solid), cell_table(rows, max(0.5, extent / 400), reach + 1e-3))
 
 
 @njit(cache=True)
-def rows_crossed(table: CellTable, py: float, qy: float):
+def rows_crossed(table: CellTable, py: float, qy: float) -> tuple[int, int]:
     """First and last row of the grid that a segment from height py to qy meets."""
     first = int(np.floor((min(py, qy) - table.y0) / table.cell_size))
     last = int(np.floor((max(py, qy) - table.y0) / table.cell_size))
@@ -58,7 +55,9 @@ def rows_crossed(table: CellTable, py: float, qy: float):
 
 
 @njit(cache=True)
-def cells_in_row(table: CellTable, row: int, px: float, py: float, qx: float, qy: float):
+def cells_in_row(
+    table: CellTable, row: int, px: float, py: float, qx: float, qy: float
+) -> tuple[int, int]:
     """First and last column of the cells of one row that the segment pq meets."""
     cell = table.cell_size
     t0 = 0.0
@@ -85,7 +84,7 @@ def clear_line(
     clearance: float,
     from_body: bool,
     ignored: int,
-):
+) -> bool:
     """Whether the segment pq stays `clearance` metres (and more than `TOUCH`) from the walls.
 
     With `from_body`, a wall that p is already near counts only where the segment
@@ -121,27 +120,33 @@ def clear_line(
 
 
 @njit(cache=True)
-def wall_distance(sight: Sight, x: float, y: float, at_most: float):
-    """Distance in metres from a point to the nearest wall, or `at_most` where none is nearer.
+def wall_distances(
+    sight: Sight, points: NDArray[np.float64], at_most: float
+) -> NDArray[np.float64]:
+    """(n,) metres from (n, 2) points to the nearest wall, `at_most` where none is nearer.
 
     `at_most` must not exceed the reach that the sight was prepared for.
     """
     walls, solid, table = sight
-    column = int(np.floor((x - table.x0) / table.cell_size))
-    row = int(np.floor((y - table.y0) / table.cell_size))
-    best = at_most * at_most
-    if 0 <= column < table.nx and 0 <= row < table.ny:
+    distances = np.full(len(points), at_most)
+    for i in range(len(points)):
+        x, y = points[i]
+        column = int(np.floor((x - table.x0) / table.cell_size))
+        row = int(np.floor((y - table.y0) / table.cell_size))
+        if not (0 <= column < table.nx and 0 <= row < table.ny):
+            continue
         at = row * table.nx + column
         for j in range(table.offsets[at], table.offsets[at + 1]):
             wall = table.indices[j]
             if wall < solid:
                 ax, ay, bx, by = walls[wall]
-                best = min(best, point_segment_distance2(x, y, ax, ay, bx, by))
-    return np.sqrt(best)
+                away = np.sqrt(point_segment_distance2(x, y, ax, ay, bx, by))
+                distances[i] = min(distances[i], away)
+    return distances
 
 
 @njit(cache=True)
-def free_length(sight: Sight, px: float, py: float, qx: float, qy: float):
+def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> float:
     """How far in metres one can look from p towards q before a wall, at most to q."""
     walls, _, table = sight
     dx = qx - px
@@ -197,7 +202,7 @@ def lines_of_sight(
 @njit(cache=True)
 def _clear_lines(
     sight: Sight, starts: NDArray[np.float64], ends: NDArray[np.float64], clearance: float
-):
+) -> NDArray[np.bool_]:
     clear = np.empty(len(starts), dtype=np.bool_)
     for i in range(len(starts)):
         px, py = starts[i]
@@ -212,7 +217,7 @@ _CACHE: "WeakKeyDictionary[FloorPlan, tuple[int, float, Sight]]" = WeakKeyDictio
 def _prepared(plan_or_walls: "FloorPlan | ArrayLike", clearance: float) -> Sight:
     if not hasattr(plan_or_walls, "walls"):
         return sight_of(plan_or_walls, (), clearance)
-    plan = plan_or_walls
+    plan = cast("FloorPlan", plan_or_walls)
     found = _CACHE.get(plan)
     if found is None or found[0] != plan.version or found[1] < clearance:
         found = (plan.version, clearance, sight_of(plan.walls, (), clearance))

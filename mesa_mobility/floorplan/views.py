@@ -55,7 +55,7 @@ def nodes_maybe_in_view(
     x: float,
     y: float,
     found: NDArray[np.int64],
-):
+) -> int:
     """Write the nodes that may be in view from (x, y) to `found`; returns how many.
 
     `places` is (nodes, 2) metres.
@@ -89,7 +89,7 @@ def nodes_maybe_in_view(
 
 
 @njit(cache=True)
-def _hidden(sight: Sight, left: float, low: float, side: float, qx: float, qy: float):
+def _hidden(sight: Sight, left: float, low: float, side: float, qx: float, qy: float) -> bool:
     """Whether one wall hides the whole square from q."""
     walls, solid, table = sight
     px = left + side / 2

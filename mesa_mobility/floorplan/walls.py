@@ -1,6 +1,6 @@
 """Wall segments: an R-tree for those that come and go, and a grid for compiled loops."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -42,7 +42,7 @@ def _visit_cells(
     cursor: NDArray[np.int64],
     indices: NDArray[np.int32],
     fill: bool,
-):
+) -> None:
     """Count each cell's walls into `cursor`, or write them to `indices` at `cursor`."""
     reach2 = reach * reach * (1.0 + 1e-12)
     for wall in range(segments.shape[0]):
@@ -90,6 +90,30 @@ def as_segments(segments: ArrayLike) -> NDArray[np.float64]:
         bad = int(np.flatnonzero(~np.isfinite(array).all(axis=1))[0])
         raise FloorPlanError(f"wall segment {bad} must be finite, found {array[bad].tolist()}")
     return array
+
+
+def cell_table(segments: NDArray[np.float64], cell_size: float, reach: float) -> CellTable:
+    """`WallIndex.cell_table` of (m, 4) segments; rows of NaN are left out."""
+    if not (cell_size > 0 and reach >= 0 and np.isfinite([cell_size, reach]).all()):
+        raise FloorPlanError(
+            f"a cell table needs cell_size > 0 and reach >= 0, found {cell_size} and {reach}"
+        )
+    present = segments[~np.isnan(segments[:, 0])]
+    x0 = y0 = 0.0
+    nx = ny = 1
+    if len(present):
+        x, y = present[:, 0::2], present[:, 1::2]
+        x0, y0 = float(x.min() - reach), float(y.min() - reach)
+        nx = int((x.max() + reach - x0) // cell_size) + 1
+        ny = int((y.max() + reach - y0) // cell_size) + 1
+    side, margin = float(cell_size), float(reach)
+    offsets = np.zeros(nx * ny + 1, dtype=np.int64)
+    nowhere = np.empty(0, dtype=np.int32)
+    _visit_cells(segments, x0, y0, nx, ny, side, margin, offsets[1:], nowhere, False)
+    np.cumsum(offsets, out=offsets)
+    indices = np.empty(int(offsets[-1]), dtype=np.int32)
+    _visit_cells(segments, x0, y0, nx, ny, side, margin, offsets[:-1].copy(), indices, True)
+    return CellTable(x0, y0, nx, ny, side, offsets, indices)
 
 
 class WallIndex:
@@ -143,7 +167,7 @@ class WallIndex:
 
     def remove(self, indices: ArrayLike) -> None:
         """Remove the segments with these indices; FloorPlanError for one that is not there."""
-        ids = np.atleast_1d(np.asarray(indices, dtype=np.int64))
+        ids = np.unique(np.asarray(indices, dtype=np.int64))
         for i in ids.tolist():
             if not 0 <= i < len(self._segments) or np.isnan(self._segments[i, 0]):
                 raise FloorPlanError(f"there is no wall segment {i} to remove")
@@ -155,6 +179,19 @@ class WallIndex:
         self._segments[ids] = np.nan
         self._removed.extend(ids.tolist())
 
+    def replace(self, segments: ArrayLike) -> None:
+        """Hold exactly these (m, 4) segments; those held already keep their indices."""
+        wanted = {tuple(row): None for row in as_segments(segments).tolist()}
+        gone = []
+        for i in np.flatnonzero(~np.isnan(self._segments[:, 0])).tolist():
+            row = tuple(self._segments[i].tolist())
+            if row in wanted:
+                del wanted[row]
+            else:
+                gone.append(i)
+        self.remove(gone)
+        self.add(list(wanted))
+
     def cell_table(self, cell_size: float, reach: float) -> CellTable:
         """List, for every grid cell, the segments within `reach` of any of its points.
 
@@ -165,25 +202,7 @@ class WallIndex:
         reach
             Distance in metres, at least 0. The grid covers all segments and this margin.
         """
-        if not (cell_size > 0 and reach >= 0 and np.isfinite([cell_size, reach]).all()):
-            raise FloorPlanError(
-                f"a cell table needs cell_size > 0 and reach >= 0, found {cell_size} and {reach}"
-            )
-        present = self._segments[~np.isnan(self._segments[:, 0])]
-        x0 = y0 = 0.0
-        nx = ny = 1
-        if len(present):
-            x, y = present[:, 0::2], present[:, 1::2]
-            x0, y0 = float(x.min() - reach), float(y.min() - reach)
-            nx = int((x.max() + reach - x0) // cell_size) + 1
-            ny = int((y.max() + reach - y0) // cell_size) + 1
-        grid: tuple[Any, ...] = (x0, y0, nx, ny, float(cell_size))
-        offsets = np.zeros(nx * ny + 1, dtype=np.int64)
-        _visit_cells(self._segments, *grid, reach, offsets[1:], np.empty(0, np.int32), False)
-        np.cumsum(offsets, out=offsets)
-        indices = np.empty(int(offsets[-1]), dtype=np.int32)
-        _visit_cells(self._segments, *grid, reach, offsets[:-1].copy(), indices, True)
-        return CellTable(*grid, offsets, indices)
+        return cell_table(self._segments, cell_size, reach)
 
     @staticmethod
     def _boxes(rows: NDArray[np.float64]) -> NDArray[np.float64]:

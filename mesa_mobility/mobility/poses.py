@@ -108,7 +108,7 @@ def pose_table(
         CaptureError: a skeleton whose legs cannot be found.
     """
     if not recordings:
-        raise MapError("no recordings: at least one clip of 46 frames is needed for a mobility map")
+        raise MapError("no recordings: at least one clip of 45 frames is needed for a mobility map")
     parts = []
     for done, recording in enumerate(recordings, start=1):
         if abs(recording.frame_rate - FRAME_RATE) > 1e-6:

@@ -1,0 +1,96 @@
+import pytest
+
+from mesa_mobility import PedestrianModel
+from mesa_mobility.behaviors import (
+    Displacement,
+    FacingDeviation,
+    Interference,
+    PreferredSpeed,
+    TargetDistance,
+)
+from mesa_mobility.crowd import PRESETS
+from mesa_mobility.errors import ModelError
+from tests.fixtures.counting import overlaps
+from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
+from tests.fixtures.scenes import advance, corridor, model_of, put, two_doors
+
+
+def weights(model):
+    return {type(term): term.weight for term in model.terms}
+
+
+def test_there_are_two():
+    assert set(PRESETS) == {"default", "paper"}
+
+
+def test_the_papers_terms_and_its_options_of_45_frames():
+    model = model_of(corridor(), strider(), preset="paper")
+    assert model.preset == "paper"
+    assert set(weights(model)) == {TargetDistance, FacingDeviation, Displacement, Interference}
+    # Section 6: w_P = 1 for those not behind.
+    assert weights(model)[Interference] == 1.0
+    person = put(model, 1.0, 2.0)
+    assert person.movement_options().durations == pytest.approx([1.5])
+
+
+def test_the_default_has_a_preferred_speed_in_place_of_displacement_and_shorter_options():
+    model = model_of(corridor(), strider())
+    assert model.preset == "default"
+    assert weights(model) == {
+        TargetDistance: 1.0, FacingDeviation: 0.5, Interference: 1.0, PreferredSpeed: 2.0,
+    }  # fmt: skip
+    person = put(model, 1.0, 2.0)
+    assert sorted(person.movement_options().durations) == pytest.approx([0.4, 0.4, 0.8, 1.5])
+
+
+def test_the_same_constants_in_both():
+    for preset in PRESETS:
+        (term,) = (t for t in model_of(corridor(), strider(), preset=preset).terms
+                   if isinstance(t, Interference))  # fmt: skip
+        assert (term.a, term.b) == (10.5, 0.09)
+
+
+@pytest.mark.parametrize(("preset", "through"), [("paper", True), ("default", False)])
+def test_bodies_are_hard_in_the_default_only(preset, through):
+    # Two who can but walk straight at each other, 1.5 m apart, 1 m in 45 frames.
+    map_ = make_map([[stand(), stand(45), straight(1.0, 45, to=0)]])
+    model = model_of(corridor(length=8.0, both_ends=True), map_, preset=preset)
+    put(model, 3.25, 2.0, 0.0, exits=["east"], preferred_speeds=[0.7])
+    put(model, 4.75, 2.0, 3.141592653589793, exits=["west"], preferred_speeds=[0.7])
+    advance(model, 180)
+    assert (overlaps(model.recorder.arrays(), 0.15, tolerance=0.0) > 0) == through
+
+
+def test_decisions_of_the_paper_last_45_frames_or_4():
+    plan = two_doors()
+    model = model_of(plan, wanderer(4), preset="paper", rng=4)
+    people = model.add_pedestrians(plan.random_points(15, model.rng, spacing=0.6, clearance=0.3))
+    lengths = set()
+    for _ in range(200):
+        deciding = [p for p in people if p in model.agents and p.next_decision < 1e-9]
+        model.step()
+        lengths |= {round(p.next_decision * 30) + 1 for p in deciding if p in model.agents}
+    assert lengths <= {45, 4}
+    assert 45 in lengths
+
+
+def test_each_model_has_terms_of_its_own():
+    one, other = model_of(corridor(), strider()), model_of(corridor(), strider())
+    one.terms[0].weight = 99.0
+    assert other.terms[0].weight == 1.0
+
+
+def test_terms_of_ones_own_replace_the_presets():
+    model = model_of(corridor(), strider(), behaviors=[Displacement(3.0)])
+    assert weights(model) == {Displacement: 3.0}
+
+
+def test_an_unknown_preset_is_refused_with_the_names_there_are():
+    with pytest.raises(ModelError, match=r"'fast'.*paper.*default|'fast'.*default.*paper") as no:
+        PedestrianModel(corridor(), preset="fast", mobility_map=strider())
+    assert "\n" not in str(no.value)
+
+
+def test_the_paper_needs_options_of_45_frames():
+    with pytest.raises(ModelError, match="45"):
+        model_of(corridor(), make_map([[stand(), straight(0.5, 12, to=0)]]), preset="paper")

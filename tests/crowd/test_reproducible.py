@@ -1,0 +1,87 @@
+"""The same seed gives the same bytes: again, in another process, whatever the steps."""
+
+import hashlib
+import os
+import subprocess
+import sys
+
+import pytest
+
+from mesa_mobility.models import Doorway
+from tests.fixtures.maps import shipped_map
+
+SECONDS = 12.0
+
+
+def digest(model) -> str:
+    rows = model.recorder.arrays()
+    sha = hashlib.sha256()
+    for name in ("frame", "person", "x", "y", "heading"):
+        sha.update(rows[name].tobytes())
+    assert len(rows["x"]) > 5000
+    return sha.hexdigest()
+
+
+def run(rng, frames_per_step=3, preset="default") -> str:
+    model = Doorway(pedestrians=30, mobility_map=shipped_map(), preset=preset, record=True,
+                    frames_per_step=frames_per_step, rng=rng)  # fmt: skip
+    model.run(max_seconds=SECONDS)
+    return digest(model)
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_again(preset):
+    assert run(11, preset=preset) == run(11, preset=preset)
+
+
+def test_another_seed_is_another_run():
+    assert run(11) != run(12)
+
+
+@pytest.mark.parametrize("frames_per_step", [1, 4, 30])
+def test_with_other_steps(frames_per_step):
+    # 12 s are a whole number of each of these steps.
+    assert run(11, frames_per_step) == run(11, 3)
+
+
+SCRIPT = """
+import hashlib
+from mesa_mobility.models import Doorway
+model = Doorway(pedestrians=30, record=True, rng=11)
+model.run(max_seconds=12.0)
+rows = model.recorder.arrays()
+sha = hashlib.sha256()
+for name in ("frame", "person", "x", "y", "heading"):
+    sha.update(rows[name].tobytes())
+print(sha.hexdigest())
+"""
+
+
+@pytest.mark.parametrize("hash_seed", ["0", "77"])
+def test_in_another_process(hash_seed):
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT],
+        env={**os.environ, "PYTHONHASHSEED": hash_seed},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == run(11)
+
+
+def test_recording_changes_nothing():
+    models = [Doorway(pedestrians=30, mobility_map=shipped_map(), record=record, rng=11)
+              for record in (True, False)]  # fmt: skip
+    for model in models:
+        model.run(max_seconds=SECONDS)
+    assert models[1].recorder is None
+    assert models[0].crowd.x.tobytes() == models[1].crowd.x.tobytes()
+    assert models[0].summary() == models[1].summary()
+
+
+def test_a_file_of_the_map_and_the_map_itself(tmp_path):
+    file = tmp_path / "copy.npz"
+    shipped_map().save(file)
+    model = Doorway(pedestrians=30, mobility_map=str(file), record=True, rng=11)
+    model.run(max_seconds=SECONDS)
+    assert digest(model) == run(11)
