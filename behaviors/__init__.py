@@ -1,6 +1,7 @@
 """Behaviours that ship, each a plug-in like any other."""
 
 from mesa_mobility.behaviors.interference import Interference
+from mesa_mobility.behaviors.nearest_exit import NearestExit
 from mesa_mobility.behaviors.speed import Displacement, PreferredSpeed
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
 
@@ -8,6 +9,7 @@ __all__ = [
     "Displacement",
     "FacingDeviation",
     "Interference",
+    "NearestExit",
     "PreferredSpeed",
     "TargetDistance",
 ]

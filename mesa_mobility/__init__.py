@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         Pedestrian,
         PedestrianModel,
         PedestrianType,
+        TargetChoice,
         option_kernel,
         pair_kernel,
     )
@@ -43,6 +44,7 @@ _ROOMS = {
     "Pedestrian": "crowd",
     "PedestrianModel": "crowd",
     "PedestrianType": "crowd",
+    "TargetChoice": "crowd",
     "Trajectories": "results",
     "option_kernel": "crowd",
     "pair_kernel": "crowd",
@@ -62,6 +64,7 @@ __all__ = [
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
+    "TargetChoice",
     "Trajectories",
     "option_kernel",
     "pair_kernel",

@@ -7,6 +7,7 @@ from mesa_mobility.crowd.model import PedestrianModel
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import PRESETS, Preset
+from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
 from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
 
 __all__ = [
@@ -15,10 +16,12 @@ __all__ = [
     "Capability",
     "CompiledTerm",
     "CostTerm",
+    "Deciding",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
     "Preset",
+    "TargetChoice",
     "option_kernel",
     "pair_kernel",
 ]

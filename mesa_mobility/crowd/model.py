@@ -25,10 +25,11 @@ from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state import NO_OPTION, CrowdState, empty_state, grown
 from mesa_mobility.crowd.summary import summarise
 from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
 from mesa_mobility.crowd.terms import CostTerm
 from mesa_mobility.crowd.terms_table import compile_terms, extra_costs
 from mesa_mobility.errors import ModelError
-from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.mobility import MobilityMap
 
 STALL_SECONDS = 60.0
@@ -51,6 +52,7 @@ class PedestrianModel(mesa.Model):
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
         behaviors: cost terms instead of the preset's.
+        target_choice: who goes where; by default everybody leaves by the nearest exit.
         frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
         record: keep every frame in ``recorder``.
         rng: seed or NumPy generator.
@@ -81,6 +83,7 @@ class PedestrianModel(mesa.Model):
         mobility_map: MobilityMap | str | Path | None = None,
         pedestrian_types: Sequence[PedestrianType] | None = None,
         behaviors: Iterable[CostTerm] | None = None,
+        target_choice: TargetChoice | None = None,
         frames_per_step: int = 3,
         record: bool = False,
         rng: Any = None,
@@ -102,6 +105,7 @@ class PedestrianModel(mesa.Model):
             Capability(kind.mobility_map, rules.durations) for kind in self.pedestrian_types
         )
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
+        self.target_choice = target_choice or rules.make_target_choice()
         self.frames_per_step = frames_per_step
         self.frame = 0
         self.recorder = Recorder() if record else None
@@ -186,9 +190,7 @@ class PedestrianModel(mesa.Model):
         state.core[rows] = ptype.core_radius
         state.kind[rows] = kind
         state.destination[rows] = self._site.destination(None if exits is None else tuple(exits))
-        targets = self._site.targets(points, state.destination[rows])
-        state.target_x[rows], state.target_y[rows] = targets.points.T
-        state.route[rows] = targets.distances
+        targets = self._set_targets(rows)
         if headings is None:
             aim = targets.points - points
             headings = np.arctan2(aim[:, 1], aim[:, 0])
@@ -301,10 +303,7 @@ class PedestrianModel(mesa.Model):
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
         state = self.crowd
-        points = np.column_stack([state.x[deciding], state.y[deciding]])
-        targets = self._site.targets(points, state.destination[deciding])
-        state.target_x[deciding], state.target_y[deciding] = targets.points.T
-        state.route[deciding] = targets.distances
+        targets = self._set_targets(deciding)
         # Those nearest to where they go decide first: that frees space for those behind.
         order = deciding[np.lexsort((deciding, targets.distances))]
         grid = build_grid(rows, state.x, state.y)
@@ -316,6 +315,22 @@ class PedestrianModel(mesa.Model):
             order, self.frame, self._table, self._screen, state, grid, self._site.surroundings, compiled, extra,
             extra_offsets, self._rules,
         )  # fmt: skip
+
+    def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
+        state = self.crowd
+        targets = self.target_choice.targets(
+            Deciding(
+                pedestrians=rows,
+                positions=np.column_stack([state.x[rows], state.y[rows]]),
+                destinations=state.destination[rows],
+                types=state.kind[rows].astype(np.int64),
+                elapsed=self.elapsed,
+                site=self._site,
+            )
+        )
+        state.target_x[rows], state.target_y[rows] = targets.points.T
+        state.route[rows] = targets.distances
+        return targets
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows``, were they to decide here and now."""

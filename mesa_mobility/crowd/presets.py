@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mesa_mobility.crowd.target_choice import TargetChoice
 from mesa_mobility.crowd.terms import CostTerm
 from mesa_mobility.errors import ModelError
 from mesa_mobility.registry import load_behavior
@@ -15,15 +16,21 @@ class Preset:
 
     Attributes:
         name: as it is asked for.
-        terms: weight of each registered behaviour.
+        terms: weight of each registered cost term.
+        target_choice: registered behaviour that gives people their targets.
         durations: option durations in frames.
         cores: whether bodies are hard.
     """
 
     name: str
     terms: dict[str, float]
+    target_choice: str
     durations: tuple[int, ...]
     cores: bool
+
+    def make_target_choice(self) -> TargetChoice:
+        """The target choice, looked up among the installed behaviours."""
+        return load_behavior(self.target_choice)()
 
     def make_terms(self) -> list[CostTerm]:
         """The cost terms, looked up among the installed behaviours."""
@@ -41,6 +48,7 @@ PRESETS = {
             "displacement": 1.0,
             "interference": 1.0,
         },
+        target_choice="nearest_exit",
         durations=(45,),
         cores=False,
     ),
@@ -54,6 +62,7 @@ PRESETS = {
             "preferred_speed": 2.0,
             "interference": 1.0,
         },
+        target_choice="nearest_exit",
         durations=(12, 24, 45),
         cores=True,
     ),

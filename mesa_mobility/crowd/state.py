@@ -66,9 +66,7 @@ def empty_state(capacity: int) -> CrowdState:
     kinds: dict[str, type[np.generic]] = {"active": np.bool_}
     kinds |= dict.fromkeys(("kind", "destination", "cluster", "spacing", "knots"), np.int32)
     kinds |= dict.fromkeys(("option", "start", "end", "gone"), np.int64)
-    kinds |= dict.fromkeys(
-        ("decisions", "fallbacks", "fallback_frames", "active_frames"), np.int64
-    )
+    kinds |= dict.fromkeys(("decisions", "fallbacks", "fallback_frames", "active_frames"), np.int64)
     shapes = {"path": (MAX_KNOTS, 3), "box": (4,)}
     arrays: list[NDArray[Any]] = [
         np.zeros((capacity, *shapes.get(name, ())), dtype=kinds.get(name, np.float64))

@@ -3,7 +3,6 @@
 import contextlib
 import json
 import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -52,20 +51,19 @@ def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
 def write(collection: Mapping[str, Any], path: "str | os.PathLike[str]") -> None:
     """Write a FeatureCollection to `path` by way of a temporary file beside it."""
     target = Path(path)
-    temporary = ""
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
-        ) as file:
-            temporary = file.name
-            json.dump(collection, file, indent=1)
-            file.write("\n")
+        temporary.write_text(json.dumps(collection, indent=1) + "\n", encoding="utf-8")
         os.replace(temporary, target)
     except OSError as error:
-        if temporary:
-            with contextlib.suppress(OSError):
-                os.unlink(temporary)
+        with contextlib.suppress(OSError):
+            temporary.unlink()
         raise FloorPlanError(f"{target}: cannot be written ({error.strerror})") from None
+
+
+def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:
+    """What to call a source in an error message: its path."""
+    return "GeoJSON" if isinstance(source, Mapping) else str(source)
 
 
 def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
@@ -78,7 +76,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
         has an unknown kind or the wrong geometry; the message names file and feature.
     """
     if isinstance(source, Mapping):
-        return _content(source, "GeoJSON")
+        return _content(source, label(source))
     try:
         text = Path(source).read_text(encoding="utf-8")
     except OSError as error:
@@ -91,7 +89,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
         raise FloorPlanError(f"{source}: is not JSON (line {error.lineno}: {error.msg})") from None
     except RecursionError:
         raise FloorPlanError(f"{source}: is not a floor plan (nested too deeply)") from None
-    return _content(data, str(source))
+    return _content(data, label(source))
 
 
 def _content(data: object, where: str) -> Content:
@@ -138,11 +136,11 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, bool]:
     try:
         geometry = shapely.geometry.shape(feature.get("geometry"))
     except Exception as error:  # shapely raises whatever the malformed mapping led it into
-        raise FloorPlanError(f"{at}: the geometry cannot be read ({error})") from None
+        raise FloorPlanError(f"{at}: the geometry cannot be read ({" ".join(str(error).split())})") from None
     expected = "Polygon" if kind in ("walkable", "obstacle") else "LineString"
     if geometry.geom_type != expected:
         raise FloorPlanError(f"{at}: {kind} must be a {expected}, found {geometry.geom_type}")
-    return kind, str(properties.get("name", "")), geometry, properties.get("closed") is True
+    return kind, str(properties.get("name") or ""), geometry, properties.get("closed") is True
 
 
 def _opening(cls: type[Any], name: str, geometry: BaseGeometry, at: str) -> Any:

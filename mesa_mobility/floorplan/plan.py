@@ -92,13 +92,16 @@ class FloorPlan:
         and the feature.
         """
         content = geojson.read(source)
-        plan = cls(
-            content.walkable,
-            exits=content.exits,
-            gates=content.gates,
-            obstacles=content.obstacles,
-            name=content.name,
-        )
+        try:
+            plan = cls(
+                content.walkable,
+                exits=content.exits,
+                gates=content.gates,
+                obstacles=content.obstacles,
+                name=content.name,
+            )
+        except FloorPlanError as error:
+            raise FloorPlanError(f"{geojson.label(source)}: {error}") from None
         for closed in content.closed:
             plan.close_gate(closed)
         plan.version = 0
@@ -180,13 +183,15 @@ class FloorPlan:
 
     def close_gate(self, name: str) -> None:
         """Make the gate or exit of this name a wall."""
-        self._closed.add(self.gate(name).name)
-        self._changed()
+        if self.is_open(name):
+            self._closed.add(name)
+            self._changed()
 
     def open_gate(self, name: str) -> None:
         """Open the gate or exit of this name again."""
-        self._closed.discard(self.gate(name).name)
-        self._changed()
+        if not self.is_open(name):
+            self._closed.discard(name)
+            self._changed()
 
     def add_obstacle(self, polygon: Polygon | str) -> int:
         """Put an obstacle (shapely or WKT, metres) in the way and return its id.

@@ -30,8 +30,9 @@ class Targets:
     Attributes
     ----------
     points
-        (n, 2) metres. A corner to walk around, or a point behind a gate or exit to
-        cross. A person whose destination cannot be reached gets its own position.
+        (n, 2) metres: behind a gate or exit to cross, or past a corner to walk around,
+        as far as the way on from there is in view. A person who cannot reach the
+        destination gets its own position.
     gates
         (n,) the gate or exit aimed through, as its number in `FloorPlan.openings()`
         (gates first, then exits); -1 for a corner.
@@ -48,16 +49,19 @@ class Router:
     """Shortest routes to the exits of a floor plan, kept up to date with it.
 
     Routes bend at corners that stand `clearance` from the walls and lead through
-    gates and exits. A person aims at the node in view with the shortest way through
-    it; of a gate or exit, at a point `beyond` its line, for it is to be crossed.
+    gates and exits; other exits than those of the destination are no way. A person
+    aims at the node in view with the shortest way through it. Of a gate or exit that
+    means a point `beyond` its line, since it is there to be crossed: on the straight
+    way through its nearest place that will do, so that nobody is led into the wall
+    beside it.
 
     Parameters
     ----------
     plan
         The floor plan; changes to it are followed.
     clearance
-        Distance in metres that routes keep from walls, above 0. Gaps narrower than
-        1.4 times this are no way.
+        Distance in metres that routes keep from walls, above 0. In narrow passages it
+        shrinks to 85 % of this; gaps that are narrower still are no way.
     beyond
         How far behind a gate or exit the target lies, metres, above 0; less where a
         wall is nearer.

@@ -5,13 +5,11 @@ import math
 from importlib import import_module
 from pathlib import Path
 
+import mesa_mobility.behaviors as behaviors
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-import mesa_mobility.behaviors as behaviors
-from mesa_mobility import CostTerm
 from mesa_mobility.behaviors import (
     Displacement,
     FacingDeviation,
@@ -19,6 +17,8 @@ from mesa_mobility.behaviors import (
     PreferredSpeed,
     TargetDistance,
 )
+
+from mesa_mobility import CostTerm
 from mesa_mobility.errors import ModelError
 from mesa_mobility.registry import load_behavior
 from tests.fixtures.options import Ending, batches, one_option

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 from hypothesis import given, settings
-
 from mesa_mobility.behaviors import Interference
+
 from mesa_mobility.errors import ModelError
 from tests.fixtures.options import Chooser, Ending, batches, candidates, one_option
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings
-
 from mesa_mobility.behaviors import Displacement, PreferredSpeed
+
 from tests.fixtures.options import Ending, batches, one_option
 
 

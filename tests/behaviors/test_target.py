@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 from hypothesis import given, settings
-
 from mesa_mobility.behaviors import FacingDeviation, TargetDistance
+
 from tests.fixtures.options import Chooser, Ending, batches, candidates, one_option
 
 

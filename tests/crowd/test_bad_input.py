@@ -110,9 +110,3 @@ def test_more_people_than_fit(model):
     rng = np.random.default_rng(0)
     refuses(FloorPlanError, "room for [0-9]+ of 2000", lambda: model.floor_plan.random_points(
         2000, rng, spacing=0.5, clearance=0.3))  # fmt: skip
-
-
-def test_removing_somebody_twice(model):
-    (person,) = model.add_pedestrians([(1, 1)])
-    model.remove_pedestrians([person])
-    refuses(ModelError, "pedestrian", lambda: model.remove_pedestrians([person]))

@@ -4,7 +4,6 @@ import inspect
 
 import mesa
 import pytest
-
 from mesa_mobility.models import OpenSpace, StraightWalk
 
 

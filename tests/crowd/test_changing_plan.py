@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import shapely
+from mesa_mobility.behaviors import Displacement
 from shapely import box
 
-from mesa_mobility.behaviors import Displacement
 from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
-from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, two_doors
+from tests.fixtures.scenes import advance, core_of, corridor, dead_end, model_of, put, two_doors
 
 
 def test_an_obstacle_is_seen_by_the_next_decision():
@@ -48,9 +48,9 @@ def test_people_walk_round_an_obstacle_put_down_in_a_run():
     assert model.inside == 0
     rows = model.recorder.arrays()
     points = shapely.points(rows["x"], rows["y"])
-    assert not shapely.intersects(barrier.buffer(0.14), points).any()
+    assert not shapely.intersects(barrier.buffer(core_of(model) - 0.001), points).any()
     assert wall_crossings(rows, model.floor_plan.walls) == 0
-    assert overlaps(rows, 0.15) == 0
+    assert overlaps(rows, core_of(model)) == 0
 
 
 def test_a_closed_exit_sends_people_to_the_other():
@@ -87,5 +87,5 @@ def test_with_every_exit_closed_people_stay_and_leave_once_one_opens():
     model.run(max_seconds=40)
     assert model.inside == 0
     rows = model.recorder.arrays()
-    assert overlaps(rows, 0.15) == 0
+    assert overlaps(rows, core_of(model)) == 0
     assert np.isfinite(track(rows, 0)).all()

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from mesa_mobility.behaviors import Displacement, Interference, TargetDistance
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
-from mesa_mobility.behaviors import Displacement, Interference, TargetDistance
 from tests.fixtures.maps import make_map, stand, straight, strider, through, wanderer
 from tests.fixtures.oracle import DEFAULT_COST, FALLBACK, PAPER_COST, Oracle
 from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, statues
@@ -84,9 +84,7 @@ def test_walls_are_kept_clear_between_the_samples_of_a_path():
 
 def test_the_whole_path_counts_not_only_its_end():
     # Out to the left by 0.8 m and back; its end is the same as that of the straight one.
-    detour = through(
-        [(0.25, 0.4, 0.0), (0.5, 0.8, 0.0), (0.75, 0.4, 0.0), (1.0, 0.0, 0.0)], to=0
-    )
+    detour = through([(0.25, 0.4, 0.0), (0.5, 0.8, 0.0), (0.75, 0.4, 0.0), (1.0, 0.0, 0.0)], to=0)
     model = farthest(corridor(), [make_map([[stand(), detour]]), statues()])
     put(model, 5.5, 2.8, kind=1)
     assert commits_to(model, put(model, 5.0, 2.0)) == 0.0

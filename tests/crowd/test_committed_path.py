@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-
 from mesa_mobility.behaviors import Displacement
+
 from tests.fixtures.maps import make_map, stand, straight, strider, through
 from tests.fixtures.scenes import advance, corridor, follow, model_of, put
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from mesa_mobility.behaviors import Displacement
 from shapely import LineString, box
 
 from mesa_mobility import Exit, FloorPlan, Gate
-from mesa_mobility.behaviors import Displacement
 from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
-from tests.fixtures.scenes import advance, corridor, model_of, put, same_rows, two_doors
+from tests.fixtures.scenes import advance, core_of, corridor, model_of, put, same_rows, two_doors
 
 
 def test_leaves_in_the_first_frame_beyond_the_line():
@@ -97,9 +97,11 @@ def test_gates_are_crossed_on_the_way_out():
     model.run(max_seconds=120)
     assert model.inside == 0
     rows = model.recorder.arrays()
-    assert set(crossings(rows, gate.a, gate.b).values()) <= {1, 3}
-    assert len(crossings(rows, gate.a, gate.b)) == 25
-    assert overlaps(rows, 0.15) == 0
+    passed = crossings(rows, gate.a, gate.b)
+    # Who sways back over the line in a jam crosses it once more in the end.
+    assert all(times % 2 == 1 for times in passed.values())
+    assert len(passed) == 25
+    assert overlaps(rows, core_of(model)) == 0
     assert wall_crossings(rows, plan.walls) == 0
 
 

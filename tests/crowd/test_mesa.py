@@ -9,7 +9,6 @@ from mesa.datacollection import DataCollector
 from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
 
 from mesa_mobility import Pedestrian, PedestrianModel
-from mesa_mobility.models import StraightWalk
 from tests.fixtures.maps import strider
 from tests.fixtures.scenes import corridor, model_of, put
 
@@ -129,12 +128,12 @@ def test_data_collected_of_agents_are_not_changed_by_later_steps(model):
 
 
 def test_seeds_as_mesa_takes_them():
-    a, b, c = (StraightWalk(pedestrians=4, mobility_map=strider(), rng=seed) for seed in (5, 5, 6))
-    assert a.rng.random() == b.rng.random() != c.rng.random()
-    given = np.random.default_rng(5)
-    assert StraightWalk(pedestrians=4, mobility_map=strider(), rng=given).rng.random() == (
-        np.random.default_rng(5).random()
-    )
+    def speeds(rng):
+        model = model_of(corridor(), strider(), rng=rng)
+        return [put(model, 1.0, 1.0).preferred_speed for _ in range(3)]
+
+    assert speeds(5) == speeds(5) != speeds(6)
+    assert speeds(np.random.default_rng(5)) == speeds(np.random.default_rng(5))
 
 
 def test_without_a_seed_too():

@@ -4,8 +4,6 @@ import math
 
 import numpy as np
 import pytest
-
-from mesa_mobility import Candidates, CompiledTerm, CostTerm, FloorPlan, option_kernel, pair_kernel
 from mesa_mobility.behaviors import (
     Displacement,
     FacingDeviation,
@@ -13,6 +11,8 @@ from mesa_mobility.behaviors import (
     PreferredSpeed,
     TargetDistance,
 )
+
+from mesa_mobility import Candidates, CompiledTerm, CostTerm, FloorPlan, option_kernel, pair_kernel
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import make_map, shipped_map, stand, straight, strider, wanderer
 from tests.fixtures.oracle import Oracle, equation_one
@@ -34,9 +34,7 @@ class Distance(CostTerm):
     name = "distance_in_numpy"
 
     def cost(self, candidates):
-        return np.linalg.norm(
-            candidates.points - candidates.targets[candidates.owner], axis=1
-        )
+        return np.linalg.norm(candidates.points - candidates.targets[candidates.owner], axis=1)
 
 
 class Deviation(CostTerm):
@@ -191,9 +189,9 @@ def ours() -> list[CostTerm]:
 
 
 def test_the_order_of_terms_changes_nothing():
-    runs = {
-        walk(two_doors(), shipped_map(), [*ours()[k:], *ours()[:k]]) for k in range(4)
-    } | {walk(two_doors(), shipped_map(), ours()[::-1])}
+    runs = {walk(two_doors(), shipped_map(), [*ours()[k:], *ours()[:k]]) for k in range(4)} | {
+        walk(two_doors(), shipped_map(), ours()[::-1])
+    }
     assert len(runs) == 1
 
 

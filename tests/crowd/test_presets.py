@@ -1,6 +1,4 @@
 import pytest
-
-from mesa_mobility import PedestrianModel
 from mesa_mobility.behaviors import (
     Displacement,
     FacingDeviation,
@@ -8,6 +6,8 @@ from mesa_mobility.behaviors import (
     PreferredSpeed,
     TargetDistance,
 )
+
+from mesa_mobility import PedestrianModel
 from mesa_mobility.crowd import PRESETS
 from mesa_mobility.errors import ModelError
 from tests.fixtures.counting import overlaps

@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 import pytest
-
 from mesa_mobility.models import Doorway
+
 from tests.fixtures.maps import shipped_map
 
 SECONDS = 12.0

@@ -71,7 +71,7 @@ def test_trajectories_of_a_model(evacuation):
     assert trajectories.people == 20
     assert trajectories.frame_rate == 30.0
     assert trajectories.duration == pytest.approx(evacuation.elapsed)
-    assert trajectories.radii.tolist() == [0.15] * 20
+    assert trajectories.radii.tolist() == [shipped_map().metadata["body"]["core_radius_m"]] * 20
     assert len(trajectories) == len(rows["x"])
     inside = dict(enumerate(trajectories.inside()))
     for seconds, people in evacuation.occupancy:
@@ -120,9 +120,8 @@ def test_summary(evacuation):
         places = track(rows, person)[:, 1:3]
         walked += np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
         seconds += (len(places) - 1) / 30
-    # Mean speeds of movements are a little below those along the swaying paths.
-    assert summary["mean_speed_mps"] == pytest.approx(walked / seconds, rel=0.06)
-    assert summary["mean_speed_mps"] < walked / seconds
+    # Mean speeds of movements, not those along their swaying paths.
+    assert summary["mean_speed_mps"] == pytest.approx(walked / seconds, rel=0.05)
 
 
 def test_summary_of_people_still_inside():

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from mesa_mobility.behaviors import Displacement
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
-from mesa_mobility.behaviors import Displacement
 from tests.fixtures.counting import overlaps
 from tests.fixtures.maps import make_map, stand, straight, wanderer
 from tests.fixtures.scenes import advance, corridor, model_of, put
@@ -32,7 +32,9 @@ CROSSING = FloorPlan(
 )
 
 
-@pytest.mark.parametrize(("walker_y", "stays"), [(2.0, True), (1.72, True), (2.28, True), (2.31, False), (1.69, False)])
+@pytest.mark.parametrize(
+    ("walker_y", "stays"), [(2.0, True), (1.72, True), (2.28, True), (2.31, False), (1.69, False)]
+)
 def test_mine_held_at_its_end_while_the_neighbours_goes_on(walker_y, stays):
     # The walker passes x = 1 at frame 24.  I could be at (1, 2) by frame 12, when it is half
     # a metre off, but if I had to stand there it would come closer than 0.3 m.

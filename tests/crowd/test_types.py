@@ -3,10 +3,10 @@
 import math
 
 import pytest
+from mesa_mobility.behaviors import Displacement
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel, PedestrianType
-from mesa_mobility.behaviors import Displacement
 from tests.fixtures.counting import overlaps, track
 from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
 from tests.fixtures.scenes import advance, corridor, model_of, put

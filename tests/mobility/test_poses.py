@@ -117,9 +117,7 @@ def test_features_are_unit_directions_and_three_times_their_change():
     np.testing.assert_allclose(np.abs(directions[:, 0, 0]), np.abs(np.sin(swing)), atol=1e-6)
     np.testing.assert_allclose(directions[:, 0, 2], -np.cos(swing), atol=1e-6)
     change = (directions[2:] - directions[:-2]) / 2
-    np.testing.assert_allclose(
-        poses.features[1:-1, 18:], 3.0 * change.reshape(-1, 18), atol=1e-5
-    )
+    np.testing.assert_allclose(poses.features[1:-1, 18:], 3.0 * change.reshape(-1, 18), atol=1e-5)
 
 
 def test_another_frame_rate_and_no_recordings_are_refused():

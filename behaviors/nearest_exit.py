@@ -1,0 +1,14 @@
+"""Leaving by the nearest exit."""
+
+from mesa_mobility.crowd import Deciding, TargetChoice
+from mesa_mobility.floorplan import Targets
+
+
+class NearestExit(TargetChoice):
+    """Everybody heads for the nearest of the exits it may leave by, along the shortest route."""
+
+    name = "nearest_exit"
+
+    def targets(self, deciding: Deciding) -> Targets:
+        """The next door or corner on the way, or a point beyond the exit once it is in view."""
+        return deciding.site.targets(deciding.positions, deciding.destinations)

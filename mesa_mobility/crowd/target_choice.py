@@ -1,0 +1,53 @@
+"""Where to go: the behaviour that gives those who decide a target."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.floorplan import Targets
+
+
+@dataclass(frozen=True)
+class Deciding:
+    """The pedestrians who need a target now.
+
+    Attributes:
+        pedestrians: (n,) their rows in the crowd (``Pedestrian.row``).
+        positions: (n, 2) where they are, metres.
+        destinations: (n,) number of the set of exits that each may leave by.
+        types: (n,) index of the pedestrian type.
+        elapsed: simulated seconds.
+        site: routes: ``site.targets(positions, destinations)`` and
+            ``site.destination(exit_names)``, the number of a set of exits.
+    """
+
+    pedestrians: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    destinations: NDArray[np.int32]
+    types: NDArray[np.int64]
+    elapsed: float
+    site: Site
+
+
+class TargetChoice(ABC):
+    """A behaviour that makes the target requests of section 6 of the paper.
+
+    Subclasses set ``name`` and give ``targets``.  A model has one.
+    """
+
+    name: ClassVar[str]
+
+    @abstractmethod
+    def targets(self, deciding: Deciding) -> Targets:
+        """Target of each pedestrian, and how far it still is to where it leaves.
+
+        Returns:
+            ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,): people decide in
+            rising order of distance.
+        """
