@@ -3,6 +3,7 @@
 import math
 
 from mesa_mobility.crowd import CompiledTerm, pair_kernel
+from mesa_mobility.errors import ModelError
 
 
 @pair_kernel
@@ -25,6 +26,9 @@ class Interference(CompiledTerm):
         weight: w_P.
         a: cost at contact; the paper's 10.5.
         b: range in seconds; the paper's 0.09.
+
+    Raises:
+        ModelError: a negative, or b not positive.
     """
 
     name = "interference"
@@ -32,6 +36,10 @@ class Interference(CompiledTerm):
 
     def __init__(self, weight: float | None = None, a: float = 10.5, b: float = 0.09) -> None:
         super().__init__(weight)
+        if not (math.isfinite(a) and a >= 0.0):
+            raise ModelError(f"interference: a is {a}, expected 0 or more")
+        if not (math.isfinite(b) and b > 0.0):
+            raise ModelError(f"interference: b is {b}, expected more than 0 s")
         self.a = a
         self.b = b
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.neighbours import Grid, neighbours_of
+from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import CrowdState
 
 
@@ -19,16 +20,18 @@ def make_candidates(
     table: OptionTable,
     state: CrowdState,
     grid: Grid,
-    search_radius: float,
+    rules: Rules,
 ) -> Candidates:
-    """All options of the pedestrians in ``rows``, each with its neighbours within the radius."""
+    """All options of the pedestrians in ``rows``, and their neighbours."""
     clusters = state.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]
     offsets = np.concatenate([[0], np.cumsum(counts)])
     owner = np.repeat(np.arange(len(rows)), counts)
     options = np.arange(offsets[-1]) - offsets[owner] + table.offsets[clusters][owner]
     x, y, heading = _lay_ends(rows, owner, options, table, state)
-    neighbour_offsets, neighbours = _all_neighbours(rows, grid, state.x, state.y, search_radius)
+    neighbour_offsets, neighbours = _all_neighbours(
+        rows, grid, state.x, state.y, rules.search_radius
+    )
     displacements = table.displacement[options]
     durations = table.frames[options] * FRAME_SECONDS
     return Candidates(
@@ -37,10 +40,10 @@ def make_candidates(
         displacements=displacements,
         durations=durations,
         speeds=displacements / durations,
-        options=options,
+        options=options - rules.first_option[state.kind[rows]][owner],
         owner=owner,
         offsets=offsets,
-        pedestrians=rows,
+        pedestrians=rows.copy(),
         positions=np.column_stack([state.x[rows], state.y[rows]]),
         facings=state.heading[rows],
         targets=np.column_stack([state.target_x[rows], state.target_y[rows]]),

@@ -56,6 +56,10 @@ class Candidates:
     neighbour_positions: NDArray[np.float64]
     neighbour_velocities: NDArray[np.float64]
 
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.setflags(write=False)
+
     def __len__(self) -> int:
         return len(self.owner)
 

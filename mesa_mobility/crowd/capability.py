@@ -82,6 +82,17 @@ class Capability:
         """Farthest that any option leads from its start, metres."""
         return float(self.table.reach.max())
 
+    @property
+    def longest_extent(self) -> float:
+        """Upper bound of the distance between any two places of one option's path, metres."""
+        corners = [
+            ufunc.reduceat(self.table.path[:, :2], self.table.path_start)
+            for ufunc in (np.maximum, np.minimum)
+        ]
+        # The start, which is not among the samples, belongs to the path as well.
+        spread = np.maximum(corners[0], 0.0) - np.minimum(corners[1], 0.0)
+        return float(np.hypot(spread[:, 0], spread[:, 1]).max())
+
     def options(self, cluster: int) -> range:
         """Rows in ``table`` of the options that a pose of this cluster has."""
         return range(int(self.table.offsets[cluster]), int(self.table.offsets[cluster + 1]))

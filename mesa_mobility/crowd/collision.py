@@ -127,7 +127,7 @@ def crosses_exit(
             wx, wy = ax - path[k, 0], ay - path[k, 1]
             u = (wx * vy - wy * vx) / det
             v = (wx * uy - wy * ux) / det
-            if 0.0 < u <= 1.0 and 0.0 <= v <= 1.0 and u < best:
+            if 0.0 <= u <= 1.0 and 0.0 <= v <= 1.0 and u < best:
                 best = u
         if best <= 1.0:
             return k, best
@@ -212,3 +212,72 @@ def hits_neighbour(
 def gone_frame(frame: int, spacing: int, piece: int, where: float) -> int:
     """First whole frame at which an exit crossed on a piece of a path lies behind."""
     return frame + max(1, math.ceil(spacing * (piece + where)))
+
+
+@njit(cache=True)
+def box_of(path: NDArray[np.float64], pieces: int) -> tuple[float, float, float, float]:
+    """Least x, least y, greatest x and greatest y of a path."""
+    x0 = x1 = path[0, 0]
+    y0 = y1 = path[0, 1]
+    for k in range(1, pieces + 1):
+        x0, x1 = min(x0, path[k, 0]), max(x1, path[k, 0])
+        y0, y1 = min(y0, path[k, 1]), max(y1, path[k, 1])
+    return x0, y0, x1, y1
+
+
+@njit(cache=True)
+def exits_within(around: Surroundings, x: float, y: float, destination: int, reach: float) -> bool:
+    """Whether a way out for this destination may lie within ``reach`` metres of (x, y)."""
+    for e in range(len(around.exits)):
+        ax, ay, bx, by = around.exits[e]
+        if (
+            around.leads_out[destination, e]
+            and min(ax, bx) - reach <= x <= max(ax, bx) + reach
+            and min(ay, by) - reach <= y <= max(ay, by) + reach
+        ):
+            return True
+    return False
+
+
+@njit(cache=True)
+def path_gone_or_blocked(
+    i: int,
+    path: NDArray[np.float64],
+    pieces: int,
+    spacing: int,
+    reach: float,
+    frame: int,
+    state: CrowdState,
+    walls: NDArray[np.float64],
+    around: Surroundings,
+    near: NDArray[np.int64],
+    exits_near: bool,
+    cores: bool,
+) -> int:
+    """-3 if the path hits a wall, -2 if it hits a person, else the frame of leaving or -1."""
+    gone = -1
+    walked = pieces
+    if exits_near:
+        piece, where = crosses_exit(path, pieces, around, state.destination[i])
+        if piece >= 0:
+            gone = gone_frame(frame, spacing, piece, where)
+            walked = piece + 1
+    if hits_wall(path, walked, walls, state.core[i], reach):
+        return -3
+    if not cores:
+        return gone
+    x0, y0, x1, y1 = box_of(path, walked)
+    for j in near:
+        c = state.core[i] + state.core[j] + 0.001
+        if (
+            x0 > state.box[j, 2] + c
+            or x1 < state.box[j, 0] - c
+            or y0 > state.box[j, 3] + c
+            or y1 < state.box[j, 1] - c
+        ):
+            continue
+        if hits_neighbour(
+            path, pieces, spacing, frame, gone, state, j, state.core[i] + state.core[j]
+        ):
+            return -2
+    return gone

@@ -14,15 +14,19 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.crowd.batch import make_candidates
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import FRAME_SECONDS, Capability, stack_tables
-from mesa_mobility.crowd.choice import Rules, decide, move
+from mesa_mobility.crowd.choice import decide
+from mesa_mobility.crowd.motion import move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.placing import Newcomer, check_column, check_places, face, place
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.recorder import Recorder
+from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.screen import make_screen
 from mesa_mobility.crowd.space import CrowdSpace
-from mesa_mobility.crowd.state import NO_OPTION, CrowdState, empty_state, grown
+from mesa_mobility.crowd.stall import StallWatch
+from mesa_mobility.crowd.state import CrowdState, empty_state, grown
 from mesa_mobility.crowd.summary import summarise
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
@@ -31,12 +35,6 @@ from mesa_mobility.crowd.terms_table import compile_terms, extra_costs
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.mobility import MobilityMap
-
-STALL_SECONDS = 60.0
-"""An evacuation has stalled when for so long nobody left and nobody came nearer to an exit."""
-
-STALL_PROGRESS = 1.0
-"""Metres of route, summed over everybody, that count as coming nearer."""
 
 
 class PedestrianModel(mesa.Model):
@@ -98,6 +96,8 @@ class PedestrianModel(mesa.Model):
             pedestrian_types = [PedestrianType(mobility_map=mobility_map)]
         elif mobility_map is not None:
             raise ModelError("mobility_map and pedestrian_types: got both, expected one of them")
+        if not pedestrian_types:
+            raise ModelError("pedestrian_types: got none, expected at least one")
         self.preset = rules.name
         self.floor_plan = floor_plan
         self.pedestrian_types = tuple(pedestrian_types)
@@ -117,12 +117,14 @@ class PedestrianModel(mesa.Model):
         self._table = stack_tables(self.capabilities)
         self._screen = make_screen(self._table)
         reach = max(capability.longest_reach for capability in self.capabilities)
+        extent = max(capability.longest_extent for capability in self.capabilities)
         core = max(kind.core_radius for kind in self.pedestrian_types)
         standing = [c.standing for c in self.capabilities] + self.first_cluster
         self._rules = Rules(
-            search_radius=2.0 * (reach + core) + 0.01,
+            search_radius=reach + extent + 2.0 * core + 0.01,
             cores=rules.cores,
             standing=standing.astype(np.int32),
+            first_option=np.cumsum([0] + [len(c.table.x) for c in self.capabilities])[:-1],
         )
         self._site = Site(floor_plan, reach=reach + core + 0.02, body=core)
         x0, y0, x1, y1 = floor_plan.bounds
@@ -134,7 +136,7 @@ class PedestrianModel(mesa.Model):
         )
         self._rows = np.empty(0, dtype=np.int64)
         self._agent_of: dict[int, Pedestrian] = {}
-        self._stall_mark = (0, 0, np.inf)
+        self._stall_watch = StallWatch()
         self.stalled = False
         self.last_left = 0.0
         self.occupancy: list[tuple[float, int]] = []
@@ -171,38 +173,32 @@ class PedestrianModel(mesa.Model):
         Raises:
             ModelError: positions off the floor, or arrays of other lengths.
         """
-        points = np.asarray(positions, dtype=np.float64).reshape(-1, 2)
+        points = check_places(positions, self.floor_plan)
         n = len(points)
-        if not self.floor_plan.contains(points).all():
-            k = int(np.argmin(self.floor_plan.contains(points)))
+        if not 0 <= kind < len(self.pedestrian_types):
             raise ModelError(
-                f"pedestrian {k} at {points[k].tolist()}: expected a place on the floor"
+                f"kind: got {kind}, expected the index of a type, "
+                f"0 to {len(self.pedestrian_types) - 1}"
             )
         ptype = self.pedestrian_types[kind]
         if preferred_speeds is None:
             preferred_speeds = ptype.draw_speeds(n, self.rng)
+        speeds = check_column("preferred_speeds", preferred_speeds, n)
+        if (speeds <= 0.0).any():
+            raise ModelError(f"preferred_speeds: got {speeds.min()}, expected more than 0 m/s")
+        facing = None if headings is None else check_column("headings", headings, n)
+        new = Newcomer(
+            kind=kind,
+            core=ptype.core_radius,
+            standing=int(self._rules.standing[kind]),
+            destination=self._site.destination(None if exits is None else tuple(exits)),
+        )
         rows = np.arange(self.count, self.count + n)
         if self.count + n > len(self.crowd.x):
             self.crowd = grown(self.crowd, max(self.count + n, 2 * len(self.crowd.x)))
-        state = self.crowd
-        state.x[rows], state.y[rows] = points.T
-        state.preferred[rows] = _column("preferred_speeds", preferred_speeds, n)
-        state.core[rows] = ptype.core_radius
-        state.kind[rows] = kind
-        state.destination[rows] = self._site.destination(None if exits is None else tuple(exits))
-        targets = self._set_targets(rows)
-        if headings is None:
-            aim = targets.points - points
-            headings = np.arctan2(aim[:, 1], aim[:, 0])
-        state.heading[rows] = _column("headings", headings, n)
-        state.vx[rows] = state.vy[rows] = 0.0
-        state.active[rows] = True
-        state.option[rows], state.gone[rows] = NO_OPTION, -1
-        state.cluster[rows] = self._rules.standing[kind]
-        state.start[rows] = state.end[rows] = self.frame
-        state.spacing[rows] = state.knots[rows] = 1
-        state.path[rows, 0] = np.column_stack([points, state.heading[rows]])
-        state.box[rows] = np.column_stack([points, points])
+        place(self.crowd, rows, points, speeds, self.frame, new)
+        aim = self._set_targets(rows).points - points
+        face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
         self.count += n
         self._rows = np.concatenate([self._rows, rows])
         people = [Pedestrian(self, int(row)) for row in rows]
@@ -256,7 +252,7 @@ class PedestrianModel(mesa.Model):
             stay = self.crowd.active[self._rows]
             self.remove_pedestrians([self._agent_of[int(row)] for row in self._rows[~stay]])
         self._write_space()
-        self._watch_for_stall()
+        self.stalled = self._stall_watch.stalled(self.elapsed, self.crowd.route[self._rows])
         self.datacollector.collect(self)
         if self.inside == 0:
             self.running = False
@@ -308,12 +304,10 @@ class PedestrianModel(mesa.Model):
         order = deciding[np.lexsort((deciding, targets.distances))]
         grid = build_grid(rows, state.x, state.y)
         compiled, others = compile_terms(self.terms)
-        extra, extra_offsets = extra_costs(
-            others, order, self._table, state, grid, self._rules.search_radius
-        )
+        extra, extra_offsets = extra_costs(others, order, self._table, state, grid, self._rules)
         decide(
-            order, self.frame, self._table, self._screen, state, grid, self._site.surroundings, compiled, extra,
-            extra_offsets, self._rules,
+            order, self.frame, self._table, self._screen, state, grid, self._site.surroundings,
+            compiled, extra, extra_offsets, self._rules,
         )  # fmt: skip
 
     def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
@@ -334,9 +328,7 @@ class PedestrianModel(mesa.Model):
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows``, were they to decide here and now."""
-        return make_candidates(
-            rows, self._table, self.crowd, self._grid(), self._rules.search_radius
-        )
+        return make_candidates(rows, self._table, self.crowd, self._grid(), self._rules)
 
     def _grid(self) -> Grid:
         return build_grid(self._rows, self.crowd.x, self.crowd.y)
@@ -346,14 +338,6 @@ class PedestrianModel(mesa.Model):
             positions = self.space.agent_positions
             positions[:, 0] = self.crowd.x[self._rows]
             positions[:, 1] = self.crowd.y[self._rows]
-
-    def _watch_for_stall(self) -> None:
-        frame, inside, route = self._stall_mark
-        left = float(self.crowd.route[self._rows].sum())
-        if inside != self.inside or left < route - STALL_PROGRESS:
-            self._stall_mark = (self.frame, self.inside, left)
-        elif (self.frame - frame) * FRAME_SECONDS >= STALL_SECONDS:
-            self.stalled = True
 
     # -- measures -------------------------------------------------------------------------------
 
@@ -385,10 +369,3 @@ class PedestrianModel(mesa.Model):
     def summary(self) -> dict[str, Any]:
         """Figures of the run so far, ready for JSON."""
         return summarise(self)
-
-
-def _column(name: str, values: ArrayLike, n: int) -> NDArray[np.float64]:
-    column = np.asarray(values, dtype=np.float64)
-    if column.shape not in ((n,), ()) or not np.isfinite(column).all():
-        raise ModelError(f"{name}: shape {column.shape}, expected {n} finite numbers")
-    return column

@@ -103,3 +103,12 @@ def mark_bodies(
                 last = min(math.floor(u + half), side - 1)
                 for column in range(first, last + 1):
                     marked[level, row * side + column] = True
+
+
+@njit(cache=True)
+def is_marked(cells: NDArray[np.int32], marked: NDArray[np.bool_]) -> bool:
+    """Whether an option with these cells, one a level, goes through a marked one."""
+    for level in range(len(cells)):  # noqa: SIM110
+        if cells[level] >= 0 and marked[level, cells[level]]:
+            return True
+    return False

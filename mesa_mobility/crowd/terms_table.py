@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.batch import make_candidates
 from mesa_mobility.crowd.capability import OptionTable
-from mesa_mobility.crowd.choice import Terms
+from mesa_mobility.crowd.costs import Terms
 from mesa_mobility.crowd.kernels import PairKernel
 from mesa_mobility.crowd.neighbours import Grid
+from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
 from mesa_mobility.errors import ModelError
@@ -52,7 +53,7 @@ def extra_costs(
     table: OptionTable,
     state: CrowdState,
     grid: Grid,
-    search_radius: float,
+    rules: Rules,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Weighted sum of terms in NumPy over all options of the pedestrians in ``rows``.
 
@@ -68,7 +69,7 @@ def extra_costs(
     parts = []
     counts = []
     for start in range(0, len(rows), BATCH):
-        candidates = make_candidates(rows[start : start + BATCH], table, state, grid, search_radius)
+        candidates = make_candidates(rows[start : start + BATCH], table, state, grid, rules)
         total = np.zeros(len(candidates))
         for term in terms:
             cost = np.asarray(term.cost(candidates), dtype=np.float64)

@@ -27,7 +27,9 @@ def read_polygon(value: Polygon | str, what: str) -> Polygon:
     geometry = value
     if isinstance(value, str):
         try:
-            geometry = shapely.from_wkt(value)
+            # Shapely warns of what is an error here: coordinates that are not finite.
+            with np.errstate(invalid="ignore"):
+                geometry = shapely.from_wkt(value)
         except shapely.errors.GEOSException as error:
             text = " ".join(str(error).split())
             raise FloorPlanError(f"{what}: the WKT cannot be read ({text})") from None

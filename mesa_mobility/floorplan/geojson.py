@@ -136,7 +136,8 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, bool]:
     try:
         geometry = shapely.geometry.shape(feature.get("geometry"))
     except Exception as error:  # shapely raises whatever the malformed mapping led it into
-        raise FloorPlanError(f"{at}: the geometry cannot be read ({" ".join(str(error).split())})") from None
+        text = " ".join(str(error).split())
+        raise FloorPlanError(f"{at}: the geometry cannot be read ({text})") from None
     expected = "Polygon" if kind in ("walkable", "obstacle") else "LineString"
     if geometry.geom_type != expected:
         raise FloorPlanError(f"{at}: {kind} must be a {expected}, found {geometry.geom_type}")
@@ -146,7 +147,7 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, bool]:
 def _opening(cls: type[Any], name: str, geometry: BaseGeometry, at: str) -> Any:
     xy = shapely.get_coordinates(geometry)
     if len(xy) != 2:
-        raise FloorPlanError(f"{at}: a {cls.__name__.lower()} has two points, found {len(xy)}")
+        raise FloorPlanError(f"{at}: {cls.__name__.lower()} must have two points, found {len(xy)}")
     try:
         opening: Opening = cls(name, tuple(xy[0].tolist()), tuple(xy[1].tolist()))
     except FloorPlanError as error:
