@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from mesa_mobility.floorplan.kernels import segments_cross
 from mesa_mobility.floorplan.nodes import CORNER, EXIT, GATE
 from mesa_mobility.floorplan.routes import IN_LINE, Ways, in_view, side
-from mesa_mobility.floorplan.sight import Sight, clear_line, free_length
+from mesa_mobility.floorplan.sight import Sight, clear_line, free_length, unwalled, wall_distance
 from mesa_mobility.floorplan.views import Views, nodes_maybe_in_view
 
 # A target behind a gate lies at least this far behind it, however near the next wall is (metres).
@@ -50,25 +50,19 @@ def aim(
         after = follow[destinations[person]]
         points[person, 0] = x
         points[person, 1] = y
-        node = -1
         maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
-        for clearance in (ways.view_clearance, 0.0):
-            node = _first_in_view(sight, ways, x, y, to_go, after, clearance, maybe, keys)
-            if node >= 0:
-                break
-        if node < 0:
-            # Squeezed out of everybody's view: the nearest node is the likeliest to be reached.
-            nearest = np.inf
-            for i in range(nodes):
-                away = np.hypot(ways.xy[i, 0] - x, ways.xy[i, 1] - y)
-                if away < nearest and np.isfinite(to_go[i]):
-                    nearest = away
-                    node = i
-            if node < 0:
-                continue
-        lengths[person], gates[person], points[person, 0], points[person, 1] = _aim_at(
-            sight, ways, x, y, node, to_go, after
+        own = wall_distance(sight, x, y, ways.view_clearance)
+        node = _first_in_view(
+            sight, ways, x, y, to_go, after, ways.view_clearance, own, maybe, keys
         )
+        if node < 0:
+            node = _first_in_view(sight, ways, x, y, to_go, after, 0.0, own, maybe, keys)
+        if node < 0:
+            node = _nearest_unwalled(sight, ways, x, y, to_go, maybe)
+        if node >= 0:
+            lengths[person], gates[person], points[person, 0], points[person, 1] = _aim_at(
+                sight, ways, x, y, node, to_go, after, own
+            )
     return points, gates, lengths
 
 
@@ -81,6 +75,7 @@ def _first_in_view(
     to_go: NDArray[np.float64],
     after: NDArray[np.int64],
     clearance: float,
+    own: float,
     maybe: NDArray[np.int64],
     keys: NDArray[np.float64],
 ) -> int:
@@ -104,11 +99,43 @@ def _first_in_view(
             break
         keys[k] = np.inf
         i = maybe[k]
-        if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance):
+        if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance, own):
             return i
-        if ways.kind[i] != CORNER and _nearest_serves(sight, ways, x, y, i, after[i], clearance):
+        if ways.kind[i] != CORNER and _nearest_serves(
+            sight, ways, x, y, i, after[i], clearance, own
+        ):
             return i
     return -1
+
+
+@njit(cache=True)
+def _nearest_unwalled(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    to_go: NDArray[np.float64],
+    maybe: NDArray[np.int64],
+) -> int:
+    """The nearest node with a way on and no wall before it, -1 where none is.
+
+    It is for people in a gap where nobody should be, or pressed against a wall: they
+    have no node in view at all. Others see that there is no way on.
+    """
+    nearest = np.inf
+    node = -1
+    for i in maybe:
+        if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], 0.0, np.inf):
+            return -1
+        away = np.hypot(ways.xy[i, 0] - x, ways.xy[i, 1] - y)
+        if (
+            away < nearest
+            and np.isfinite(to_go[i])
+            and unwalled(sight, x, y, ways.xy[i, 0], ways.xy[i, 1])
+        ):
+            nearest = away
+            node = i
+    return node
 
 
 @njit(cache=True)
@@ -120,14 +147,15 @@ def _aim_at(
     node: int,
     to_go: NDArray[np.float64],
     after: NDArray[np.int64],
+    own: float,
 ) -> tuple[float, int, float, float]:
     """Route length, gate and target of a person whose route starts with `node`."""
     nx, ny = ways.xy[node]
     length = np.hypot(nx - x, ny - y) + to_go[node]
-    qx, qy = _place(sight, ways, x, y, node, after[node])
+    qx, qy = _place(sight, ways, x, y, node, after[node], own)
     if ways.kind[node] == GATE and np.hypot(qx - x, qy - y) < _THROUGH:
         node = after[node]
-        qx, qy = _place(sight, ways, x, y, node, after[node])
+        qx, qy = _place(sight, ways, x, y, node, after[node], own)
     opening = ways.opening[node]
     if ways.kind[node] == CORNER:
         px, py = _past_corner(sight, ways, x, y, node, after[node])
@@ -139,17 +167,17 @@ def _aim_at(
     gate = _gate_on_the_way(ways, x, y, px, py)
     if gate >= 0 and gate != opening:
         opening = gate
-        px, py = _through(sight, ways, x, y, px, py, gate)
+        px, py = _through(sight, ways, x, y, px, py, gate, own)
     return length, opening, px, py
 
 
 @njit(cache=True)
 def _place(
-    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int
+    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int, own: float
 ) -> tuple[float, float]:
     """The place to go to at a node: itself, or the nearest place of its opening that will do."""
     if ways.kind[node] != CORNER and _nearest_serves(
-        sight, ways, x, y, node, after, ways.view_clearance
+        sight, ways, x, y, node, after, ways.view_clearance, own
     ):
         return _nearest(ways.ends[ways.opening[node]], x, y)
     return ways.xy[node, 0], ways.xy[node, 1]
@@ -164,6 +192,7 @@ def _past_corner(
     A corner is there to be passed. Whoever aims at the corner itself slows down to
     stop on it, since every step on leads away from it.
     """
+    clearance = ways.view_clearance
     nx, ny = ways.xy[node]
     away = np.hypot(nx - x, ny - y)
     if away < 1e-6:
@@ -173,8 +202,8 @@ def _past_corner(
         py = ny + share * ways.beyond * (ny - y) / away
         if ways.kind[after] != CORNER and side(ways, after, px, py) > -IN_LINE:
             continue
-        if clear_line(sight, nx, ny, px, py, ways.view_clearance, True, -1) and in_view(
-            sight, ways, px, py, after, ways.xy[after, 0], ways.xy[after, 1], ways.view_clearance
+        if clear_line(sight, nx, ny, px, py, clearance, np.inf, -1) and in_view(
+            sight, ways, px, py, after, ways.xy[after, 0], ways.xy[after, 1], clearance, np.inf
         ):
             return px, py
     return nx, ny
@@ -192,7 +221,14 @@ def _nearest(ends: NDArray[np.float64], x: float, y: float) -> tuple[float, floa
 
 @njit(cache=True)
 def _nearest_serves(
-    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int, clearance: float
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    node: int,
+    after: int,
+    clearance: float,
+    own: float,
 ) -> bool:
     """Whether the nearest place in the opening of `node` will do as well as the node.
 
@@ -200,12 +236,12 @@ def _nearest_serves(
     would turn back once they are through.
     """
     qx, qy = _nearest(ways.ends[ways.opening[node]], x, y)
-    if not in_view(sight, ways, x, y, node, qx, qy, clearance):
+    if not in_view(sight, ways, x, y, node, qx, qy, clearance, own):
         return False
     if ways.kind[node] == EXIT:
         return True
     ax, ay = ways.xy[after]
-    return in_view(sight, ways, qx, qy, after, ax, ay, ways.view_clearance)
+    return in_view(sight, ways, qx, qy, after, ax, ay, ways.view_clearance, np.inf)
 
 
 @njit(cache=True)
@@ -256,7 +292,7 @@ def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float) -> in
 
 @njit(cache=True)
 def _through(
-    sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int
+    sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int, own: float
 ) -> tuple[float, float]:
     """Target behind a gate that lies on the straight way to (px, py)."""
     ax, ay, bx, by = ways.lines[gate]
@@ -267,8 +303,8 @@ def _through(
         normal = -normal
     qx, qy = _nearest(ways.ends[gate], x, y)
     if not (
-        clear_line(sight, x, y, qx, qy, ways.view_clearance, True, -1)
-        and clear_line(sight, qx, qy, px, py, ways.view_clearance, True, -1)
+        clear_line(sight, x, y, qx, qy, ways.view_clearance, own, -1)
+        and clear_line(sight, qx, qy, px, py, ways.view_clearance, np.inf, -1)
     ):
         share = ((ax - x) * normal[0] + (ay - y) * normal[1]) / abs(ahead)
         qx = x + share * (px - x)

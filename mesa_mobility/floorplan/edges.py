@@ -21,6 +21,22 @@ def boundary_segments(area: BaseGeometry) -> NDArray[np.float64]:
     return segments[(segments[:, :2] != segments[:, 2:]).any(axis=1)]
 
 
+def rings(area: BaseGeometry) -> list[NDArray[np.float64]]:
+    """The rings of a (multi)polygon as (n, 2) vertices, each once, the area on their left."""
+    oriented = [shapely.geometry.polygon.orient(part, 1.0) for part in shapely.get_parts(area)]
+    return [shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(oriented)]
+
+
+def turns(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) angle in radians by which a ring turns left at each vertex, negative to the right."""
+    arriving = ring - np.roll(ring, 1, axis=0)
+    leaving = np.roll(arriving, -1, axis=0)
+    return np.arctan2(
+        arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
+        (arriving * leaving).sum(axis=1),
+    )
+
+
 def cut_out(segments: NDArray[np.float64], openings: Iterable[Opening]) -> NDArray[np.float64]:
     """The (m, 4) segments without the parts that lie along one of the openings."""
     for opening in openings:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
+from mesa_mobility.floorplan.edges import rings, turns
+from mesa_mobility.floorplan.gaps import walls_near
 from mesa_mobility.floorplan.openings import Exit, Opening
 from mesa_mobility.floorplan.sight import Sight, wall_distances
 
@@ -39,7 +40,7 @@ _NARROW = 2.5
 
 # Nodes along a gate or exit: so far apart (metres) and so many at most.
 _POINT_SPACING = 0.5
-_POINTS_PER_OPENING = 9
+_POINTS_PER_OPENING = 41
 
 
 @dataclass(frozen=True)
@@ -102,15 +103,6 @@ def outward(plan: "FloorPlan", opening: Exit) -> NDArray[np.float64]:
     return -normal if ahead.sum() > behind.sum() else normal
 
 
-def _walls_near(plan: "FloorPlan", place: BaseGeometry, reach: float) -> NDArray[np.object_]:
-    """The walls within reach of a place, as shapely lines."""
-    xmin, ymin, xmax, ymax = place.bounds
-    index = plan.wall_index
-    rows = index.segments[index.near(xmin - reach, ymin - reach, xmax + reach, ymax + reach)]
-    lines = shapely.linestrings(rows.reshape(-1, 2, 2))
-    return lines[shapely.dwithin(lines, place, reach)]
-
-
 def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
     along = (np.array(opening.b) - np.array(opening.a)) / opening.length
     normal = np.array([-along[1], along[0]])
@@ -119,7 +111,7 @@ def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
 
 def _places(plan: "FloorPlan", opening: Opening, clearance: float) -> NDArray[np.float64]:
     """Points along the parts of a gate or exit that are clear of walls."""
-    near = shapely.union_all(_walls_near(plan, opening.line, clearance))
+    near = shapely.union_all(walls_near(plan, opening.line, clearance))
     # An exit may lie a little outside the edge of the area.
     room = plan.free.buffer(2 * EDGE_TOLERANCE)
     places = [np.empty((0, 2))]
@@ -143,7 +135,7 @@ def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> ND
 
 def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
     bases, offsets = _wall_ends(plan, clearance)
-    for ring in _rings(plan, _SIMPLIFY * clearance):
+    for ring in rings(plan.free.simplify(_SIMPLIFY * clearance)):
         for base, offset in _reflex(ring, clearance):
             bases.append(base)
             offsets.append(offset)
@@ -166,22 +158,13 @@ def _middles(
     """Corners for vertices in gaps too narrow for one beside them: the middle of the gap."""
     found = [np.empty((0, 2))]
     for base in shapely.points(bases):
-        across = shapely.shortest_line(base, _walls_near(plan, base, _NARROW * clearance))
+        across = shapely.shortest_line(base, walls_near(plan, base, _NARROW * clearance))
         across = across[shapely.length(across) >= 2 * NODE_SHARE * clearance]
         found.append(
             shapely.get_coordinates(shapely.line_interpolate_point(across, 0.5, normalized=True))
         )
     places = np.concatenate(found)
     return places[plan.contains(places) & _passable(sight, places, clearance)]
-
-
-def _rings(plan: "FloorPlan", tolerance: float) -> list[NDArray[np.float64]]:
-    """Rings of the free area, the free side on the left, without their closing point."""
-    rings = []
-    for part in shapely.get_parts(plan.free.simplify(tolerance)):
-        oriented = shapely.geometry.polygon.orient(part, 1.0)
-        rings += [shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(oriented)]
-    return rings
 
 
 def _reflex(
@@ -191,10 +174,7 @@ def _reflex(
     arriving = ring - np.roll(ring, 1, axis=0)
     arriving /= np.hypot(*arriving.T)[:, None]
     leaving = np.roll(arriving, -1, axis=0)
-    turn = np.arctan2(
-        arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
-        (arriving * leaving).sum(axis=1),
-    )
+    turn = turns(ring)
     result = []
     for i in np.flatnonzero(turn < -1e-6):
         angle = -turn[i]

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.aiming import aim
 from mesa_mobility.floorplan.edges import opening_segments
-from mesa_mobility.floorplan.nodes import EDGE_SHARE, VIEW_SHARE, Nodes, find_nodes
+from mesa_mobility.floorplan.gaps import narrow_gaps
+from mesa_mobility.floorplan.nodes import EDGE_SHARE, NODE_SHARE, VIEW_SHARE, Nodes, find_nodes
 from mesa_mobility.floorplan.openings import Exit
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
@@ -169,7 +170,11 @@ class Router:
             return
         plan = self._plan
         walls = plan.walls
-        self._sight: Sight = sight_of(walls, opening_segments(plan.open_exits()), self._clearance)
+        curtains = [
+            opening_segments(plan.open_exits()),
+            narrow_gaps(plan, 2 * NODE_SHARE * self._clearance),
+        ]
+        self._sight: Sight = sight_of(walls, np.concatenate(curtains), self._clearance)
         nodes = find_nodes(plan, self._sight, self._clearance)
         self._ways = self._prepare(nodes, len(walls))
         edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)

@@ -66,7 +66,7 @@ def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> list[tuple[int,
                 continue
             ax, ay = ways.xy[i]
             bx, by = ways.xy[j]
-            if clear_line(sight, ax, ay, bx, by, clearance, False, _curtain(ways, j)):
+            if clear_line(sight, ax, ay, bx, by, clearance, np.inf, _curtain(ways, j)):
                 if there:
                     edges.append((i, j))
                 if back:
@@ -94,6 +94,7 @@ def in_view(
     qx: float,
     qy: float,
     clearance: float,
+    own: float,
 ) -> bool:
     """Whether (qx, qy), the place of a node or another place in the same opening, is in view."""
-    return clear_line(sight, x, y, qx, qy, clearance, True, _curtain(ways, node))
+    return clear_line(sight, x, y, qx, qy, clearance, own, _curtain(ways, node))

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 TOUCH = 1e-9
 """A line nearer to a wall than this touches it (metres)."""
 
-# Walking straight along a wall must not count as coming nearer to it by rounding.
-_OWN_DISTANCE = 0.98
+# Somebody close to a wall that bulges cannot but come a little nearer to it.
+_OWN_SHARE = 0.5
 
 
 class Sight(NamedTuple):
@@ -82,14 +82,15 @@ def clear_line(
     qx: float,
     qy: float,
     clearance: float,
-    from_body: bool,
+    own: float,
     ignored: int,
 ) -> bool:
     """Whether the segment pq stays `clearance` metres (and more than `TOUCH`) from the walls.
 
-    With `from_body`, a wall that p is already near counts only where the segment
-    comes nearer to it than p is. Then what is in view from p stays in view on the
-    straight way there. The wall with number `ignored` does not count (-1: all count).
+    `own` is the distance of p itself to the nearest wall. Where that is less than the
+    clearance, half of it will do for walls near p: so somebody close to a wall has a
+    view at all, and keeps it on the straight way there (inf: no such person). The wall
+    with number `ignored` does not count (-1: all count).
     """
     walls, solid, table = sight
     first_row, last_row = rows_crossed(table, py, qy)
@@ -111,38 +112,64 @@ def clear_line(
                 distance2 = segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by)
                 if distance2 >= limit * limit:
                     continue
-                if from_body:
-                    own2 = point_segment_distance2(px, py, ax, ay, bx, by)
-                    if distance2 >= _OWN_DISTANCE * _OWN_DISTANCE * own2 and own2 > 0.0:
+                if own < clearance and distance2 > TOUCH * TOUCH:
+                    near = point_segment_distance2(px, py, ax, ay, bx, by) < 4 * clearance**2
+                    if near and distance2 >= (_OWN_SHARE * own) ** 2:
                         continue
                 return False
     return True
 
 
 @njit(cache=True)
-def wall_distances(
-    sight: Sight, points: NDArray[np.float64], at_most: float
-) -> NDArray[np.float64]:
-    """(n,) metres from (n, 2) points to the nearest wall, `at_most` where none is nearer.
+def wall_distance(sight: Sight, x: float, y: float, at_most: float) -> float:
+    """Metres from a point to the nearest wall, `at_most` where none is nearer.
 
     `at_most` must not exceed the reach that the sight was prepared for.
     """
     walls, solid, table = sight
-    distances = np.full(len(points), at_most)
-    for i in range(len(points)):
-        x, y = points[i]
-        column = int(np.floor((x - table.x0) / table.cell_size))
-        row = int(np.floor((y - table.y0) / table.cell_size))
-        if not (0 <= column < table.nx and 0 <= row < table.ny):
-            continue
+    nearest = at_most
+    column = int(np.floor((x - table.x0) / table.cell_size))
+    row = int(np.floor((y - table.y0) / table.cell_size))
+    if 0 <= column < table.nx and 0 <= row < table.ny:
         at = row * table.nx + column
         for j in range(table.offsets[at], table.offsets[at + 1]):
             wall = table.indices[j]
             if wall < solid:
                 ax, ay, bx, by = walls[wall]
-                away = np.sqrt(point_segment_distance2(x, y, ax, ay, bx, by))
-                distances[i] = min(distances[i], away)
+                nearest = min(nearest, np.sqrt(point_segment_distance2(x, y, ax, ay, bx, by)))
+    return nearest
+
+
+@njit(cache=True)
+def wall_distances(
+    sight: Sight, points: NDArray[np.float64], at_most: float
+) -> NDArray[np.float64]:
+    """(n,) `wall_distance` of (n, 2) points."""
+    distances = np.empty(len(points))
+    for i in range(len(points)):
+        distances[i] = wall_distance(sight, points[i, 0], points[i, 1], at_most)
     return distances
+
+
+@njit(cache=True)
+def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
+    """Whether no wall lies across the segment pq, except one that p stands on."""
+    walls, solid, table = sight
+    first_row, last_row = rows_crossed(table, py, qy)
+    for row in range(first_row, last_row + 1):
+        first, last = cells_in_row(table, row, px, py, qx, qy)
+        for column in range(first, last + 1):
+            at = row * table.nx + column
+            for j in range(table.offsets[at], table.offsets[at + 1]):
+                wall = table.indices[j]
+                ax, ay, bx, by = walls[wall]
+                if (
+                    wall < solid
+                    and segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by) == 0.0
+                    and point_segment_distance2(px, py, ax, ay, bx, by) > TOUCH * TOUCH
+                ):
+                    return False
+    return True
 
 
 @njit(cache=True)
@@ -207,7 +234,7 @@ def _clear_lines(
     for i in range(len(starts)):
         px, py = starts[i]
         qx, qy = ends[i]
-        clear[i] = clear_line(sight, px, py, qx, qy, clearance, False, -1)
+        clear[i] = clear_line(sight, px, py, qx, qy, clearance, np.inf, -1)
     return clear
 
 

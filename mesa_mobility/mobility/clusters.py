@@ -25,7 +25,7 @@ from mesa_mobility.mobility.graph import MotionGraph
 STANDING = 0
 """Number of the standing cluster."""
 
-ACCEPTANCE_RADIUS = 0.5
+ACCEPTANCE_RADIUS = 0.4
 """r_a of subtractive clustering, as a multiple of the poses' root mean square spread."""
 
 SQUASH_RATIO = 1.5

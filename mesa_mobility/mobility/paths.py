@@ -35,7 +35,7 @@ SAMPLE_EVERY = 3
 TRANSITION_PENALTY = 1.0
 """Fixed cost of leaving the recording, in units of the transition threshold."""
 
-BUDGET = 3.5
+BUDGET = 3.3
 """Most that a path may cost: two transitions of any quality that is kept, or three good ones."""
 
 CELL = (0.10, 0.10, np.deg2rad(15.0))

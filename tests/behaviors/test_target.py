@@ -47,7 +47,9 @@ def test_at_the_target_itself_no_facing_deviates():
 @settings(deadline=None)
 def test_distance_of_any_batch(options):
     gap = options.points - options.targets[options.owner]
-    np.testing.assert_allclose(TargetDistance().cost(options), np.linalg.norm(gap, axis=1))
+    np.testing.assert_allclose(
+        TargetDistance().cost(options), np.linalg.norm(gap, axis=1), rtol=1e-12, atol=1e-12
+    )
 
 
 @given(batches)

@@ -9,6 +9,7 @@ from mesa_mobility.behaviors import Displacement
 from tests.fixtures.maps import make_map, stand, straight, strider, through
 from tests.fixtures.scenes import advance, corridor, follow, model_of, put
 
+START = np.array([2.0, 2.0, 0.0])
 SWAY = [(0.25, 0.125, 0.25), (0.5, 0.0, 0.0), (0.75, -0.125, -0.25), (1.0, 0.0, 0.5)]
 
 
@@ -22,11 +23,11 @@ def test_samples_are_met_and_joined_by_straight_lines(swayer):
     person = put(model_of(corridor(), swayer, behaviors=[Displacement()]), 2.0, 2.0)
     track = follow(person, 12)
     knots = np.array([(0.0, 0.0, 0.0), *SWAY])
-    np.testing.assert_allclose(track[::3], knots + (2.0, 2.0, 0.0), atol=1e-12)
+    np.testing.assert_allclose(track[::3], knots + START, atol=1e-12)
     for k in range(4):
         for share, row in ((1 / 3, 3 * k + 1), (2 / 3, 3 * k + 2)):
             between = knots[k] + share * (knots[k + 1] - knots[k])
-            np.testing.assert_allclose(track[row], between + (2.0, 2.0, 0.0), atol=1e-12)
+            np.testing.assert_allclose(track[row], between + START, atol=1e-12)
 
 
 def test_the_path_turns_with_the_person(swayer):

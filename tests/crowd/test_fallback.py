@@ -10,7 +10,16 @@ from shapely import box
 from mesa_mobility import Exit, FloorPlan
 from tests.fixtures.counting import overlaps, wall_crossings
 from tests.fixtures.maps import STANDING, WALKING, make_map, shipped_map, straight
-from tests.fixtures.scenes import advance, core_of, corridor, dead_end, follow, model_of, put, statues
+from tests.fixtures.scenes import (
+    advance,
+    core_of,
+    corridor,
+    dead_end,
+    follow,
+    model_of,
+    put,
+    statues,
+)
 
 
 @pytest.fixture

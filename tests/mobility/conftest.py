@@ -30,7 +30,7 @@ def make_poses(features, clip_lengths, *, step=None, speed=None):
 
 
 def random_poses(rng, clips=4, length=60, wobble=0.02):
-    """Clips that repeat one noisy cycle of poses, as walking does; the first stands for 20 frames."""
+    """Clips that repeat one noisy cycle of poses, as walking does; the first stands at first."""
     phase = np.arange(length) * 2 * np.pi / 20
     cycle = np.column_stack([np.cos((k + 1) * phase + k) for k in range(36)])
     features = np.concatenate([cycle + rng.normal(0, wobble, cycle.shape) for _ in range(clips)])

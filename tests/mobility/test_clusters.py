@@ -32,7 +32,7 @@ def test_centres_are_those_of_the_textbook(graph):
     moving = np.flatnonzero(graph.kept & (graph.poses.speed > 0.1))
     points = graph.poses.features[moving].astype(np.float64)
     spread = np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean())
-    centres = points[textbook_centres(points, 8, 0.5 * spread)]
+    centres = points[textbook_centres(points, 8, 0.4 * spread)]
     np.testing.assert_allclose(clusters.centres[1:], centres, atol=1e-6)
     nearest = ((points[:, None] - centres[None]) ** 2).sum(axis=-1).argmin(axis=1)
     np.testing.assert_array_equal(clusters.labels[moving], 1 + nearest)

@@ -1,5 +1,6 @@
 """The map file: round trips, identical bytes, and every way it can be broken."""
 
+import contextlib
 import dataclasses
 import json
 import zipfile
@@ -140,7 +141,7 @@ def test_object_arrays_are_refused(saved):
 def test_other_files_are_refused(tmp_path, content):
     path = tmp_path / "x.npz"
     path.write_bytes(content)
-    with pytest.raises(MapError, match="x.npz"):
+    with pytest.raises(MapError, match=r"x\.npz"):
         MobilityMap.load(path)
 
 
@@ -171,10 +172,9 @@ def test_a_truncated_or_damaged_file_never_fails_otherwise(saved, data):
             content[data.draw(st.integers(0, len(content) - 1))] ^= data.draw(st.integers(1, 255))
     damaged = saved.with_name("damaged.npz")
     damaged.write_bytes(content)
-    try:
+    # Damage that decompresses to the same arrays is none; anything else is one MapError.
+    with contextlib.suppress(MapError):
         MobilityMap.load(damaged)
-    except MapError as error:
-        assert "\n" not in str(error)
 
 
 def test_a_map_that_cannot_be_written_leaves_nothing(small_map, tmp_path):

@@ -7,7 +7,7 @@ from mesa_mobility.mobility import cluster_poses, motion_graph, reachable_option
 
 from .conftest import random_poses
 
-BUDGET, PENALTY, CELL = 3.5, 1.0, (0.10, 0.10, np.deg2rad(15.0))
+BUDGET, PENALTY, CELL = 3.3, 1.0, (0.10, 0.10, np.deg2rad(15.0))
 
 
 def least_costs(graph, source, frames):

@@ -1,0 +1,159 @@
+from math import hypot
+
+import numpy as np
+import pytest
+import shapely
+from shapely import LineString, box
+
+from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Router
+
+
+def target(plan: FloorPlan, place: tuple[float, float]) -> tuple[float, float]:
+    return tuple(Router(plan).targets([place], [0]).points[0])
+
+
+@pytest.mark.parametrize(
+    ("place", "expected"),
+    [
+        ((4.5, 4), (4.5, -2)),  # face-on: 2 m behind the line
+        ((4.3, 1), (4.3, -2)),
+        # At an angle, through (4.2, 0): 2 m farther in the direction (2.7, -3).
+        ((1.5, 3), (4.2 + 5.4 / hypot(2.7, 3), -6 / hypot(2.7, 3))),
+        ((4.5, 0), (4.5, -2)),  # in the line itself
+        ((4.5, -0.02), (4.5, -2)),  # a little past it
+    ],
+)
+def test_an_exit_is_aimed_at_from_behind(plans, place: tuple, expected: tuple) -> None:
+    assert target(plans["room"](), place) == pytest.approx(expected, abs=0.02)
+    assert Router(plans["room"]()).targets([place], [0]).gates.tolist() == [0]
+
+
+def test_along_the_wall_the_jamb_comes_first(plans) -> None:
+    found = Router(plans["room"]()).targets([(1, 0.3)], [0])
+    assert found.gates.tolist() == [-1]
+    x, y = found.points[0]
+    # On the straight way through (4.2, 0.2), and past it.
+    assert x > 4.2
+    assert (y - 0.3) * 3.2 == pytest.approx((x - 1) * -0.1, abs=1e-3)
+
+
+def test_targets_past_a_corner_have_the_way_on_in_view(plans) -> None:
+    found = Router(plans["l_corridor"]()).targets([(1, 1)], [0])
+    x, y = found.points[0]
+    # On the straight way through (10.2, 1.8), 1 m past it.
+    assert (x, y) == pytest.approx((10.2 + 9.2 / hypot(9.2, 0.8), 1.8 + 0.8 / hypot(9.2, 0.8)))
+
+
+def test_a_gate_on_the_way_is_aimed_through(plans) -> None:
+    found = Router(plans["two_rooms_turning_back"]()).targets([(3, 2.5)], [0])
+    assert found.gates.tolist() == [0]
+    # Straight on; the wall at x = 8 is nearer than 2 m, so 0.13 m before it.
+    assert found.points[0] == pytest.approx((8 - 0.13, 2.5))
+
+
+def test_the_near_jamb_comes_before_a_gate_that_is_not_in_view(plans) -> None:
+    found = Router(plans["two_rooms_turning_back"]()).targets([(5.7, 0.5)], [0])
+    assert found.gates.tolist() == [-1]
+    # Past (5.8, 2.2), which is clear of the door's lower corner (6, 2).
+    x, y = found.points[0]
+    assert y > 2.2
+    assert (x - 5.7) / (y - 0.5) == pytest.approx(0.1 / 1.7)
+
+
+def test_at_a_gate_too_narrow_for_a_body_nobody_aims(plans) -> None:
+    wall = [box(5, 0, 5.2, 2), box(5, 2.3, 5.2, 4)]
+    exits = [Exit("near", (8, 0), (8, 4)), Exit("far", (0, 0), (0, 4))]
+    gates = [Gate("slit", (5.1, 2), (5.1, 2.3))]
+    plan = FloorPlan(box(0, 0, 8, 4), exits=exits, gates=gates, obstacles=wall)
+    found = Router(plan).targets([(4, 2.15), (5.1, 2.15)], [0, 0])
+    assert found.gates[0] == 2
+    # Whoever is squeezed in gets somewhere to go.
+    assert np.isfinite(found.distances).all()
+
+
+def test_an_exit_in_view_through_a_gate_is_aimed_at_itself() -> None:
+    plan = FloorPlan(
+        box(0, 0, 10, 4), exits=[Exit("e", (10, 0), (10, 4))], gates=[Gate("g", (5, 0), (5, 4))]
+    )
+    found = Router(plan).targets([(2, 2)], [0])
+    assert found.gates.tolist() == [1]
+    assert found.points[0] == pytest.approx((12, 2))
+    assert found.distances[0] == pytest.approx(8)
+
+
+@pytest.mark.parametrize("place", [(6.1, 2.5), (6.1, 2.2), (6.105, 2.8), (6.15, 2.5), (6.3, 2.5)])
+def test_nobody_past_a_gate_turns_back_to_it(plans, place: tuple) -> None:
+    plan = plans["two_rooms_turning_back"]()
+    found = Router(plan).targets([place], [0])
+    assert found.gates[0] != 0
+    assert found.points[0, 0] > 6.1
+    assert not LineString([place, found.points[0]]).crosses(plan.gate("door").line)
+
+
+@pytest.mark.parametrize("name", ["room", "two_rooms", "two_rooms_turning_back", "hall", "bend"])
+def test_whoever_aims_through_an_opening_crosses_it_going_straight(
+    plans, places_in, name: str
+) -> None:
+    plan = plans[name]()
+    places = places_in(plan, 0.4)
+    found = Router(plan).targets(places, np.zeros(len(places), int))
+    assert (found.gates >= 0).any()
+    lines = np.array([opening.line for opening in plan.openings()])[found.gates]
+    ways = shapely.linestrings(np.stack([places, found.points], axis=1))
+    assert shapely.crosses(ways, lines)[found.gates >= 0].all()
+
+
+@pytest.mark.parametrize("name", ["room", "l_corridor", "two_rooms", "hall", "bend"])
+def test_no_straight_way_to_a_target_meets_a_wall_before_its_opening(
+    plans, places_in, name: str
+) -> None:
+    plan = plans[name]()
+    places = places_in(plan, 0.4)
+    found = Router(plan).targets(places, np.zeros(len(places), int))
+    ways = shapely.linestrings(np.stack([places, found.points], axis=1))
+    walls = shapely.multilinestrings(shapely.linestrings(plan.walls.reshape(-1, 2, 2)))
+    inside = shapely.intersection(ways, plan.free)
+    assert not shapely.crosses(inside, walls).any()
+
+
+def test_without_a_way_people_stay_where_they_are(plans) -> None:
+    plan = plans["room"]()
+    plan.close_gate("south")
+    found = Router(plan).targets([(3, 3)], [0])
+    assert found.points.tolist() == [[3, 3]]
+    assert found.gates.tolist() == [-1]
+    assert found.distances.tolist() == [np.inf]
+
+
+def test_everybody_has_an_own_destination(plans) -> None:
+    router = Router(plans["corridor"]())
+    west, east = router.destination(("west",)), router.destination(("east",))
+    found = router.targets([(5, 2), (5, 2), (5, 2)], [east, 0, west])
+    assert found.points[:, 0].tolist() == pytest.approx([22, -2, -2])
+    assert found.gates.tolist() == [1, 0, 0]
+
+
+def test_nobody_at_all(plans) -> None:
+    found = Router(plans["room"]()).targets(np.empty((0, 2)), np.empty(0, int))
+    assert (found.points.shape, found.gates.shape, found.distances.shape) == ((0, 2), (0,), (0,))
+
+
+@pytest.mark.parametrize("name", ["hall", "two_rooms", "bend"])
+def test_what_cannot_be_in_view_is_left_out_rightly(plans, places_in, name: str) -> None:
+    plan = plans[name]()
+    places = places_in(plan, 0.31)
+    found = Router(plan).targets(places, np.zeros(len(places), int))
+    thorough = Router(plan)
+    views = thorough._views
+    views.known[:] = True
+    views.bits[:] = 0
+    for node in range(thorough.graph.number_of_nodes()):
+        views.bits[:, node // 64] |= np.uint64(1) << np.uint64(node % 64)
+    expected = thorough.targets(places, np.zeros(len(places), int))
+    assert (found.points == expected.points).all()
+    assert (found.distances == expected.distances).all()
+
+
+def test_people_outside_the_plan_do_no_harm(plans) -> None:
+    found = Router(plans["room"]()).targets([(-5, -5), (1e6, 3), (np.nan, 1)], [0, 0, 0])
+    assert np.isfinite(found.points[:2]).all()
