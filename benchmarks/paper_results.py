@@ -1,6 +1,6 @@
 """The paper's doorway and auditorium under both presets, as the table of docs/paper_results.md.
 
-    python benchmarks/paper_results.py --seeds 5
+python benchmarks/paper_results.py --seeds 5
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import argparse
 import statistics
 
 from mesa_mobility.models import Auditorium, Doorway
+
 from mesa_mobility.results import Trajectories, check_safety
 
 HEADER = (
