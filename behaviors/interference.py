@@ -2,7 +2,7 @@
 
 import math
 
-from mesa_mobility.crowd import CompiledTerm, pair_kernel
+from mesa_mobility import CompiledTerm, pair_kernel
 from mesa_mobility.errors import ModelError
 
 

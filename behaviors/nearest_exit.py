@@ -1,7 +1,6 @@
 """Leaving by the nearest exit."""
 
-from mesa_mobility.crowd import Deciding, TargetChoice
-from mesa_mobility.floorplan import Targets
+from mesa_mobility import Deciding, TargetChoice, Targets
 
 
 class NearestExit(TargetChoice):

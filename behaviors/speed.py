@@ -1,6 +1,6 @@
 """How far to go in one option: as far as possible, or as far as one likes."""
 
-from mesa_mobility.crowd import CompiledTerm, option_kernel
+from mesa_mobility import CompiledTerm, option_kernel
 
 
 @option_kernel

@@ -2,7 +2,7 @@
 
 import math
 
-from mesa_mobility.crowd import CompiledTerm, option_kernel
+from mesa_mobility import CompiledTerm, option_kernel
 
 
 @option_kernel

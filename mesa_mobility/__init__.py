@@ -8,14 +8,19 @@ from __future__ import annotations
 
 from importlib import import_module
 from importlib.metadata import version
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mesa_mobility.kernel_cache import drop_stale_kernels
+
 if TYPE_CHECKING:
+    from mesa_mobility.batch import batch_run
     from mesa_mobility.crowd import (
         Candidates,
         Capability,
         CompiledTerm,
         CostTerm,
+        Deciding,
         Pedestrian,
         PedestrianModel,
         PedestrianType,
@@ -24,17 +29,20 @@ if TYPE_CHECKING:
         pair_kernel,
     )
     from mesa_mobility.errors import MobilityError
-    from mesa_mobility.floorplan import Exit, FloorPlan, Gate
+    from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Targets
     from mesa_mobility.mobility import MobilityMap, MotionGraph
     from mesa_mobility.results import Trajectories
 
 __version__ = version("mesa-mobility")
+
+drop_stale_kernels(Path(__file__).parent)
 
 _ROOMS = {
     "Candidates": "crowd",
     "Capability": "crowd",
     "CompiledTerm": "crowd",
     "CostTerm": "crowd",
+    "Deciding": "crowd",
     "Exit": "floorplan",
     "FloorPlan": "floorplan",
     "Gate": "floorplan",
@@ -45,7 +53,9 @@ _ROOMS = {
     "PedestrianModel": "crowd",
     "PedestrianType": "crowd",
     "TargetChoice": "crowd",
+    "Targets": "floorplan",
     "Trajectories": "results",
+    "batch_run": "batch",
     "option_kernel": "crowd",
     "pair_kernel": "crowd",
 }
@@ -55,6 +65,7 @@ __all__ = [
     "Capability",
     "CompiledTerm",
     "CostTerm",
+    "Deciding",
     "Exit",
     "FloorPlan",
     "Gate",
@@ -65,7 +76,9 @@ __all__ = [
     "PedestrianModel",
     "PedestrianType",
     "TargetChoice",
+    "Targets",
     "Trajectories",
+    "batch_run",
     "option_kernel",
     "pair_kernel",
 ]

@@ -15,6 +15,16 @@ from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import CrowdState
 
 
+def pairs_of(
+    rows: NDArray[np.int64], table: OptionTable, state: CrowdState, grid: Grid, rules: Rules
+) -> NDArray[np.int64]:
+    """(len(rows),) options of each pedestrian times its neighbours: the size of its pair arrays."""
+    clusters = state.cluster[rows]
+    counts = table.offsets[clusters + 1] - table.offsets[clusters]
+    offsets, _ = _all_neighbours(rows, grid, state.x, state.y, rules.search_radius)
+    return counts * np.maximum(np.diff(offsets), 1)
+
+
 def make_candidates(
     rows: NDArray[np.int64],
     table: OptionTable,
@@ -47,7 +57,7 @@ def make_candidates(
         positions=np.column_stack([state.x[rows], state.y[rows]]),
         facings=state.heading[rows],
         targets=np.column_stack([state.target_x[rows], state.target_y[rows]]),
-        preferred_speeds=state.preferred[rows],
+        preferred_speeds=np.where(np.isfinite(state.route[rows]), state.preferred[rows], 0.0),
         types=state.kind[rows].astype(np.int64),
         neighbour_offsets=neighbour_offsets,
         neighbours=neighbours,

@@ -28,7 +28,7 @@ class Candidates:
         positions: (b, 2) where they are now, metres.
         facings: (b,) where they face now, radians.
         targets: (b, 2) where they want to go, metres.
-        preferred_speeds: (b,) m/s.
+        preferred_speeds: (b,) m/s; 0 for somebody who has no way to go.
         types: (b,) index of the pedestrian type in ``model.pedestrian_types``.
         neighbour_offsets: (b + 1,) neighbours of pedestrian i are rows
             ``neighbour_offsets[i]:neighbour_offsets[i + 1]`` of the arrays below.

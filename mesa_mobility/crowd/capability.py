@@ -123,6 +123,8 @@ def _option_table(
 
 def stack_tables(capabilities: Sequence[Capability]) -> OptionTable:
     """One table for several capabilities, clusters and rows numbered through."""
+    if len(capabilities) == 1:
+        return capabilities[0].table
     tables = [capability.table for capability in capabilities]
     options = np.cumsum([0] + [len(table.x) for table in tables])
     clusters = np.cumsum([0] + [capability.n_clusters for capability in capabilities])

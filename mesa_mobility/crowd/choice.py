@@ -63,7 +63,7 @@ def decide(
     extra: NDArray[np.float64],
     extra_offsets: NDArray[np.int64],
     rules: Rules,
-) -> None:
+) -> int:
     """Decide for the pedestrians in ``rows``, one after the other, and commit them.
 
     Costs see the crowd as it was when the frame began; collisions see what
@@ -82,6 +82,9 @@ def decide(
             pedestrian in turn, or empty.
         extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
         rules: what holds for everybody.
+
+    Returns:
+        -1, or the pedestrian for whom a cost was not a number; nobody after it has decided.
     """
     velocity = np.empty((len(state.x), 2))
     velocity[:, 0] = state.vx
@@ -128,6 +131,8 @@ def decide(
         if eager:
             for k in range(size):
                 key[k] += pair_cost(i, item[k], table, state, velocity, near, terms)
+        if not np.isfinite(key).all():
+            return i
         for root in range(size // 2 - 1, -1, -1):
             _sift_down(key, item, size, root)
         chosen = -1
@@ -149,6 +154,8 @@ def decide(
                 leaving[o - first] = gone
                 if not eager:
                     key[0] += pair_cost(i, o, table, state, velocity, near, terms)
+                    if not np.isfinite(key[0]):
+                        return i
             if size > 0:
                 _sift_down(key, item, size, 0)
 
@@ -160,3 +167,4 @@ def decide(
         else:
             standing = rules.standing[state.kind[i]]
             fall_back(i, frame, state, walls, around, near, exits_near, rules.cores, standing)
+    return -1

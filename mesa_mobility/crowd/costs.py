@@ -26,6 +26,12 @@ class Terms(NamedTuple):
 
 
 @njit(cache=True)
+def preferred_now(i: int, state: CrowdState) -> float:
+    """Preferred speed of pedestrian i, m/s: none for somebody who has no way to go."""
+    return state.preferred[i] if state.route[i] < np.inf else 0.0
+
+
+@njit(cache=True)
 def option_costs(
     i: int,
     options: NDArray[np.int64],
@@ -36,6 +42,7 @@ def option_costs(
 ) -> None:
     """Weighted sum of the option terms for some options of pedestrian i, added to ``out``."""
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+    preferred = preferred_now(i, state)
     for k in range(len(options)):
         o = options[k]
         x = state.x[i] + c * table.x[o] - s * table.y[o]
@@ -45,7 +52,7 @@ def option_costs(
             out[k] += terms.option_weight[t] * call_kernel(
                 terms.option_address[t], x, y, state.heading[i] + table.heading[o],
                 table.displacement[o], duration, table.displacement[o] / duration,
-                state.target_x[i], state.target_y[i], state.preferred[i],
+                state.target_x[i], state.target_y[i], preferred,
                 terms.option_parameters[t],
             )  # fmt: skip
 

@@ -9,7 +9,7 @@ plugged in: a new kernel compiles alone, and nothing else is compiled again.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from llvmlite import ir
@@ -33,7 +33,12 @@ class CostKernel:
 
     @cached_property
     def _compiled(self) -> Any:
-        return cfunc(self._signature, cache=True)(self.function)
+        # As in NumPy, a division by zero gives inf or nan, which the choice refuses.
+        compile_ = partial(cfunc, self._signature, error_model="numpy")
+        try:
+            return compile_(cache=True)(self.function)
+        except RuntimeError:  # written where there is no file to keep a cache beside
+            return compile_()(self.function)
 
     @property
     def address(self) -> int:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.batch import make_candidates
 from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.capability import FRAME_SECONDS, Capability, stack_tables
+from mesa_mobility.crowd.capability import FRAME_SECONDS, Capability
 from mesa_mobility.crowd.choice import decide
 from mesa_mobility.crowd.motion import move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
@@ -22,12 +22,13 @@ from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.placing import Newcomer, check_column, check_places, face, place
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.recorder import Recorder
+from mesa_mobility.crowd.repertoire import repertoire
+from mesa_mobility.crowd.replan import stop_where_blocked, too_close
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.screen import make_screen
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import CrowdState, empty_state, grown
-from mesa_mobility.crowd.summary import summarise
+from mesa_mobility.crowd.summary import mean_speed, summarise
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
 from mesa_mobility.crowd.terms import CostTerm
@@ -87,8 +88,8 @@ class PedestrianModel(mesa.Model):
         rng: Any = None,
     ) -> None:
         super().__init__(rng=rng)
-        if frames_per_step < 1:
-            raise ModelError(f"frames_per_step: got {frames_per_step}, expected 1 or more")
+        if not isinstance(frames_per_step, int) or frames_per_step < 1:
+            raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
         rules = preset_named(preset)
         if pedestrian_types is None:
             if not isinstance(mobility_map, MobilityMap):
@@ -101,8 +102,8 @@ class PedestrianModel(mesa.Model):
         self.preset = rules.name
         self.floor_plan = floor_plan
         self.pedestrian_types = tuple(pedestrian_types)
-        self.capabilities = tuple(
-            Capability(kind.mobility_map, rules.durations) for kind in self.pedestrian_types
+        self._repertoire = repertoire(
+            tuple(kind.mobility_map for kind in self.pedestrian_types), rules.durations
         )
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
         self.target_choice = target_choice or rules.make_target_choice()
@@ -112,21 +113,16 @@ class PedestrianModel(mesa.Model):
         self.crowd: CrowdState = empty_state(64)
         self.count = 0
 
-        counts = [capability.n_clusters for capability in self.capabilities]
-        self.first_cluster = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int32)
-        self._table = stack_tables(self.capabilities)
-        self._screen = make_screen(self._table)
-        reach = max(capability.longest_reach for capability in self.capabilities)
-        extent = max(capability.longest_extent for capability in self.capabilities)
         core = max(kind.core_radius for kind in self.pedestrian_types)
-        standing = [c.standing for c in self.capabilities] + self.first_cluster
+        reach = self._repertoire.reach
         self._rules = Rules(
-            search_radius=reach + extent + 2.0 * core + 0.01,
+            search_radius=reach + self._repertoire.extent + 2.0 * core + 0.01,
             cores=rules.cores,
-            standing=standing.astype(np.int32),
-            first_option=np.cumsum([0] + [len(c.table.x) for c in self.capabilities])[:-1],
+            standing=self._repertoire.standing,
+            first_option=self._repertoire.first_option,
         )
         self._site = Site(floor_plan, reach=reach + core + 0.02, body=core)
+        self._plan_version = floor_plan.version
         x0, y0, x1, y1 = floor_plan.bounds
         self.space = CrowdSpace(
             # Whoever crosses an exit ends up a step outside.
@@ -138,15 +134,15 @@ class PedestrianModel(mesa.Model):
         self._agent_of: dict[int, Pedestrian] = {}
         self._stall_watch = StallWatch()
         self.stalled = False
-        self.last_left = 0.0
+        self.last_left: float | None = None
         self.occupancy: list[tuple[float, int]] = []
         self._walked = 0.0
         self.datacollector = DataCollector(
             model_reporters={
-                "elapsed": lambda model: model.elapsed,
-                "inside": lambda model: model.inside,
-                "mean_speed": lambda model: model.mean_speed(),
-                "fallback_time_share": lambda model: model.fallback_time_share,
+                "elapsed": "elapsed",
+                "inside": "inside",
+                "mean_speed": mean_speed,
+                "fallback_time_share": "fallback_time_share",
             }
         )
 
@@ -171,7 +167,9 @@ class PedestrianModel(mesa.Model):
             kind: index of their type in ``pedestrian_types``.
 
         Raises:
-            ModelError: positions off the floor, or arrays of other lengths.
+            ModelError: positions off the floor or where somebody is or will be, an unknown type,
+                or arrays of other lengths.
+            FloorPlanError: an unknown exit, or no way from a position to any exit.
         """
         points = check_places(positions, self.floor_plan)
         n = len(points)
@@ -193,6 +191,14 @@ class PedestrianModel(mesa.Model):
             standing=int(self._rules.standing[kind]),
             destination=self._site.destination(None if exits is None else tuple(exits)),
         )
+        if self._rules.cores:
+            where, who = too_close(points, ptype.core_radius, self.frame, self._rows, self.crowd)
+            if where >= 0:
+                other = "another newcomer" if who < 0 else f"where pedestrian {who} is or will be"
+                raise ModelError(
+                    f"pedestrian {where} at {points[where].tolist()}: too close to {other}, "
+                    "expected room for both bodies"
+                )
         rows = np.arange(self.count, self.count + n)
         if self.count + n > len(self.crowd.x):
             self.crowd = grown(self.crowd, max(self.count + n, 2 * len(self.crowd.x)))
@@ -204,6 +210,7 @@ class PedestrianModel(mesa.Model):
         people = [Pedestrian(self, int(row)) for row in rows]
         self._agent_of.update(zip(rows.tolist(), people, strict=True))
         self._write_space()
+        self.running = True
         return people
 
     def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
@@ -215,6 +222,16 @@ class PedestrianModel(mesa.Model):
             del self._agent_of[person.row]
         self.space.remove_agents(leaving)
         self._rows = self._rows[self.crowd.active[self._rows]]
+
+    @property
+    def capabilities(self) -> tuple[Capability, ...]:
+        """What the body of each pedestrian type can do."""
+        return self._repertoire.capabilities
+
+    @property
+    def first_cluster(self) -> NDArray[np.int32]:
+        """(types,) number in ``crowd.cluster`` of the first cluster of each type."""
+        return self._repertoire.first_cluster
 
     @property
     def rows(self) -> NDArray[np.int64]:
@@ -248,14 +265,15 @@ class PedestrianModel(mesa.Model):
         rows = self._rows
         for _ in range(self.frames_per_step):
             rows = self._advance(rows)
+            if len(rows) == 0:
+                break  # the last has left: this step ends with it
         if len(rows) < len(self._rows):
             stay = self.crowd.active[self._rows]
             self.remove_pedestrians([self._agent_of[int(row)] for row in self._rows[~stay]])
         self._write_space()
         self.stalled = self._stall_watch.stalled(self.elapsed, self.crowd.route[self._rows])
         self.datacollector.collect(self)
-        if self.inside == 0:
-            self.running = False
+        self.running = self.inside > 0 and not self.stalled
 
     def run(
         self,
@@ -269,10 +287,11 @@ class PedestrianModel(mesa.Model):
             progress: called as ``progress(elapsed, inside)`` each simulated second.
         """
         told = 0
+        self._stall_watch = StallWatch()
+        self.stalled = False
+        self.running = True
         while self.running and (max_seconds is None or self.elapsed < max_seconds - 1e-9):
             self.step()
-            if self.stalled:
-                break
             if progress is not None and int(self.elapsed) > told:
                 told = int(self.elapsed)
                 progress(self.elapsed, self.inside)
@@ -282,6 +301,12 @@ class PedestrianModel(mesa.Model):
             self.occupancy.append((0.0, len(rows)))
             if self.recorder is not None:
                 self.recorder.add(0, rows, self.crowd)
+        if self._plan_version != self.floor_plan.version:
+            self._plan_version = self.floor_plan.version
+            stop_where_blocked(
+                rows, self.frame, self._repertoire.table, self.crowd, self._site.surroundings,
+                self._rules,
+            )  # fmt: skip
         deciding = rows[self.crowd.end[rows] <= self.frame]
         if len(deciding):
             self._decide(deciding, rows)
@@ -304,11 +329,18 @@ class PedestrianModel(mesa.Model):
         order = deciding[np.lexsort((deciding, targets.distances))]
         grid = build_grid(rows, state.x, state.y)
         compiled, others = compile_terms(self.terms)
-        extra, extra_offsets = extra_costs(others, order, self._table, state, grid, self._rules)
-        decide(
-            order, self.frame, self._table, self._screen, state, grid, self._site.surroundings,
-            compiled, extra, extra_offsets, self._rules,
+        table, screen = self._repertoire.table, self._repertoire.screen
+        extra, extra_offsets = extra_costs(others, order, table, state, grid, self._rules)
+        failed = decide(
+            order, self.frame, table, screen, state, grid, self._site.surroundings, compiled,
+            extra, extra_offsets, self._rules,
         )  # fmt: skip
+        if failed >= 0:
+            names = ", ".join(term.name for term in self.terms)
+            raise ModelError(
+                f"cost of an option of pedestrian {failed}: not a number, expected finite numbers "
+                f"from each of the behaviours {names}"
+            )
 
     def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
         state = self.crowd
@@ -322,13 +354,20 @@ class PedestrianModel(mesa.Model):
                 site=self._site,
             )
         )
-        state.target_x[rows], state.target_y[rows] = targets.points.T
-        state.route[rows] = targets.distances
+        points, distances = np.asarray(targets.points), np.asarray(targets.distances)
+        n = len(rows)
+        if points.shape != (n, 2) or distances.shape != (n,) or not np.isfinite(points).all():
+            raise ModelError(
+                f"behaviour {self.target_choice.name!r}: gave points of shape {points.shape} and "
+                f"distances of shape {distances.shape}, expected ({n}, 2) finite ones and ({n},)"
+            )
+        state.target_x[rows], state.target_y[rows] = points.T
+        state.route[rows] = distances
         return targets
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows``, were they to decide here and now."""
-        return make_candidates(rows, self._table, self.crowd, self._grid(), self._rules)
+        return make_candidates(rows, self._repertoire.table, self.crowd, self._grid(), self._rules)
 
     def _grid(self) -> Grid:
         return build_grid(self._rows, self.crowd.x, self.crowd.y)
@@ -340,13 +379,6 @@ class PedestrianModel(mesa.Model):
             positions[:, 1] = self.crowd.y[self._rows]
 
     # -- measures -------------------------------------------------------------------------------
-
-    def mean_speed(self) -> float:
-        """Mean speed of the movements under way, m/s; 0 if nobody is inside."""
-        rows = self._rows
-        if len(rows) == 0:
-            return 0.0
-        return float(np.hypot(self.crowd.vx[rows], self.crowd.vy[rows]).mean())
 
     @property
     def mean_speed_so_far(self) -> float:

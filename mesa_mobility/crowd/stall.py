@@ -28,6 +28,7 @@ class StallWatch:
         """
         finite = routes[np.isfinite(routes)]
         inside, with_way, left = len(routes), len(finite), float(finite.sum())
-        if (inside, with_way) != self._mark[:2] or left < self._mark[2] - STALL_PROGRESS:
+        # More way to go is news as well: a door closed, and people are on another way.
+        if (inside, with_way) != self._mark[:2] or abs(left - self._mark[2]) > STALL_PROGRESS:
             self._since, self._mark = elapsed, (inside, with_way, left)
         return inside > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.batch import make_candidates
+from mesa_mobility.crowd.batch import make_candidates, pairs_of
 from mesa_mobility.crowd.capability import OptionTable
 from mesa_mobility.crowd.costs import Terms
 from mesa_mobility.crowd.kernels import PairKernel
@@ -17,8 +17,8 @@ from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
 from mesa_mobility.errors import ModelError
 
-BATCH = 256
-"""Pedestrians whose options are laid out at once for terms in NumPy; bounds memory."""
+BATCH_PAIRS = 2_000_000
+"""Pairs of an option and a neighbour laid out at once for terms in NumPy; bounds memory."""
 
 
 def compile_terms(terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
@@ -68,8 +68,9 @@ def extra_costs(
         return np.empty(0), np.zeros(len(rows) + 1, dtype=np.int64)
     parts = []
     counts = []
-    for start in range(0, len(rows), BATCH):
-        candidates = make_candidates(rows[start : start + BATCH], table, state, grid, rules)
+    batch = np.cumsum(pairs_of(rows, table, state, grid, rules)) // BATCH_PAIRS
+    for part in np.split(rows, np.flatnonzero(np.diff(batch)) + 1):
+        candidates = make_candidates(part, table, state, grid, rules)
         total = np.zeros(len(candidates))
         for term in terms:
             cost = np.asarray(term.cost(candidates), dtype=np.float64)

@@ -28,7 +28,7 @@ HEADING_STEP = 0.0002
 """... and of 0.2 milliradians, an eightieth of a degree."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MobilityMap:
     """Movement options of all clusters of one pedestrian type.
 
@@ -68,6 +68,11 @@ class MobilityMap:
 
     def __post_init__(self) -> None:
         check_map(self)
+        for name, array in vars(self).items():
+            if isinstance(array, np.ndarray):  # maps are shared between models
+                view = array.view()
+                view.setflags(write=False)
+                object.__setattr__(self, name, view)
 
     @property
     def n_clusters(self) -> int:
@@ -137,9 +142,9 @@ class MobilityMap:
         Raises:
             MapError: the file is missing, damaged, of another version or inconsistent.
         """
-        from mesa_mobility.mobility.mapfile import read_map, shipped_map_path
+        from mesa_mobility.mobility.mapfile import read_map_once, shipped_map_path
 
-        return read_map(shipped_map_path("able_bodied") if path is None else path)
+        return read_map_once(shipped_map_path("able_bodied") if path is None else path)
 
 
 def check_map(map_: MobilityMap) -> None:
@@ -148,6 +153,10 @@ def check_map(map_: MobilityMap) -> None:
     Raises:
         MapError: naming the array, what it holds and what was expected.
     """
+    for name in ("sizes", "durations", "paths"):
+        if getattr(map_, name).ndim != (2 if name == "paths" else 1):
+            shape = getattr(map_, name).shape
+            raise MapError(f"mobility map array {name!r}: shape {shape}, expected a row an entry")
     k, m, p = map_.n_clusters, map_.n_options, len(map_.paths)
     if k < 1 or m < 1:
         raise MapError(
@@ -162,6 +171,7 @@ def check_map(map_: MobilityMap) -> None:
         "mean_poses": (k, 9, 3),
         "centres": (k, 36),
         "mean_speeds": (k,),
+        "sizes": (k,),
     }
     for name, shape in shapes.items():
         found = getattr(map_, name).shape
@@ -188,8 +198,21 @@ def check_map(map_: MobilityMap) -> None:
             f"mobility map option {row}: {int(samples[row])} samples for "
             f"{int(map_.durations[row])} frames, expected one each 3 frames"
         )
-    if not isinstance(map_.metadata.get("pedestrian_type"), str):
+    _check_metadata(map_.metadata)
+
+
+def _check_metadata(metadata: Mapping[str, Any]) -> None:
+    if not isinstance(metadata.get("pedestrian_type"), str):
         raise MapError("mobility map metadata: no 'pedestrian_type', expected a name")
+    rate = metadata.get("frame_rate_hz", 30.0)
+    if rate != 30.0:
+        raise MapError(f"mobility map metadata: 'frame_rate_hz' is {rate!r}, expected 30")
+    body = metadata.get("body", {})
+    radius = body.get("core_radius_m", 0.16) if isinstance(body, Mapping) else None
+    if isinstance(radius, bool) or not isinstance(radius, int | float) or not 0 < radius < 1:
+        raise MapError(
+            "mobility map metadata: expected 'body' with a 'core_radius_m' between 0 and 1 m"
+        )
 
 
 def _check_offsets(name: str, offsets: NDArray[np.int64], total: int) -> None:

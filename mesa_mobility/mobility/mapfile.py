@@ -13,6 +13,7 @@ import json
 import os
 import zipfile
 import zlib
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -112,6 +113,25 @@ def write_map(map_: MobilityMap, path: str | Path) -> None:
         temporary.unlink(missing_ok=True)
 
 
+def read_map_once(path: str | Path) -> MobilityMap:
+    """Read a map file, or give the map that was read from it before if it has not changed.
+
+    Raises:
+        MapError: as ``read_map``.
+    """
+    path = Path(path)
+    try:
+        status = path.stat()
+    except OSError:
+        return read_map(path)  # which says what is wrong
+    return _read_version(path.resolve(), status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=4)
+def _read_version(path: Path, changed: int, size: int) -> MobilityMap:
+    return read_map(path)
+
+
 def read_map(path: str | Path) -> MobilityMap:
     """Read and check a map file.
 
@@ -192,9 +212,9 @@ def _decode(arrays: dict[str, NDArray[Any]]) -> MobilityMap:
 def _decode_metadata(raw: NDArray[np.uint8]) -> dict[str, Any]:
     try:
         metadata = json.loads(raw.tobytes().decode())
-    except ValueError:
+    except (ValueError, RecursionError):
         raise MapError("array 'metadata': not JSON, expected an object") from None
     version = metadata.pop("format_version", None) if isinstance(metadata, dict) else None
-    if version != FORMAT_VERSION:
+    if version != FORMAT_VERSION or isinstance(version, bool):
         raise MapError(f"format version {version!r}, expected {FORMAT_VERSION}")
     return metadata

@@ -36,7 +36,7 @@ TRANSITION_PENALTY = 1.0
 """Fixed cost of leaving the recording, in units of the transition threshold."""
 
 BUDGET = 3.3
-"""Most that a path may cost: two transitions of any quality that is kept, or three good ones."""
+"""Most that a path may cost: two transitions of some quality, or three that hardly show."""
 
 CELL = (0.10, 0.10, np.deg2rad(15.0))
 """Cell of thinning: metres, metres, radians of the end point and end heading."""

@@ -1,0 +1,67 @@
+"""What the bodies of all types in a model can do, stacked for the compiled kernels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.capability import Capability, OptionTable, stack_tables
+from mesa_mobility.crowd.screen import Screen, make_screen
+from mesa_mobility.mobility import MobilityMap
+
+
+@dataclass(frozen=True, eq=False)
+class Repertoire:
+    """Capabilities of several types; clusters and options are numbered through.
+
+    Attributes:
+        capabilities: one for each type.
+        table: their options.
+        screen: where these are at the times of screening.
+        first_cluster: (types,) number of each type's first cluster.
+        first_option: (types,) row of each type's first option.
+        standing: (types,) number of each type's standing cluster.
+        reach: farthest that any option leads, metres.
+        extent: greatest distance between two places of one option, metres.
+    """
+
+    capabilities: tuple[Capability, ...]
+    table: OptionTable
+    screen: Screen
+    first_cluster: NDArray[np.int32]
+    first_option: NDArray[np.int64]
+    standing: NDArray[np.int32]
+    reach: float
+    extent: float
+
+
+@lru_cache(maxsize=4)
+def repertoire(maps: tuple[MobilityMap, ...], durations: tuple[int, ...]) -> Repertoire:
+    """The repertoire of these maps; models with the same maps share it.
+
+    Args:
+        maps: one for each type.
+        durations: option durations in frames.
+
+    Raises:
+        ModelError: a cluster has no option of these durations.
+    """
+    own = {map_: Capability(map_, durations) for map_ in dict.fromkeys(maps)}
+    capabilities = tuple(own[map_] for map_ in maps)
+    table = stack_tables(capabilities)
+    clusters = np.cumsum([0] + [each.n_clusters for each in capabilities])[:-1]
+    options = np.cumsum([0] + [len(each.table.x) for each in capabilities])[:-1]
+    standing = clusters + [each.standing for each in capabilities]
+    return Repertoire(
+        capabilities=capabilities,
+        table=table,
+        screen=make_screen(table),
+        first_cluster=clusters.astype(np.int32),
+        first_option=options.astype(np.int64),
+        standing=standing.astype(np.int32),
+        reach=max(each.longest_reach for each in capabilities),
+        extent=max(each.longest_extent for each in capabilities),
+    )

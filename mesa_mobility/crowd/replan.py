@@ -1,0 +1,131 @@
+"""What happens to movements under way when walls come, go, open or close."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.capability import OptionTable
+from mesa_mobility.crowd.collision import (
+    Surroundings,
+    crosses_exit,
+    hits_neighbour,
+    hits_wall,
+    near_walls,
+)
+from mesa_mobility.crowd.rules import Rules
+from mesa_mobility.crowd.state import MAX_KNOTS, NO_OPTION, CrowdState
+
+
+@njit(cache=True)
+def stop_where_blocked(
+    rows: NDArray[np.int64],
+    frame: int,
+    table: OptionTable,
+    state: CrowdState,
+    around: Surroundings,
+    rules: Rules,
+) -> int:
+    """Stop those whose way is no longer free, and those who would then run into them.
+
+    They stand where they are and decide again in this frame.  Returns their number.
+    """
+    reach = table.reach.max()
+    stopped = np.zeros(len(rows), np.bool_)
+    newly = np.empty(len(rows), np.int64)
+    count = 0
+    path = np.empty((MAX_KNOTS, 3))
+    for a in range(len(rows)):
+        i = rows[a]
+        if state.end[i] <= frame:
+            continue
+        pieces = _remaining(i, frame, state, path)
+        walked = pieces
+        if state.gone[i] >= 0:
+            piece, _ = crosses_exit(path, pieces, around, state.destination[i])
+            walked = pieces if piece < 0 else piece + 1
+        walls = near_walls(
+            around, state.x[i], state.y[i], state.destination[i], reach + state.core[i] + 0.01
+        )
+        if hits_wall(path, walked, walls, state.core[i], reach):
+            stopped[a] = True
+            newly[count] = i
+            count += 1
+    total = count
+    while count > 0 and rules.cores:
+        for b in range(count):
+            _stop(newly[b], frame, state, rules)
+        # Standing where they are, they may be in the way of others: these stop as well.
+        standing = newly[:count].copy()
+        count = 0
+        still = np.empty((2, 3))
+        for a in range(len(rows)):
+            j = rows[a]
+            if stopped[a] or state.end[j] <= frame:
+                continue
+            for i in standing:
+                still[:, 0], still[:, 1], still[:, 2] = state.x[i], state.y[i], state.heading[i]
+                if hits_neighbour(still, 1, 1, frame, -1, state, j, state.core[i] + state.core[j]):
+                    stopped[a] = True
+                    newly[count] = j
+                    count += 1
+                    break
+        total += count
+    for b in range(count):
+        _stop(newly[b], frame, state, rules)
+    return total
+
+
+@njit(cache=True)
+def _remaining(i: int, frame: int, state: CrowdState, path: NDArray[np.float64]) -> int:
+    """Write where pedestrian i is and the knots to come into ``path``; return the pieces."""
+    path[0, 0], path[0, 1], path[0, 2] = state.x[i], state.y[i], state.heading[i]
+    first = (frame - state.start[i]) // state.spacing[i] + 1
+    pieces = state.knots[i] - first
+    for k in range(pieces):
+        path[k + 1] = state.path[i, first + k]
+    return pieces
+
+
+@njit(cache=True)
+def _stop(i: int, frame: int, state: CrowdState, rules: Rules) -> None:
+    state.option[i], state.gone[i] = NO_OPTION, -1
+    state.start[i] = state.end[i] = frame
+    state.spacing[i] = state.knots[i] = 1
+    state.cluster[i] = rules.standing[state.kind[i]]
+    state.vx[i] = state.vy[i] = 0.0
+    state.path[i, 0, 0], state.path[i, 0, 1] = state.x[i], state.y[i]
+    state.path[i, 0, 2] = state.heading[i]
+    state.box[i, 0] = state.box[i, 2] = state.x[i]
+    state.box[i, 1] = state.box[i, 3] = state.y[i]
+
+
+@njit(cache=True)
+def too_close(
+    points: NDArray[np.float64],
+    core: float,
+    frame: int,
+    rows: NDArray[np.int64],
+    state: CrowdState,
+) -> tuple[int, int]:
+    """First of some places where nobody can appear, and who is or will come too near to it.
+
+    The latter is a row of the crowd, or -1 for one of the places before it; (-1, -1) if all
+    of them are free.
+    """
+    still = np.zeros((2, 3))
+    for k in range(len(points)):
+        for m in range(k):
+            dx, dy = points[k, 0] - points[m, 0], points[k, 1] - points[m, 1]
+            if dx * dx + dy * dy < 4.0 * core * core:
+                return k, -1
+        still[:, 0], still[:, 1] = points[k, 0], points[k, 1]
+        for j in rows:
+            c = core + state.core[j]
+            dx, dy = points[k, 0] - state.x[j], points[k, 1] - state.y[j]
+            if dx * dx + dy * dy < c * c or (
+                state.end[j] > frame and hits_neighbour(still, 1, 1, frame, -1, state, j, c)
+            ):
+                return k, j
+    return -1, -1
