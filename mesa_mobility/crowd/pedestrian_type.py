@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility.map import CORE_RADIUS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +40,7 @@ class PedestrianType:
             object.__setattr__(self, "name", self.mobility_map.pedestrian_type)
         if self.core_radius == 0.0:
             body = self.mobility_map.metadata.get("body", {})
-            object.__setattr__(self, "core_radius", float(body.get("core_radius_m", 0.16)))
+            object.__setattr__(self, "core_radius", float(body.get("core_radius_m", CORE_RADIUS)))
         if not 0.0 < self.core_radius < 1.0:
             raise ModelError(
                 f"type {self.name!r}: core_radius {self.core_radius}, expected 0 to 1 m"

@@ -23,8 +23,8 @@ def summarise(model: PedestrianModel) -> dict[str, Any]:
     Returns:
         ``model``, ``preset``, ``pedestrians``, ``simulated_s``, ``egress_s`` (None while anybody is
         inside, or where nobody ever was), ``left_inside``, ``stalled``, ``decisions``,
-        ``fallback_decision_share``, ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and
-        ``occupancy`` ([[t, inside], ...] each second).
+        ``fallback_decision_share``, ``fallback_time_share``, ``mean_speed_mps``
+        (over all pedestrian-time) and ``occupancy`` ([[t, inside], ...] each second).
     """
     return {
         "model": type(model).__name__,

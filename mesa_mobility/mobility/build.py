@@ -13,7 +13,7 @@ from mesa_mobility.mobility import graph as graphs
 from mesa_mobility.mobility import paths
 from mesa_mobility.mobility.clusters import STANDING, Clusters, cluster_poses
 from mesa_mobility.mobility.graph import MotionGraph, motion_graph
-from mesa_mobility.mobility.map import MobilityMap
+from mesa_mobility.mobility.map import CORE_RADIUS, MobilityMap
 from mesa_mobility.mobility.mapfile import quantise_costs, quantise_paths
 from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
 from mesa_mobility.mobility.poses import FRAME_RATE, pose_table
@@ -23,15 +23,6 @@ DEFAULT_CLUSTERS = 350
 
 STAND_FRAMES = 12
 """Duration of the stand option: 1.5 s of standing would be absorbing, 0.4 s is not."""
-
-CORE_RADIUS = 0.16
-"""Radius in metres of the disc that no other body enters.
-
-In real queues the closest twentieth of neighbours stand 0.27 to 0.30 m apart.  A little
-more than half of that lets as many people through a door as were measured: 1.38, 1.95 and
-2.51 a second at 0.7, 0.9 and 1.2 m, against 1.41, 1.85 and 2.52 by the pooled fit
-J = 2.233 b - 0.155 of bottleneck experiments; with 0.15 m it is 2.95 at 1.2 m.
-"""
 
 Progress = Callable[[str, int, int], None]
 

@@ -21,6 +21,15 @@ from mesa_mobility.errors import MapError
 SAMPLE_SECONDS = 0.1
 """Time between two samples of a stored path: three frames at 30 Hz."""
 
+CORE_RADIUS = 0.16
+"""Radius in metres of the disc that no other body enters, where a map does not say.
+
+In real queues the closest twentieth of neighbours stand 0.27 to 0.30 m apart.  A little
+more than half of that lets as many people through a door as were measured: 1.38, 1.95 and
+2.51 a second at 0.7, 0.9 and 1.2 m, against 1.41, 1.85 and 2.52 by the pooled fit
+J = 2.233 b - 0.155 of bottleneck experiments; with 0.15 m it is 2.95 at 1.2 m.
+"""
+
 POSITION_STEP = 0.0005
 """Paths are stored in steps of half a millimetre ..."""
 
@@ -208,7 +217,7 @@ def _check_metadata(metadata: Mapping[str, Any]) -> None:
     if rate != 30.0:
         raise MapError(f"mobility map metadata: 'frame_rate_hz' is {rate!r}, expected 30")
     body = metadata.get("body", {})
-    radius = body.get("core_radius_m", 0.16) if isinstance(body, Mapping) else None
+    radius = body.get("core_radius_m", CORE_RADIUS) if isinstance(body, Mapping) else None
     if isinstance(radius, bool) or not isinstance(radius, int | float) or not 0 < radius < 1:
         raise MapError(
             "mobility map metadata: expected 'body' with a 'core_radius_m' between 0 and 1 m"

@@ -130,7 +130,7 @@ def test_data_collected_of_agents_are_not_changed_by_later_steps(model):
 def test_seeds_as_mesa_takes_them():
     def speeds(rng):
         model = model_of(corridor(), strider(), rng=rng)
-        return [put(model, 1.0, 1.0).preferred_speed for _ in range(3)]
+        return [put(model, 1.0 + k, 1.0).preferred_speed for k in range(3)]
 
     assert speeds(5) == speeds(5) != speeds(6)
     assert speeds(np.random.default_rng(5)) == speeds(np.random.default_rng(5))

@@ -55,7 +55,7 @@ def test_one_number_stands_for_everybody():
 
 
 def test_more_people_than_the_arrays_began_with():
-    model = model_of(corridor(), strider())
+    model = model_of(corridor(), strider(), preset="paper")  # bodies may overlap there
     first = model.add_pedestrians(places(40))
     before = [p.position.tolist() for p in first]
     model.add_pedestrians(places(170, x=1.25))
@@ -144,7 +144,9 @@ def test_positions_handed_out_are_copies():
 @settings(max_examples=25, deadline=None)
 def test_rows_agents_and_space_agree_whatever_happens(actions, seed):
     rng = np.random.default_rng(seed)
-    model = model_of(corridor(length=8.0), strider(), rng=0, frames_per_step=9, record=False)
+    model = model_of(
+        corridor(length=8.0), strider(), rng=0, frames_per_step=9, record=False, preset="paper"
+    )
     known: dict[int, object] = {}
     for action in actions:
         if action == "add":
