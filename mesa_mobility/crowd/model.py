@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.batch import make_candidates
 from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.capability import FRAME_SECONDS, Capability
+from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.choice import decide
 from mesa_mobility.crowd.motion import move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
@@ -28,9 +28,9 @@ from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import CrowdState, empty_state, grown
-from mesa_mobility.crowd.summary import mean_speed, summarise
+from mesa_mobility.crowd.summary import CrowdMeasures
 from mesa_mobility.crowd.surroundings import Site
-from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
+from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
 from mesa_mobility.crowd.terms import CostTerm
 from mesa_mobility.crowd.terms_table import compile_terms, extra_costs
 from mesa_mobility.errors import ModelError
@@ -38,7 +38,7 @@ from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.mobility import MobilityMap
 
 
-class PedestrianModel(mesa.Model):
+class PedestrianModel(CrowdMeasures, mesa.Model):
     """Pedestrians on a floor plan, driven by recorded movement.
 
     Concrete models build a floor plan, call this constructor and then
@@ -141,7 +141,7 @@ class PedestrianModel(mesa.Model):
             model_reporters={
                 "elapsed": "elapsed",
                 "inside": "inside",
-                "mean_speed": mean_speed,
+                "mean_speed": "mean_speed",
                 "fallback_time_share": "fallback_time_share",
             }
         )
@@ -245,21 +245,6 @@ class PedestrianModel(mesa.Model):
 
     # -- time -----------------------------------------------------------------------------------
 
-    @property
-    def frame_rate(self) -> float:
-        """Frames a second."""
-        return 1.0 / FRAME_SECONDS
-
-    @property
-    def elapsed(self) -> float:
-        """Simulated seconds since the start."""
-        return self.frame * FRAME_SECONDS
-
-    @property
-    def inside(self) -> int:
-        """People inside."""
-        return len(self._rows)
-
     def step(self) -> None:
         """Advance ``frames_per_step`` frames."""
         rows = self._rows
@@ -344,7 +329,8 @@ class PedestrianModel(mesa.Model):
 
     def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
         state = self.crowd
-        targets = self.target_choice.targets(
+        targets = ask(
+            self.target_choice,
             Deciding(
                 pedestrians=rows,
                 positions=np.column_stack([state.x[rows], state.y[rows]]),
@@ -352,17 +338,10 @@ class PedestrianModel(mesa.Model):
                 types=state.kind[rows].astype(np.int64),
                 elapsed=self.elapsed,
                 site=self._site,
-            )
+            ),
         )
-        points, distances = np.asarray(targets.points), np.asarray(targets.distances)
-        n = len(rows)
-        if points.shape != (n, 2) or distances.shape != (n,) or not np.isfinite(points).all():
-            raise ModelError(
-                f"behaviour {self.target_choice.name!r}: gave points of shape {points.shape} and "
-                f"distances of shape {distances.shape}, expected ({n}, 2) finite ones and ({n},)"
-            )
-        state.target_x[rows], state.target_y[rows] = points.T
-        state.route[rows] = distances
+        state.target_x[rows], state.target_y[rows] = targets.points.T
+        state.route[rows] = targets.distances
         return targets
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
@@ -377,27 +356,3 @@ class PedestrianModel(mesa.Model):
             positions = self.space.agent_positions
             positions[:, 0] = self.crowd.x[self._rows]
             positions[:, 1] = self.crowd.y[self._rows]
-
-    # -- measures -------------------------------------------------------------------------------
-
-    @property
-    def mean_speed_so_far(self) -> float:
-        """Mean speed over all pedestrian-time so far, m/s."""
-        total = int(self.crowd.active_frames.sum())
-        return self._walked / total if total else 0.0
-
-    @property
-    def fallback_time_share(self) -> float:
-        """Share of pedestrian-time spent in the fallback."""
-        total = int(self.crowd.active_frames.sum())
-        return float(self.crowd.fallback_frames.sum()) / total if total else 0.0
-
-    @property
-    def fallback_decision_share(self) -> float:
-        """Share of decisions that ended in the fallback."""
-        total = int(self.crowd.decisions.sum())
-        return float(self.crowd.fallbacks.sum()) / total if total else 0.0
-
-    def summary(self) -> dict[str, Any]:
-        """Figures of the run so far, ready for JSON."""
-        return summarise(self)

@@ -2,41 +2,90 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
-
-def mean_speed(model: PedestrianModel) -> float:
-    """Mean speed of the movements under way, m/s; 0 if nobody is inside."""
-    if model.inside == 0:
-        return 0.0
-    return float(np.hypot(model.crowd.vx[model.rows], model.crowd.vy[model.rows]).mean())
+from mesa_mobility.crowd.capability import FRAME_SECONDS
+from mesa_mobility.crowd.state import CrowdState
 
 
-def summarise(model: PedestrianModel) -> dict[str, Any]:
-    """Figures of a run so far.
+class CrowdMeasures:
+    """Figures of a model, worked out from its crowd."""
 
-    Returns:
-        ``model``, ``preset``, ``pedestrians``, ``simulated_s``, ``egress_s`` (None while anybody is
-        inside, or where nobody ever was), ``left_inside``, ``stalled``, ``decisions``,
-        ``fallback_decision_share``, ``fallback_time_share``, ``mean_speed_mps``
-        (over all pedestrian-time) and ``occupancy`` ([[t, inside], ...] each second).
-    """
-    return {
-        "model": type(model).__name__,
-        "preset": model.preset,
-        "pedestrians": model.count,
-        "simulated_s": round(model.elapsed, 6),
-        "egress_s": None if model.inside or model.last_left is None else round(model.last_left, 6),
-        "left_inside": model.inside,
-        "stalled": model.stalled,
-        "decisions": int(model.crowd.decisions.sum()),
-        "fallback_decision_share": model.fallback_decision_share,
-        "fallback_time_share": model.fallback_time_share,
-        "mean_speed_mps": model.mean_speed_so_far,
-        "occupancy": [list(row) for row in model.occupancy],
-    }
+    crowd: CrowdState
+    frame: int
+    count: int
+    preset: str
+    stalled: bool
+    last_left: float | None
+    occupancy: list[tuple[float, int]]
+    _rows: NDArray[np.int64]
+    _walked: float
+
+    @property
+    def frame_rate(self) -> float:
+        """Frames a second."""
+        return 1.0 / FRAME_SECONDS
+
+    @property
+    def elapsed(self) -> float:
+        """Simulated seconds since the start."""
+        return self.frame * FRAME_SECONDS
+
+    @property
+    def inside(self) -> int:
+        """People inside."""
+        return len(self._rows)
+
+    @property
+    def mean_speed(self) -> float:
+        """Mean speed of the movements under way, m/s; 0 if nobody is inside."""
+        if self.inside == 0:
+            return 0.0
+        return float(np.hypot(self.crowd.vx[self._rows], self.crowd.vy[self._rows]).mean())
+
+    @property
+    def mean_speed_so_far(self) -> float:
+        """Mean speed over all pedestrian-time so far, m/s."""
+        total = int(self.crowd.active_frames.sum())
+        return self._walked / total if total else 0.0
+
+    @property
+    def fallback_time_share(self) -> float:
+        """Share of pedestrian-time spent in the fallback."""
+        total = int(self.crowd.active_frames.sum())
+        return float(self.crowd.fallback_frames.sum()) / total if total else 0.0
+
+    @property
+    def fallback_decision_share(self) -> float:
+        """Share of decisions that ended in the fallback."""
+        total = int(self.crowd.decisions.sum())
+        return float(self.crowd.fallbacks.sum()) / total if total else 0.0
+
+    def summary(self) -> dict[str, Any]:
+        """Figures of the run so far, ready for JSON.
+
+        Returns:
+            ``model``, ``preset``, ``pedestrians``, ``simulated_s``, ``egress_s`` (None while
+            anybody is inside, or where nobody ever was), ``left_inside``, ``stalled``,
+            ``decisions``, ``fallback_decision_share``, ``fallback_time_share``,
+            ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy`` ([[t, inside], ...]
+            each second).
+        """
+        out = self.inside == 0 and self.last_left is not None
+        return {
+            "model": type(self).__name__,
+            "preset": self.preset,
+            "pedestrians": self.count,
+            "simulated_s": round(self.elapsed, 6),
+            "egress_s": round(self.last_left or 0.0, 6) if out else None,
+            "left_inside": self.inside,
+            "stalled": self.stalled,
+            "decisions": int(self.crowd.decisions.sum()),
+            "fallback_decision_share": self.fallback_decision_share,
+            "fallback_time_share": self.fallback_time_share,
+            "mean_speed_mps": self.mean_speed_so_far,
+            "occupancy": [list(row) for row in self.occupancy],
+        }

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 
 
@@ -51,3 +52,20 @@ class TargetChoice(ABC):
             ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,): people decide in
             rising order of distance.
         """
+
+
+def ask(choice: TargetChoice, deciding: Deciding) -> Targets:
+    """The targets that a choice gives, checked.
+
+    Raises:
+        ModelError: points that are not finite, or arrays of other shapes.
+    """
+    targets = choice.targets(deciding)
+    points, distances = np.asarray(targets.points), np.asarray(targets.distances)
+    n = len(deciding.pedestrians)
+    if points.shape != (n, 2) or distances.shape != (n,) or not np.isfinite(points).all():
+        raise ModelError(
+            f"behaviour {choice.name!r}: gave points of shape {points.shape} and distances of "
+            f"shape {distances.shape}, expected ({n}, 2) finite ones and ({n},)"
+        )
+    return targets
