@@ -17,13 +17,6 @@ _LEAST_BEYOND = 0.3
 # lest a step straight through ends where that is out of view again (metres).
 _THROUGH = 0.05
 
-# Whoever comes from the side aims at a place up to this far in front of a door first, then turns
-# (metres). Straight for its jamb people would walk along the wall, and past the door.
-_IN_FRONT = 0.6
-
-# Sideways distances up to this need no such place (metres).
-_HARDLY_ASIDE = 0.5
-
 # How far past a corner people may aim, as shares of the distance beyond a gate; the first that
 # keeps the next node in view is taken.
 _PAST_CORNER = (0.5, 0.25, 0.125)
@@ -164,15 +157,12 @@ def _aim_at(
         node = after[node]
         qx, qy = _place(sight, ways, x, y, node, after[node], own)
     opening = ways.opening[node]
-    if ways.kind[node] == EXIT:
-        length = np.hypot(qx - x, qy - y)
-    aside, px, py = _in_front(sight, ways, x, y, node, after, own)
-    if aside:
-        opening = ways.opening[after[node]] if opening < 0 else opening
-    elif ways.kind[node] == CORNER:
+    if ways.kind[node] == CORNER:
         px, py = _past_corner(sight, ways, x, y, node, after[node])
     else:
         leaves = ways.kind[node] == EXIT
+        if leaves:
+            length = np.hypot(qx - x, qy - y)
         px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], leaves)
     gate = _gate_on_the_way(ways, x, y, px, py)
     if gate >= 0 and gate != opening:
@@ -191,36 +181,6 @@ def _place(
     ):
         return _nearest(ways.ends[ways.opening[node]], x, y)
     return ways.xy[node, 0], ways.xy[node, 1]
-
-
-@njit(cache=True)
-def _in_front(
-    sight: Sight, ways: Ways, x: float, y: float, node: int, after: NDArray[np.int64], own: float
-) -> tuple[bool, float, float]:
-    """Whether a person comes to the next gate or exit from the side; the place in front of it.
-
-    From the side means: at more than 45 degrees to the way straight through. The place
-    is as far from the door's line as the person is, or farther, up to `_IN_FRONT`; it
-    must be in view and the door in view from there.
-    """
-    door = node
-    if ways.kind[node] == CORNER:
-        door = after[node]
-        if ways.kind[door] == CORNER:
-            return False, x, y
-    nx, ny = ways.normal[door]
-    qx, qy = _nearest(ways.ends[ways.opening[door]], x, y)
-    before = (qx - x) * nx + (qy - y) * ny
-    sideways = abs((qx - x) * ny - (qy - y) * nx)
-    if before < IN_LINE or sideways < max(before, _HARDLY_ASIDE):
-        return False, x, y
-    standoff = min(_IN_FRONT, max(before, (sideways - before) / 2))
-    px = qx - standoff * nx
-    py = qy - standoff * ny
-    serves = _nearest_serves(sight, ways, px, py, door, after[door], ways.view_clearance, np.inf)
-    if serves and clear_line(sight, x, y, px, py, ways.view_clearance, own, -1):
-        return True, px, py
-    return False, x, y
 
 
 @njit(cache=True)

@@ -1,10 +1,12 @@
-"""Mesa's ``batch_run`` over the models, whichever way this Mesa takes seeds."""
+"""Mesa's ``batch_run`` over the models, whichever way this Mesa takes seeds, and ours."""
 
 import inspect
 
 import mesa
 import pytest
 from mesa_mobility.models import OpenSpace, StraightWalk
+
+import mesa_mobility
 
 
 def batch(model, parameters, seeds, **keywords):
@@ -65,3 +67,23 @@ def test_preset_is_a_parameter_like_any_other():
     speed = {row["preset"]: row["elapsed"] for row in rows}
     # Without speeds of their own everybody walks as fast as the map goes.
     assert speed["paper"] < speed["default"]
+
+
+def test_one_call_for_every_mesa(in_one_process):
+    rows = mesa_mobility.batch_run(StraightWalk, WALKS, rng=[1, 2], display_progress=False)
+    assert figures(rows) == figures(in_one_process)
+
+
+def test_one_call_for_every_mesa_collects_along_the_way():
+    rows = mesa_mobility.batch_run(
+        OpenSpace,
+        {"pedestrians": 6, "size": 10.0},
+        rng=[3, 4],
+        max_steps=20,
+        data_collection_period=1,
+        display_progress=False,
+    )
+    elapsed = [row["elapsed"] for row in rows]
+    assert max(elapsed) == pytest.approx(2.0, abs=0.11)
+    assert len(rows) >= 40
+    assert len({(row["elapsed"], row["mean_speed"]) for row in rows}) > 22

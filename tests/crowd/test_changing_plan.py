@@ -1,11 +1,14 @@
 """Obstacles that come and go, and doors that close and open, while people walk."""
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
 import shapely
 from mesa_mobility.behaviors import Displacement
 from shapely import box
 
+from mesa_mobility.errors import FloorPlanError, ModelError
 from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.scenes import advance, core_of, corridor, dead_end, model_of, put, two_doors
@@ -89,3 +92,41 @@ def test_with_every_exit_closed_people_stay_and_leave_once_one_opens():
     rows = model.recorder.arrays()
     assert overlaps(rows, core_of(model)) == 0
     assert np.isfinite(track(rows, 0)).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_whatever_comes_and_goes_nobody_is_run_into_or_walked_through(seed):
+    rng = np.random.default_rng(seed)
+    model = model_of(two_doors(), shipped_map(), rng=seed, frames_per_step=3)
+    plan, core = model.floor_plan, core_of(model)
+    model.add_pedestrians(plan.random_points(15, rng, spacing=0.6, clearance=0.3))
+    standing, built, come, intervals = [], 0, 0, []
+    for _ in range(60):
+        where = np.array([person.position for person in model.agents]).reshape(-1, 2)
+        low = rng.uniform(0.5, 7.0, 2)
+        block = box(*low, *(low + rng.uniform(0.2, 0.8, 2)))
+        room = shapely.distance(block, shapely.points(where)) > core + 0.01
+        if standing and rng.random() < 0.4:
+            plan.remove_obstacle(standing.pop(0))
+        elif room.all() and block.distance(plan.walkable.exterior) > 0.4:
+            try:
+                standing.append(plan.add_obstacle(block))
+                built += 1
+            except FloorPlanError:  # it would have cut off a corner
+                continue
+        door = ("left", "right")[int(rng.integers(2))]
+        (plan.open_gate if rng.random() < 0.7 else plan.close_gate)(door)
+        # Refused where somebody is or will be, or where there is no floor.
+        with suppress(ModelError, FloorPlanError):
+            come += len(model.add_pedestrians([rng.uniform(0.4, 7.6, 2)]))
+        start = model.frame
+        advance(model, int(rng.integers(1, 6)) * 3)
+        intervals.append((start, model.frame, plan.walls))
+    assert built > 15
+    assert come > 15
+    rows = model.recorder.arrays()
+    assert overlaps(rows, core, tolerance=1e-5) == 0
+    for first, last, walls in intervals:
+        during = (rows["frame"] >= first) & (rows["frame"] <= last)
+        part = {name: values[during] for name, values in rows.items()}
+        assert wall_crossings(part, walls) == 0, (first, last)
