@@ -135,10 +135,12 @@ def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> ND
 
 def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
     bases, offsets = _wall_ends(plan, clearance)
+    beside = []
     for ring in rings(plan.free.simplify(_SIMPLIFY * clearance)):
-        for base, offset in _reflex(ring, clearance):
-            bases.append(base)
-            offsets.append(offset)
+        for vertex, own, edges in _reflex(ring, clearance):
+            bases += [vertex] * len(own)
+            offsets += own
+            beside += [np.stack([vertex, vertex + offset]) for offset in edges]
     waiting_base = np.array(bases, dtype=np.float64).reshape(-1, 2)
     waiting_offset = np.array(offsets, dtype=np.float64).reshape(-1, 2)
     found = [np.empty((0, 2))]
@@ -148,29 +150,37 @@ def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[
         good = plan.contains(places) & _passable(sight, places, clearance)
         found.append(places[good])
         waiting_base, waiting_offset = waiting_base[~good], waiting_offset[~good]
-    found.append(_middles(plan, sight, waiting_base, clearance))
+    # Where even that is too near to another wall, the way bends in the middle of the gap, and
+    # beside the vertex before and after it.
+    failed = {tuple(base) for base in waiting_base.tolist()}
+    more = [place for vertex, place in beside if tuple(vertex.tolist()) in failed]
+    found.append(np.array(more, dtype=np.float64).reshape(-1, 2))
+    found.append(_middles(plan, waiting_base, clearance))
+    last = np.concatenate(found[-2:])
+    found[-2:] = [last[plan.contains(last) & _passable(sight, last, clearance)]]
     return found
 
 
 def _middles(
-    plan: "FloorPlan", sight: Sight, bases: NDArray[np.float64], clearance: float
+    plan: "FloorPlan", bases: NDArray[np.float64], clearance: float
 ) -> NDArray[np.float64]:
-    """Corners for vertices in gaps too narrow for one beside them: the middle of the gap."""
+    """The middles of the gaps between some vertices and the walls near them."""
     found = [np.empty((0, 2))]
     for base in shapely.points(bases):
         across = shapely.shortest_line(base, walls_near(plan, base, _NARROW * clearance))
-        across = across[shapely.length(across) >= 2 * NODE_SHARE * clearance]
-        found.append(
-            shapely.get_coordinates(shapely.line_interpolate_point(across, 0.5, normalized=True))
-        )
-    places = np.concatenate(found)
-    return places[plan.contains(places) & _passable(sight, places, clearance)]
+        middles = shapely.line_interpolate_point(across, 0.5, normalized=True)
+        found.append(shapely.get_coordinates(middles))
+    return np.concatenate(found)
 
 
 def _reflex(
     ring: NDArray[np.float64], clearance: float
-) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """The vertices of a ring that routes bend around, with where to stand beside each."""
+) -> list[tuple[NDArray[np.float64], list[NDArray[np.float64]], list[NDArray[np.float64]]]]:
+    """The vertices of a ring that routes bend around.
+
+    With each come offsets to where a body passes it, one or, at a sharp tip, two; and
+    the two offsets straight away from the edges that meet there.
+    """
     arriving = ring - np.roll(ring, 1, axis=0)
     arriving /= np.hypot(*arriving.T)[:, None]
     leaving = np.roll(arriving, -1, axis=0)
@@ -178,13 +188,13 @@ def _reflex(
     result = []
     for i in np.flatnonzero(turn < -1e-6):
         angle = -turn[i]
+        edges = [clearance * np.array([-y, x]) for x, y in (arriving[i], leaving[i])]
         if angle <= _SHARP:
-            ahead = arriving[i] + leaving[i]
-            normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
-            result.append((ring[i], normal * clearance / np.cos(angle / 2)))
+            own = [(edges[0] + edges[1]) / (2 * np.cos(angle / 2) ** 2)]
         else:
             outwards = (arriving[i] - leaving[i]) / np.hypot(*(arriving[i] - leaving[i]))
-            result += [(ring[i], offset) for offset in _cap(outwards, np.pi - angle, clearance)]
+            own = _cap(outwards, np.pi - angle, clearance)
+        result.append((ring[i], own, edges))
     return result
 
 

@@ -89,7 +89,12 @@ class Router:
 
     @property
     def graph(self) -> nx.DiGraph:
-        """The routes: nodes have `kind`, `position`, `opening`; edges have `weight` (metres)."""
+        """The routes, as a graph of nodes in view of each other.
+
+        Nodes have `kind` (corner, gate or exit), `position` (x, y), `opening` (the name of
+        the gate or exit) and `direction`, the unit vector in which that is crossed: every
+        place in a gate is two nodes. Edges have their length as `weight`, metres.
+        """
         self._update()
         return self._graph
 
@@ -221,6 +226,7 @@ class Router:
                 kind=_KIND_NAMES[nodes.kind[i]],
                 position=(x, y),
                 opening=openings[number].name if number >= 0 else None,
+                direction=tuple(nodes.normal[i].tolist()) if number >= 0 else None,
             )
         pairs = zip(*self._edges.T.tolist(), self._edge_lengths.tolist(), strict=True)
         graph.add_weighted_edges_from(pairs)

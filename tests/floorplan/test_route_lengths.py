@@ -114,6 +114,22 @@ def test_gaps_narrower_than_a_body_are_no_way(gap: float, expected: float) -> No
     assert length(plan, (5, 2), ("east",)) == pytest.approx(expected, abs=CLOSE)
 
 
+def test_around_two_corners_close_together() -> None:
+    # The corners (10, 1.85) and (10.25, 2.1) of two blocks leave a slanting gap of 0.354 m.
+    blocks = [box(9, 0, 10, 1.85), box(10.25, 2.1, 11, 4)]
+    plan = FloorPlan(box(0, 0, 20, 4), exits=[Exit("east", (20, 0), (20, 4))], obstacles=blocks)
+    # Above the first block, through the gap, below the second: at most a body's berth longer
+    # than straight.
+    assert 15.0 <= length(plan, (5, 2)) <= 15.2
+
+
+def test_close_to_a_wall_the_way_on_is_in_view(plans) -> None:
+    # Between two rows, 0.075 m below one and near its end: around (14.2, 10), then up the
+    # aisle to the end of the exit at (15.2, 14.1). Not back through the whole row.
+    expected = hypot(0.325, 0.125) + hypot(1.0, 4.1)
+    assert length(plans["hall"](), (13.875, 10.125)) == pytest.approx(expected, abs=0.02)
+
+
 def test_a_wider_body_needs_a_wider_gap() -> None:
     wall = [box(10, 0, 10.2, 1.7), box(10, 2.3, 10.2, 4)]
     plan = FloorPlan(box(0, 0, 20, 4), exits=[Exit("east", (20, 0), (20, 4))], obstacles=wall)
@@ -154,6 +170,20 @@ def test_the_graph_can_be_looked_at(plans) -> None:
             nx.dijkstra_path_length(graph, node, e) for e in exits if nx.has_path(graph, node, e)
         ]
         assert distances[node] == pytest.approx(min(ways))
+
+
+@pytest.mark.parametrize("name", ["two_rooms", "two_rooms_turning_back"])
+def test_gates_are_passed_in_their_direction(plans, name: str) -> None:
+    graph = Router(plans[name]()).graph
+    seen = set()
+    for a, b in graph.edges:
+        before, after = graph.nodes[a], graph.nodes[b]
+        step = np.subtract(after["position"], before["position"])
+        for node in (before, after):
+            if node["direction"] is not None:
+                assert step @ node["direction"] > 0
+                seen.add(node["kind"])
+    assert seen == {"gate", "exit"}
 
 
 def test_destinations_are_numbered_once(plans) -> None:
