@@ -40,7 +40,7 @@ class StraightWalk(PedestrianModel):
     ) -> None:
         if pedestrians < 1:
             raise ModelError(f"pedestrians: got {pedestrians}, expected 1 or more")
-        if not 0.0 < slowest <= fastest:
+        if not 0.0 < slowest <= fastest < np.inf:
             raise ModelError(
                 f"slowest and fastest: got {slowest} and {fastest} m/s, "
                 "expected 0 < slowest <= fastest"

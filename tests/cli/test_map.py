@@ -23,7 +23,7 @@ def test_build_writes_a_map_and_says_what_is_in_it(command, recordings, map_file
     expected = {"recordings": 4, "clusters": 12, "pedestrian_type": "able_bodied"}
     assert {key: answer[key] for key in expected} == expected
     assert answer["build"]["poses"] == 4 * 270
-    assert answer["skipped"] == [["short", "40 frames at 30 Hz, 46 needed"]]
+    assert answer["skipped"] == [["short", "40 frames at 30 Hz, 45 needed"]]
     assert "skipped short: 40 frames" in outcome.err
     assert MobilityMap.load(path).n_clusters == 12
     # Built by another process, under another name: the same bytes.
