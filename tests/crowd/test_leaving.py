@@ -107,7 +107,7 @@ def test_gates_are_crossed_on_the_way_out():
 
 @pytest.mark.xfail(
     strict=False,
-    reason="known: from some places beside a door the target lies short of its line, and walkers slow",
+    reason="known: beside a door the target may lie short of its line, and walkers slow down",
 )
 def test_nobody_stops_in_a_doorway_that_is_free_beyond():
     model = model_of(two_doors(), shipped_map(), rng=1, frames_per_step=3)
