@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mesa_mobility.floorplan.crossing import nearest, nearest_serves, opening_behind, place
 from mesa_mobility.floorplan.kernels import segments_cross
 from mesa_mobility.floorplan.nodes import CORNER, EXIT, GATE
 from mesa_mobility.floorplan.routes import IN_LINE, Ways, in_view, side
@@ -101,7 +102,7 @@ def _first_in_view(
         i = maybe[k]
         if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance, own):
             return i
-        if ways.kind[i] != CORNER and _nearest_serves(
+        if ways.kind[i] != CORNER and nearest_serves(
             sight, ways, x, y, i, after[i], clearance, own
         ):
             return i
@@ -122,18 +123,18 @@ def _nearest_unwalled(
     It is for people in a gap where nobody should be, or pressed against a wall: they
     have no node in view at all. Others see that there is no way on.
     """
-    nearest = np.inf
+    least = np.inf
     node = -1
     for i in maybe:
         if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], 0.0, np.inf):
             return -1
         away = np.hypot(ways.xy[i, 0] - x, ways.xy[i, 1] - y)
         if (
-            away < nearest
+            away < least
             and np.isfinite(to_go[i])
             and unwalled(sight, x, y, ways.xy[i, 0], ways.xy[i, 1])
         ):
-            nearest = away
+            least = away
             node = i
     return node
 
@@ -152,35 +153,27 @@ def _aim_at(
     """Route length, gate and target of a person whose route starts with `node`."""
     nx, ny = ways.xy[node]
     length = np.hypot(nx - x, ny - y) + to_go[node]
-    qx, qy = _place(sight, ways, x, y, node, after[node], own)
+    qx, qy, away = place(sight, ways, x, y, node, after[node], own)
     if ways.kind[node] == GATE and np.hypot(qx - x, qy - y) < _THROUGH:
         node = after[node]
-        qx, qy = _place(sight, ways, x, y, node, after[node], own)
+        qx, qy, away = place(sight, ways, x, y, node, after[node], own)
+    elif ways.kind[node] == CORNER:
+        door, sx, sy = opening_behind(sight, ways, x, y, node, to_go, after, own)
+        if door >= 0:
+            node, qx, qy, away = door, sx, sy, length
     opening = ways.opening[node]
     if ways.kind[node] == CORNER:
         px, py = _past_corner(sight, ways, x, y, node, after[node])
     else:
         leaves = ways.kind[node] == EXIT
         if leaves:
-            length = np.hypot(qx - x, qy - y)
+            length = min(length, away)
         px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], leaves)
     gate = _gate_on_the_way(ways, x, y, px, py)
     if gate >= 0 and gate != opening:
         opening = gate
         px, py = _through(sight, ways, x, y, px, py, gate, own)
     return length, opening, px, py
-
-
-@njit(cache=True)
-def _place(
-    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int, own: float
-) -> tuple[float, float]:
-    """The place to go to at a node: itself, or the nearest place of its opening that will do."""
-    if ways.kind[node] != CORNER and _nearest_serves(
-        sight, ways, x, y, node, after, ways.view_clearance, own
-    ):
-        return _nearest(ways.ends[ways.opening[node]], x, y)
-    return ways.xy[node, 0], ways.xy[node, 1]
 
 
 @njit(cache=True)
@@ -210,41 +203,6 @@ def _past_corner(
 
 
 @njit(cache=True)
-def _nearest(ends: NDArray[np.float64], x: float, y: float) -> tuple[float, float]:
-    ax, ay, bx, by = ends
-    length2 = (bx - ax) ** 2 + (by - ay) ** 2
-    t = 0.0
-    if length2 > 0.0:
-        t = min(1.0, max(0.0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / length2))
-    return ax + t * (bx - ax), ay + t * (by - ay)
-
-
-@njit(cache=True)
-def _nearest_serves(
-    sight: Sight,
-    ways: Ways,
-    x: float,
-    y: float,
-    node: int,
-    after: int,
-    clearance: float,
-    own: float,
-) -> bool:
-    """Whether the nearest place in the opening of `node` will do as well as the node.
-
-    It must be in view and, in a gate, have the node `after` in view; otherwise people
-    would turn back once they are through.
-    """
-    qx, qy = _nearest(ways.ends[ways.opening[node]], x, y)
-    if not in_view(sight, ways, x, y, node, qx, qy, clearance, own):
-        return False
-    if ways.kind[node] == EXIT:
-        return True
-    ax, ay = ways.xy[after]
-    return in_view(sight, ways, qx, qy, after, ax, ay, ways.view_clearance, np.inf)
-
-
-@njit(cache=True)
 def _beyond(
     sight: Sight,
     ways: Ways,
@@ -255,12 +213,18 @@ def _beyond(
     normal: NDArray[np.float64],
     leaves: bool,
 ) -> tuple[float, float]:
-    """The target behind place q of an opening, on the straight way there."""
+    """The target behind place q of an opening, on the straight way there.
+
+    The more aslant the way, the nearer: somebody who comes along the wall would get closer
+    to a far target by walking past the door. The square of the cosine leaves those
+    who come from the front their full distance.
+    """
     away = np.hypot(qx - x, qy - y)
     ux, uy = normal[0], normal[1]
     if away > 0.05 and (qx - x) * ux + (qy - y) * uy > 0.0:
         ux, uy = (qx - x) / away, (qy - y) / away
-    length = ways.beyond
+    along = max(0.0, ux * normal[0] + uy * normal[1])
+    length = max(_LEAST_BEYOND, ways.beyond * along * along)
     if not leaves:
         seen = free_length(sight, qx, qy, qx + length * ux, qy + length * uy)
         if seen < length:
@@ -301,7 +265,7 @@ def _through(
     ahead = (px - x) * normal[0] + (py - y) * normal[1]
     if ahead < 0.0:
         normal = -normal
-    qx, qy = _nearest(ways.ends[gate], x, y)
+    qx, qy = nearest(ways.ends[gate], x, y)
     if not (
         clear_line(sight, x, y, qx, qy, ways.view_clearance, own, -1)
         and clear_line(sight, qx, qy, px, py, ways.view_clearance, np.inf, -1)

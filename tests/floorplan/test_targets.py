@@ -12,13 +12,19 @@ def target(plan: FloorPlan, place: tuple[float, float]) -> tuple[float, float]:
     return tuple(Router(plan).targets([place], [0]).points[0])
 
 
+def aslant(dx: float, dy: float) -> tuple[float, float]:
+    """Behind (4.45, 0) on the way (dx, -dy): 2 m times the squared cosine of the angle."""
+    length = 2 * dy**2 / (dx**2 + dy**2)
+    return (4.45 + length * dx / hypot(dx, dy), -length * dy / hypot(dx, dy))
+
+
 @pytest.mark.parametrize(
     ("place", "expected"),
     [
         ((4.5, 4), (4.5, -2)),  # face-on: 2 m behind the line
-        ((4.3, 1), (4.3, -2)),
-        # At an angle, through (4.2, 0): 2 m farther in the direction (2.7, -3).
-        ((1.5, 3), (4.2 + 5.4 / hypot(2.7, 3), -6 / hypot(2.7, 3))),
+        # The places aimed through are 0.2 m clear of the jambs and 0.25 m more: 4.45 to 4.55.
+        ((4.3, 1), aslant(0.15, 1)),
+        ((1.5, 3), aslant(2.95, 3)),
         ((4.5, 0), (4.5, -2)),  # in the line itself
         ((4.5, -0.02), (4.5, -2)),  # a little past it
     ],
@@ -35,6 +41,14 @@ def test_along_the_wall_the_jamb_comes_first(plans) -> None:
     # On the straight way through (4.2, 0.2), and past it.
     assert x > 4.2
     assert (y - 0.3) * 3.2 == pytest.approx((x - 1) * -0.1, abs=1e-3)
+
+
+@pytest.mark.parametrize("place", [(1.5, 1.5), (2.5, 2.5), (7.5, 1.5), (6.0, 7.0), (3.0, 1.0)])
+def test_a_door_that_the_jamb_hides_in_part_is_aimed_through(plans, place: tuple) -> None:
+    # The near end of the door, from 4.2 to 4.8, is hidden at a body's clearance, the far end not.
+    found = target(plans["room"](), place)
+    assert found[1] < 0
+    assert LineString([place, found]).crosses(LineString([(4.13, 0), (4.87, 0)]))
 
 
 def test_targets_past_a_corner_have_the_way_on_in_view(plans) -> None:

@@ -39,8 +39,9 @@ def test_nobody_walks_farther_than_told(plans, places_in, walkers, name: str) ->
     starts = places_in(plan, 0.25, 0.15)
     told = Router(plan).targets(starts, np.zeros(len(starts), int)).distances
     lengths = walkers(plan, starts).lengths
-    # Steps end up to 0.1 m behind the exit, and pass corners a little late or early.
-    assert (lengths <= 1.05 * told + 0.2).all()
+    # Steps end up to 0.1 m behind the exit, and pass corners a little late or early; doors are
+    # crossed up to 0.25 m farther from the jamb than the shortest way does.
+    assert (lengths <= 1.05 * told + 0.25).all()
     assert (lengths >= 0.97 * told - 0.1).all()
 
 
