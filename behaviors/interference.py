@@ -7,10 +7,10 @@ from mesa_mobility.errors import ModelError
 
 
 @pair_kernel
-def _interference(x, y, heading, duration, speed, nx, ny, nvx, nvy, p):  # type: ignore[no-untyped-def]
+def _interference(x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p):  # type: ignore[no-untyped-def]
     dx = nx + nvx * duration - x
     dy = ny + nvy * duration - y
-    if speed <= 0.0 or dx * math.cos(heading) + dy * math.sin(heading) < 0.0:
+    if speed <= 0.0 or dx * ux + dy * uy < 0.0:
         return 0.0
     return p[0] * math.exp(-math.sqrt(dx * dx + dy * dy) / (p[1] * speed))
 

@@ -4,12 +4,12 @@ from mesa_mobility import CompiledTerm, option_kernel
 
 
 @option_kernel
-def _displacement(x, y, heading, displacement, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
-    return -displacement
+def _displacement(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+    return -speed * duration
 
 
 @option_kernel
-def _preferred_speed(x, y, heading, displacement, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _preferred_speed(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
     return 1.5 * abs(speed - preferred)
 
 

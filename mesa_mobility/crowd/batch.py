@@ -42,14 +42,14 @@ def make_candidates(
     neighbour_offsets, neighbours = _all_neighbours(
         rows, grid, state.x, state.y, rules.search_radius
     )
-    displacements = table.displacement[options]
     durations = table.frames[options] * FRAME_SECONDS
+    speeds = table.speed[options].astype(np.float64)
     return Candidates(
         points=np.column_stack([x, y]),
         headings=heading,
-        displacements=displacements,
+        displacements=speeds * durations,
         durations=durations,
-        speeds=displacements / durations,
+        speeds=speeds,
         options=options - rules.first_option[state.kind[rows]][owner],
         owner=owner,
         offsets=offsets,

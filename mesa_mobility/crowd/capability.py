@@ -25,17 +25,22 @@ class OptionTable(NamedTuple):
 
     Clusters are numbered through: those of capability k follow those of k - 1.
 
-    Fields: ``offsets`` (clusters + 1,); by option: ``x``, ``y``, ``heading`` of the end,
-    ``displacement``, ``frames``, ``cluster`` at the end, ``reach`` (largest distance of the path
-    from its start), ``path_start``; by sample: ``path`` (p, 3) x, y, heading.
+    Fields: ``offsets`` (clusters + 1,), ``farthest`` (clusters,) reach of its options; by option:
+    ``x``, ``y``, ``heading`` of the end and its unit vector ``ux``, ``uy``, ``speed``
+    (displacement over duration, m/s), ``frames``, ``cluster`` at the end, ``reach`` (largest
+    distance of the path from its start), ``path_start``; by sample: ``path`` (p, 3) x, y,
+    heading.  Single precision, as the map: all options of a cluster are read at each decision.
     """
 
     offsets: NDArray[np.int64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    heading: NDArray[np.float64]
-    displacement: NDArray[np.float64]
-    frames: NDArray[np.int64]
+    farthest: NDArray[np.float64]
+    x: NDArray[np.float32]
+    y: NDArray[np.float32]
+    heading: NDArray[np.float32]
+    ux: NDArray[np.float32]
+    uy: NDArray[np.float32]
+    speed: NDArray[np.float32]
+    frames: NDArray[np.int32]
     cluster: NDArray[np.int32]
     reach: NDArray[np.float64]
     path_start: NDArray[np.int64]
@@ -105,17 +110,25 @@ def _option_table(
     used_samples = np.repeat(np.isin(np.arange(len(samples)), rows), samples)
     path = np.ascontiguousarray(mobility_map.paths[used_samples])
     starts = np.concatenate([[0], np.cumsum(samples[rows])])[:-1].astype(np.int64)
-    ends = mobility_map.end_points[rows].astype(np.float64)
-    distance = np.hypot(path[:, 0].astype(np.float64), path[:, 1])
+    x, y = mobility_map.end_points[rows].astype(np.float32).T
+    heading = mobility_map.end_headings[rows].astype(np.float32)
+    frames = mobility_map.durations[rows].astype(np.int32)
+    reach = np.maximum.reduceat(np.hypot(*path[:, :2].astype(np.float64).T), starts)
+    offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    wide = heading.astype(np.float64)
+    speed = np.hypot(x.astype(np.float64), y) / (frames * FRAME_SECONDS)
     return OptionTable(
-        offsets=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        x=np.ascontiguousarray(ends[:, 0]),
-        y=np.ascontiguousarray(ends[:, 1]),
-        heading=mobility_map.end_headings[rows].astype(np.float64),
-        displacement=np.hypot(ends[:, 0], ends[:, 1]),
-        frames=mobility_map.durations[rows].astype(np.int64),
+        offsets=offsets,
+        farthest=np.maximum.reduceat(reach, offsets[:-1]),
+        x=np.ascontiguousarray(x),
+        y=np.ascontiguousarray(y),
+        heading=heading,
+        ux=np.cos(wide).astype(np.float32),
+        uy=np.sin(wide).astype(np.float32),
+        speed=speed.astype(np.float32),
+        frames=frames,
         cluster=mobility_map.end_clusters[rows].astype(np.int32),
-        reach=np.maximum.reduceat(distance, starts),
+        reach=reach,
         path_start=starts,
         path=path,
     )

@@ -281,3 +281,30 @@ def path_gone_or_blocked(
         ):
             return -2
     return gone
+
+
+@njit(cache=True)
+def within_reach(
+    i: int,
+    near: NDArray[np.int64],
+    reach: float,
+    state: CrowdState,
+    found: NDArray[np.int64],
+) -> int:
+    """Write those of ``near`` whose way pedestrian i may touch, going ``reach`` metres at most.
+
+    Returns their number.
+    """
+    count = 0
+    x, y = state.x[i], state.y[i]
+    for j in near:
+        far = reach + state.core[i] + state.core[j] + 0.002
+        if (
+            state.box[j, 0] <= x + far
+            and state.box[j, 2] >= x - far
+            and state.box[j, 1] <= y + far
+            and state.box[j, 3] >= y - far
+        ):
+            found[count] = j
+            count += 1
+    return count

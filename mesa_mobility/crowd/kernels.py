@@ -1,8 +1,9 @@
 """Cost kernels: compiled functions that the choice calls by address.
 
-A term that gives a kernel is evaluated inside the compiled choice, at a few
-nanoseconds a call; a term that does not is evaluated in NumPy batches.  Calling
-by address keeps the choice itself one compiled function whatever terms are
+A kernel is written for one option, or for one option and one neighbour. What is
+compiled is a loop around it, over all options of a pedestrian or all neighbours of an
+option, so that the call costs nothing and simple kernels run several options at once.
+Calling by address keeps the choice itself one compiled function whatever terms are
 plugged in: a new kernel compiles alone, and nothing else is compiled again.
 """
 
@@ -10,35 +11,69 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
-from typing import Any
+from types import FunctionType
+from typing import Any, ClassVar
 
 from llvmlite import ir
-from numba import cfunc, types
+from numba import cfunc, njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
 _F = types.float64
-_PARAMETERS = types.CPointer(_F)
+_A = types.CPointer(_F)
+_N = types.int64
 
-OPTION_SIGNATURE = _F(_F, _F, _F, _F, _F, _F, _F, _F, _F, _PARAMETERS)
-PAIR_SIGNATURE = _F(_F, _F, _F, _F, _F, _F, _F, _F, _F, _PARAMETERS)
+_OPTION_LOOP = """
+def {name}(n, x, y, facing_x, facing_y, duration, speed, tx, ty, preferred, p, weight, out):
+    for k in range(n):
+        out[k] += weight * each(
+            x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], tx, ty, preferred, p
+        )
+"""
+
+_PAIR_LOOP = """
+def {name}(n, x, y, facing_x, facing_y, duration, speed, nx, ny, nvx, nvy, p):
+    total = 0.0
+    for k in range(n):
+        total += each(
+            x, y, facing_x, facing_y, duration, speed, nx[k], ny[k], nvx[k], nvy[k], p
+        )
+    return total
+"""
 
 
 class CostKernel:
-    """A function compiled when it is first needed, known by its address."""
+    """A function compiled when it is first needed, known by the address of a loop around it."""
 
-    def __init__(self, function: Callable[..., float], signature: Any) -> None:
+    loop: ClassVar[str]
+    signature: ClassVar[Any]
+
+    def __init__(self, function: Callable[..., float]) -> None:
         self.function = function
-        self._signature = signature
 
     @cached_property
     def _compiled(self) -> Any:
         # As in NumPy, a division by zero gives inf or nan, which the choice refuses.
-        compile_ = partial(cfunc, self._signature, error_model="numpy")
+        compile_ = partial(cfunc, self.signature, error_model="numpy")
         try:
-            return compile_(cache=True)(self.function)
+            return compile_(cache=True)(self._loop())
         except RuntimeError:  # written where there is no file to keep a cache beside
-            return compile_()(self.function)
+            return compile_()(self._loop())
+
+    def _loop(self) -> FunctionType:
+        """The loop, as if written where the function is: its cache is kept with that file's."""
+        code = self.function.__code__
+        name = f"{self.function.__name__}_loop"
+        space = {
+            "each": njit(error_model="numpy")(self.function),
+            "__name__": self.function.__module__,
+        }
+        source = "\n" * (code.co_firstlineno - 1) + self.loop.format(name=name).lstrip("\n")
+        exec(compile(source, code.co_filename, "exec"), space)
+        loop = space[name]
+        assert isinstance(loop, FunctionType)
+        loop.__qualname__ = f"{self.function.__qualname__}_loop"
+        return loop
 
     @property
     def address(self) -> int:
@@ -49,47 +84,78 @@ class CostKernel:
 class OptionKernel(CostKernel):
     """Cost of one movement option."""
 
+    loop = _OPTION_LOOP
+    signature = types.void(_N, _A, _A, _A, _A, _A, _A, _F, _F, _F, _A, _F, _A)
+
 
 class PairKernel(CostKernel):
     """Cost of one movement option with respect to one neighbour."""
+
+    loop = _PAIR_LOOP
+    signature = _F(_N, _F, _F, _F, _F, _F, _F, _A, _A, _A, _A, _A)
 
 
 def option_kernel(function: Callable[..., float]) -> OptionKernel:
     """Make a kernel of one movement option.
 
-    The function takes ``(x, y, heading, displacement, duration, speed, target_x, target_y,
-    preferred_speed, parameters)`` - mobility point and target in metres, heading in radians,
-    duration in seconds, speeds in m/s - and returns a float.  ``parameters[i]`` are the numbers
-    of the term's ``parameters()``.  It must be compilable by Numba (``math``, no Python objects).
+    The function takes ``(x, y, facing_x, facing_y, duration, speed, target_x, target_y,
+    preferred_speed, parameters)`` - mobility point and target in metres, the unit vector of
+    facing there, duration in seconds, speeds in m/s; speed times duration is the
+    displacement - and returns a float.  ``parameters[i]`` are the numbers of the term's
+    ``parameters()``.  It must be compilable by Numba (``math``, no Python objects).
     """
-    return OptionKernel(function, OPTION_SIGNATURE)
+    return OptionKernel(function)
 
 
 def pair_kernel(function: Callable[..., float]) -> PairKernel:
     """Make a kernel of one movement option and one neighbour; the choice sums over neighbours.
 
-    The function takes ``(x, y, heading, duration, speed, neighbour_x, neighbour_y,
+    The function takes ``(x, y, facing_x, facing_y, duration, speed, neighbour_x, neighbour_y,
     neighbour_vx, neighbour_vy, parameters)``, the neighbour's position in metres and velocity in
     m/s at the moment of the decision.
     """
-    return PairKernel(function, PAIR_SIGNATURE)
+    return PairKernel(function)
+
+
+_LLVM = {_F: ir.DoubleType(), _N: ir.IntType(64), _A: ir.DoubleType().as_pointer()}
+
+
+def _caller(signature: Any) -> Any:
+    """Calls what is at an address; numbers as such, float arrays by their data."""
+
+    def typing(address: Any, *given: Any) -> Any:
+        def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+            wanted = [_LLVM[kind] for kind in signature.args]
+            returns = ir.VoidType() if signature.return_type == types.void else ir.DoubleType()
+            function = builder.inttoptr(args[0], ir.FunctionType(returns, wanted).as_pointer())
+            passed = []
+            for value, kind, want in zip(args[1:], sig.args[1:], signature.args, strict=True):
+                if want == _A:
+                    array = cgutils.create_struct_proxy(kind)(context, builder, value)
+                    passed.append(array.data)
+                else:
+                    passed.append(context.cast(builder, value, kind, want))
+            result = builder.call(function, passed)
+            return context.get_dummy_value() if returns == ir.VoidType() else result
+
+        return signature.return_type(address, *given), codegen
+
+    return typing
 
 
 @intrinsic
-def call_kernel(typingctx, address, a, b, c, d, e, f, g, h, i, parameters):  # type: ignore[no-untyped-def]
-    """Call the kernel at ``address`` with nine floats and a float array of parameters."""
-    signature = types.float64(address, a, b, c, d, e, f, g, h, i, parameters)
+def call_option_loop(  # type: ignore[no-untyped-def]
+    typingctx, address, n, x, y, ux, uy, duration, speed, tx, ty, preferred, p, weight, out
+):
+    """Add the weighted cost of n options to ``out``; arguments after the address as the loop's."""
+    return _caller(OptionKernel.signature)(
+        address, n, x, y, ux, uy, duration, speed, tx, ty, preferred, p, weight, out
+    )
 
-    def codegen(context, builder, sig, args):  # type: ignore[no-untyped-def]
-        double = ir.DoubleType()
-        pointer = double.as_pointer()
-        kernel_type = ir.FunctionType(double, [double] * 9 + [pointer])
-        kernel = builder.inttoptr(args[0], kernel_type.as_pointer())
-        floats = [
-            context.cast(builder, value, kind, types.float64)
-            for value, kind in zip(args[1:10], sig.args[1:10], strict=True)
-        ]
-        array = cgutils.create_struct_proxy(sig.args[10])(context, builder, args[10])
-        return builder.call(kernel, [*floats, array.data])
 
-    return signature, codegen
+@intrinsic
+def call_pair_loop(typingctx, address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p):  # type: ignore[no-untyped-def]
+    """Cost of one option summed over n neighbours; arguments after the address as the loop's."""
+    return _caller(PairKernel.signature)(
+        address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p
+    )

@@ -16,7 +16,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.kernels import CostKernel, OptionKernel, PairKernel, call_kernel
+from mesa_mobility.crowd.costs import Ends, Others
+from mesa_mobility.crowd.kernels import (
+    CostKernel,
+    PairKernel,
+    call_option_loop,
+    call_pair_loop,
+)
 from mesa_mobility.errors import ModelError
 
 
@@ -77,41 +83,44 @@ class CompiledTerm(CostTerm):
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
         """Cost of each option, by calling the kernel on each row."""
         numbers = np.array(self.parameters() or (0.0,), dtype=np.float64)
+        ends = (
+            *np.ascontiguousarray(candidates.points.T),
+            np.cos(candidates.headings),
+            np.sin(candidates.headings),
+            candidates.durations,
+            candidates.speeds,
+        )
         if isinstance(self.kernel, PairKernel):
-            rows, neighbours = candidates.pairs()
-            costs = _each_pair(
-                self.kernel.address, candidates.points[rows], candidates.headings[rows],
-                candidates.durations[rows], candidates.speeds[rows],
-                candidates.neighbour_positions[neighbours],
-                candidates.neighbour_velocities[neighbours], numbers,
+            return _each_pair(
+                self.kernel.address, candidates.owner, Ends(*ends), candidates.neighbour_offsets,
+                Others(
+                    *np.ascontiguousarray(candidates.neighbour_positions.T),
+                    *np.ascontiguousarray(candidates.neighbour_velocities.T),
+                ),
+                numbers,
             )  # fmt: skip
-            return np.bincount(rows, costs, minlength=len(candidates)).astype(np.float64)
-        assert isinstance(self.kernel, OptionKernel)
         return _each_option(
-            self.kernel.address, candidates.points, candidates.headings,
-            candidates.displacements, candidates.durations, candidates.speeds,
-            candidates.targets[candidates.owner], candidates.preferred_speeds[candidates.owner],
-            numbers,
+            self.kernel.address, candidates.offsets, Ends(*ends), candidates.targets,
+            candidates.preferred_speeds, numbers,
         )  # fmt: skip
 
 
 @njit(cache=True)
 def _each_option(
     address: int,
-    points: NDArray[np.float64],
-    headings: NDArray[np.float64],
-    displacements: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    speeds: NDArray[np.float64],
+    offsets: NDArray[np.int64],
+    ends: Ends,
     targets: NDArray[np.float64],
     preferred: NDArray[np.float64],
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    out = np.empty(len(points))
-    for i in range(len(points)):
-        out[i] = call_kernel(
-            address, points[i, 0], points[i, 1], headings[i], displacements[i], durations[i],
-            speeds[i], targets[i, 0], targets[i, 1], preferred[i], numbers,
+    out = np.zeros(len(ends.x))
+    for b in range(len(preferred)):
+        at = slice(offsets[b], offsets[b + 1])
+        call_option_loop(
+            address, offsets[b + 1] - offsets[b], ends.x[at], ends.y[at], ends.ux[at], ends.uy[at],
+            ends.duration[at], ends.speed[at], targets[b, 0], targets[b, 1], preferred[b], numbers,
+            1.0, out[at],
         )  # fmt: skip
     return out
 
@@ -119,18 +128,18 @@ def _each_option(
 @njit(cache=True)
 def _each_pair(
     address: int,
-    points: NDArray[np.float64],
-    headings: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    speeds: NDArray[np.float64],
-    positions: NDArray[np.float64],
-    velocities: NDArray[np.float64],
+    owner: NDArray[np.int64],
+    ends: Ends,
+    offsets: NDArray[np.int64],
+    others: Others,
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    out = np.empty(len(points))
-    for i in range(len(points)):
-        out[i] = call_kernel(
-            address, points[i, 0], points[i, 1], headings[i], durations[i], speeds[i],
-            positions[i, 0], positions[i, 1], velocities[i, 0], velocities[i, 1], numbers,
+    out = np.empty(len(owner))
+    for k in range(len(owner)):
+        at = slice(offsets[owner[k]], offsets[owner[k] + 1])
+        out[k] = call_pair_loop(
+            address, offsets[owner[k] + 1] - offsets[owner[k]], ends.x[k], ends.y[k], ends.ux[k],
+            ends.uy[k], ends.duration[k], ends.speed[k], others.x[at], others.y[at],
+            others.vx[at], others.vy[at], numbers,
         )  # fmt: skip
     return out

@@ -18,6 +18,9 @@ _LEAST_BEYOND = 0.3
 # lest a step straight through ends where that is out of view again (metres).
 _THROUGH = 0.05
 
+# Nodes looked for in order of length before what may be in view from here is worked out.
+_TRIES = 3
+
 # How far past a corner people may aim, as shares of the distance beyond a gate; the first that
 # keeps the next node in view is taken.
 _PAST_CORNER = (0.5, 0.25, 0.125)
@@ -45,21 +48,26 @@ def aim(
     lengths = np.full(n, np.inf)
     keys = np.empty(nodes)
     seen = np.empty(nodes, dtype=np.int64)
+    everything = np.arange(nodes)
     for person in range(n):
         x, y = positions[person]
         to_go = distances[destinations[person]]
         after = follow[destinations[person]]
         points[person, 0] = x
         points[person, 1] = y
-        maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
         own = wall_distance(sight, x, y, ways.view_clearance)
-        node = _first_in_view(
-            sight, ways, x, y, to_go, after, ways.view_clearance, own, maybe, keys
-        )
+        view = ways.view_clearance
+        node = _first_in_view(sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES)
         if node < 0:
-            node = _first_in_view(sight, ways, x, y, to_go, after, 0.0, own, maybe, keys)
-        if node < 0:
-            node = _nearest_unwalled(sight, ways, x, y, to_go, maybe)
+            # So much is hidden from here that it pays to know what is, for all who come by.
+            maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
+            for clearance in (view, 0.0):
+                if node < 0:
+                    node = _first_in_view(
+                        sight, ways, x, y, to_go, after, clearance, own, maybe, keys, nodes
+                    )
+            if node < 0:
+                node = _nearest_unwalled(sight, ways, x, y, to_go, maybe)
         if node >= 0:
             lengths[person], gates[person], points[person, 0], points[person, 1] = _aim_at(
                 sight, ways, x, y, node, to_go, after, own
@@ -79,8 +87,9 @@ def _first_in_view(
     own: float,
     maybe: NDArray[np.int64],
     keys: NDArray[np.float64],
+    tries: int,
 ) -> int:
-    """The node in view with the shortest way through it, -1 where none is.
+    """The node in view with the shortest way through it, -1 where none of the first `tries` is.
 
     `maybe` lists the nodes to look at; `keys` is space to work in.
     """
@@ -94,7 +103,7 @@ def _first_in_view(
         dy = ways.xy[i, 1] - y
         # Of nodes in one line the farther goes first, whatever rounding says.
         keys[k] = np.sqrt(dx * dx + dy * dy) + to_go[i] * (1.0 + 1e-6)
-    for _ in range(count):
+    for _ in range(min(tries, count)):
         k = int(np.argmin(keys[:count]))
         if not np.isfinite(keys[k]):
             break

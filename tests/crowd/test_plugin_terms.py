@@ -76,7 +76,7 @@ class Near(CostTerm):
 
 
 @option_kernel
-def _left(x, y, heading, displacement, duration, speed, tx, ty, preferred, p):
+def _left(x, y, ux, uy, duration, speed, tx, ty, preferred, p):
     return p[0] * max(y - p[1], 0.0)
 
 
@@ -95,7 +95,7 @@ class CompiledKeepRight(CompiledTerm):
 
 
 @pair_kernel
-def _alike(x, y, heading, duration, speed, nx, ny, nvx, nvy, p):
+def _alike(x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p):
     return abs(speed - math.hypot(nvx, nvy))
 
 
