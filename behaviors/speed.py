@@ -1,6 +1,6 @@
 """How far to go in one option: as far as possible, or as far as one likes."""
 
-from mesa_mobility import CompiledTerm, option_kernel
+from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 
 
 @option_kernel
@@ -13,6 +13,20 @@ def _preferred_speed(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # ty
     return 1.5 * abs(speed - preferred)
 
 
+@bound_kernel
+def _displacement_bound(  # type: ignore[no-untyped-def]
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+):
+    return -fastest * duration
+
+
+@bound_kernel
+def _preferred_speed_bound(  # type: ignore[no-untyped-def]
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+):
+    return 1.5 * max(slowest - preferred, preferred - fastest, 0.0)
+
+
 class Displacement(CompiledTerm):
     """-S of equation (1): minus the displacement in metres, which rewards speed without limit.
 
@@ -21,6 +35,7 @@ class Displacement(CompiledTerm):
 
     name = "displacement"
     kernel = _displacement
+    bound = _displacement_bound
 
 
 class PreferredSpeed(CompiledTerm):
@@ -33,3 +48,4 @@ class PreferredSpeed(CompiledTerm):
     name = "preferred_speed"
     default_weight = 2.0
     kernel = _preferred_speed
+    bound = _preferred_speed_bound

@@ -2,7 +2,9 @@
 
 import math
 
-from mesa_mobility import CompiledTerm, option_kernel
+from numba import njit
+
+from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 
 
 @option_kernel
@@ -12,14 +14,19 @@ def _distance(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ign
     return math.sqrt(dx * dx + dy * dy)
 
 
-@option_kernel
-def _deviation(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
-    # The angle from its tangent by the polynomial 4.4.49 of Abramowitz and Stegun, to 2e-8 rad:
-    # unlike a call of atan2, arithmetic alone runs for several options at once.
+@bound_kernel
+def _distance_bound(  # type: ignore[no-untyped-def]
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+):
     dx = tx - x
     dy = ty - y
-    along = ux * dx + uy * dy
-    across = abs(ux * dy - uy * dx)
+    return max(math.sqrt(dx * dx + dy * dy) - radius, 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _angle(along, across):  # type: ignore[no-untyped-def]
+    # The angle from its tangent by the polynomial 4.4.49 of Abramowitz and Stegun, to 2e-8 rad:
+    # unlike a call of atan2, arithmetic alone runs for several options at once.
     ahead = abs(along)
     most = max(across, ahead)
     t = min(across, ahead) / (most if most > 0.0 else 1.0)
@@ -37,11 +44,32 @@ def _deviation(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ig
     return math.pi - angle if along < 0.0 else angle
 
 
+@option_kernel
+def _deviation(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+    dx = tx - x
+    dy = ty - y
+    return _angle(ux * dx + uy * dy, abs(ux * dy - uy * dx))
+
+
+@bound_kernel
+def _deviation_bound(  # type: ignore[no-untyped-def]
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+):
+    dx = tx - x
+    dy = ty - y
+    # Seen from within the radius, the target is off by no more than the arc sine of share; its
+    # tangent is more and needs no call.
+    share2 = radius * radius / max(dx * dx + dy * dy, 1e-300)
+    seen = math.sqrt(share2 / (1.0 - share2)) if share2 < 0.9 else math.pi
+    return max(_angle(ux * dx + uy * dy, abs(ux * dy - uy * dx)) - turn - seen, 0.0)
+
+
 class TargetDistance(CompiledTerm):
     """D of equation (1): distance in metres from the mobility point to the target."""
 
     name = "target_distance"
     kernel = _distance
+    bound = _distance_bound
 
 
 class FacingDeviation(CompiledTerm):
@@ -53,3 +81,4 @@ class FacingDeviation(CompiledTerm):
     name = "facing_deviation"
     default_weight = 0.5
     kernel = _deviation
+    bound = _deviation_bound

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         PedestrianModel,
         PedestrianType,
         TargetChoice,
+        bound_kernel,
         option_kernel,
         pair_kernel,
     )
@@ -56,6 +57,7 @@ _ROOMS = {
     "Targets": "floorplan",
     "Trajectories": "results",
     "batch_run": "batch",
+    "bound_kernel": "crowd",
     "option_kernel": "crowd",
     "pair_kernel": "crowd",
 }
@@ -79,6 +81,7 @@ __all__ = [
     "Targets",
     "Trajectories",
     "batch_run",
+    "bound_kernel",
     "option_kernel",
     "pair_kernel",
 ]

@@ -14,7 +14,7 @@ def drop_stale_kernels(package: Path) -> None:
     Args:
         package: folder of the package.
     """
-    modules = [*package.glob("*/*.py"), *package.parent.glob("behaviors/*.py")]
+    modules = [*package.rglob("*.py"), *package.parent.glob("behaviors/*.py")]
     newest = max((module.stat().st_mtime_ns for module in modules), default=0)
     for index in package.glob("*/__pycache__/*.nbi"):
         try:

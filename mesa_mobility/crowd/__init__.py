@@ -2,7 +2,7 @@
 
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
-from mesa_mobility.crowd.kernels import option_kernel, pair_kernel
+from mesa_mobility.crowd.kernels import bound_kernel, option_kernel, pair_kernel
 from mesa_mobility.crowd.model import PedestrianModel
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
@@ -22,6 +22,7 @@ __all__ = [
     "PedestrianType",
     "Preset",
     "TargetChoice",
+    "bound_kernel",
     "option_kernel",
     "pair_kernel",
 ]

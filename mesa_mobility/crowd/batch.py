@@ -9,8 +9,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.capability import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.neighbours import Grid, neighbours_of
+from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import CrowdState
 

@@ -1,89 +1,35 @@
-"""The choice: options in rising order of cost until one hits nothing.
-
-For each pedestrian whose movement has ended: the cost of every option of its
-cluster (equation 1), then the cheapest that hits neither wall nor body.  Terms
-over pairs (interference) are never negative, so the sum of the others is a
-lower bound: an option is looked at in order of that bound, dropped if it hits
-something, and given its pair costs only if it may still win.  The result is
-that of working everything out; most of it never is.
-"""
+"""The choice: whoever's movement has ended takes the cheapest option that hits nothing."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.capability import SAMPLE_FRAMES, OptionTable
-from mesa_mobility.crowd.collision import (
-    Surroundings,
-    exits_within,
-    near_walls,
-    path_gone_or_blocked,
-    within_reach,
-)
-from mesa_mobility.crowd.costs import (
-    Ends,
-    Others,
-    Terms,
-    lay_ends,
-    option_costs,
-    pair_cost,
-    preferred_now,
-)
-from mesa_mobility.crowd.fallback import fall_back
+from mesa_mobility.crowd.clearing import free_groups
+from mesa_mobility.crowd.close import Stance, find_close
+from mesa_mobility.crowd.collision import Surroundings, exit_distance, near_walls
+from mesa_mobility.crowd.costs import Terms, group_bounds
+from mesa_mobility.crowd.fallback import FALLBACK_SECONDS, fall_back
+from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import commit, lay_path
 from mesa_mobility.crowd.neighbours import Grid, neighbours_of
-from mesa_mobility.crowd.ranking import (
-    BANDS,
-    FIRST_BAND,
-    WIDENING,
-    all_finite,
-    join,
-    least,
-    sift_down,
-)
+from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.ranking import all_finite
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.screen import LEVELS, Screen, is_marked, mark_bodies
-from mesa_mobility.crowd.state import MAX_KNOTS, CrowdState
-
-SCREEN_AFTER = 4
-"""Options that hit something before the rest is screened: with room around, none is."""
-
-_UNTRIED = -9
-_NONE = -1
-_NOT_A_NUMBER = -2
+from mesa_mobility.crowd.search import NONE, NOT_A_NUMBER, cheapest_free
+from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.work import Setting, Work
+from mesa_mobility.jit import called, lean
 
 
-class Work(NamedTuple):
-    """Space to work in, the same for one pedestrian after the other.
-
-    Fields: ``near`` rows of the neighbours, ``close`` of those whose movement comes within reach;
-    ``others`` the neighbours as the terms see them; by option: ``ends``, ``costs``, heap of
-    ``key`` and ``item``, and ``leaving``, the frame of leaving by an exit or -1 once it is known
-    that nothing is hit; ``path`` one path; ``marked`` see ``mark_bodies``.
-    """
-
-    near: NDArray[np.int64]
-    close: NDArray[np.int64]
-    others: Others
-    ends: Ends
-    costs: NDArray[np.float64]
-    key: NDArray[np.float64]
-    item: NDArray[np.int64]
-    leaving: NDArray[np.int64]
-    path: NDArray[np.float64]
-    marked: NDArray[np.bool_]
-
-
-@njit(cache=True)
+@called()
 def decide(
     rows: NDArray[np.int64],
     frame: int,
     table: OptionTable,
-    screen: Screen,
+    groups: OptionGroups,
     state: CrowdState,
     grid: Grid,
     around: Surroundings,
@@ -91,6 +37,9 @@ def decide(
     extra: NDArray[np.float64],
     extra_offsets: NDArray[np.int64],
     rules: Rules,
+    vx: NDArray[np.float64],
+    vy: NDArray[np.float64],
+    work: Work,
 ) -> int:
     """Decide for the pedestrians in ``rows``, one after the other, and commit them.
 
@@ -101,7 +50,7 @@ def decide(
         rows: pedestrians, in the order in which they decide.
         frame: now.
         table: options of all capabilities.
-        screen: where these options are at the times of screening.
+        groups: what the groups of these options span.
         state: the crowd; targets must be set.
         grid: neighbours' grid of this frame.
         around: walls and exits.
@@ -110,154 +59,104 @@ def decide(
             pedestrian in turn, or empty.
         extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
         rules: what holds for everybody.
+        vx: velocities at the beginning of the frame: terms see them as they were, also
+            of those who have just decided.
+        vy: the same, y.
+        work: space to work in.
 
     Returns:
         -1, or the pedestrian for whom a cost was not a number; nobody after it has decided.
     """
-    most = 0
-    for d in range(len(rows)):
-        c = state.cluster[rows[d]]
-        most = max(most, table.offsets[c + 1] - table.offsets[c])
-    people = len(grid.people)
-    work = Work(
-        near=np.empty(people, np.int64),
-        close=np.empty(people, np.int64),
-        others=Others(np.empty(people), np.empty(people), np.empty(people), np.empty(people)),
-        ends=Ends(
-            np.empty(most), np.empty(most), np.empty(most), np.empty(most), np.empty(most),
-            np.empty(most),
-        ),
-        costs=np.empty(most),
-        key=np.empty(most),
-        item=np.empty(most, np.int64),
-        leaving=np.empty(most, np.int64),
-        path=np.empty((MAX_KNOTS, 3)),
-        marked=np.empty((len(LEVELS), screen.side * screen.side), np.bool_),
-    )  # fmt: skip
-    # Terms see velocities as they were, also of those who have just decided.
-    vx, vy = state.vx.copy(), state.vy.copy()
     eager = False
-    for t in range(len(terms.pair_address)):
-        eager = eager or terms.pair_weight[t] < 0.0
+    for weight in terms.pair_weight:
+        eager = eager or weight < 0.0
+    bounded = len(extra) == 0 and not eager
+    for address in terms.bound_address:
+        bounded = bounded and address != 0
     for d in range(len(rows)):
-        i = rows[d]
-        first, last = table.offsets[state.cluster[i]], table.offsets[state.cluster[i] + 1]
-        count = neighbours_of(grid, i, state.x, state.y, rules.search_radius, work.near)
-        near = work.near[:count]
-        for a in range(count):
-            work.others.x[a], work.others.y[a] = state.x[near[a]], state.y[near[a]]
-            work.others.vx[a], work.others.vy[a] = vx[near[a]], vy[near[a]]
-        lay_ends(i, first, last, table, state, work.ends)
-        costs = work.costs[: last - first]
-        costs[:] = 0.0
+        own_extra = extra
         if len(extra) > 0:
-            costs[:] = extra[extra_offsets[d] : extra_offsets[d + 1]]
-        option_costs(
-            last - first, work.ends, state.target_x[i], state.target_y[i],
-            preferred_now(i, state), terms, costs,
-        )  # fmt: skip
-        if eager:
-            for k in range(last - first):
-                costs[k] += pair_cost(k, work.ends, count, work.others, terms)
-        if not all_finite(costs):
-            return i
-
-        farthest = table.farthest[state.cluster[i]]
-        destination = state.destination[i]
-        walls = near_walls(
-            around, state.x[i], state.y[i], destination, farthest + state.core[i] + 0.01
-        )
-        exits_near = exits_within(around, state.x[i], state.y[i], destination, farthest)
-        close = work.close[: within_reach(i, near, farthest, state, work.close)]
-        chosen = _cheapest_free(
-            i, frame, first, costs, close, count, walls, exits_near, farthest, eager, table,
-            screen, state, around, terms, rules, work,
-        )  # fmt: skip
-        if chosen == _NOT_A_NUMBER:
-            return i
-        state.decisions[i] += 1
-        if chosen >= 0:
-            pieces = lay_path(i, first + chosen, table, state, state.path[i])
-            commit(
-                i, first + chosen, frame, pieces, SAMPLE_FRAMES, work.leaving[chosen],
-                table.cluster[first + chosen], state,
-            )  # fmt: skip
-        else:
-            standing = rules.standing[state.kind[i]]
-            fall_back(i, frame, state, walls, around, near, exits_near, rules.cores, standing)
+            own_extra = extra[extra_offsets[d] : extra_offsets[d + 1]]
+        if not _decide_one(
+            rows[d], frame, table, groups, state, grid, around, terms, own_extra, rules, vx, vy,
+            eager, bounded, work,
+        ):  # fmt: skip
+            return rows[d]
     return -1
 
 
-@njit(cache=True)
-def _cheapest_free(
+@lean()
+def _decide_one(
     i: int,
     frame: int,
-    first: int,
-    costs: NDArray[np.float64],
-    close: NDArray[np.int64],
-    neighbours: int,
-    walls: NDArray[np.float64],
-    exits_near: bool,
-    farthest: float,
-    eager: bool,
     table: OptionTable,
-    screen: Screen,
+    groups: OptionGroups,
     state: CrowdState,
+    grid: Grid,
     around: Surroundings,
     terms: Terms,
+    extra: NDArray[np.float64],
     rules: Rules,
+    vx: NDArray[np.float64],
+    vy: NDArray[np.float64],
+    eager: bool,
+    bounded: bool,
     work: Work,
-) -> int:
-    """The cheapest option of pedestrian i that hits nothing, counted from ``first``.
-
-    ``costs`` are complete if ``eager``, else without the pair terms.  -1 if all hit
-    something, -2 if a pair cost is not a number.
-    """
-    key, item, leaving = work.key, work.item, work.leaving
-    leaving[: len(costs)] = _UNTRIED
-    # Whoever may leave by an exit may be out before it would meet anybody: no screening then.
-    screening = rules.cores and not exits_near
-    screened = False
-    hits = 0
-    lowest = least(costs)
-    above, up_to, band = -np.inf, lowest + FIRST_BAND, 1
-    size = join(costs, above, up_to, key, item, 0)
-    while True:
-        if size == 0 or key[0] > up_to:
-            # What is to come may cost less than what is left, once that has its pair costs.
-            if up_to < np.inf:
-                above = up_to
-                up_to = lowest + FIRST_BAND * WIDENING**band if band < BANDS else np.inf
-                band += 1
-                size = join(costs, above, up_to, key, item, size)
-                continue
-            if size == 0:
-                return _NONE
-        k = item[0]
-        if leaving[k] != _UNTRIED:
-            return k
-        if screening and not screened and hits >= SCREEN_AFTER:
-            screened = True
-            work.marked[:] = False
-            mark_bodies(i, frame, close, state, farthest, screen.side, work.marked)
-        free = not (screened and is_marked(screen.cells[first + k], work.marked))
-        if free:
-            o = first + k
-            pieces = lay_path(i, o, table, state, work.path)
-            gone = path_gone_or_blocked(
-                i, work.path, pieces, SAMPLE_FRAMES, table.reach[o], frame, state, walls, around,
-                close, exits_near, rules.cores,
-            )  # fmt: skip
-            free = gone >= -1
-        if free:
-            leaving[k] = gone
-            if not eager:
-                key[0] += pair_cost(k, work.ends, neighbours, work.others, terms)
-                if not abs(key[0]) < np.inf:
-                    return _NOT_A_NUMBER
-        else:
-            hits += 1
-            size -= 1
-            key[0], item[0] = key[size], item[size]
-        if size > 0:
-            sift_down(key, item, size, 0)
+) -> bool:
+    """Decide for pedestrian i and commit it; False if a cost is not a number."""
+    cluster, destination = state.cluster[i], state.destination[i]
+    x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
+    me = Stance(i, x, y, math.cos(heading), math.sin(heading), core)
+    count = neighbours_of(grid, i, state.x, state.y, rules.search_radius, work.near)
+    near, others = work.near[:count], work.others
+    for a in range(count):
+        j = near[a]
+        others.x[a], others.y[a], others.vx[a], others.vy[a] = state.x[j], state.y[j], vx[j], vy[j]
+    farthest = table.farthest[cluster]
+    walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
+    exits_from = exit_distance(around, x, y, destination)
+    # What the options cover, and what the fallback may.
+    aside = state.preferred[i] * FALLBACK_SECONDS
+    whole = groups.whole[cluster]
+    found, touching = find_close(
+        me, near if rules.cores else near[:0], min(whole[0], -aside), min(whole[1], -aside),
+        max(whole[2], aside), max(whole[3], aside), state, work.close,
+    )  # fmt: skip
+    n = free_groups(
+        me, frame, work.close, found, walls, exits_from, groups, state, work.bodies, work.circles,
+        work.alive,
+    )  # fmt: skip
+    option, gone = NONE, -1
+    if n > 0:
+        alive, bounds = work.alive[:n], work.bounds[:n]
+        bounds[:] = -np.inf
+        if bounded:
+            first, last = groups.of[cluster], groups.of[cluster + 1]
+            group_bounds(me, first, last, groups, state, terms, work.ends, work.every)
+            for a in range(n):
+                bounds[a] = work.every[alive[a] - first]
+            if not all_finite(bounds):
+                return False
+        setting = Setting(frame, found, touching, count, exits_from, eager)
+        option, gone = cheapest_free(
+            me, setting, bounds, alive, walls, extra, rules.cores, table, groups, state, around,
+            terms, work,
+        )  # fmt: skip
+        if option == NOT_A_NUMBER:
+            return False
+    state.decisions[i] += 1
+    if option >= 0:
+        pieces = lay_path(i, option, table, state, state.path[i])
+        commit(
+            i, option, frame, pieces, np.int64(SAMPLE_FRAMES), gone, table.cluster[option], state
+        )
+    else:
+        standing = rules.standing[state.kind[i]]
+        for a in range(touching, len(work.close.who)):
+            work.close.who[found] = work.close.who[a]
+            found += 1
+        fall_back(
+            i, frame, state, walls, around, work.close.who[:found], exits_from <= farthest,
+            rules.cores, standing, work.path,
+        )  # fmt: skip
+    return True

@@ -12,11 +12,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.floorplan.kernels import segment_segment_distance2
+from mesa_mobility.jit import lean
 
 MARGIN = 1e-4
 """Metres added to every clearance, so that results written in fewer digits still show none lost."""
@@ -42,19 +42,24 @@ class Surroundings(NamedTuple):
     leads_out: NDArray[np.bool_]
 
 
-@njit(cache=True)
+@lean()
 def near_walls(
-    around: Surroundings, x: float, y: float, destination: int, reach: float
-) -> NDArray[np.float64]:
-    """Walls within ``reach`` of (x, y): rows x1, y1, x2, y2, squared distance.
+    around: Surroundings,
+    x: float,
+    y: float,
+    destination: int,
+    reach: float,
+    found: NDArray[np.float64],
+) -> int:
+    """Write walls within ``reach`` of (x, y): rows x1, y1, x2, y2, squared distance.
 
+    Returns their number; ``found`` must have room for all walls and exits.
     An exit that does not lead out for this person is a wall to it.
     """
     cx = min(max(int((x - around.x0) / around.size), 0), around.nx - 1)
     cy = min(max(int((y - around.y0) / around.size), 0), around.ny - 1)
     cell = cy * around.nx + cx
     first, last = around.offsets[cell], around.offsets[cell + 1]
-    found = np.empty((last - first + len(around.exits), 5))
     count = 0
     for k in range(last - first + len(around.exits)):
         if k < last - first:
@@ -66,13 +71,14 @@ def near_walls(
             wall = around.exits[e]
         d2 = segment_segment_distance2(x, y, x, y, wall[0], wall[1], wall[2], wall[3])
         if d2 <= reach * reach:
-            found[count, :4] = wall
+            for column in range(4):
+                found[count, column] = wall[column]
             found[count, 4] = d2
             count += 1
-    return found[:count]
+    return count
 
 
-@njit(cache=True)
+@lean()
 def hits_wall(
     path: NDArray[np.float64],
     segments: int,
@@ -95,7 +101,7 @@ def hits_wall(
         x0, x1 = min(ax, bx) - r, max(ax, bx) + r
         y0, y1 = min(ay, by) - r, max(ay, by) + r
         for k in range(segments):
-            px, py, qx, qy = path[k, 0], path[k, 1], path[k + 1, 0], path[k + 1, 1]
+            px, py, qx, qy = path[0, k], path[1, k], path[0, k + 1], path[1, k + 1]
             if (px < x0 and qx < x0) or (px > x1 and qx > x1):
                 continue
             if (py < y0 and qy < y0) or (py > y1 and qy > y1):
@@ -105,7 +111,7 @@ def hits_wall(
     return False
 
 
-@njit(cache=True)
+@lean()
 def crosses_exit(
     path: NDArray[np.float64], segments: int, around: Surroundings, destination: int
 ) -> tuple[int, float]:
@@ -119,12 +125,12 @@ def crosses_exit(
             if not around.leads_out[destination, e]:
                 continue
             ax, ay, bx, by = around.exits[e]
-            ux, uy = path[k + 1, 0] - path[k, 0], path[k + 1, 1] - path[k, 1]
+            ux, uy = path[0, k + 1] - path[0, k], path[1, k + 1] - path[1, k]
             vx, vy = bx - ax, by - ay
             det = ux * vy - uy * vx
             if det == 0.0:
                 continue
-            wx, wy = ax - path[k, 0], ay - path[k, 1]
+            wx, wy = ax - path[0, k], ay - path[1, k]
             u = (wx * vy - wy * vx) / det
             v = (wx * uy - wy * ux) / det
             if 0.0 <= u <= 1.0 and 0.0 <= v <= 1.0 and u < best:
@@ -134,20 +140,20 @@ def crosses_exit(
     return -1, 0.0
 
 
-@njit(cache=True)
+@lean()
 def position_at(state: CrowdState, j: int, time: float) -> tuple[float, float]:
     """Where pedestrian j is at a time in frames, standing once its movement has ended."""
     last = state.knots[j] - 1
     u = (time - state.start[j]) / state.spacing[j]
     k = int(u)
     if k >= last:
-        return state.path[j, last, 0], state.path[j, last, 1]
+        return state.path[j, 0, last], state.path[j, 1, last]
     u -= k
-    ax, ay = state.path[j, k, 0], state.path[j, k, 1]
-    return ax + u * (state.path[j, k + 1, 0] - ax), ay + u * (state.path[j, k + 1, 1] - ay)
+    ax, ay = state.path[j, 0, k], state.path[j, 1, k]
+    return ax + u * (state.path[j, 0, k + 1] - ax), ay + u * (state.path[j, 1, k + 1] - ay)
 
 
-@njit(cache=True)
+@lean()
 def hits_neighbour(
     path: NDArray[np.float64],
     segments: int,
@@ -164,7 +170,8 @@ def hits_neighbour(
     which it has crossed an exit, or -1.
     """
     my_end = frame + spacing * segments
-    their_end = state.end[j]
+    their_end, start, step = state.end[j], state.start[j], state.spacing[j]
+    last = state.knots[j] - 1
     stop = max(my_end, their_end)
     if gone >= 0:
         stop = min(stop, gone)
@@ -173,73 +180,84 @@ def hits_neighbour(
     c = clearance + MARGIN
     limit = c * c
     jx, jy = position_at(state, j, frame)
-    rx, ry = path[0, 0] - jx, path[0, 1] - jy
+    rx, ry = path[0, 0] - jx, path[1, 0] - jy
     now = rx * rx + ry * ry
     if now < limit:  # closer than allowed to begin with: may stay, not come closer
         limit = now * (1.0 - 1e-9)
     t = frame
-    k = 0
+    k = 0  # my piece at time t, and theirs
+    p = min((frame - start) // step, last)
+    share, their_share = 1.0 / spacing, 1.0 / step
     while t < stop:
         following = stop
-        if t < my_end:
+        if k < segments:
             following = min(following, frame + spacing * (k + 1))
-        if t < their_end:
-            past = (t - state.start[j]) // state.spacing[j]
-            following = min(following, state.start[j] + state.spacing[j] * (past + 1))
+        if p < last:
+            following = min(following, start + step * (p + 1))
         if following >= my_end:
-            mx, my = path[segments, 0], path[segments, 1]
+            k = segments
+            mx, my = path[0, k], path[1, k]
         else:
-            k = (following - frame) // spacing
-            u = (following - frame - spacing * k) / spacing
-            mx = path[k, 0] + u * (path[k + 1, 0] - path[k, 0])
-            my = path[k, 1] + u * (path[k + 1, 1] - path[k, 1])
-        jx, jy = position_at(state, j, following)
+            if following == frame + spacing * (k + 1):
+                k += 1
+            u = (following - frame - spacing * k) * share
+            mx = path[0, k] + u * (path[0, k + 1] - path[0, k])
+            my = path[1, k] + u * (path[1, k + 1] - path[1, k])
+        if following >= their_end:
+            p = last
+            jx, jy = state.path[j, 0, p], state.path[j, 1, p]
+        else:
+            if following == start + step * (p + 1):
+                p += 1
+            u = (following - start - step * p) * their_share
+            ax, ay = state.path[j, 0, p], state.path[j, 1, p]
+            jx = ax + u * (state.path[j, 0, p + 1] - ax)
+            jy = ay + u * (state.path[j, 1, p + 1] - ay)
         qx, qy = mx - jx, my - jy
         dx, dy = qx - rx, qy - ry
         length2 = dx * dx + dy * dy
-        u = 0.0
-        if length2 > 0.0:
-            u = min(max(-(rx * dx + ry * dy) / length2, 0.0), 1.0)
-        nx, ny = rx + u * dx, ry + u * dy
-        if nx * nx + ny * ny < limit:
+        along = -(rx * dx + ry * dy)
+        if along > 0.0 and length2 > 0.0:
+            u = min(along / length2, 1.0)
+            nx, ny = rx + u * dx, ry + u * dy
+            if nx * nx + ny * ny < limit:
+                return True
+        elif rx * rx + ry * ry < limit:
             return True
         rx, ry = qx, qy
         t = following
     return False
 
 
-@njit(cache=True)
+@lean()
 def gone_frame(frame: int, spacing: int, piece: int, where: float) -> int:
     """First whole frame at which an exit crossed on a piece of a path lies behind."""
     return frame + max(1, math.ceil(spacing * (piece + where)))
 
 
-@njit(cache=True)
+@lean()
 def box_of(path: NDArray[np.float64], pieces: int) -> tuple[float, float, float, float]:
     """Least x, least y, greatest x and greatest y of a path."""
     x0 = x1 = path[0, 0]
-    y0 = y1 = path[0, 1]
+    y0 = y1 = path[1, 0]
     for k in range(1, pieces + 1):
-        x0, x1 = min(x0, path[k, 0]), max(x1, path[k, 0])
-        y0, y1 = min(y0, path[k, 1]), max(y1, path[k, 1])
+        x0, x1 = min(x0, path[0, k]), max(x1, path[0, k])
+        y0, y1 = min(y0, path[1, k]), max(y1, path[1, k])
     return x0, y0, x1, y1
 
 
-@njit(cache=True)
-def exits_within(around: Surroundings, x: float, y: float, destination: int, reach: float) -> bool:
-    """Whether a way out for this destination may lie within ``reach`` metres of (x, y)."""
+@lean()
+def exit_distance(around: Surroundings, x: float, y: float, destination: int) -> float:
+    """Metres from (x, y) to the nearest way out for this destination; inf if there is none."""
+    nearest = np.inf
     for e in range(len(around.exits)):
-        ax, ay, bx, by = around.exits[e]
-        if (
-            around.leads_out[destination, e]
-            and min(ax, bx) - reach <= x <= max(ax, bx) + reach
-            and min(ay, by) - reach <= y <= max(ay, by) + reach
-        ):
-            return True
-    return False
+        if around.leads_out[destination, e]:
+            ax, ay, bx, by = around.exits[e]
+            nearest = min(nearest, segment_segment_distance2(x, y, x, y, ax, ay, bx, by))
+    return math.sqrt(nearest)
 
 
-@njit(cache=True)
+@lean()
 def path_gone_or_blocked(
     i: int,
     path: NDArray[np.float64],
@@ -283,7 +301,7 @@ def path_gone_or_blocked(
     return gone
 
 
-@njit(cache=True)
+@lean()
 def within_reach(
     i: int,
     near: NDArray[np.int64],

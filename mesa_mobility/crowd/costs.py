@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.capability import FRAME_SECONDS, OptionTable
-from mesa_mobility.crowd.kernels import call_option_loop, call_pair_loop
+from mesa_mobility.crowd.close import Stance
+from mesa_mobility.crowd.groups import OptionGroups
+from mesa_mobility.crowd.kernels import call_bound_loop, call_option_loop, call_pair_loop
+from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.jit import lean
 
 
 class Terms(NamedTuple):
-    """Compiled cost terms: addresses, weights and parameters (row per term)."""
+    """Compiled cost terms: addresses, weights and parameters (row per term).
 
+    ``bound_address`` belongs to the option terms, 0 for those that have no lower bound.
+    """
+
+    bound_address: NDArray[np.int64]
     option_address: NDArray[np.int64]
     option_weight: NDArray[np.float64]
     option_parameters: NDArray[np.float64]
@@ -43,46 +48,79 @@ def empty_ends(n: int) -> Ends:
 
 
 class Others(NamedTuple):
-    """Neighbours of a pedestrian: place and velocity at the moment of its decision; (n,) each."""
+    """Neighbours of a pedestrian: place and velocity at the moment of its decision; (n,) each.
+
+    ``cost`` is space for what each adds.
+    """
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
     vx: NDArray[np.float64]
     vy: NDArray[np.float64]
+    cost: NDArray[np.float64]
 
 
-@njit(cache=True)
+@lean()
 def preferred_now(i: int, state: CrowdState) -> float:
     """Preferred speed of pedestrian i, m/s: none for somebody who has no way to go."""
     return state.preferred[i] if state.route[i] < np.inf else 0.0
 
 
-@njit(cache=True)
-def lay_ends(
-    i: int, first: int, last: int, table: OptionTable, state: CrowdState, to: Ends
+@lean()
+def lay_ends(me: Stance, rows: NDArray[np.int64], table: OptionTable, to: Ends, at: int) -> None:
+    """Write the ends of a pedestrian's options in ``rows``, from row ``at`` of ``to`` on."""
+    c, s, px, py = me.c, me.s, me.x, me.y
+    x, y, ux, uy, speed, frames = table.x, table.y, table.ux, table.uy, table.speed, table.frames
+    to_x, to_y, to_duration = to.x[at:], to.y[at:], to.duration[at:]
+    to_ux, to_uy, to_speed = to.ux[at:], to.uy[at:], to.speed[at:]
+    for k in range(len(rows)):
+        o = rows[k]
+        to_x[k] = px + c * x[o] - s * y[o]
+        to_y[k] = py + s * x[o] + c * y[o]
+        to_ux[k] = c * ux[o] - s * uy[o]
+        to_uy[k] = s * ux[o] + c * uy[o]
+        to_duration[k] = frames[o] * FRAME_SECONDS
+        to_speed[k] = speed[o]
+
+
+@lean()
+def group_bounds(
+    me: Stance,
+    first: int,
+    last: int,
+    groups: OptionGroups,
+    state: CrowdState,
+    terms: Terms,
+    ends: Ends,
+    out: NDArray[np.float64],
 ) -> None:
-    """Write the ends of the options ``first`` to ``last`` of pedestrian i."""
-    c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
-    px, py = state.x[i], state.y[i]
-    x, y, ux, uy = (
-        table.x[first:last],
-        table.y[first:last],
-        table.ux[first:last],
-        table.uy[first:last],
-    )
-    frames, speed = table.frames[first:last], table.speed[first:last]
+    """Write lower bounds of what the option terms cost in groups ``first`` to ``last``.
+
+    ``ends`` is space to work in.  All terms must have bounds.
+    """
+    c, s, px, py = me.c, me.s, me.x, me.y
+    x, y, ux, uy = groups.x[first:], groups.y[first:], groups.ux[first:], groups.uy[first:]
+    to_x, to_y, to_ux, to_uy = ends.x, ends.y, ends.ux, ends.uy
     for k in range(last - first):
-        to.x[k] = px + c * x[k] - s * y[k]
-        to.y[k] = py + s * x[k] + c * y[k]
-        to.ux[k] = c * ux[k] - s * uy[k]
-        to.uy[k] = s * ux[k] + c * uy[k]
-        to.duration[k] = frames[k] * FRAME_SECONDS
-        to.speed[k] = speed[k]
+        to_x[k] = px + c * x[k] - s * y[k]
+        to_y[k] = py + s * x[k] + c * y[k]
+        to_ux[k] = c * ux[k] - s * uy[k]
+        to_uy[k] = s * ux[k] + c * uy[k]
+        out[k] = 0.0
+    preferred = preferred_now(me.row, state)
+    for t in range(len(terms.bound_address)):
+        call_bound_loop(
+            terms.bound_address[t], last - first, to_x, to_y, groups.radius[first:], to_ux, to_uy,
+            groups.turn[first:], groups.duration[first:], groups.slowest[first:],
+            groups.fastest[first:], state.target_x[me.row], state.target_y[me.row], preferred,
+            terms.option_parameters[t], terms.option_weight[t], out,
+        )  # fmt: skip
 
 
-@njit(cache=True)
+@lean()
 def option_costs(
-    n: int,
+    first: int,
+    last: int,
     ends: Ends,
     target_x: float,
     target_y: float,
@@ -90,23 +128,28 @@ def option_costs(
     terms: Terms,
     out: NDArray[np.float64],
 ) -> None:
-    """Weighted sum of the option terms of one pedestrian's n options, added to ``out``."""
+    """Add the weighted sum of the option terms to ``out``, for rows ``first`` to ``last``."""
     for t in range(len(terms.option_address)):
         call_option_loop(
-            terms.option_address[t], n, ends.x, ends.y, ends.ux, ends.uy, ends.duration,
-            ends.speed, target_x, target_y, preferred, terms.option_parameters[t],
-            terms.option_weight[t], out,
+            terms.option_address[t], last - first, ends.x[first:], ends.y[first:],
+            ends.ux[first:], ends.uy[first:], ends.duration[first:], ends.speed[first:],
+            target_x, target_y, preferred, terms.option_parameters[t], terms.option_weight[t],
+            out[first:],
         )  # fmt: skip
 
 
-@njit(cache=True)
+@lean()
 def pair_cost(k: int, ends: Ends, count: int, others: Others, terms: Terms) -> float:
     """Weighted sum of the pair terms of option k over the first ``count`` neighbours."""
     total = 0.0
     for t in range(len(terms.pair_address)):
-        total += terms.pair_weight[t] * call_pair_loop(
+        call_pair_loop(
             terms.pair_address[t], count, ends.x[k], ends.y[k], ends.ux[k], ends.uy[k],
             ends.duration[k], ends.speed[k], others.x, others.y, others.vx, others.vy,
-            terms.pair_parameters[t],
+            terms.pair_parameters[t], others.cost,
         )  # fmt: skip
+        summed = 0.0
+        for a in range(count):
+            summed += others.cost[a]
+        total += terms.pair_weight[t] * summed
     return total

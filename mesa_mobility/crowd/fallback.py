@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.capability import FRAME_SECONDS
 from mesa_mobility.crowd.collision import Surroundings, path_gone_or_blocked
 from mesa_mobility.crowd.motion import commit
+from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
+from mesa_mobility.jit import lean
 
 FALLBACK_FRAMES = 4
 """Frames of the fallback (section 6 of the paper)."""
+
+FALLBACK_SECONDS = FALLBACK_FRAMES * FRAME_SECONDS
 
 FALLBACK_TURN_RATE = math.pi
 """Fastest turn during a fallback, rad/s: about the fastest turn on the spot that was recorded."""
@@ -23,7 +25,7 @@ FALLBACK_STEPS = (1.0, 0.5, 0.25, 0.0)
 """Steps tried in a fallback, as shares of the preferred speed; the last is always possible."""
 
 
-@njit(cache=True)
+@lean()
 def fall_back(
     i: int,
     frame: int,
@@ -34,9 +36,12 @@ def fall_back(
     exits_near: bool,
     cores: bool,
     standing: int,
+    trial: NDArray[np.float64],
 ) -> None:
-    """Straight towards the target for four frames, as far as nothing is hit; then from standing."""
-    seconds = FALLBACK_FRAMES * FRAME_SECONDS
+    """Straight towards the target for four frames, as far as nothing is hit; then from standing.
+
+    ``trial`` is space for a path.
+    """
     dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
     distance = math.hypot(dx, dy)
     turn = 0.0
@@ -44,24 +49,33 @@ def fall_back(
         dx, dy = dx / distance, dy / distance
         turn = math.atan2(dy, dx) - state.heading[i]
         turn = math.atan2(math.sin(turn), math.cos(turn))
-        most = FALLBACK_TURN_RATE * seconds
+        most = FALLBACK_TURN_RATE * FALLBACK_SECONDS
         turn = min(max(turn, -most), most)
     path = state.path[i]
-    trial = np.empty((2, 3))
-    trial[0, 0], trial[0, 1], trial[0, 2] = state.x[i], state.y[i], state.heading[i]
-    trial[1, 2] = state.heading[i] + turn
+    trial[0, 0], trial[1, 0], trial[2, 0] = state.x[i], state.y[i], state.heading[i]
+    trial[2, 1] = state.heading[i] + turn
     gone = -1
     for share in FALLBACK_STEPS:
-        length = min(share * state.preferred[i] * seconds, distance)
-        trial[1, 0], trial[1, 1] = state.x[i] + length * dx, state.y[i] + length * dy
+        length = min(share * state.preferred[i] * FALLBACK_SECONDS, distance)
+        trial[0, 1], trial[1, 1] = state.x[i] + length * dx, state.y[i] + length * dy
         if length == 0.0:
             break
         gone = path_gone_or_blocked(
-            i, trial, 1, FALLBACK_FRAMES, length, frame, state, walls, around, near, exits_near,
-            cores,
+            i, trial, np.int64(1), np.int64(FALLBACK_FRAMES), length, frame, state, walls, around,
+            near, exits_near, cores,
         )  # fmt: skip
         if gone >= -1:
             break
-    path[:2] = trial
+    for row in range(3):
+        path[row, 0], path[row, 1] = trial[row, 0], trial[row, 1]
     state.fallbacks[i] += 1
-    commit(i, FALLBACK, frame, 1, FALLBACK_FRAMES, max(gone, -1), standing, state)
+    commit(
+        i,
+        np.int64(FALLBACK),
+        frame,
+        np.int64(1),
+        np.int64(FALLBACK_FRAMES),
+        max(gone, -1),
+        standing,
+        state,
+    )

@@ -31,14 +31,24 @@ def {name}(n, x, y, facing_x, facing_y, duration, speed, tx, ty, preferred, p, w
         )
 """
 
-_PAIR_LOOP = """
-def {name}(n, x, y, facing_x, facing_y, duration, speed, nx, ny, nvx, nvy, p):
-    total = 0.0
+_BOUND_LOOP = """
+def {name}(
+    n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, tx, ty, preferred, p,
+    weight, out
+):
     for k in range(n):
-        total += each(
+        out[k] += weight * each(
+            x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
+            fastest[k], tx, ty, preferred, p
+        )
+"""
+
+_PAIR_LOOP = """
+def {name}(n, x, y, facing_x, facing_y, duration, speed, nx, ny, nvx, nvy, p, out):
+    for k in range(n):
+        out[k] = each(
             x, y, facing_x, facing_y, duration, speed, nx[k], ny[k], nvx[k], nvy[k], p
         )
-    return total
 """
 
 
@@ -88,11 +98,18 @@ class OptionKernel(CostKernel):
     signature = types.void(_N, _A, _A, _A, _A, _A, _A, _F, _F, _F, _A, _F, _A)
 
 
+class BoundKernel(CostKernel):
+    """Lower bound of the cost of a group of movement options."""
+
+    loop = _BOUND_LOOP
+    signature = types.void(_N, _A, _A, _A, _A, _A, _A, _A, _A, _A, _F, _F, _F, _A, _F, _A)
+
+
 class PairKernel(CostKernel):
     """Cost of one movement option with respect to one neighbour."""
 
     loop = _PAIR_LOOP
-    signature = _F(_N, _F, _F, _F, _F, _F, _F, _A, _A, _A, _A, _A)
+    signature = types.void(_N, _F, _F, _F, _F, _F, _F, _A, _A, _A, _A, _A, _A)
 
 
 def option_kernel(function: Callable[..., float]) -> OptionKernel:
@@ -105,6 +122,18 @@ def option_kernel(function: Callable[..., float]) -> OptionKernel:
     ``parameters()``.  It must be compilable by Numba (``math``, no Python objects).
     """
     return OptionKernel(function)
+
+
+def bound_kernel(function: Callable[..., float]) -> BoundKernel:
+    """Make a lower bound of an option kernel over a group of options that are alike.
+
+    The function takes ``(x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest,
+    target_x, target_y, preferred_speed, parameters)`` and returns a number that the option
+    kernel does not fall below for any option that ends within ``radius`` metres of (x, y),
+    faces within ``turn`` radians of the unit vector there, takes ``duration`` seconds and has a
+    speed from ``slowest`` to ``fastest``.
+    """
+    return BoundKernel(function)
 
 
 def pair_kernel(function: Callable[..., float]) -> PairKernel:
@@ -154,8 +183,22 @@ def call_option_loop(  # type: ignore[no-untyped-def]
 
 
 @intrinsic
-def call_pair_loop(typingctx, address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p):  # type: ignore[no-untyped-def]
-    """Cost of one option summed over n neighbours; arguments after the address as the loop's."""
+def call_pair_loop(  # type: ignore[no-untyped-def]
+    typingctx, address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p, out
+):
+    """Write the cost of one option for each of n neighbours; arguments as the loop's."""
     return _caller(PairKernel.signature)(
-        address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p
+        address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p, out
     )
+
+
+@intrinsic
+def call_bound_loop(  # type: ignore[no-untyped-def]
+    typingctx, address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty,
+    preferred, p, weight, out,
+):  # fmt: skip
+    """Add the weighted bounds of n groups to ``out``; arguments after the address as the loop's."""
+    return _caller(BoundKernel.signature)(
+        address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p,
+        weight, out,
+    )  # fmt: skip

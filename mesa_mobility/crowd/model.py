@@ -32,7 +32,8 @@ from mesa_mobility.crowd.summary import CrowdMeasures
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
 from mesa_mobility.crowd.terms import CostTerm
-from mesa_mobility.crowd.terms_table import compile_terms, extra_costs
+from mesa_mobility.crowd.terms_table import NO_EXTRA, CompiledTerms, extra_costs
+from mesa_mobility.crowd.work import Work, make_work
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.mobility import MobilityMap
@@ -107,6 +108,8 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         )
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
         self.target_choice = target_choice or rules.make_target_choice()
+        self._compiled = CompiledTerms()
+        self._work = make_work(0, 0, 0)
         self.frames_per_step = frames_per_step
         self.frame = 0
         self.recorder = Recorder() if record else None
@@ -192,7 +195,10 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
             destination=self._site.destination(None if exits is None else tuple(exits)),
         )
         if self._rules.cores:
-            where, who = too_close(points, ptype.core_radius, self.frame, self._rows, self.crowd)
+            where, who = too_close(
+                points, ptype.core_radius, self.frame, self._rows, self.crowd,
+                self._rules.search_radius,
+            )  # fmt: skip
             if where >= 0:
                 other = "another newcomer" if who < 0 else f"where pedestrian {who} is or will be"
                 raise ModelError(
@@ -220,8 +226,9 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
             self.crowd.active[person.row] = False
             self.deregister_agent(person)
             del self._agent_of[person.row]
-        self.space.remove_agents(leaving)
-        self._rows = self._rows[self.crowd.active[self._rows]]
+        stay = self.crowd.active[self._rows]
+        self.space.keep(stay)
+        self._rows = self._rows[stay]
 
     @property
     def capabilities(self) -> tuple[Capability, ...]:
@@ -296,8 +303,8 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         if len(deciding):
             self._decide(deciding, rows)
         self.frame += 1
-        self._walked += float(np.hypot(self.crowd.vx[rows], self.crowd.vy[rows]).sum())
-        left = move(rows, self.frame, self.crowd)
+        left, speeds = move(rows, self.frame, self.crowd)
+        self._walked += speeds
         if self.recorder is not None:
             self.recorder.add(self.frame, rows, self.crowd)
         if left:
@@ -311,14 +318,17 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         state = self.crowd
         targets = self._set_targets(deciding)
         # Those nearest to where they go decide first: that frees space for those behind.
-        order = deciding[np.lexsort((deciding, targets.distances))]
+        order = deciding[np.argsort(targets.distances, kind="stable")]
+        compiled, others = self._compiled(self.terms)
+        table, groups = self._repertoire.table, self._repertoire.groups
+        extra, extra_offsets = NO_EXTRA
         grid = build_grid(rows, state.x, state.y)
-        compiled, others = compile_terms(self.terms)
-        table, screen = self._repertoire.table, self._repertoire.screen
-        extra, extra_offsets = extra_costs(others, order, table, state, grid, self._rules)
+        if others:
+            extra, extra_offsets = extra_costs(others, order, table, state, grid, self._rules)
         failed = decide(
-            order, self.frame, table, screen, state, grid, self._site.surroundings, compiled,
-            extra, extra_offsets, self._rules,
+            order, self.frame, table, groups, state, grid, self._site.surroundings, compiled,
+            extra, extra_offsets, self._rules, state.vx.copy(), state.vy.copy(),
+            self._work_for(len(rows)),
         )  # fmt: skip
         if failed >= 0:
             names = ", ".join(term.name for term in self.terms)
@@ -326,6 +336,15 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
                 f"cost of an option of pedestrian {failed}: not a number, expected finite numbers "
                 f"from each of the behaviours {names}"
             )
+
+    def _work_for(self, people: int) -> Work:
+        """Space for decisions among so many people."""
+        around = self._site.surroundings
+        walls = len(around.segments) + len(around.exits)
+        if people > len(self._work.near) or walls > len(self._work.walls):
+            options = int(np.diff(self._repertoire.table.offsets).max())
+            self._work = make_work(people, walls, options)
+        return self._work
 
     def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
         state = self.crowd

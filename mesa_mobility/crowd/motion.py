@@ -8,28 +8,36 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.capability import FRAME_SECONDS, SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.collision import box_of
+from mesa_mobility.crowd.options import FRAME_SECONDS, SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
+from mesa_mobility.jit import lean
 
 
-@njit(cache=True)
+@lean()
 def lay_path(
     i: int, o: int, table: OptionTable, state: CrowdState, path: NDArray[np.float64]
 ) -> int:
-    """Write option o of pedestrian i into ``path`` (16, 3) as world knots; return its pieces."""
+    """Write option o of pedestrian i into ``path`` (3, 16) as world knots; return its pieces."""
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
-    pieces = table.frames[o] // SAMPLE_FRAMES
-    path[0, 0], path[0, 1], path[0, 2] = state.x[i], state.y[i], state.heading[i]
-    for k in range(pieces):
-        sample = table.path[table.path_start[o] + k]
-        path[k + 1, 0] = state.x[i] + c * sample[0] - s * sample[1]
-        path[k + 1, 1] = state.y[i] + s * sample[0] + c * sample[1]
-        path[k + 1, 2] = state.heading[i] + sample[2]
-    return pieces
+    x, y, heading = state.x[i], state.y[i], state.heading[i]
+    own = table.path[o]
+    for k in range(SAMPLES):
+        path[0, k] = x + c * own[0, k] - s * own[1, k]
+        path[1, k] = y + s * own[0, k] + c * own[1, k]
+        path[2, k] = heading + own[2, k]
+    return table.frames[o] // SAMPLE_FRAMES
 
 
-@njit(cache=True)
+@lean()
+def cover(i: int, x0: float, y0: float, x1: float, y1: float, state: CrowdState) -> None:
+    """Set what the movement of pedestrian i covers: a box, and the circle around it."""
+    state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3] = x0, y0, x1, y1
+    state.sweep[i, 0], state.sweep[i, 1] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+    state.sweep[i, 2] = 0.5 * math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))
+
+
+@lean()
 def commit(
     i: int,
     option: int,
@@ -47,32 +55,41 @@ def commit(
     state.start[i], state.end[i], state.gone[i] = frame, frame + pieces * spacing, gone
     state.spacing[i], state.knots[i] = spacing, pieces + 1
     state.cluster[i] = cluster
-    state.vx[i] = (path[pieces, 0] - path[0, 0]) / seconds
-    state.vy[i] = (path[pieces, 1] - path[0, 1]) / seconds
+    state.vx[i] = (path[0, pieces] - path[0, 0]) / seconds
+    state.vy[i] = (path[1, pieces] - path[1, 0]) / seconds
+    longest2 = 0.0
+    for k in range(pieces):
+        dx, dy = path[0, k + 1] - path[0, k], path[1, k + 1] - path[1, k]
+        longest2 = max(longest2, dx * dx + dy * dy)
+    state.stride[i] = math.sqrt(longest2) * SAMPLE_FRAMES / spacing
     x0, y0, x1, y1 = box_of(path, pieces)
-    state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3] = x0, y0, x1, y1
+    cover(i, x0, y0, x1, y1, state)
 
 
 @njit(cache=True)
-def move(active: NDArray[np.int64], frame: int, state: CrowdState) -> int:
-    """Put everybody where its movement has it at ``frame``; return how many have left."""
-    left = 0
+def move(active: NDArray[np.int64], frame: int, state: CrowdState) -> tuple[int, float]:
+    """Put everybody where its movement has it at ``frame``.
+
+    Returns how many have left, and the sum of everybody's mean speed, m/s.
+    """
+    left, speeds = 0, 0.0
     for i in active:
         last = state.knots[i] - 1
         u = (frame - state.start[i]) / state.spacing[i]
         k = int(u)
         path = state.path[i]
         if k >= last:
-            state.x[i], state.y[i], state.heading[i] = path[last, 0], path[last, 1], path[last, 2]
+            state.x[i], state.y[i], state.heading[i] = path[0, last], path[1, last], path[2, last]
         else:
             u -= k
-            state.x[i] = path[k, 0] + u * (path[k + 1, 0] - path[k, 0])
-            state.y[i] = path[k, 1] + u * (path[k + 1, 1] - path[k, 1])
-            state.heading[i] = path[k, 2] + u * (path[k + 1, 2] - path[k, 2])
+            state.x[i] = path[0, k] + u * (path[0, k + 1] - path[0, k])
+            state.y[i] = path[1, k] + u * (path[1, k + 1] - path[1, k])
+            state.heading[i] = path[2, k] + u * (path[2, k + 1] - path[2, k])
+        speeds += math.sqrt(state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i])
         state.active_frames[i] += 1
         if state.option[i] == FALLBACK:
             state.fallback_frames[i] += 1
         if state.gone[i] == frame:
             state.active[i] = False
             left += 1
-    return left
+    return left, speeds

@@ -8,6 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mesa_mobility.jit import lean
+
 CELL_SIZE = 1.5
 
 
@@ -29,6 +31,8 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
     for i in active:
         x0, x1 = min(x0, x[i]), max(x1, x[i])
         y0, y1 = min(y0, y[i]), max(y1, y[i])
+    if len(active) == 0:
+        x0, y0, x1, y1 = 0.0, 0.0, 0.0, 0.0
     nx = int((x1 - x0) / CELL_SIZE) + 1
     ny = int((y1 - y0) / CELL_SIZE) + 1
     offsets = np.zeros(nx * ny + 1, np.int64)
@@ -45,7 +49,7 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
     return Grid(x0, y0, nx, ny, offsets, people)
 
 
-@njit(cache=True)
+@lean()
 def neighbours_of(
     grid: Grid,
     i: int,
@@ -58,16 +62,33 @@ def neighbours_of(
 
     ``found`` must have room for everybody: there is no cap on neighbours.
     """
-    cx0 = max(int((x[i] - radius - grid.x0) / CELL_SIZE), 0)
-    cx1 = min(int((x[i] + radius - grid.x0) / CELL_SIZE), grid.nx - 1)
-    cy0 = max(int((y[i] - radius - grid.y0) / CELL_SIZE), 0)
-    cy1 = min(int((y[i] + radius - grid.y0) / CELL_SIZE), grid.ny - 1)
+    return people_within(grid, x[i], y[i], i, x, y, radius, found)
+
+
+@lean()
+def people_within(
+    grid: Grid,
+    px: float,
+    py: float,
+    but: int,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    radius: float,
+    found: NDArray[np.int64],
+) -> int:
+    """Write the people within ``radius`` of (px, py) but one; return their number."""
+    cx0 = max(int((px - radius - grid.x0) / CELL_SIZE), 0)
+    cx1 = min(int((px + radius - grid.x0) / CELL_SIZE), grid.nx - 1)
+    cy0 = max(int((py - radius - grid.y0) / CELL_SIZE), 0)
+    cy1 = min(int((py + radius - grid.y0) / CELL_SIZE), grid.ny - 1)
     count = 0
+    if cx0 > cx1:  # beyond the last column; beyond the last row there is nothing to loop over
+        return count
     for cy in range(cy0, cy1 + 1):
         for a in range(grid.offsets[cy * grid.nx + cx0], grid.offsets[cy * grid.nx + cx1 + 1]):
             j = grid.people[a]
-            dx, dy = x[j] - x[i], y[j] - y[i]
-            if j != i and dx * dx + dy * dy <= radius * radius:
+            dx, dy = x[j] - px, y[j] - py
+            if j != but and dx * dx + dy * dy <= radius * radius:
                 found[count] = j
                 count += 1
     return count

@@ -9,7 +9,8 @@ from mesa.experimental.continuous_space import ContinuousSpaceAgent
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.capability import FRAME_SECONDS, Capability
+from mesa_mobility.crowd.capability import Capability
+from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.state import FALLBACK
 

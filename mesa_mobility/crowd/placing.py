@@ -70,12 +70,14 @@ def place(
     state.option[rows], state.gone[rows] = NO_OPTION, -1
     state.start[rows] = state.end[rows] = frame
     state.spacing[rows] = state.knots[rows] = 1
-    state.path[rows, 0, :2] = points
+    state.path[rows, :2, 0] = points
     state.box[rows] = np.column_stack([points, points])
+    state.sweep[rows, :2], state.sweep[rows, 2] = points, 0.0
+    state.stride[rows] = 0.0
     state.active[rows] = True
 
 
 def face(state: CrowdState, rows: NDArray[np.int64], headings: NDArray[np.float64]) -> None:
     """Turn people who have just been placed."""
     state.heading[rows] = headings
-    state.path[rows, 0, 2] = headings
+    state.path[rows, 2, 0] = headings

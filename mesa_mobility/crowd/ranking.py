@@ -7,18 +7,22 @@ all below them have been looked at.  Among equal costs the lower number is first
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-FIRST_BAND = 0.25
-"""Width of the first band above the least cost; the first options mostly decide."""
+from mesa_mobility.jit import lean
+
+FIRST_BAND = 0.5
+"""Width of the first band above the least bound; the first options mostly decide."""
 
 WIDENING = 4.0
-BANDS = 4
+BANDS = 6
 """Bands after which all the rest joins."""
 
+DEAREST = 1e300
+"""What costs more is blocked."""
 
-@njit(cache=True)
+
+@lean()
 def all_finite(values: NDArray[np.float64]) -> bool:
     """Whether every value is a finite number."""
     bad = 0
@@ -27,16 +31,16 @@ def all_finite(values: NDArray[np.float64]) -> bool:
     return bad == 0
 
 
-@njit(cache=True, fastmath={"nnan", "nsz"})
+@lean()
 def least(values: NDArray[np.float64]) -> float:
-    """The least of some finite values; lets several be compared at once."""
+    """The least of some values, none of which is nan; inf if there are none."""
     lowest = np.inf
     for value in values:
         lowest = value if value < lowest else lowest
     return lowest
 
 
-@njit(cache=True)
+@lean()
 def sift_down(key: NDArray[np.float64], item: NDArray[np.int64], size: int, root: int) -> None:
     """Restore the heap order (least key first; lower item first among equals) below ``root``."""
     k, v = key[root], item[root]
@@ -56,20 +60,21 @@ def sift_down(key: NDArray[np.float64], item: NDArray[np.int64], size: int, root
     key[root], item[root] = k, v
 
 
-@njit(cache=True)
+@lean()
 def join(
     costs: NDArray[np.float64],
+    rows: NDArray[np.int64],
     above: float,
     up_to: float,
     key: NDArray[np.float64],
     item: NDArray[np.int64],
     size: int,
 ) -> int:
-    """Add the options that cost more than ``above`` and at most ``up_to``; return the new size."""
+    """Add the ``rows`` that cost more than ``above`` and at most ``up_to``; return the new size."""
     for k in range(len(costs)):
         if above < costs[k] <= up_to:
             key[size] = costs[k]
-            item[size] = k
+            item[size] = rows[k]
             size += 1
     for root in range(size // 2 - 1, -1, -1):
         sift_down(key, item, size, root)

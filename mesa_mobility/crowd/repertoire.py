@@ -8,8 +8,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.capability import Capability, OptionTable, stack_tables
-from mesa_mobility.crowd.screen import Screen, make_screen
+from mesa_mobility.crowd.capability import Capability
+from mesa_mobility.crowd.groups import OptionGroups, make_groups
+from mesa_mobility.crowd.options import OptionTable, stack_tables
 from mesa_mobility.mobility import MobilityMap
 
 
@@ -20,7 +21,7 @@ class Repertoire:
     Attributes:
         capabilities: one for each type.
         table: their options.
-        screen: where these are at the times of screening.
+        groups: what their groups span.
         first_cluster: (types,) number of each type's first cluster.
         first_option: (types,) row of each type's first option.
         standing: (types,) number of each type's standing cluster.
@@ -30,7 +31,7 @@ class Repertoire:
 
     capabilities: tuple[Capability, ...]
     table: OptionTable
-    screen: Screen
+    groups: OptionGroups
     first_cluster: NDArray[np.int32]
     first_option: NDArray[np.int64]
     standing: NDArray[np.int32]
@@ -51,14 +52,14 @@ def repertoire(maps: tuple[MobilityMap, ...], durations: tuple[int, ...]) -> Rep
     """
     own = {map_: Capability(map_, durations) for map_ in dict.fromkeys(maps)}
     capabilities = tuple(own[map_] for map_ in maps)
-    table = stack_tables(capabilities)
+    table = stack_tables([each.table for each in capabilities])
     clusters = np.cumsum([0] + [each.n_clusters for each in capabilities])[:-1]
     options = np.cumsum([0] + [len(each.table.x) for each in capabilities])[:-1]
     standing = clusters + [each.standing for each in capabilities]
     return Repertoire(
         capabilities=capabilities,
         table=table,
-        screen=make_screen(table),
+        groups=make_groups(table),
         first_cluster=clusters.astype(np.int32),
         first_option=options.astype(np.int64),
         standing=standing.astype(np.int32),

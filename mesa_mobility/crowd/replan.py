@@ -6,7 +6,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.capability import OptionTable
 from mesa_mobility.crowd.collision import (
     Surroundings,
     crosses_exit,
@@ -14,8 +13,11 @@ from mesa_mobility.crowd.collision import (
     hits_wall,
     near_walls,
 )
+from mesa_mobility.crowd.motion import cover
+from mesa_mobility.crowd.neighbours import build_grid, neighbours_of, people_within
+from mesa_mobility.crowd.options import SAMPLES, OptionTable
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.state import MAX_KNOTS, NO_OPTION, CrowdState
+from mesa_mobility.crowd.state import NO_OPTION, CrowdState
 
 
 @njit(cache=True)
@@ -35,7 +37,8 @@ def stop_where_blocked(
     stopped = np.zeros(len(rows), np.bool_)
     newly = np.empty(len(rows), np.int64)
     count = 0
-    path = np.empty((MAX_KNOTS, 3))
+    path = np.empty((3, SAMPLES))
+    found = np.empty((len(around.segments) + len(around.exits), 5))
     for a in range(len(rows)):
         i = rows[a]
         if state.end[i] <= frame:
@@ -46,9 +49,10 @@ def stop_where_blocked(
             piece, _ = crosses_exit(path, pieces, around, state.destination[i])
             walked = pieces if piece < 0 else piece + 1
         walls = near_walls(
-            around, state.x[i], state.y[i], state.destination[i], reach + state.core[i] + 0.01
-        )
-        if hits_wall(path, walked, walls, state.core[i], reach):
+            around, state.x[i], state.y[i], state.destination[i], reach + state.core[i] + 0.01,
+            found,
+        )  # fmt: skip
+        if hits_wall(path, walked, found[:walls], state.core[i], reach):
             stopped[a] = True
             newly[count] = i
             count += 1
@@ -59,14 +63,23 @@ def stop_where_blocked(
         # Standing where they are, they may be in the way of others: these stop as well.
         standing = newly[:count].copy()
         count = 0
-        still = np.empty((2, 3))
+        still = np.empty((3, 2))
         for a in range(len(rows)):
             j = rows[a]
             if stopped[a] or state.end[j] <= frame:
                 continue
             for i in standing:
-                still[:, 0], still[:, 1], still[:, 2] = state.x[i], state.y[i], state.heading[i]
-                if hits_neighbour(still, 1, 1, frame, -1, state, j, state.core[i] + state.core[j]):
+                still[0], still[1], still[2] = state.x[i], state.y[i], state.heading[i]
+                if hits_neighbour(
+                    still,
+                    np.int64(1),
+                    np.int64(1),
+                    frame,
+                    np.int64(-1),
+                    state,
+                    j,
+                    state.core[i] + state.core[j],
+                ):
                     stopped[a] = True
                     newly[count] = j
                     count += 1
@@ -80,11 +93,11 @@ def stop_where_blocked(
 @njit(cache=True)
 def _remaining(i: int, frame: int, state: CrowdState, path: NDArray[np.float64]) -> int:
     """Write where pedestrian i is and the knots to come into ``path``; return the pieces."""
-    path[0, 0], path[0, 1], path[0, 2] = state.x[i], state.y[i], state.heading[i]
+    path[0, 0], path[1, 0], path[2, 0] = state.x[i], state.y[i], state.heading[i]
     first = (frame - state.start[i]) // state.spacing[i] + 1
     pieces = state.knots[i] - first
     for k in range(pieces):
-        path[k + 1] = state.path[i, first + k]
+        path[:, k + 1] = state.path[i, :, first + k]
     return pieces
 
 
@@ -95,10 +108,10 @@ def _stop(i: int, frame: int, state: CrowdState, rules: Rules) -> None:
     state.spacing[i] = state.knots[i] = 1
     state.cluster[i] = rules.standing[state.kind[i]]
     state.vx[i] = state.vy[i] = 0.0
-    state.path[i, 0, 0], state.path[i, 0, 1] = state.x[i], state.y[i]
-    state.path[i, 0, 2] = state.heading[i]
-    state.box[i, 0] = state.box[i, 2] = state.x[i]
-    state.box[i, 1] = state.box[i, 3] = state.y[i]
+    state.stride[i] = 0.0
+    state.path[i, 0, 0], state.path[i, 1, 0] = state.x[i], state.y[i]
+    state.path[i, 2, 0] = state.heading[i]
+    cover(i, state.x[i], state.y[i], state.x[i], state.y[i], state)
 
 
 @njit(cache=True)
@@ -108,24 +121,33 @@ def too_close(
     frame: int,
     rows: NDArray[np.int64],
     state: CrowdState,
+    search_radius: float,
 ) -> tuple[int, int]:
     """First of some places where nobody can appear, and who is or will come too near to it.
 
     The latter is a row of the crowd, or -1 for one of the places before it; (-1, -1) if all
-    of them are free.
+    of them are free.  Nobody farther than ``search_radius`` is on the way to a place.
     """
-    still = np.zeros((2, 3))
+    x, y = points[:, 0].copy(), points[:, 1].copy()
+    others = build_grid(np.arange(len(points)), x, y)
+    people = build_grid(rows, state.x, state.y)
+    found = np.empty(max(len(points), len(rows)), np.int64)
+    still = np.zeros((3, 2))
     for k in range(len(points)):
-        for m in range(k):
-            dx, dy = points[k, 0] - points[m, 0], points[k, 1] - points[m, 1]
-            if dx * dx + dy * dy < 4.0 * core * core:
+        for m in found[: neighbours_of(others, k, x, y, 2.0 * core, found)]:
+            dx, dy = x[k] - x[m], y[k] - y[m]
+            if m < k and dx * dx + dy * dy < 4.0 * core * core:
                 return k, -1
-        still[:, 0], still[:, 1] = points[k, 0], points[k, 1]
-        for j in rows:
+        still[0], still[1] = x[k], y[k]
+        count = people_within(people, x[k], y[k], -1, state.x, state.y, search_radius, found)
+        for j in np.sort(found[:count]):
             c = core + state.core[j]
-            dx, dy = points[k, 0] - state.x[j], points[k, 1] - state.y[j]
+            dx, dy = x[k] - state.x[j], y[k] - state.y[j]
             if dx * dx + dy * dy < c * c or (
-                state.end[j] > frame and hits_neighbour(still, 1, 1, frame, -1, state, j, c)
+                state.end[j] > frame
+                and hits_neighbour(
+                    still, np.int64(1), np.int64(1), frame, np.int64(-1), state, j, c
+                )
             ):
                 return k, j
     return -1, -1

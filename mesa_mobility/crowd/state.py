@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-MAX_KNOTS = 16
-"""Knots of a committed path: its start and 15 samples."""
+from mesa_mobility.crowd.options import SAMPLES
 
 
 class CrowdState(NamedTuple):
@@ -23,9 +22,11 @@ class CrowdState(NamedTuple):
     (m), ``kind`` (index of the pedestrian type), ``destination`` (the router's number).  Movement
     under way: ``option`` (row of the option table; -1 none yet, -2 fallback), ``cluster`` (at its
     end), ``start`` and ``end`` frames, ``gone`` (frame at which the person has crossed an exit,
-    or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``path`` (n, 16, 3) world
+    or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``path`` (n, 3, 16) world
     x, y, heading at the knots, ``box`` (n, 4) what the path covers: least x, least y, greatest x,
-    greatest y.  Where to: ``target_x``, ``target_y``, ``route`` (metres left).
+    greatest y, ``sweep`` (n, 3) x, y and radius of a circle around that, ``stride``
+    most metres on the way in the time between two samples.  Where to: ``target_x``, ``target_y``,
+    ``route`` (metres left).
     Counters: ``decisions``, ``fallbacks``, ``fallback_frames``, ``active_frames``.
     """
 
@@ -48,6 +49,8 @@ class CrowdState(NamedTuple):
     knots: NDArray[np.int32]
     path: NDArray[np.float64]
     box: NDArray[np.float64]
+    sweep: NDArray[np.float64]
+    stride: NDArray[np.float64]
     target_x: NDArray[np.float64]
     target_y: NDArray[np.float64]
     route: NDArray[np.float64]
@@ -67,7 +70,7 @@ def empty_state(capacity: int) -> CrowdState:
     kinds |= dict.fromkeys(("kind", "destination", "cluster", "spacing", "knots"), np.int32)
     kinds |= dict.fromkeys(("option", "start", "end", "gone"), np.int64)
     kinds |= dict.fromkeys(("decisions", "fallbacks", "fallback_frames", "active_frames"), np.int64)
-    shapes = {"path": (MAX_KNOTS, 3), "box": (4,)}
+    shapes = {"path": (3, SAMPLES), "box": (4,), "sweep": (3,)}
     arrays: list[NDArray[Any]] = [
         np.zeros((capacity, *shapes.get(name, ())), dtype=kinds.get(name, np.float64))
         for name in CrowdState._fields

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.capability import FRAME_SECONDS
+from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.state import CrowdState
 
 

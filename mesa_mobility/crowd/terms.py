@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.costs import Ends, Others
 from mesa_mobility.crowd.kernels import (
+    BoundKernel,
     CostKernel,
     PairKernel,
     call_option_loop,
@@ -72,9 +73,12 @@ class CompiledTerm(CostTerm):
         kernel: an ``option_kernel``, or a ``pair_kernel`` that is summed over the neighbours.
             A pair kernel must never be negative: the other terms are then a lower bound of
             the whole, and pairs are worked out only for options that can still win.
+        bound: a ``bound_kernel`` of an option kernel, or None: then this term, and every other
+            one, is worked out for all options instead of those that can still win.
     """
 
     kernel: ClassVar[CostKernel]
+    bound: ClassVar[BoundKernel | None] = None
 
     def parameters(self) -> tuple[float, ...]:
         """Numbers that the kernel reads as ``parameters[0]``, ``parameters[1]``, ..."""
@@ -91,12 +95,11 @@ class CompiledTerm(CostTerm):
             candidates.speeds,
         )
         if isinstance(self.kernel, PairKernel):
+            x, y = np.ascontiguousarray(candidates.neighbour_positions.T)
+            vx, vy = np.ascontiguousarray(candidates.neighbour_velocities.T)
             return _each_pair(
                 self.kernel.address, candidates.owner, Ends(*ends), candidates.neighbour_offsets,
-                Others(
-                    *np.ascontiguousarray(candidates.neighbour_positions.T),
-                    *np.ascontiguousarray(candidates.neighbour_velocities.T),
-                ),
+                Others(x, y, vx, vy, np.empty(len(candidates.neighbours))),
                 numbers,
             )  # fmt: skip
         return _each_option(
@@ -137,9 +140,13 @@ def _each_pair(
     out = np.empty(len(owner))
     for k in range(len(owner)):
         at = slice(offsets[owner[k]], offsets[owner[k] + 1])
-        out[k] = call_pair_loop(
+        call_pair_loop(
             address, offsets[owner[k] + 1] - offsets[owner[k]], ends.x[k], ends.y[k], ends.ux[k],
             ends.uy[k], ends.duration[k], ends.speed[k], others.x[at], others.y[at],
-            others.vx[at], others.vy[at], numbers,
+            others.vx[at], others.vy[at], numbers, others.cost[at],
         )  # fmt: skip
+        summed = 0.0
+        for cost in others.cost[at]:
+            summed += cost
+        out[k] = summed
     return out

@@ -8,14 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.batch import make_candidates, pairs_of
-from mesa_mobility.crowd.capability import OptionTable
 from mesa_mobility.crowd.costs import Terms
 from mesa_mobility.crowd.kernels import PairKernel
 from mesa_mobility.crowd.neighbours import Grid
+from mesa_mobility.crowd.options import OptionTable
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
 from mesa_mobility.errors import ModelError
+
+NO_EXTRA = np.empty(0), np.zeros(1, dtype=np.int64)
+"""What ``extra_costs`` gives where there are no such terms."""
 
 BATCH_PAIRS = 2_000_000
 """Pairs of an option and a neighbour laid out at once for terms in NumPy; bounds memory."""
@@ -33,7 +36,28 @@ def compile_terms(terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
             pair.append(term)
         else:
             option.append(term)
-    return Terms(*_table(option), *_table(pair)), others
+    # A factor below 0 turns a lower bound into an upper one.
+    bounds = [term.bound if term.weight >= 0.0 else None for term in option]
+    bound_address = [0 if bound is None else bound.address for bound in bounds]
+    return Terms(np.array(bound_address, dtype=np.int64), *_table(option), *_table(pair)), others
+
+
+class CompiledTerms:
+    """``compile_terms``, done again only when a term, a weight or a parameter has changed."""
+
+    def __init__(self) -> None:
+        self._key: list[tuple[CostTerm, float, tuple[float, ...]]] | None = None
+
+    def __call__(self, terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
+        """The table of the compiled terms, and the others."""
+        key = [
+            (term, term.weight, term.parameters() if isinstance(term, CompiledTerm) else ())
+            for term in terms
+        ]
+        if key != self._key:
+            self._key = key
+            self._now = compile_terms(terms)
+        return self._now
 
 
 def _table(
@@ -58,14 +82,11 @@ def extra_costs(
     """Weighted sum of terms in NumPy over all options of the pedestrians in ``rows``.
 
     Returns:
-        The costs, options of each pedestrian in turn, and where each one's part starts; the
-        former empty if there are no such terms.
+        The costs, options of each pedestrian in turn, and where each one's part starts.
 
     Raises:
         ModelError: a term gives another number of costs than there are options, or not numbers.
     """
-    if not terms:
-        return np.empty(0), np.zeros(len(rows) + 1, dtype=np.int64)
     parts = []
     counts = []
     batch = np.cumsum(pairs_of(rows, table, state, grid, rules)) // BATCH_PAIRS

@@ -9,7 +9,8 @@ from mesa_mobility.floorplan.kernels import segments_cross
 from mesa_mobility.floorplan.nodes import CORNER, EXIT, GATE
 from mesa_mobility.floorplan.routes import IN_LINE, Ways, in_view, side
 from mesa_mobility.floorplan.sight import Sight, clear_line, free_length, unwalled, wall_distance
-from mesa_mobility.floorplan.views import Views, nodes_maybe_in_view
+from mesa_mobility.floorplan.views import Views, is_known, nodes_maybe_in_view
+from mesa_mobility.jit import lean
 
 # A target behind a gate lies at least this far behind it, however near the next wall is (metres).
 _LEAST_BEYOND = 0.3
@@ -57,9 +58,14 @@ def aim(
         points[person, 1] = y
         own = wall_distance(sight, x, y, ways.view_clearance)
         view = ways.view_clearance
-        node = _first_in_view(sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES)
+        node = -1
+        # To find out what is hidden from somewhere takes a while and serves all who come by.
+        hidden_known = is_known(views, x, y)
+        if not hidden_known:
+            node = _first_in_view(
+                sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES
+            )
         if node < 0:
-            # So much is hidden from here that it pays to know what is, for all who come by.
             maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
             for clearance in (view, 0.0):
                 if node < 0:
@@ -75,7 +81,7 @@ def aim(
     return points, gates, lengths
 
 
-@njit(cache=True)
+@lean()
 def _first_in_view(
     sight: Sight,
     ways: Ways,
@@ -118,7 +124,7 @@ def _first_in_view(
     return -1
 
 
-@njit(cache=True)
+@lean()
 def _nearest_unwalled(
     sight: Sight,
     ways: Ways,
@@ -148,7 +154,7 @@ def _nearest_unwalled(
     return node
 
 
-@njit(cache=True)
+@lean()
 def _aim_at(
     sight: Sight,
     ways: Ways,
@@ -177,7 +183,9 @@ def _aim_at(
         leaves = ways.kind[node] == EXIT
         if leaves:
             length = min(length, away)
-        px, py = _beyond(sight, ways, x, y, qx, qy, ways.normal[node], leaves)
+        px, py = _beyond(
+            sight, ways, x, y, qx, qy, ways.normal[node, 0], ways.normal[node, 1], leaves
+        )
     gate = _gate_on_the_way(ways, x, y, px, py)
     if gate >= 0 and gate != opening:
         opening = gate
@@ -185,7 +193,7 @@ def _aim_at(
     return length, opening, px, py
 
 
-@njit(cache=True)
+@lean()
 def _past_corner(
     sight: Sight, ways: Ways, x: float, y: float, node: int, after: int
 ) -> tuple[float, float]:
@@ -211,7 +219,7 @@ def _past_corner(
     return nx, ny
 
 
-@njit(cache=True)
+@lean()
 def _beyond(
     sight: Sight,
     ways: Ways,
@@ -219,7 +227,8 @@ def _beyond(
     y: float,
     qx: float,
     qy: float,
-    normal: NDArray[np.float64],
+    normal_x: float,
+    normal_y: float,
     leaves: bool,
 ) -> tuple[float, float]:
     """The target behind place q of an opening, on the straight way there.
@@ -229,10 +238,10 @@ def _beyond(
     who come from the front their full distance.
     """
     away = np.hypot(qx - x, qy - y)
-    ux, uy = normal[0], normal[1]
+    ux, uy = normal_x, normal_y
     if away > 0.05 and (qx - x) * ux + (qy - y) * uy > 0.0:
         ux, uy = (qx - x) / away, (qy - y) / away
-    along = max(0.0, ux * normal[0] + uy * normal[1])
+    along = max(0.0, ux * normal_x + uy * normal_y)
     length = max(_LEAST_BEYOND, ways.beyond * along * along)
     if not leaves:
         seen = free_length(sight, qx, qy, qx + length * ux, qy + length * uy)
@@ -241,7 +250,7 @@ def _beyond(
     return qx + length * ux, qy + length * uy
 
 
-@njit(cache=True)
+@lean()
 def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float) -> int:
     """The first gate that the straight way to a target crosses just before it, -1 for none."""
     first = -1
@@ -263,23 +272,23 @@ def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float) -> in
     return first
 
 
-@njit(cache=True)
+@lean()
 def _through(
     sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int, own: float
 ) -> tuple[float, float]:
     """Target behind a gate that lies on the straight way to (px, py)."""
     ax, ay, bx, by = ways.lines[gate]
     width = np.hypot(bx - ax, by - ay)
-    normal = np.array([-(by - ay) / width, (bx - ax) / width])
-    ahead = (px - x) * normal[0] + (py - y) * normal[1]
+    normal_x, normal_y = -(by - ay) / width, (bx - ax) / width
+    ahead = (px - x) * normal_x + (py - y) * normal_y
     if ahead < 0.0:
-        normal = -normal
+        normal_x, normal_y = -normal_x, -normal_y
     qx, qy = nearest(ways.ends[gate], x, y)
     if not (
         clear_line(sight, x, y, qx, qy, ways.view_clearance, own, -1)
         and clear_line(sight, qx, qy, px, py, ways.view_clearance, np.inf, -1)
     ):
-        share = ((ax - x) * normal[0] + (ay - y) * normal[1]) / abs(ahead)
+        share = ((ax - x) * normal_x + (ay - y) * normal_y) / abs(ahead)
         qx = x + share * (px - x)
         qy = y + share * (py - y)
-    return _beyond(sight, ways, x, y, qx, qy, normal, False)
+    return _beyond(sight, ways, x, y, qx, qy, normal_x, normal_y, False)

@@ -1,12 +1,12 @@
 """Where in a gate or exit people cross it."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.floorplan.nodes import CORNER, EXIT, GATE
 from mesa_mobility.floorplan.routes import Ways, in_view
 from mesa_mobility.floorplan.sight import Sight
+from mesa_mobility.jit import lean
 
 # People aim this far inside the outermost places of an opening, or at its middle (metres).
 # A recorded step ends some centimetres from where it was meant to: beside the jamb is too late.
@@ -18,7 +18,7 @@ _PLACES = 8
 _DETOUR = 1.1
 
 
-@njit(cache=True)
+@lean()
 def place(
     sight: Sight, ways: Ways, x: float, y: float, node: int, after: int, own: float
 ) -> tuple[float, float, float]:
@@ -41,7 +41,7 @@ def place(
     return qx, qy, away
 
 
-@njit(cache=True)
+@lean()
 def _clear_of_jambs(ends: NDArray[np.float64]) -> tuple[float, float, float, float]:
     ax, ay, bx, by = ends
     share = min(0.5, _AMPLE / max(np.hypot(bx - ax, by - ay), 1e-9))
@@ -50,7 +50,7 @@ def _clear_of_jambs(ends: NDArray[np.float64]) -> tuple[float, float, float, flo
     return ax + dx, ay + dy, bx - dx, by - dy
 
 
-@njit(cache=True)
+@lean()
 def opening_behind(
     sight: Sight,
     ways: Ways,
@@ -90,7 +90,7 @@ def opening_behind(
     return -1, x, y
 
 
-@njit(cache=True)
+@lean()
 def nearest(ends: tuple[float, float, float, float], x: float, y: float) -> tuple[float, float]:
     """The place nearest to (x, y) on the line between two ends."""
     ax, ay, bx, by = ends
@@ -101,7 +101,7 @@ def nearest(ends: tuple[float, float, float, float], x: float, y: float) -> tupl
     return ax + t * (bx - ax), ay + t * (by - ay)
 
 
-@njit(cache=True)
+@lean()
 def nearest_serves(
     sight: Sight,
     ways: Ways,
@@ -117,7 +117,7 @@ def nearest_serves(
     return _serves(sight, ways, x, y, node, after, qx, qy, clearance, own)
 
 
-@njit(cache=True)
+@lean()
 def _serves(
     sight: Sight,
     ways: Ways,

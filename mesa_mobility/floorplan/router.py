@@ -84,6 +84,8 @@ class Router:
         self._destinations: list[tuple[str, ...] | None] = [None]
         self._version = -1
         self._distances: dict[int, NDArray[np.float64]] = {}
+        self._lengths: NDArray[np.float64] = np.empty((0, 0))
+        self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
         self._follow: dict[int, NDArray[np.int64]] = {}
         self._update()
 
@@ -138,12 +140,20 @@ class Router:
             raise FloorPlanError(
                 f"targets need a destination for each position, found {len(numbers)} for {len(xy)}"
             )
-        used, rows = np.unique(numbers, return_inverse=True)
         if len(xy) == 0:
             return Targets(xy, numbers, np.empty(0))
-        lengths = np.stack([self.distances(int(i)) for i in used])
-        follow = np.stack([self._follow[int(i)] for i in used])
-        return Targets(*aim(self._sight, self._ways, self._views, xy, rows, lengths, follow))
+        lengths, follow = self._table(int(numbers.min()), int(numbers.max()))
+        return Targets(*aim(self._sight, self._ways, self._views, xy, numbers, lengths, follow))
+
+    def _table(self, lowest: int, highest: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Route lengths and next nodes of all destinations, (destinations, nodes) each."""
+        if lowest < 0:
+            self.distances(lowest)  # says which there are
+        if highest >= len(self._lengths):
+            every = range(max(highest + 1, len(self._destinations)))
+            self._lengths = np.stack([self.distances(i) for i in every])
+            self._nexts = np.stack([self._follow[i] for i in every])
+        return self._lengths, self._nexts
 
     def _shortest(self, exit_names: tuple[str, ...] | None) -> NDArray[np.float64]:
         names = {e.name for e in self._plan.exits} if exit_names is None else set(exit_names)
@@ -189,6 +199,7 @@ class Router:
         self._graph = self._network(nodes)
         self._views = no_views(plan.bounds, len(nodes.kind))
         self._distances, self._follow = {}, {}
+        self._lengths = self._lengths[:0]
         self._version = plan.version
 
     def _prepare(self, nodes: Nodes, walls: int) -> Ways:

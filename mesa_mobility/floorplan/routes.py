@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.floorplan.nodes import EXIT, GATE
 from mesa_mobility.floorplan.sight import Sight, clear_line
+from mesa_mobility.jit import lean
 
 # Whoever is this near to a gate's line stands in it and has passed it (metres).
 IN_LINE = 0.01
@@ -34,7 +35,7 @@ class Ways(NamedTuple):
     beyond: float
 
 
-@njit(cache=True)
+@lean()
 def side(ways: Ways, node: int, x: float, y: float) -> float:
     """How far (x, y) is past the line of a gate or exit node, in its crossing direction."""
     return (x - ways.xy[node, 0]) * ways.normal[node, 0] + (y - ways.xy[node, 1]) * ways.normal[
@@ -42,7 +43,7 @@ def side(ways: Ways, node: int, x: float, y: float) -> float:
     ]
 
 
-@njit(cache=True)
+@lean()
 def _curtain(ways: Ways, node: int) -> int:
     return ways.curtains[ways.opening[node]] if ways.kind[node] == EXIT else -1
 
@@ -74,7 +75,7 @@ def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> list[tuple[int,
     return edges
 
 
-@njit(cache=True)
+@lean()
 def _may_follow(ways: Ways, i: int, j: int) -> bool:
     """Whether j can come after i as far as the directions of their gates go."""
     if ways.kind[i] == GATE and side(ways, i, ways.xy[j, 0], ways.xy[j, 1]) < IN_LINE:
@@ -84,7 +85,7 @@ def _may_follow(ways: Ways, i: int, j: int) -> bool:
     return True
 
 
-@njit(cache=True)
+@lean()
 def in_view(
     sight: Sight,
     ways: Ways,

@@ -14,6 +14,7 @@ from mesa_mobility.floorplan.kernels import (
     segments_cross,
 )
 from mesa_mobility.floorplan.walls import CellTable, as_segments, cell_table
+from mesa_mobility.jit import lean
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -46,7 +47,7 @@ def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
     return Sight(rows, len(solid), cell_table(rows, max(0.5, extent / 400), reach + 1e-3))
 
 
-@njit(cache=True)
+@lean()
 def rows_crossed(table: CellTable, py: float, qy: float) -> tuple[int, int]:
     """First and last row of the grid that a segment from height py to qy meets."""
     first = int(np.floor((min(py, qy) - table.y0) / table.cell_size))
@@ -54,7 +55,7 @@ def rows_crossed(table: CellTable, py: float, qy: float) -> tuple[int, int]:
     return max(0, first), min(table.ny - 1, last)
 
 
-@njit(cache=True)
+@lean()
 def cells_in_row(
     table: CellTable, row: int, px: float, py: float, qx: float, qy: float
 ) -> tuple[int, int]:
@@ -74,7 +75,7 @@ def cells_in_row(
     return max(0, first), min(table.nx - 1, last)
 
 
-@njit(cache=True)
+@lean()
 def clear_line(
     sight: Sight,
     px: float,
@@ -93,6 +94,7 @@ def clear_line(
     with number `ignored` does not count (-1: all count).
     """
     walls, solid, table = sight
+    x0, x1, y0, y1 = min(px, qx), max(px, qx), min(py, qy), max(py, qy)
     first_row, last_row = rows_crossed(table, py, qy)
     for step in range(last_row - first_row + 1):
         # From p outwards: most views are blocked by something near.
@@ -109,6 +111,11 @@ def clear_line(
                 limit = TOUCH
                 if wall < solid and clearance > TOUCH:
                     limit = clearance
+                # Of boxes around the two the distance is soon known, and never more.
+                off_x = max(min(ax, bx) - x1, x0 - max(ax, bx), 0.0)
+                off_y = max(min(ay, by) - y1, y0 - max(ay, by), 0.0)
+                if off_x * off_x + off_y * off_y >= limit * limit:
+                    continue
                 distance2 = segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by)
                 if distance2 >= limit * limit:
                     continue
@@ -120,7 +127,7 @@ def clear_line(
     return True
 
 
-@njit(cache=True)
+@lean()
 def wall_distance(sight: Sight, x: float, y: float, at_most: float) -> float:
     """Metres from a point to the nearest wall, `at_most` where none is nearer.
 
@@ -151,7 +158,7 @@ def wall_distances(
     return distances
 
 
-@njit(cache=True)
+@lean()
 def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
     """Whether no wall lies across the segment pq, except one that p stands on."""
     walls, solid, table = sight
@@ -172,7 +179,7 @@ def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
     return True
 
 
-@njit(cache=True)
+@lean()
 def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> float:
     """How far in metres one can look from p towards q before a wall, at most to q."""
     walls, _, table = sight

@@ -8,11 +8,11 @@ four corners of the square: then it crosses the line to every point in between.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.floorplan.kernels import segments_cross
 from mesa_mobility.floorplan.sight import Sight, cells_in_row, rows_crossed
+from mesa_mobility.jit import lean
 
 _CELL = 0.5
 _MOST_WORDS = 1 << 22
@@ -47,7 +47,16 @@ def no_views(bounds: tuple[float, float, float, float], nodes: int) -> Views:
     )
 
 
-@njit(cache=True)
+@lean()
+def is_known(views: Views, x: float, y: float) -> bool:
+    """Whether what is hidden from the square around (x, y) has been worked out."""
+    column = int(np.floor((x - views.x0) / views.cell_size))
+    row = int(np.floor((y - views.y0) / views.cell_size))
+    inside = 0 <= column < views.nx and 0 <= row < views.ny
+    return inside and views.known[row * views.nx + column]
+
+
+@lean()
 def nodes_maybe_in_view(
     sight: Sight,
     views: Views,
@@ -88,7 +97,7 @@ def nodes_maybe_in_view(
     return count
 
 
-@njit(cache=True)
+@lean()
 def _hidden(sight: Sight, left: float, low: float, side: float, qx: float, qy: float) -> bool:
     """Whether one wall hides the whole square from q."""
     walls, solid, table = sight

@@ -38,7 +38,7 @@ def test_options_are_those_of_the_cluster_the_person_is_in():
     person = put(model, 1.0, 2.0, preferred_speeds=[1.25])
     assert person.movement_options().displacements.tolist() == [0.0, 0.5, 1.0, 1.875]
     advance(model, 45)
-    assert person.movement_options().displacements.tolist() == [0.5, 1.0, 1.875, 0.0]
+    assert person.movement_options().displacements.tolist() == [0.5, 0.0, 1.0, 1.875]
 
 
 def test_options_name_rows_of_the_persons_own_capability():

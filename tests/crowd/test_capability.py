@@ -13,9 +13,9 @@ def test_all_options_of_the_map():
     assert capability.standing == STANDING
     assert list(capability.options(STANDING)) == [0, 1, 2, 3]
     assert list(capability.options(WALKING)) == [4, 5, 6, 7]
-    assert capability.table.x.tolist() == [0.0, 0.5, 1.0, 1.875, 0.5, 1.0, 1.875, 0.0]
-    assert capability.table.frames.tolist() == [12, 12, 24, 45, 12, 24, 45, 12]
-    assert capability.table.cluster.tolist() == [0, 1, 1, 1, 1, 1, 1, 0]
+    assert capability.table.x.tolist() == [0.0, 0.5, 1.0, 1.875, 0.5, 0.0, 1.0, 1.875]
+    assert capability.table.frames.tolist() == [12, 12, 24, 45, 12, 12, 24, 45]
+    assert capability.table.cluster.tolist() == [0, 1, 1, 1, 1, 0, 1, 1]
     assert capability.longest_reach == 1.875
 
 
@@ -29,8 +29,8 @@ def test_options_of_some_durations():
 
 def test_paths_stay_with_their_options():
     table = Capability(strider(), durations=(24,)).table
-    first = table.path[table.path_start[1] :][:8, 0]
-    assert first.tolist() == [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0]
+    steps = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875]
+    assert table.path[1, 0].tolist() == [*steps, *[1.0] * 8]
 
 
 def test_reach_is_the_farthest_of_the_path_not_its_end():

@@ -1,0 +1,147 @@
+"""Cost of a simulated person-second against people, density, options and processes at once.
+
+python benchmarks/scaling.py [--most 100000] [--plot docs/images/scaling.png]
+
+Open walk, 10 s, in one process but for the last part; compilation is not counted. A
+person-second costs more or less as its decisions do, so their number is printed as well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import resource
+import time
+from dataclasses import replace
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from scenarios import Scenario, open_walk
+
+from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel
+
+PEOPLE = (1_000, 3_000, 10_000, 30_000, 100_000)
+DENSITIES = (0.1, 0.25, 0.5, 1.0, 1.5)
+KEEP_EVERY = (8, 4, 2, 1)
+SECONDS = 10.0
+
+
+def thinned(map_: MobilityMap, every: int) -> MobilityMap:
+    """The map with every n-th option of each cluster and duration, at least one."""
+    cluster = np.repeat(np.arange(map_.n_clusters), np.diff(map_.offsets))
+    label = cluster * 100 + map_.durations
+    order = np.argsort(label, kind="stable")
+    first = np.concatenate([[True], np.diff(label[order]) != 0])
+    place = np.arange(len(order)) - np.maximum.accumulate(np.where(first, np.arange(len(order)), 0))
+    rows = np.sort(order[place % every == 0])
+    samples = np.diff(map_.path_offsets)[rows]
+    starts = np.concatenate([[0], np.cumsum(samples)])
+    within = np.arange(starts[-1]) - np.repeat(starts[:-1], samples)
+    at = np.repeat(map_.path_offsets[rows], samples) + within
+    counts = np.bincount(cluster[rows], minlength=map_.n_clusters)
+    return replace(
+        map_,
+        offsets=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        durations=map_.durations[rows],
+        costs=map_.costs[rows],
+        path_offsets=starts.astype(np.int64),
+        paths=map_.paths[at],
+        path_clusters=map_.path_clusters[at],
+    )
+
+
+def timed(scenario: Scenario, map_: MobilityMap | None = None) -> dict[str, Any]:
+    """One run: microseconds a person-second and a decision, memory a person."""
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    exits = [Exit(name, *line) for name, (line, _) in scenario.exits.items()]
+    model = PedestrianModel(FloorPlan(scenario.floor, exits=exits), mobility_map=map_, rng=1)
+    wanted = np.array(scenario.exit_of)
+    for name in ("east", "west"):
+        of = wanted == name
+        model.add_pedestrians(
+            scenario.places[of], preferred_speeds=scenario.speeds[of], exits=[name]
+        )
+    cpu, wall = time.process_time(), time.perf_counter()
+    model.run(max_seconds=scenario.seconds)
+    cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
+    person_s = float(model.crowd.active_frames.sum()) / 30.0
+    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+    return {
+        "people": len(scenario.places),
+        "cpu_s": cpu,
+        "wall_s": wall,
+        "us_per_person_s": 1e6 * cpu / person_s,
+        "us_per_decision": 1e6 * cpu / float(model.crowd.decisions.sum()),
+        "peak_grown_kb_per_person": grown / len(scenario.places),
+    }
+
+
+def show(title: str, label: str, value: object, result: dict[str, Any]) -> dict[str, Any]:
+    """Print one line of a table."""
+    print(
+        f"{title:10s} {label} {value!s:>8}: {result['us_per_person_s']:6.1f} us a person-second, "
+        f"{result['us_per_decision']:6.1f} us a decision, {result['cpu_s']:.2f} CPU s, "
+        f"{result['wall_s']:.2f} s",
+        flush=True,
+    )
+    return {label: value, **result}
+
+
+def _one(people: int) -> dict[str, Any]:
+    timed(open_walk(20, seconds=1.0))
+    return timed(open_walk(people, seconds=SECONDS))
+
+
+def main() -> None:
+    """Run all parts, print tables and one JSON line, and draw the plot."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--most", type=int, default=100_000)
+    parser.add_argument("--plot")
+    given = parser.parse_args()
+    timed(open_walk(20, seconds=1.0))
+    people = [
+        show("people", "people", n, timed(open_walk(n, seconds=SECONDS)))
+        for n in PEOPLE
+        if n <= given.most
+    ]
+    densities = [
+        show("density", "per_m2", d, timed(open_walk(3_000, density=d, seconds=SECONDS)))
+        for d in DENSITIES
+    ]
+    whole = MobilityMap.load(None)
+    maps = [whole if every == 1 else thinned(whole, every) for every in KEEP_EVERY]
+    options = []
+    for map_ in maps:
+        timed(open_walk(20, seconds=1.0), map_)
+        mean = round(map_.n_options / map_.n_clusters)
+        options.append(
+            show("options", "mean", mean, timed(open_walk(3_000, seconds=SECONDS), map_))
+        )
+    processes = []
+    for count in (1, 2):
+        with multiprocessing.get_context("spawn").Pool(count) as pool:
+            runs = pool.map(_one, [3_000] * count)
+        slowest = max(runs, key=lambda run: float(run["wall_s"]))
+        processes.append(show("processes", "at once", count, slowest))
+    parts = {"people": people, "density": densities, "options": options, "processes": processes}
+    print(json.dumps(parts))
+    if given.plot:
+        figure, axes = plt.subplots(1, 3, figsize=(12, 3.6), layout="constrained", sharey=True)
+        columns = (("people", "people", "people"), ("density", "per_m2", "persons/m2"))
+        for axis, (part, key, label) in zip(
+            axes, (*columns, ("options", "mean", "options per cluster (mean)")), strict=True
+        ):
+            axis.plot([run[key] for run in parts[part]],
+                      [run["us_per_person_s"] for run in parts[part]], "o-")  # fmt: skip
+            axis.set_xlabel(label)
+            axis.grid(alpha=0.3)
+        axes[0].set_xscale("log")
+        axes[0].set_ylabel("microseconds of CPU a person-second")
+        axes[0].set_ylim(bottom=0.0)
+        figure.savefig(given.plot, dpi=110)
+
+
+if __name__ == "__main__":
+    main()

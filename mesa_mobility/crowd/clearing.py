@@ -1,0 +1,246 @@
+"""Options that are certainly blocked are dropped unseen, whole groups of them at first.
+
+Looked at are a few times ahead. Where the circle around a group lies within a wall or
+somebody's body at one of them, the exact test would drop each of its options as well;
+and so it would any option that is within somebody at one of them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.close import SLACK, Close, Stance, off_box2
+from mesa_mobility.crowd.collision import MARGIN, position_at
+from mesa_mobility.crowd.groups import OptionGroups
+from mesa_mobility.crowd.options import LEVELS, SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.floorplan.kernels import point_segment_distance2
+from mesa_mobility.jit import lean
+
+
+class Bodies(NamedTuple):
+    """Who is where at the levels, in the frame of a pedestrian.
+
+    ``known`` (levels,) how many people; ``x``, ``y`` (levels, n) their places, ``apart``
+    (levels, n) the distance to keep, metres.
+    """
+
+    known: NDArray[np.int64]
+    x: NDArray[np.float32]
+    y: NDArray[np.float32]
+    apart: NDArray[np.float32]
+
+
+class Circles(NamedTuple):
+    """Circles (n,) to work with, metres, and which of them are dropped."""
+
+    x: NDArray[np.float32]
+    y: NDArray[np.float32]
+    radius: NDArray[np.float32]
+    dropped: NDArray[np.int32]
+
+
+@lean(fastmath={"nnan", "nsz"})
+def extent(
+    x: NDArray[np.float32], y: NDArray[np.float32], radius: NDArray[np.float32]
+) -> tuple[float, float, float, float]:
+    """Least x and y, greatest x and y of circles."""
+    x0 = y0 = np.float32(1e9)
+    x1 = y1 = np.float32(-1e9)
+    for b in range(len(x)):
+        r = radius[b]
+        x0, x1 = min(x0, x[b] - r), max(x1, x[b] + r)
+        y0, y1 = min(y0, y[b] - r), max(y1, y[b] + r)
+    return float(x0), float(y0), float(x1), float(y1)
+
+
+@lean()
+def compact(rows: NDArray[np.int64], dropped: NDArray[np.int32]) -> int:
+    """Move the rows that are not dropped to the front; return their number."""
+    kept = 0
+    for k in range(len(rows)):
+        rows[kept] = rows[k]
+        kept += 1 - dropped[k]
+    return kept
+
+
+@lean()
+def free_groups(
+    me: Stance,
+    frame: int,
+    close: Close,
+    count: int,
+    walls: NDArray[np.float64],
+    exits_from: float,
+    groups: OptionGroups,
+    state: CrowdState,
+    bodies: Bodies,
+    circles: Circles,
+    alive: NDArray[np.int64],
+) -> int:
+    """Find the groups that are not certainly blocked, and the bodies that matter to them.
+
+    Args:
+        me: the pedestrian.
+        frame: now.
+        close: people who may come in the way.
+        count: how many.
+        walls: (w, 5) walls within reach, with squared distances.
+        exits_from: metres to the nearest way out: whoever may be out by then may not meet
+            anybody.
+        groups: what the groups of options span.
+        state: the crowd.
+        bodies: is written; without people gone by then.
+        circles: space to work in.
+        alive: gets the groups.
+
+    Returns:
+        The number of groups.
+    """
+    cluster = state.cluster[me.row]
+    first, last = groups.of[cluster], groups.of[cluster + 1]
+    n = last - first
+    for a in range(n):
+        alive[a] = first + a
+    bodies.known[:] = 0
+    dropped = circles.dropped
+    for level in range(len(LEVELS)):
+        if n == 0 or groups.reach[cluster, level] >= exits_from:
+            break
+        x, y, radius = _circles_of(groups, level, first, last, alive[:n], circles)
+        if n == last - first:
+            span = groups.spans[cluster, level]
+            x0, y0, x1, y1 = span[0], span[1], span[2], span[3]
+        else:
+            x0, y0, x1, y1 = extent(x, y, radius)
+        dropped[:n] = 0
+        time = frame + LEVELS[level] * SAMPLE_FRAMES
+        met = 0
+        for a in range(count):
+            sweep = close.sweep[a]
+            if off_box2(close.x[a], close.y[a], x0, y0, x1, y1) >= sweep * sweep:
+                continue
+            j = close.who[a]
+            if 0 <= state.gone[j] <= time:
+                continue
+            wx, wy = position_at(state, j, time)
+            dx, dy = wx - me.x, wy - me.y
+            px, py = np.float32(me.c * dx + me.s * dy), np.float32(me.c * dy - me.s * dx)
+            apart = np.float32(close.apart[a] - SLACK)
+            if off_box2(px, py, x0, y0, x1, y1) < apart * apart:
+                bodies.x[level, met], bodies.y[level, met] = px, py
+                bodies.apart[level, met] = apart
+                met += 1
+                for b in range(len(x)):
+                    room = max(apart - radius[b], np.float32(0.0))
+                    away2 = (x[b] - px) * (x[b] - px) + (y[b] - py) * (y[b] - py)
+                    dropped[b] |= np.int32(away2 < room * room)
+        bodies.known[level] = met
+        _drop_in_walls(me, walls, groups.around[cluster, level], x, y, radius, dropped)
+        if dropped[:n].any():
+            n = compact(alive[:n], dropped)
+    if n < last - first:
+        for level in range(len(LEVELS)):
+            if n > 0 and bodies.known[level] > 0:
+                x, y, radius = _circles_of(groups, level, first, last, alive[:n], circles)
+                x0, y0, x1, y1 = extent(x, y, radius)
+                _keep_bodies(x0, y0, x1, y1, level, bodies)
+    return n
+
+
+@lean()
+def _circles_of(
+    groups: OptionGroups,
+    level: int,
+    first: int,
+    last: int,
+    alive: NDArray[np.int64],
+    circles: Circles,
+) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+    """The circles at a level of the groups in ``alive``, from ``first`` to ``last`` if all are."""
+    x, y, radius = groups.at_x[level], groups.at_y[level], groups.at_radius[level]
+    n = len(alive)
+    if n == last - first:
+        return x[first:last], y[first:last], radius[first:last]
+    for a in range(n):
+        g = alive[a]
+        circles.x[a], circles.y[a], circles.radius[a] = x[g], y[g], radius[g]
+    return circles.x[:n], circles.y[:n], circles.radius[:n]
+
+
+@lean()
+def _keep_bodies(x0: float, y0: float, x1: float, y1: float, level: int, bodies: Bodies) -> None:
+    """Forget the bodies at a level that no option within a box meets."""
+    kept = 0
+    for m in range(bodies.known[level]):
+        px, py, apart = bodies.x[level, m], bodies.y[level, m], bodies.apart[level, m]
+        if off_box2(px, py, x0, y0, x1, y1) < apart * apart:
+            bodies.x[level, kept], bodies.y[level, kept] = px, py
+            bodies.apart[level, kept] = apart
+            kept += 1
+    bodies.known[level] = kept
+
+
+@lean()
+def _drop_in_walls(
+    me: Stance,
+    walls: NDArray[np.float64],
+    circle: NDArray[np.float64],
+    x: NDArray[np.float32],
+    y: NDArray[np.float32],
+    radius: NDArray[np.float32],
+    dropped: NDArray[np.int32],
+) -> None:
+    """Mark the groups too near to a wall, but for walls that the person touches already."""
+    r = me.core + MARGIN
+    least = np.float32(r - SLACK)
+    for w in range(len(walls)):
+        if walls[w, 4] <= r * r:
+            continue
+        dx, dy = walls[w, 0] - me.x, walls[w, 1] - me.y
+        ax, ay = me.c * dx + me.s * dy, me.c * dy - me.s * dx
+        dx, dy = walls[w, 2] - me.x, walls[w, 3] - me.y
+        bx, by = me.c * dx + me.s * dy, me.c * dy - me.s * dx
+        d2 = point_segment_distance2(circle[0], circle[1], ax, ay, bx, by)
+        if d2 >= (circle[2] + r) ** 2:
+            continue
+        length2 = (bx - ax) ** 2 + (by - ay) ** 2
+        scale = np.float32(1.0 / length2 if length2 > 0.0 else 0.0)
+        px, py = np.float32(ax), np.float32(ay)
+        ex, ey = np.float32(bx - ax), np.float32(by - ay)
+        for b in range(len(x)):
+            qx, qy = x[b] - px, y[b] - py
+            t = min(max((qx * ex + qy * ey) * scale, np.float32(0.0)), np.float32(1.0))
+            qx, qy = qx - t * ex, qy - t * ey
+            room = max(least - radius[b], np.float32(0.0))
+            dropped[b] |= np.int32(qx * qx + qy * qy < room * room)
+
+
+@lean()
+def free_options(
+    bodies: Bodies, rows: NDArray[np.int64], table: OptionTable, circles: Circles
+) -> int:
+    """Move those of the options in ``rows`` to the front that are within nobody at any level.
+
+    ``circles`` is space to work in.  Returns their number.
+    """
+    n = len(rows)
+    for level in range(len(LEVELS)):
+        if bodies.known[level] == 0:
+            continue
+        at_x, at_y = table.at_x[level], table.at_y[level]
+        x, y, dropped = circles.x[:n], circles.y[:n], circles.dropped[:n]
+        for k in range(n):
+            x[k], y[k] = at_x[rows[k]], at_y[rows[k]]
+            dropped[k] = 0
+        for m in range(bodies.known[level]):
+            px, py = bodies.x[level, m], bodies.y[level, m]
+            apart2 = bodies.apart[level, m] * bodies.apart[level, m]
+            for k in range(len(x)):
+                away2 = (x[k] - px) * (x[k] - px) + (y[k] - py) * (y[k] - py)
+                dropped[k] |= np.int32(away2 < apart2)
+        n = compact(rows[:n], dropped)
+    return n

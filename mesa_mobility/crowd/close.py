@@ -1,0 +1,211 @@
+"""Who may come in the way of a pedestrian, and where they will be.
+
+An option whose sample falls within somebody at that very time hits it, whatever
+happens between samples; one whose samples all stay farther away than both can move
+between samples does not. Only what is left needs the exact test.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.collision import MARGIN, position_at
+from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES
+from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.jit import lean
+
+SLACK = 1e-5
+"""Metres for the rounding of single precision."""
+
+_NOWHERE = 1e6
+
+
+class Stance(NamedTuple):
+    """A pedestrian at its decision: place (m), cosine and sine of its facing, core radius (m)."""
+
+    row: int
+    x: float
+    y: float
+    c: float
+    s: float
+    core: float
+
+
+class Close(NamedTuple):
+    """People whose movement may come in the way, in the frame of a pedestrian, metres.
+
+    Fields: ``who`` (n,) rows; ``x``, ``y``, ``sweep`` (n,) a circle around all that they still
+    cover, the distance to keep included; ``apart`` (n,) that distance; ``ahead_x``, ``ahead_y``
+    (n, 16) where they will be at the sample times, if ``laid`` (n,); ``run_x``, ``run_y`` (32,)
+    space to work in.
+    """
+
+    who: NDArray[np.int64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    sweep: NDArray[np.float64]
+    apart: NDArray[np.float64]
+    ahead_x: NDArray[np.float32]
+    ahead_y: NDArray[np.float32]
+    laid: NDArray[np.bool_]
+    run_x: NDArray[np.float64]
+    run_y: NDArray[np.float64]
+
+
+@lean()
+def off_box2(x: float, y: float, x0: float, y0: float, x1: float, y1: float) -> float:
+    """Squared distance from (x, y) to a box, m2; 0 within it."""
+    dx, dy = max(x0 - x, x - x1, 0.0), max(y0 - y, y - y1, 0.0)
+    return dx * dx + dy * dy
+
+
+@lean()
+def find_close(
+    me: Stance,
+    near: NDArray[np.int64],
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    state: CrowdState,
+    to: Close,
+) -> tuple[int, int]:
+    """Write those of ``near`` who may come into a box, given in the pedestrian's frame.
+
+    Returns:
+        Their number, and where in ``to.who`` those stand, up to its end, who are too close already:
+        for them the exact test has a rule of its own.
+    """
+    count, touching = 0, len(to.who)
+    for j in near:
+        apart = me.core + state.core[j] + MARGIN
+        dx, dy = state.sweep[j, 0] - me.x, state.sweep[j, 1] - me.y
+        sweep = state.sweep[j, 2] + apart + SLACK
+        x, y = me.c * dx + me.s * dy, me.c * dy - me.s * dx
+        if off_box2(x, y, x0, y0, x1, y1) >= sweep * sweep:
+            continue
+        dx, dy = state.x[j] - me.x, state.y[j] - me.y
+        if dx * dx + dy * dy < apart * apart:
+            touching -= 1
+            to.who[touching] = j
+            continue
+        to.who[count] = j
+        to.x[count], to.y[count], to.sweep[count] = x, y, sweep
+        to.apart[count] = apart
+        to.laid[count] = False
+        count += 1
+    return count, touching
+
+
+@lean()
+def lay_ahead(a: int, me: Stance, frame: int, state: CrowdState, close: Close) -> None:
+    """Write where number a of those who are close will be at the sample times, unless done."""
+    if close.laid[a]:
+        return
+    close.laid[a] = True
+    j = close.who[a]
+    run_x, run_y, to_x, to_y = close.run_x, close.run_y, close.ahead_x[a], close.ahead_y[a]
+    last = state.knots[j] - 1
+    path_x, path_y = state.path[j, 0], state.path[j, 1]
+    past = frame - state.start[j]
+    first = past // SAMPLE_FRAMES
+    if state.spacing[j] == SAMPLE_FRAMES:
+        # The knots to come, in one array with the end after them, so that all samples are alike.
+        for k in range(SAMPLES):
+            run_x[k], run_y[k] = path_x[k], path_y[k]
+        end_x, end_y = path_x[last], path_y[last]
+        for k in range(SAMPLES + 1):
+            run_x[last + k], run_y[last + k] = end_x, end_y
+        first = min(first, last)
+        u = min((past - SAMPLE_FRAMES * first) / SAMPLE_FRAMES, 1.0)
+        from_x, from_y, next_x, next_y = (
+            run_x[first:], run_y[first:], run_x[first + 1 :], run_y[first + 1 :],
+        )  # fmt: skip
+        for k in range(SAMPLES):
+            dx = from_x[k] + u * (next_x[k] - from_x[k]) - me.x
+            dy = from_y[k] + u * (next_y[k] - from_y[k]) - me.y
+            to_x[k] = me.c * dx + me.s * dy
+            to_y[k] = me.c * dy - me.s * dx
+    else:
+        for k in range(SAMPLES):
+            jx, jy = position_at(state, j, frame + SAMPLE_FRAMES * k)
+            to_x[k] = me.c * (jx - me.x) + me.s * (jy - me.y)
+            to_y[k] = me.c * (jy - me.y) - me.s * (jx - me.x)
+    if state.gone[j] >= 0:
+        first = max(-((frame - state.gone[j]) // SAMPLE_FRAMES), 0)
+        for k in range(first, SAMPLES):
+            to_x[k] = to_y[k] = _NOWHERE
+
+
+@lean(fastmath={"nnan", "nsz"})
+def _box_of(x: NDArray[np.float32], y: NDArray[np.float32]) -> tuple[float, float, float, float]:
+    x0, x1, y0, y1 = x[0], x[0], y[0], y[0]
+    for k in range(1, SAMPLES):
+        x0, x1 = min(x0, x[k]), max(x1, x[k])
+        y0, y1 = min(y0, y[k]), max(y1, y[k])
+    return x0, y0, x1, y1
+
+
+@lean()
+def meets(
+    me: Stance,
+    frame: int,
+    own_x: NDArray[np.float32],
+    own_y: NDArray[np.float32],
+    stride: float,
+    count: int,
+    first: int,
+    state: CrowdState,
+    close: Close,
+    unsure: NDArray[np.int64],
+) -> tuple[int, int]:
+    """Whom a path meets, for certain or maybe.
+
+    Args:
+        me: the pedestrian.
+        frame: now.
+        own_x: (16,) the path at the sample times, in the pedestrian's own frame.
+        own_y: (16,) the same, y.
+        stride: longest way between two of its samples, metres.
+        count: how many people are close.
+        first: number of the person to look at first: options next to one another in
+            rank mostly meet the same.
+        state: the crowd.
+        close: these people; where one will be is written when it is first needed.
+        unsure: gets rows of those whom only the exact test can tell.
+
+    Returns:
+        Number of somebody who is met for certain, or -1; number of rows in ``unsure``.
+    """
+    doubtful = 0
+    half = np.float32(0.5 * stride + 3.0 * SLACK)
+    x0, y0, x1, y1 = _box_of(own_x, own_y)
+    for b in range(count):
+        # The first changes places with number 0.
+        a = first if b == 0 else (0 if b == first else b)
+        sweep = close.sweep[a]
+        if off_box2(close.x[a], close.y[a], x0, y0, x1, y1) >= sweep * sweep:
+            continue
+        x, y = close.ahead_x[a], close.ahead_y[a]
+        lay_ahead(a, me, frame, state, close)
+        j = close.who[a]
+        least = np.float32(close.apart[a] - SLACK)
+        # Of whoever leaves the samples tell too little: gone between two of them.
+        theirs = 0.5 * state.stride[j] if state.gone[j] < 0 else _NOWHERE
+        far = np.float32(least + half + theirs)
+        least2, far2 = least * least, far * far
+        hit, near = False, False
+        for k in range(SAMPLES):
+            dx, dy = own_x[k] - x[k], own_y[k] - y[k]
+            d2 = dx * dx + dy * dy
+            hit |= d2 < least2
+            near |= d2 < far2
+        if hit:
+            return a, doubtful
+        if near:
+            unsure[doubtful] = j
+            doubtful += 1
+    return -1, doubtful

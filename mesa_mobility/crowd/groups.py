@@ -1,0 +1,196 @@
+"""Groups of options that are alike, so that a few numbers tell something of all of them.
+
+A cluster has some 600 options. In groups of up to 8 that end alike after the same time,
+having come alike, a lower bound of the cost of all 8 and a circle around their
+places at some times mostly suffice: most groups are dropped unseen.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options import FRAME_SECONDS, LEVELS, OptionTable
+
+GROUP_SIZE = 8
+"""Most options in a group."""
+
+_TURN_M = 0.5
+_SPEED_S = 3.0
+"""What a radian and a m/s count when options are compared, in metres."""
+
+_SLACK = 1e-6
+"""Added to what a group spans, for rounding: metres, radians, m/s."""
+
+
+class OptionGroups(NamedTuple):
+    """What the groups of a table span.
+
+    By cluster: ``of`` (clusters + 1,) its first group; ``whole`` (clusters, 4) least x and y,
+    greatest x and y of all its options on the way; ``around`` (clusters, levels, 3) x, y and
+    radius of a circle around all of them at a level, ``spans`` (clusters, levels, 4) a box
+    around the circles of its groups then, ``reach`` (clusters, levels) the farthest that they
+    have led by then.  By group: ``first`` (groups + 1,) its first option; ``x``, ``y``,
+    ``radius`` a circle around the ends; ``ux``, ``uy`` and ``turn``: all face within ``turn``
+    radians of that unit vector at the end; ``duration``, seconds; ``slowest`` and ``fastest``,
+    m/s; ``at_x``, ``at_y``, ``at_radius`` (levels, groups) circles around the places at the
+    levels.
+    """
+
+    of: NDArray[np.int64]
+    whole: NDArray[np.float64]
+    around: NDArray[np.float64]
+    spans: NDArray[np.float64]
+    reach: NDArray[np.float64]
+    first: NDArray[np.int64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    ux: NDArray[np.float64]
+    uy: NDArray[np.float64]
+    turn: NDArray[np.float64]
+    duration: NDArray[np.float64]
+    slowest: NDArray[np.float64]
+    fastest: NDArray[np.float64]
+    at_x: NDArray[np.float32]
+    at_y: NDArray[np.float32]
+    at_radius: NDArray[np.float32]
+
+
+def alike(
+    path: NDArray[np.float32], heading: NDArray[np.float64], frames: NDArray[np.integer]
+) -> NDArray[np.float64]:
+    """(n, 8) where options are at 0.8 s, 1.2 s and their end, how they face there, their speed.
+
+    ``path`` (n, 3, 16), ``heading`` (n,) at the end, ``frames`` (n,); in metres all of them.
+    """
+    places = path[:, :2].astype(np.float64)
+    speed = np.hypot(*places[:, :, -1].T) / (frames * FRAME_SECONDS)
+    return np.column_stack(
+        [places[:, :, -1], places[:, :, 8], places[:, :, 12], _TURN_M * heading, _SPEED_S * speed]
+    )
+
+
+@njit(cache=True)
+def _sort(rows: NDArray[np.int64], value: NDArray[np.float64]) -> None:
+    """Sort rows by their value, the lower row first among equals (heap sort)."""
+    for size in range(len(rows), 1, -1):
+        # At first every row is sifted down to make a heap, later the one just moved up.
+        for root in range(size // 2 - 1 if size == len(rows) else 0, -1, -1):
+            row, at = rows[root], root
+            while 2 * at + 1 < size:
+                child = 2 * at + 1
+                if child + 1 < size and _before(rows[child], rows[child + 1], value):
+                    child += 1
+                if not _before(row, rows[child], value):
+                    break
+                rows[at] = rows[child]
+                at = child
+            rows[at] = row
+        rows[0], rows[size - 1] = rows[size - 1], rows[0]
+
+
+@njit(cache=True)
+def _before(a: int, b: int, value: NDArray[np.float64]) -> bool:
+    return value[a] < value[b] or (value[a] == value[b] and a < b)
+
+
+@njit(cache=True)
+def group(
+    features: NDArray[np.float64], bounds: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Halve runs of rows where they are widest until no more than ``GROUP_SIZE`` are together.
+
+    Args:
+        features: (n, f) rows.
+        bounds: first row of each run that is never joined to the next, and n.
+
+    Returns:
+        The order of the rows, and where in it each group starts.
+    """
+    order = np.arange(len(features))
+    starts = np.empty(len(features), np.int64)
+    count = 0
+    stack = np.empty((64, 2), np.int64)
+    for run in range(len(bounds) - 1):
+        stack[0, 0], stack[0, 1] = bounds[run], bounds[run + 1]
+        waiting = 1
+        while waiting > 0:
+            waiting -= 1
+            first, last = stack[waiting]
+            if last - first <= GROUP_SIZE:
+                starts[count] = first
+                count += 1
+                continue
+            widest, column = -1.0, 0
+            for f in range(features.shape[1]):
+                low, high = np.inf, -np.inf
+                for k in range(first, last):
+                    value = features[order[k], f]
+                    low, high = min(low, value), max(high, value)
+                if high - low > widest:
+                    widest, column = high - low, f
+            _sort(order[first:last], features[:, column])
+            middle = first + (last - first) // 2
+            stack[waiting, 0], stack[waiting, 1] = middle, last
+            stack[waiting + 1, 0], stack[waiting + 1, 1] = first, middle
+            waiting += 2
+    return order, starts[:count]
+
+
+def make_groups(table: OptionTable) -> OptionGroups:
+    """What the groups of a table span."""
+    starts, clusters = table.groups, table.offsets[:-1]
+    ends = _circles(table.path[:, :2, -1], starts)
+    heading, speed = table.heading.astype(np.float64), table.speed.astype(np.float64)
+    low, high = np.minimum.reduceat(heading, starts), np.maximum.reduceat(heading, starts)
+    at = [table.path[:, :2, level] for level in LEVELS]
+    away = [np.hypot(*table.path[:, :2, k].astype(np.float64).T) for k in range(LEVELS[-1] + 1)]
+    reach = [np.maximum.reduceat(np.max(away[: level + 1], axis=0), clusters) for level in LEVELS]
+    circles = np.array([_circles(places, starts) for places in at]).astype(np.float32)
+    circles = np.ascontiguousarray(circles.swapaxes(0, 1))
+    of = np.searchsorted(starts, table.offsets).astype(np.int64)
+    first = of[:-1]
+    x0, y0 = (np.minimum.reduceat(circles[k] - circles[2], first, axis=1) for k in (0, 1))
+    x1, y1 = (np.maximum.reduceat(circles[k] + circles[2], first, axis=1) for k in (0, 1))
+    return OptionGroups(
+        of=of,
+        whole=_boxes(table.path[:, :2], clusters),
+        around=np.stack([np.column_stack(_circles(places, clusters)) for places in at], axis=1),
+        spans=np.stack([x0.T, y0.T, x1.T, y1.T], axis=2).astype(np.float64),
+        reach=np.column_stack(reach),
+        first=np.append(starts, len(table.x)),
+        x=ends[0],
+        y=ends[1],
+        radius=ends[2] + _SLACK,
+        ux=np.cos((low + high) / 2),
+        uy=np.sin((low + high) / 2),
+        turn=(high - low) / 2 + _SLACK,
+        duration=(table.frames[starts] * FRAME_SECONDS).astype(np.float64),
+        slowest=np.minimum.reduceat(speed, starts) - _SLACK,
+        fastest=np.maximum.reduceat(speed, starts) + _SLACK,
+        at_x=circles[0],
+        at_y=circles[1],
+        at_radius=circles[2],
+    )
+
+
+def _circles(
+    places: NDArray[np.float32], starts: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Circles around runs of places: the middle of their extent and the farthest from it."""
+    places = places.astype(np.float64)
+    middle = (np.minimum.reduceat(places, starts) + np.maximum.reduceat(places, starts)) / 2
+    counts = np.diff(np.append(starts, len(places)))
+    away = np.hypot(*(places - np.repeat(middle, counts, axis=0)).T)
+    return middle[:, 0], middle[:, 1], np.maximum.reduceat(away, starts)
+
+
+def _boxes(places: NDArray[np.float32], starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(runs, 4) least x and y, greatest x and y of runs of paths (n, 2, 16)."""
+    low = np.minimum.reduceat(places.min(axis=2), starts)
+    high = np.maximum.reduceat(places.max(axis=2), starts)
+    return np.column_stack([low, high]).astype(np.float64)

@@ -1,0 +1,104 @@
+"""What the choice works with: space that serves one pedestrian after the other."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.clearing import Bodies, Circles
+from mesa_mobility.crowd.close import Close
+from mesa_mobility.crowd.costs import Ends, Others
+from mesa_mobility.crowd.options import LEVELS, SAMPLES
+
+
+class Setting(NamedTuple):
+    """What the search needs to know of a decision.
+
+    Fields: ``frame`` now; people in ``close``: ``found`` from the start and those from
+    ``touching`` to the end; ``neighbours`` in ``others``; ``exits_from`` metres to the nearest
+    way out; ``eager``, whether costs over pairs may be negative and are needed of all options.
+    """
+
+    frame: int
+    found: int
+    touching: int
+    neighbours: int
+    exits_from: float
+    eager: bool
+
+
+class Work(NamedTuple):
+    """Space to work in, the same for one pedestrian after the other.
+
+    Fields: ``near`` rows of the neighbours, ``others`` the same as the terms see them; ``close``
+    those who may come in the way, ``unsure`` rows of those whom only the exact test can tell;
+    ``bodies`` who is where at the levels; ``walls`` those in reach; groups: ``alive`` those not
+    certainly blocked, their ``bounds``, and those of ``every`` group; ``circles`` for clearing;
+    by option looked at, ``rows`` in the table, ``ends``, ``costs`` and ``leaving``, the frame of
+    leaving by an exit or -1 once it is known that nothing is hit; heap of ``key`` and ``item``;
+    ``slot`` by row of the cluster, which of those looked at it is; ``path`` one path.
+    """
+
+    near: NDArray[np.int64]
+    unsure: NDArray[np.int64]
+    others: Others
+    close: Close
+    bodies: Bodies
+    walls: NDArray[np.float64]
+    bounds: NDArray[np.float64]
+    alive: NDArray[np.int64]
+    every: NDArray[np.float64]
+    circles: Circles
+    rows: NDArray[np.int64]
+    ends: Ends
+    costs: NDArray[np.float64]
+    leaving: NDArray[np.int64]
+    key: NDArray[np.float64]
+    item: NDArray[np.int64]
+    slot: NDArray[np.int64]
+    path: NDArray[np.float64]
+
+
+def make_work(people: int, walls: int, options: int) -> Work:
+    """Space for so many people, walls near one place, and options of one cluster."""
+    return Work(
+        near=np.empty(people, np.int64),
+        unsure=np.empty(people, np.int64),
+        others=Others(*(np.empty(people) for _ in Others._fields)),
+        close=Close(
+            who=np.empty(people, np.int64),
+            x=np.empty(people),
+            y=np.empty(people),
+            sweep=np.empty(people),
+            apart=np.empty(people),
+            ahead_x=np.empty((people, SAMPLES), np.float32),
+            ahead_y=np.empty((people, SAMPLES), np.float32),
+            laid=np.empty(people, np.bool_),
+            run_x=np.empty(2 * SAMPLES),
+            run_y=np.empty(2 * SAMPLES),
+        ),
+        bodies=Bodies(
+            np.empty(len(LEVELS), np.int64),
+            *(np.empty((len(LEVELS), people), np.float32) for _ in range(3)),
+        ),
+        walls=np.empty((walls, 5)),
+        bounds=np.empty(options),
+        alive=np.empty(options, np.int64),
+        every=np.empty(options),
+        circles=Circles(
+            x=np.empty(options, np.float32),
+            y=np.empty(options, np.float32),
+            radius=np.empty(options, np.float32),
+            dropped=np.empty(options, np.int32),
+        ),
+        rows=np.empty(options, np.int64),
+        ends=Ends(*(np.empty(options) for _ in Ends._fields)),
+        costs=np.empty(options),
+        leaving=np.empty(options, np.int64),
+        key=np.empty(options),
+        item=np.empty(options, np.int64),
+        slot=np.empty(options, np.int64),
+        path=np.empty((3, SAMPLES)),
+    )

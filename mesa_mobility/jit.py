@@ -1,0 +1,19 @@
+"""How the functions of the hot path are compiled.
+
+Without counting references to arrays: they neither make nor keep any. The crowd's state alone is
+some 30 arrays, and to count references to them all at each call of a function of a few
+nanoseconds took longer than what the function does.  A division by zero gives inf or nan, as
+in NumPy: the test for it would keep a loop from running several items at once.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from numba import njit
+
+called = partial(njit, cache=True, error_model="numpy", _nrt=False)
+"""For functions that Python calls."""
+
+lean = partial(called, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""For functions that only compiled ones call: a call from Python would crash it."""
