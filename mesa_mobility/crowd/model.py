@@ -341,6 +341,10 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         """Space for decisions among so many people."""
         around = self._site.surroundings
         walls = len(around.segments) + len(around.exits)
+        if self._rules.cores:
+            # No more bodies than have room within the search radius.
+            least = min(kind.core_radius for kind in self.pedestrian_types)
+            people = min(people, int((self._rules.search_radius / least + 1.0) ** 2) + 1)
         if people > len(self._work.near) or walls > len(self._work.walls):
             options = int(np.diff(self._repertoire.table.offsets).max())
             self._work = make_work(people, walls, options)
