@@ -1,0 +1,76 @@
+"""A bound of a group is never more than what any of its options costs."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mesa_mobility.behaviors import Displacement, FacingDeviation, PreferredSpeed, TargetDistance
+
+TERMS = [Displacement, FacingDeviation, PreferredSpeed, TargetDistance]
+
+angles = st.floats(-math.pi, math.pi)
+shares = st.floats(0.0, 1.0)
+
+
+def cost(term, x, y, angle, duration, speed, target, preferred):
+    return term.kernel.function(
+        x, y, math.cos(angle), math.sin(angle), duration, speed, *target, preferred, (0.0,)
+    )
+
+
+def bound(term, x, y, radius, angle, turn, duration, slowest, fastest, target, preferred):
+    return term.bound.function(
+        x, y, radius, math.cos(angle), math.sin(angle), turn, duration, slowest, fastest, *target,
+        preferred, (0.0,),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("term", TERMS)
+@given(
+    radius=st.floats(0.0, 0.6),
+    turn=st.floats(0.0, math.pi),
+    speeds=st.tuples(st.floats(0.0, 2.0), st.floats(0.0, 2.0)).map(sorted),
+    facing=angles,
+    option=st.tuples(angles, shares, st.floats(-1.0, 1.0), shares),
+    target=st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)),
+    preferred=st.floats(0.0, 2.0),
+    duration=st.sampled_from([0.4, 0.8, 1.5]),
+)
+def test_no_option_of_a_group_costs_less(
+    term, radius, turn, speeds, facing, option, target, preferred, duration
+):
+    where, out, turned, faster = option
+    x, y = 1.0 + out * radius * math.cos(where), -0.5 + out * radius * math.sin(where)
+    speed = speeds[0] + faster * (speeds[1] - speeds[0])
+    least = bound(term, 1.0, -0.5, radius, facing, turn, duration, *speeds, target, preferred)
+    of_option = cost(term, x, y, facing + turned * turn, duration, speed, target, preferred)
+    assert of_option >= least - 1e-6
+
+
+@pytest.mark.parametrize("term", TERMS)
+@given(
+    facing=angles,
+    target=st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)),
+    speed=st.floats(0.0, 2.0),
+    preferred=st.floats(0.0, 2.0),
+)
+def test_a_group_of_one_is_known_exactly(term, facing, target, speed, preferred):
+    least = bound(term, 0.0, 0.0, 0.0, facing, 0.0, 0.8, speed, speed, target, preferred)
+    assert least == pytest.approx(
+        cost(term, 0.0, 0.0, facing, 0.8, speed, target, preferred), abs=1e-9
+    )
+
+
+def test_a_bound_is_worth_something():
+    # 3 m away from the middle of a circle of 0.5 m; the facing off by a right angle, give or take
+    # 0.2 rad and what the circle does to the direction; 0.4 m/s too slow at the least.
+    assert bound(TargetDistance, 0, 0, 0.5, 0, 0, 0.4, 0, 1, (3.0, 0.0), 1.0) == 2.5
+    seen = math.tan(math.asin(0.5 / 3.0))
+    assert bound(
+        FacingDeviation, 0, 0, 0.5, math.pi / 2, 0.2, 0.4, 0, 1, (3.0, 0.0), 1.0
+    ) == pytest.approx(math.pi / 2 - 0.2 - seen, abs=1e-7)
+    assert bound(PreferredSpeed, 0, 0, 0.5, 0, 0, 0.4, 0.2, 0.6, (3.0, 0.0), 1.0) == pytest.approx(
+        1.5 * 0.4
+    )
+    assert bound(Displacement, 0, 0, 0.5, 0, 0, 0.4, 0.2, 0.5, (3.0, 0.0), 1.0) == -0.2

@@ -1,0 +1,62 @@
+"""What a term says of its bounds changes the time a run takes, never the run."""
+
+import numpy as np
+import pytest
+from mesa_mobility.behaviors import FacingDeviation, Interference, PreferredSpeed, TargetDistance
+from mesa_mobility.models import Doorway
+
+from mesa_mobility import CostTerm
+
+
+class Distance(TargetDistance):
+    bound = None
+
+
+class Facing(FacingDeviation):
+    bound = None
+
+
+class Speed(PreferredSpeed):
+    bound = None
+
+
+class Nothing(CostTerm):
+    name = "nothing"
+
+    def cost(self, candidates):
+        return np.zeros(len(candidates))
+
+
+def run(*terms):
+    model = Doorway(rng=3, record=True)
+    model.terms = [*terms, Interference()]
+    model.run(max_seconds=3.0)
+    return [column.tobytes() for column in model.recorder.arrays().values()]
+
+
+@pytest.fixture(scope="module")
+def bounded():
+    return run(TargetDistance(), FacingDeviation(), PreferredSpeed())
+
+
+@pytest.mark.parametrize(
+    "terms",
+    [
+        (Distance, FacingDeviation, PreferredSpeed),
+        (TargetDistance, Facing, PreferredSpeed),
+        (Distance, Facing, Speed),
+        (TargetDistance, FacingDeviation, PreferredSpeed, Nothing),
+    ],
+)
+def test_a_run_is_the_same_without_bounds(bounded, terms):
+    assert run(*(term() for term in terms)) == bounded
+
+
+def test_a_weight_below_zero_takes_the_bound_away():
+    usual = (TargetDistance(), FacingDeviation(), PreferredSpeed())
+    reward = run(*usual, TargetDistance(weight=-0.25))
+    assert reward == run(*usual, Distance(weight=-0.25))
+
+
+def test_other_terms_give_another_run(bounded):
+    assert run(TargetDistance(), FacingDeviation(), PreferredSpeed(weight=1.0)) != bounded

@@ -1,0 +1,91 @@
+"""Groups of options that are alike hold what they say."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from mesa_mobility import MobilityMap
+from mesa_mobility.crowd.groups import GROUP_SIZE, group
+from mesa_mobility.crowd.options import LEVELS
+from mesa_mobility.crowd.repertoire import repertoire
+from tests.fixtures.maps import make_map, stand, straight, strider
+
+
+@settings(deadline=None)  # compiled at the first
+@given(
+    features=arrays(
+        np.float64,
+        st.tuples(st.integers(1, 60), st.integers(1, 4)),
+        elements=st.integers(-3, 3).map(float),
+    ),
+    cut=st.integers(0, 60),
+)
+def test_every_row_is_in_one_group_of_its_run(features, cut):
+    n = len(features)
+    bounds = np.unique([0, min(cut, n), n])
+    order, starts = group(features, bounds)
+    assert sorted(order.tolist()) == list(range(n))
+    sizes = np.diff(np.append(starts, n))
+    assert starts[0] == 0
+    assert sizes.min() >= 1
+    assert sizes.max() <= GROUP_SIZE
+    assert set(bounds[:-1]) <= set(starts.tolist())
+    for first, last in pairwise(bounds):
+        assert sorted(order[first:last].tolist()) == list(range(first, last))
+
+
+def test_groups_halve_what_is_widest():
+    # 16 rows: the first column spans 15, the second 1.
+    features = np.column_stack([np.arange(16.0)[::-1], np.arange(16) % 2])
+    order, starts = group(features, np.array([0, 16]))
+    assert order.tolist() == list(range(15, -1, -1))
+    assert starts.tolist() == [0, 8]
+
+
+def shipped():
+    return (MobilityMap.load(None),)
+
+
+def two_small():
+    return (strider(), make_map([[stand(), straight(0.75, 12, to=0)]]))
+
+
+@pytest.mark.parametrize("maps", [shipped, two_small])
+def test_groups_span_their_options(maps):
+    known = repertoire(maps(), (12, 24, 45))
+    table, groups = known.table, known.groups
+    n = len(table.x)
+    of_group = np.repeat(np.arange(len(table.groups)), np.diff(groups.first))
+    cluster = np.repeat(np.arange(len(table.offsets) - 1), np.diff(table.offsets))
+    assert len(of_group) == n
+    group_cluster = np.repeat(np.arange(len(groups.of) - 1), np.diff(groups.of))
+    assert (group_cluster[of_group] == cluster).all()
+    assert groups.duration[of_group] == pytest.approx(table.frames / 30.0)
+    slack = 1e-5
+    path = table.path.astype(float)
+    away = np.hypot(table.x - groups.x[of_group], table.y - groups.y[of_group])
+    assert (away <= groups.radius[of_group] + slack).all()
+    cosine = table.ux * groups.ux[of_group] + table.uy * groups.uy[of_group]
+    sine = table.uy * groups.ux[of_group] - table.ux * groups.uy[of_group]
+    assert (np.abs(np.arctan2(sine, cosine)) <= groups.turn[of_group] + slack).all()
+    assert (table.speed >= groups.slowest[of_group]).all()
+    assert (table.speed <= groups.fastest[of_group]).all()
+    box = groups.whole[cluster]
+    assert (path[:, :2].min(axis=2) >= box[:, :2] - slack).all()
+    assert (path[:, :2].max(axis=2) <= box[:, 2:] + slack).all()
+    for level, sample in enumerate(LEVELS):
+        x, y = path[:, 0, sample], path[:, 1, sample]
+        dx, dy = x - groups.at_x[level][of_group], y - groups.at_y[level][of_group]
+        assert (np.hypot(dx, dy) <= groups.at_radius[level][of_group] + slack).all()
+        around = groups.around[cluster, level]
+        assert (np.hypot(x - around[:, 0], y - around[:, 1]) <= around[:, 2] + slack).all()
+        span = groups.spans[cluster, level]
+        assert (np.minimum(x - span[:, 0], span[:, 2] - x) >= -slack).all()
+        assert (np.minimum(y - span[:, 1], span[:, 3] - y) >= -slack).all()
+        farthest = np.hypot(path[:, 0, : sample + 1], path[:, 1, : sample + 1]).max(axis=1)
+        for k in np.unique(cluster)[:20]:
+            assert groups.reach[k, level] == pytest.approx(farthest[cluster == k].max())
