@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesa_mobility.behaviors import Displacement, FacingDeviation, PreferredSpeed, TargetDistance
 
@@ -27,6 +27,7 @@ def bound(term, x, y, radius, angle, turn, duration, slowest, fastest, target, p
 
 
 @pytest.mark.parametrize("term", TERMS)
+@settings(deadline=None)  # compiled at the first
 @given(
     radius=st.floats(0.0, 0.6),
     turn=st.floats(0.0, math.pi),
@@ -49,6 +50,7 @@ def test_no_option_of_a_group_costs_less(
 
 
 @pytest.mark.parametrize("term", TERMS)
+@settings(deadline=None)  # compiled at the first
 @given(
     facing=angles,
     target=st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)),
