@@ -18,9 +18,10 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from peers import our_model
 from scenarios import Scenario, open_walk
 
-from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel
+from mesa_mobility import MobilityMap
 
 PEOPLE = (1_000, 3_000, 10_000, 30_000, 100_000)
 DENSITIES = (0.1, 0.25, 0.5, 1.0, 1.5)
@@ -55,14 +56,7 @@ def thinned(map_: MobilityMap, every: int) -> MobilityMap:
 def timed(scenario: Scenario, map_: MobilityMap | None = None) -> dict[str, Any]:
     """One run: microseconds a person-second and a decision, memory a person."""
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    exits = [Exit(name, *line) for name, (line, _) in scenario.exits.items()]
-    model = PedestrianModel(FloorPlan(scenario.floor, exits=exits), mobility_map=map_, rng=1)
-    wanted = np.array(scenario.exit_of)
-    for name in ("east", "west"):
-        of = wanted == name
-        model.add_pedestrians(
-            scenario.places[of], preferred_speeds=scenario.speeds[of], exits=[name]
-        )
+    model = our_model(scenario, map_)
     cpu, wall = time.process_time(), time.perf_counter()
     model.run(max_seconds=scenario.seconds)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall

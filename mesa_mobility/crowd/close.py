@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.collision import MARGIN, position_at
+from mesa_mobility.crowd.collision import MARGIN, box_of, position_at
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import lean
@@ -140,21 +140,11 @@ def lay_ahead(a: int, me: Stance, frame: int, state: CrowdState, close: Close) -
             to_x[k] = to_y[k] = _NOWHERE
 
 
-@lean(fastmath={"nnan", "nsz"})
-def _box_of(x: NDArray[np.float32], y: NDArray[np.float32]) -> tuple[float, float, float, float]:
-    x0, x1, y0, y1 = x[0], x[0], y[0], y[0]
-    for k in range(1, SAMPLES):
-        x0, x1 = min(x0, x[k]), max(x1, x[k])
-        y0, y1 = min(y0, y[k]), max(y1, y[k])
-    return x0, y0, x1, y1
-
-
 @lean()
 def meets(
     me: Stance,
     frame: int,
-    own_x: NDArray[np.float32],
-    own_y: NDArray[np.float32],
+    own: NDArray[np.float32],
     stride: float,
     count: int,
     first: int,
@@ -167,8 +157,7 @@ def meets(
     Args:
         me: the pedestrian.
         frame: now.
-        own_x: (16,) the path at the sample times, in the pedestrian's own frame.
-        own_y: (16,) the same, y.
+        own: (3, 16) the path at the sample times, in the pedestrian's own frame.
         stride: longest way between two of its samples, metres.
         count: how many people are close.
         first: number of the person to look at first: options next to one another in
@@ -182,7 +171,8 @@ def meets(
     """
     doubtful = 0
     half = np.float32(0.5 * stride + 3.0 * SLACK)
-    x0, y0, x1, y1 = _box_of(own_x, own_y)
+    x0, y0, x1, y1 = box_of(own, SAMPLES - 1)
+    own_x, own_y = own[0], own[1]
     for b in range(count):
         # The first changes places with number 0.
         a = first if b == 0 else (0 if b == first else b)

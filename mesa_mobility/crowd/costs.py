@@ -42,11 +42,6 @@ class Ends(NamedTuple):
     speed: NDArray[np.float64]
 
 
-def empty_ends(n: int) -> Ends:
-    """Room for the ends of n options."""
-    return Ends(*(np.empty(n) for _ in Ends._fields))
-
-
 class Others(NamedTuple):
     """Neighbours of a pedestrian: place and velocity at the moment of its decision; (n,) each.
 

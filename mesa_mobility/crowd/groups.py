@@ -70,13 +70,22 @@ def alike(
     places = path[:, :2].astype(np.float64)
     speed = np.hypot(*places[:, :, -1].T) / (frames * FRAME_SECONDS)
     return np.column_stack(
-        [places[:, :, -1], places[:, :, 8], places[:, :, 12], _TURN_M * heading, _SPEED_S * speed]
+        [
+            places[:, :, -1],
+            places[:, :, LEVELS[1]],
+            places[:, :, LEVELS[2]],
+            _TURN_M * heading,
+            _SPEED_S * speed,
+        ]
     )
 
 
 @njit(cache=True)
 def _sort(rows: NDArray[np.int64], value: NDArray[np.float64]) -> None:
-    """Sort rows by their value, the lower row first among equals (heap sort)."""
+    """Sort rows by their value, the lower row first among equals (heap sort).
+
+    NumPy's argsort takes Numba 3 s to compile, a tenth of the first start of the program.
+    """
     for size in range(len(rows), 1, -1):
         # At first every row is sifted down to make a heap, later the one just moved up.
         for root in range(size // 2 - 1 if size == len(rows) else 0, -1, -1):

@@ -146,20 +146,9 @@ def cheapest_free(
                 up_to = DEAREST
                 bounds[:] = 0.0
             count = _open_groups(
-                me,
-                now,
-                count,
-                above,
-                up_to,
-                bounds,
-                alive,
-                extra,
-                table,
-                groups,
-                state,
-                terms,
+                me, now, count, above, up_to, bounds, alive, extra, table, groups, state, terms,
                 work,
-            )
+            )  # fmt: skip
             if count < 0:
                 return NOT_A_NUMBER, -1
             size = join(work.costs[:count], work.rows, above, up_to, key, item, size)
@@ -173,9 +162,8 @@ def cheapest_free(
         # Whoever may be out before may not meet anybody of those ahead.
         exits_near = table.reach[o] >= now.exits_from
         if cores and not exits_near:
-            own = table.path[o]
             who, doubtful = meets(
-                me, now.frame, own[0], own[1], table.stride[o], now.found, met, state, work.close,
+                me, now.frame, table.path[o], table.stride[o], now.found, met, state, work.close,
                 work.unsure,
             )  # fmt: skip
         gone = NOT_A_NUMBER

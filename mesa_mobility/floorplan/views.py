@@ -48,12 +48,19 @@ def no_views(bounds: tuple[float, float, float, float], nodes: int) -> Views:
 
 
 @lean()
-def is_known(views: Views, x: float, y: float) -> bool:
-    """Whether what is hidden from the square around (x, y) has been worked out."""
+def _square(views: Views, x: float, y: float) -> int:
+    """Number of the square around (x, y), -1 off the floor."""
     column = int(np.floor((x - views.x0) / views.cell_size))
     row = int(np.floor((y - views.y0) / views.cell_size))
     inside = 0 <= column < views.nx and 0 <= row < views.ny
-    return inside and views.known[row * views.nx + column]
+    return row * views.nx + column if inside else -1
+
+
+@lean()
+def is_known(views: Views, x: float, y: float) -> bool:
+    """Whether what is hidden from the square around (x, y) has been worked out."""
+    square = _square(views, x, y)
+    return square >= 0 and views.known[square]
 
 
 @lean()
@@ -70,14 +77,13 @@ def nodes_maybe_in_view(
     `places` is (nodes, 2) metres.
     """
     nodes = len(places)
-    column = int(np.floor((x - views.x0) / views.cell_size))
-    row = int(np.floor((y - views.y0) / views.cell_size))
-    if not (0 <= column < views.nx and 0 <= row < views.ny):
+    cell = _square(views, x, y)
+    if cell < 0:
         for i in range(nodes):
             found[i] = i
         return nodes
-    cell = row * views.nx + column
     if not views.known[cell]:
+        row, column = divmod(cell, views.nx)
         left = views.x0 + column * views.cell_size
         low = views.y0 + row * views.cell_size
         for i in range(nodes):
