@@ -9,14 +9,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.neighbours import Grid, neighbours_of
+from mesa_mobility.crowd.neighbours import Grid, people_within
 from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.state import Crowd, CrowdState
 
 
 def pairs_of(
-    rows: NDArray[np.int64], table: OptionTable, state: CrowdState, grid: Grid, rules: Rules
+    rows: NDArray[np.int64], table: OptionTable, state: Crowd, grid: Grid, rules: Rules
 ) -> NDArray[np.int64]:
     """(len(rows),) options of each pedestrian times its neighbours: the size of its pair arrays."""
     clusters = state.cluster[rows]
@@ -28,7 +28,7 @@ def pairs_of(
 def make_candidates(
     rows: NDArray[np.int64],
     table: OptionTable,
-    state: CrowdState,
+    state: Crowd,
     grid: Grid,
     rules: Rules,
 ) -> Candidates:
@@ -38,12 +38,12 @@ def make_candidates(
     offsets = np.concatenate([[0], np.cumsum(counts)])
     owner = np.repeat(np.arange(len(rows)), counts)
     options = np.arange(offsets[-1]) - offsets[owner] + table.offsets[clusters][owner]
-    x, y, heading = _lay_ends(rows, owner, options, table, state)
+    x, y, heading = _lay_ends(rows, owner, options, table, state.records)
     neighbour_offsets, neighbours = _all_neighbours(
         rows, grid, state.x, state.y, rules.search_radius
     )
-    durations = table.frames[options] * FRAME_SECONDS
-    speeds = table.speed[options].astype(np.float64)
+    durations = table.options.frames[options] * FRAME_SECONDS
+    speeds = table.options.speed[options].astype(np.float64)
     return Candidates(
         points=np.column_stack([x, y]),
         headings=heading,
@@ -78,9 +78,10 @@ def _lay_ends(
     x, y, heading = np.empty(n), np.empty(n), np.empty(n)
     for k in range(n):
         i, o = rows[owner[k]], options[k]
+        option = table.options[o]
         c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
-        x[k] = state.x[i] + c * table.x[o] - s * table.y[o]
-        y[k] = state.y[i] + s * table.x[o] + c * table.y[o]
+        x[k] = state.x[i] + c * option.x - s * option.y
+        y[k] = state.y[i] + s * option.x + c * option.y
         heading[k] = state.heading[i] + table.heading[o]
     return x, y, heading
 
@@ -96,9 +97,11 @@ def _all_neighbours(
     found = np.empty(len(grid.people), np.int64)
     offsets = np.zeros(len(rows) + 1, np.int64)
     for d in range(len(rows)):
-        offsets[d + 1] = offsets[d] + neighbours_of(grid, rows[d], x, y, radius, found)
+        offsets[d + 1] = offsets[d] + people_within(
+            grid, x[rows[d]], y[rows[d]], rows[d], radius, found
+        )
     everyone = np.empty(offsets[-1], np.int64)
     for d in range(len(rows)):
-        count = neighbours_of(grid, rows[d], x, y, radius, found)
-        everyone[offsets[d] : offsets[d + 1]] = found[:count]
+        count = people_within(grid, x[rows[d]], y[rows[d]], rows[d], radius, found)
+        everyone[offsets[d] : offsets[d + 1]] = grid.people[found[:count]]
     return offsets, everyone

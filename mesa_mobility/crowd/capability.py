@@ -56,7 +56,7 @@ class Capability:
     @property
     def longest_reach(self) -> float:
         """Farthest that any option leads from its start, metres."""
-        return float(self.table.reach.max())
+        return float(self.table.farthest.max())
 
     @property
     def longest_extent(self) -> float:

@@ -10,13 +10,20 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.clearing import free_groups
 from mesa_mobility.crowd.close import Stance, find_close
 from mesa_mobility.crowd.collision import Surroundings, exit_distance, near_walls
-from mesa_mobility.crowd.costs import Terms, group_bounds
+from mesa_mobility.crowd.costs import (
+    OTHER_VX,
+    OTHER_VY,
+    OTHER_X,
+    OTHER_Y,
+    Terms,
+    group_bounds,
+)
 from mesa_mobility.crowd.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import commit, lay_path
-from mesa_mobility.crowd.neighbours import Grid, neighbours_of
+from mesa_mobility.crowd.neighbours import Grid, people_within
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
-from mesa_mobility.crowd.ranking import all_finite
+from mesa_mobility.crowd.ranking import all_finite, least
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.search import NONE, NOT_A_NUMBER, cheapest_free
 from mesa_mobility.crowd.state import CrowdState
@@ -37,8 +44,7 @@ def decide(
     extra: NDArray[np.float64],
     extra_offsets: NDArray[np.int64],
     rules: Rules,
-    vx: NDArray[np.float64],
-    vy: NDArray[np.float64],
+    moving: NDArray[np.float64],
     work: Work,
 ) -> int:
     """Decide for the pedestrians in ``rows``, one after the other, and commit them.
@@ -59,17 +65,14 @@ def decide(
             pedestrian in turn, or empty.
         extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
         rules: what holds for everybody.
-        vx: velocities at the beginning of the frame: terms see them as they were, also
-            of those who have just decided.
-        vy: the same, y.
+        moving: (2, people) velocities at the beginning of the frame, in the order of the grid:
+            terms see them as they were, also of those who have just decided.
         work: space to work in.
 
     Returns:
         -1, or the pedestrian for whom a cost was not a number; nobody after it has decided.
     """
-    eager = False
-    for weight in terms.pair_weight:
-        eager = eager or weight < 0.0
+    eager = least(terms.pair_weight) < 0.0
     bounded = len(extra) == 0 and not eager
     for address in terms.bound_address:
         bounded = bounded and address != 0
@@ -78,7 +81,7 @@ def decide(
         if len(extra) > 0:
             own_extra = extra[extra_offsets[d] : extra_offsets[d + 1]]
         if not _decide_one(
-            rows[d], frame, table, groups, state, grid, around, terms, own_extra, rules, vx, vy,
+            rows[d], frame, table, groups, state, grid, around, terms, own_extra, rules, moving,
             eager, bounded, work,
         ):  # fmt: skip
             return rows[d]
@@ -97,8 +100,7 @@ def _decide_one(
     terms: Terms,
     extra: NDArray[np.float64],
     rules: Rules,
-    vx: NDArray[np.float64],
-    vy: NDArray[np.float64],
+    moving: NDArray[np.float64],
     eager: bool,
     bounded: bool,
     work: Work,
@@ -107,17 +109,20 @@ def _decide_one(
     cluster, destination = state.cluster[i], state.destination[i]
     x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
     me = Stance(i, x, y, math.cos(heading), math.sin(heading), core)
-    count = neighbours_of(grid, i, state.x, state.y, rules.search_radius, work.near)
+    count = people_within(grid, x, y, i, rules.search_radius, work.near)
     near, others = work.near[:count], work.others
     for a in range(count):
-        j = near[a]
-        others.x[a], others.y[a], others.vx[a], others.vy[a] = state.x[j], state.y[j], vx[j], vy[j]
+        at = near[a]
+        others[OTHER_X, a], others[OTHER_Y, a] = grid.x[at], grid.y[at]
+        others[OTHER_VX, a], others[OTHER_VY, a] = moving[0, at], moving[1, at]
+        near[a] = grid.people[at]
     farthest = table.farthest[cluster]
     walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
     exits_from = exit_distance(around, x, y, destination)
     # What the options cover, and what the fallback may.
     aside = state.preferred[i] * FALLBACK_SECONDS
-    whole = groups.whole[cluster]
+    spanned = groups.clusters[cluster]
+    whole = spanned.whole
     found, touching = find_close(
         me, near if rules.cores else near[:0], min(whole[0], -aside), min(whole[1], -aside),
         max(whole[2], aside), max(whole[3], aside), state, work.close,
@@ -131,7 +136,7 @@ def _decide_one(
         alive, bounds = work.alive[:n], work.bounds[:n]
         bounds[:] = -np.inf
         if bounded:
-            first, last = groups.of[cluster], groups.of[cluster + 1]
+            first, last = spanned.first, spanned.last
             group_bounds(me, first, last, groups, state, terms, work.ends, work.every)
             for a in range(n):
                 bounds[a] = work.every[alive[a] - first]
@@ -146,17 +151,27 @@ def _decide_one(
             return False
     state.decisions[i] += 1
     if option >= 0:
-        pieces = lay_path(i, option, table, state, state.path[i])
+        pieces = lay_path(i, option, table, state, state[i].path)
         commit(
-            i, option, frame, pieces, np.int64(SAMPLE_FRAMES), gone, table.cluster[option], state
+            i,
+            option,
+            frame,
+            pieces,
+            np.int64(SAMPLE_FRAMES),
+            gone,
+            np.int32(table.options[option].cluster),
+            state,
         )
     else:
         standing = rules.standing[state.kind[i]]
-        for a in range(touching, len(work.close.who)):
-            work.close.who[found] = work.close.who[a]
+        people, near = work.close.people, work.unsure
+        for a in range(found):
+            near[a] = people[a].who
+        for a in range(touching, len(people)):
+            near[found] = people[a].who
             found += 1
         fall_back(
-            i, frame, state, walls, around, work.close.who[:found], exits_from <= farthest,
+            i, frame, state, walls, around, near[:found], exits_from <= farthest,
             rules.cores, standing, work.path,
         )  # fmt: skip
     return True

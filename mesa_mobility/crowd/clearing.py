@@ -20,41 +20,47 @@ from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.floorplan.kernels import point_segment_distance2
 from mesa_mobility.jit import lean
 
+_STEPS = 2.0**16
+"""Steps in a metre that extents are rounded to."""
+
 
 class Bodies(NamedTuple):
     """Who is where at the levels, in the frame of a pedestrian.
 
-    ``known`` (levels,) how many people; ``x``, ``y`` (levels, n) their places, ``apart``
-    (levels, n) the distance to keep, metres.
+    ``known`` (levels,) how many people; ``at`` (levels, 3, n) x, y and the distance to keep,
+    metres.
     """
 
     known: NDArray[np.int64]
-    x: NDArray[np.float32]
-    y: NDArray[np.float32]
-    apart: NDArray[np.float32]
+    at: NDArray[np.float32]
 
 
 class Circles(NamedTuple):
-    """Circles (n,) to work with, metres, and which of them are dropped."""
+    """Circles to work with: ``of`` (3, n) x, y and radius, metres; ``dropped`` (n,) which are."""
 
-    x: NDArray[np.float32]
-    y: NDArray[np.float32]
-    radius: NDArray[np.float32]
+    of: NDArray[np.float32]
     dropped: NDArray[np.int32]
 
 
-@lean(fastmath={"nnan", "nsz"})
+@lean()
 def extent(
     x: NDArray[np.float32], y: NDArray[np.float32], radius: NDArray[np.float32]
 ) -> tuple[float, float, float, float]:
-    """Least x and y, greatest x and y of circles."""
-    x0 = y0 = np.float32(1e9)
-    x1 = y1 = np.float32(-1e9)
+    """A box around circles: x and y that none falls below and that none exceeds.
+
+    Rounded outwards to whole steps: the least of whole numbers is found for several at once, that
+    of floats one by one.
+    """
+    x0 = y0 = np.int32(2**31 - 1)
+    x1 = y1 = np.int32(-(2**31))
+    scale = np.float32(_STEPS)
     for b in range(len(x)):
         r = radius[b]
-        x0, x1 = min(x0, x[b] - r), max(x1, x[b] + r)
-        y0, y1 = min(y0, y[b] - r), max(y1, y[b] + r)
-    return float(x0), float(y0), float(x1), float(y1)
+        x0, x1 = min(x0, np.int32((x[b] - r) * scale)), max(x1, np.int32((x[b] + r) * scale))
+        y0, y1 = min(y0, np.int32((y[b] - r) * scale)), max(y1, np.int32((y[b] + r) * scale))
+    # One more step, as conversion rounds towards 0.
+    one = 1.0 / _STEPS
+    return x0 * one - one, y0 * one - one, x1 * one + one, y1 * one + one
 
 
 @lean()
@@ -101,18 +107,19 @@ def free_groups(
         The number of groups.
     """
     cluster = state.cluster[me.row]
-    first, last = groups.of[cluster], groups.of[cluster + 1]
+    spanned = groups.clusters[cluster]
+    first, last = spanned.first, spanned.last
     n = last - first
     for a in range(n):
         alive[a] = first + a
     bodies.known[:] = 0
     dropped = circles.dropped
     for level in range(len(LEVELS)):
-        if n == 0 or groups.reach[cluster, level] >= exits_from:
+        if n == 0 or spanned.reach[level] >= exits_from:
             break
         x, y, radius = _circles_of(groups, level, first, last, alive[:n], circles)
         if n == last - first:
-            span = groups.spans[cluster, level]
+            span = spanned.spans[level]
             x0, y0, x1, y1 = span[0], span[1], span[2], span[3]
         else:
             x0, y0, x1, y1 = extent(x, y, radius)
@@ -120,26 +127,27 @@ def free_groups(
         time = frame + LEVELS[level] * SAMPLE_FRAMES
         met = 0
         for a in range(count):
-            sweep = close.sweep[a]
-            if off_box2(close.x[a], close.y[a], x0, y0, x1, y1) >= sweep * sweep:
+            somebody = close.people[a]
+            sweep = somebody.sweep
+            if off_box2(somebody.x, somebody.y, x0, y0, x1, y1) >= sweep * sweep:
                 continue
-            j = close.who[a]
+            j = somebody.who
             if 0 <= state.gone[j] <= time:
                 continue
             wx, wy = position_at(state, j, time)
             dx, dy = wx - me.x, wy - me.y
             px, py = np.float32(me.c * dx + me.s * dy), np.float32(me.c * dy - me.s * dx)
-            apart = np.float32(close.apart[a] - SLACK)
+            apart = np.float32(somebody.apart - SLACK)
             if off_box2(px, py, x0, y0, x1, y1) < apart * apart:
-                bodies.x[level, met], bodies.y[level, met] = px, py
-                bodies.apart[level, met] = apart
+                bodies.at[level, 0, met], bodies.at[level, 1, met] = px, py
+                bodies.at[level, 2, met] = apart
                 met += 1
                 for b in range(len(x)):
                     room = max(apart - radius[b], np.float32(0.0))
                     away2 = (x[b] - px) * (x[b] - px) + (y[b] - py) * (y[b] - py)
                     dropped[b] |= np.int32(away2 < room * room)
         bodies.known[level] = met
-        _drop_in_walls(me, walls, groups.around[cluster, level], x, y, radius, dropped)
+        _drop_in_walls(me, walls, spanned.around[level], x, y, radius, dropped)
         if dropped[:n].any():
             n = compact(alive[:n], dropped)
     if n < last - first:
@@ -161,25 +169,24 @@ def _circles_of(
     circles: Circles,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
     """The circles at a level of the groups in ``alive``, from ``first`` to ``last`` if all are."""
-    x, y, radius = groups.at_x[level], groups.at_y[level], groups.at_radius[level]
+    x, y, radius = groups.at[level, 0], groups.at[level, 1], groups.at[level, 2]
     n = len(alive)
     if n == last - first:
         return x[first:last], y[first:last], radius[first:last]
     for a in range(n):
         g = alive[a]
-        circles.x[a], circles.y[a], circles.radius[a] = x[g], y[g], radius[g]
-    return circles.x[:n], circles.y[:n], circles.radius[:n]
+        circles.of[0, a], circles.of[1, a], circles.of[2, a] = x[g], y[g], radius[g]
+    return circles.of[0, :n], circles.of[1, :n], circles.of[2, :n]
 
 
 @lean()
 def _keep_bodies(x0: float, y0: float, x1: float, y1: float, level: int, bodies: Bodies) -> None:
     """Forget the bodies at a level that no option within a box meets."""
     kept = 0
+    x, y, apart = bodies.at[level, 0], bodies.at[level, 1], bodies.at[level, 2]
     for m in range(bodies.known[level]):
-        px, py, apart = bodies.x[level, m], bodies.y[level, m], bodies.apart[level, m]
-        if off_box2(px, py, x0, y0, x1, y1) < apart * apart:
-            bodies.x[level, kept], bodies.y[level, kept] = px, py
-            bodies.apart[level, kept] = apart
+        if off_box2(x[m], y[m], x0, y0, x1, y1) < apart[m] * apart[m]:
+            x[kept], y[kept], apart[kept] = x[m], y[m], apart[m]
             kept += 1
     bodies.known[level] = kept
 
@@ -231,14 +238,14 @@ def free_options(
     for level in range(len(LEVELS)):
         if bodies.known[level] == 0:
             continue
-        at_x, at_y = table.at_x[level], table.at_y[level]
-        x, y, dropped = circles.x[:n], circles.y[:n], circles.dropped[:n]
+        x, y, dropped = circles.of[0, :n], circles.of[1, :n], circles.dropped[:n]
         for k in range(n):
-            x[k], y[k] = at_x[rows[k]], at_y[rows[k]]
+            option = table.options[rows[k]]
+            x[k], y[k] = option.at_x[level], option.at_y[level]
             dropped[k] = 0
         for m in range(bodies.known[level]):
-            px, py = bodies.x[level, m], bodies.y[level, m]
-            apart2 = bodies.apart[level, m] * bodies.apart[level, m]
+            px, py = bodies.at[level, 0, m], bodies.at[level, 1, m]
+            apart2 = bodies.at[level, 2, m] * bodies.at[level, 2, m]
             for k in range(len(x)):
                 away2 = (x[k] - px) * (x[k] - px) + (y[k] - py) * (y[k] - py)
                 dropped[k] |= np.int32(away2 < apart2)

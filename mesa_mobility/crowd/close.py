@@ -34,25 +34,40 @@ class Stance(NamedTuple):
     core: float
 
 
-class Close(NamedTuple):
-    """People whose movement may come in the way, in the frame of a pedestrian, metres.
+SOMEBODY = np.dtype(
+    [
+        ("who", "i8"),
+        ("x", "f8"),
+        ("y", "f8"),
+        ("sweep", "f8"),
+        ("apart", "f8"),
+        ("laid", "?"),
+        ("ahead", "f4", (2, SAMPLES)),
+    ],
+    align=True,
+)
+"""What is known of somebody whose movement may come in the way, in the frame of the pedestrian
+that decides, metres.
 
-    Fields: ``who`` (n,) rows; ``x``, ``y``, ``sweep`` (n,) a circle around all that they still
-    cover, the distance to keep included; ``apart`` (n,) that distance; ``ahead_x``, ``ahead_y``
-    (n, 16) where they will be at the sample times, if ``laid`` (n,); ``run_x``, ``run_y`` (32,)
-    space to work in.
+Fields: ``who`` row; ``x``, ``y``, ``sweep`` a circle around all that they still cover, the distance
+to keep included; ``apart`` that distance; ``ahead`` (2, 16) where they will be at the sample times,
+if ``laid``.
+"""
+
+
+class Close(NamedTuple):
+    """People whose movement may come in the way.
+
+    Fields: ``people`` (n,) records of ``SOMEBODY``; ``run`` (2, 32) space to work in.
     """
 
-    who: NDArray[np.int64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    sweep: NDArray[np.float64]
-    apart: NDArray[np.float64]
-    ahead_x: NDArray[np.float32]
-    ahead_y: NDArray[np.float32]
-    laid: NDArray[np.bool_]
-    run_x: NDArray[np.float64]
-    run_y: NDArray[np.float64]
+    people: NDArray[np.void]
+    run: NDArray[np.float64]
+
+
+def make_close(people: int) -> Close:
+    """Space for so many people."""
+    return Close(np.empty(people, SOMEBODY), np.empty((2, 2 * SAMPLES)))
 
 
 @lean()
@@ -76,10 +91,10 @@ def find_close(
     """Write those of ``near`` who may come into a box, given in the pedestrian's frame.
 
     Returns:
-        Their number, and where in ``to.who`` those stand, up to its end, who are too close already:
-        for them the exact test has a rule of its own.
+        Their number, and where in ``to.people`` those stand, up to its end, who are too close
+        already: for them the exact test has a rule of its own.
     """
-    count, touching = 0, len(to.who)
+    count, touching = 0, len(to.people)
     for j in near:
         apart = me.core + state.core[j] + MARGIN
         dx, dy = state.sweep[j, 0] - me.x, state.sweep[j, 1] - me.y
@@ -90,12 +105,13 @@ def find_close(
         dx, dy = state.x[j] - me.x, state.y[j] - me.y
         if dx * dx + dy * dy < apart * apart:
             touching -= 1
-            to.who[touching] = j
+            to.people[touching].who = j
             continue
-        to.who[count] = j
-        to.x[count], to.y[count], to.sweep[count] = x, y, sweep
-        to.apart[count] = apart
-        to.laid[count] = False
+        somebody = to.people[count]
+        somebody.who = j
+        somebody.x, somebody.y, somebody.sweep = x, y, sweep
+        somebody.apart = apart
+        somebody.laid = False
         count += 1
     return count, touching
 
@@ -103,13 +119,15 @@ def find_close(
 @lean()
 def lay_ahead(a: int, me: Stance, frame: int, state: CrowdState, close: Close) -> None:
     """Write where number a of those who are close will be at the sample times, unless done."""
-    if close.laid[a]:
+    somebody = close.people[a]
+    if somebody.laid:
         return
-    close.laid[a] = True
-    j = close.who[a]
-    run_x, run_y, to_x, to_y = close.run_x, close.run_y, close.ahead_x[a], close.ahead_y[a]
+    somebody.laid = True
+    j = somebody.who
+    run_x, run_y, to_x, to_y = close.run[0], close.run[1], somebody.ahead[0], somebody.ahead[1]
     last = state.knots[j] - 1
-    path_x, path_y = state.path[j, 0], state.path[j, 1]
+    path = state[j].path
+    path_x, path_y = path[0], path[1]
     past = frame - state.start[j]
     first = past // SAMPLE_FRAMES
     if state.spacing[j] == SAMPLE_FRAMES:
@@ -176,13 +194,14 @@ def meets(
     for b in range(count):
         # The first changes places with number 0.
         a = first if b == 0 else (0 if b == first else b)
-        sweep = close.sweep[a]
-        if off_box2(close.x[a], close.y[a], x0, y0, x1, y1) >= sweep * sweep:
+        somebody = close.people[a]
+        sweep = somebody.sweep
+        if off_box2(somebody.x, somebody.y, x0, y0, x1, y1) >= sweep * sweep:
             continue
-        x, y = close.ahead_x[a], close.ahead_y[a]
         lay_ahead(a, me, frame, state, close)
-        j = close.who[a]
-        least = np.float32(close.apart[a] - SLACK)
+        x, y = somebody.ahead[0], somebody.ahead[1]
+        j = somebody.who
+        least = np.float32(somebody.apart - SLACK)
         # Of whoever leaves the samples tell too little: gone between two of them.
         theirs = 0.5 * state.stride[j] if state.gone[j] < 0 else _NOWHERE
         far = np.float32(least + half + theirs)

@@ -147,10 +147,10 @@ def position_at(state: CrowdState, j: int, time: float) -> tuple[float, float]:
     u = (time - state.start[j]) / state.spacing[j]
     k = int(u)
     if k >= last:
-        return state.path[j, 0, last], state.path[j, 1, last]
+        return state[j].path[0, last], state[j].path[1, last]
     u -= k
-    ax, ay = state.path[j, 0, k], state.path[j, 1, k]
-    return ax + u * (state.path[j, 0, k + 1] - ax), ay + u * (state.path[j, 1, k + 1] - ay)
+    ax, ay = state[j].path[0, k], state[j].path[1, k]
+    return ax + u * (state[j].path[0, k + 1] - ax), ay + u * (state[j].path[1, k + 1] - ay)
 
 
 @lean()
@@ -205,14 +205,14 @@ def hits_neighbour(
             my = path[1, k] + u * (path[1, k + 1] - path[1, k])
         if following >= their_end:
             p = last
-            jx, jy = state.path[j, 0, p], state.path[j, 1, p]
+            jx, jy = state[j].path[0, p], state[j].path[1, p]
         else:
             if following == start + step * (p + 1):
                 p += 1
             u = (following - start - step * p) * their_share
-            ax, ay = state.path[j, 0, p], state.path[j, 1, p]
-            jx = ax + u * (state.path[j, 0, p + 1] - ax)
-            jy = ay + u * (state.path[j, 1, p + 1] - ay)
+            ax, ay = state[j].path[0, p], state[j].path[1, p]
+            jx = ax + u * (state[j].path[0, p + 1] - ax)
+            jy = ay + u * (state[j].path[1, p + 1] - ay)
         qx, qy = mx - jx, my - jy
         dx, dy = qx - rx, qy - ry
         length2 = dx * dx + dy * dy
@@ -288,10 +288,10 @@ def path_gone_or_blocked(
     for j in near:
         c = state.core[i] + state.core[j] + 0.001
         if (
-            x0 > state.box[j, 2] + c
-            or x1 < state.box[j, 0] - c
-            or y0 > state.box[j, 3] + c
-            or y1 < state.box[j, 1] - c
+            x0 > state[j].box[2] + c
+            or x1 < state[j].box[0] - c
+            or y0 > state[j].box[3] + c
+            or y1 < state[j].box[1] - c
         ):
             continue
         if hits_neighbour(
@@ -318,10 +318,10 @@ def within_reach(
     for j in near:
         far = reach + state.core[i] + state.core[j] + 0.002
         if (
-            state.box[j, 0] <= x + far
-            and state.box[j, 2] >= x - far
-            and state.box[j, 1] <= y + far
-            and state.box[j, 3] >= y - far
+            state[j].box[0] <= x + far
+            and state[j].box[2] >= x - far
+            and state[j].box[1] <= y + far
+            and state[j].box[3] >= y - far
         ):
             found[count] = j
             count += 1

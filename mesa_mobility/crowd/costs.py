@@ -8,7 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.close import Stance
-from mesa_mobility.crowd.groups import OptionGroups
+from mesa_mobility.crowd.groups import (
+    DURATION,
+    FASTEST,
+    RADIUS,
+    SLOWEST,
+    TURN,
+    UX,
+    UY,
+    OptionGroups,
+    X,
+    Y,
+)
 from mesa_mobility.crowd.kernels import call_bound_loop, call_option_loop, call_pair_loop
 from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.state import CrowdState
@@ -30,29 +41,11 @@ class Terms(NamedTuple):
     pair_parameters: NDArray[np.float64]
 
 
-class Ends(NamedTuple):
-    """Where the options of a pedestrian end, in the world: place, unit vector of facing, seconds
-    until then, m/s on the way; (n,) each."""
-
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    ux: NDArray[np.float64]
-    uy: NDArray[np.float64]
-    duration: NDArray[np.float64]
-    speed: NDArray[np.float64]
-
-
-class Others(NamedTuple):
-    """Neighbours of a pedestrian: place and velocity at the moment of its decision; (n,) each.
-
-    ``cost`` is space for what each adds.
-    """
-
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    vx: NDArray[np.float64]
-    vy: NDArray[np.float64]
-    cost: NDArray[np.float64]
+# Rows of what the terms are given. Ends (6, n): where options end, in the world: place, unit vector
+# of facing, seconds until then, m/s on the way. Others (5, n): neighbours of a pedestrian at the
+# moment of its decision: place, velocity, and space for what each costs.
+END_X, END_Y, END_UX, END_UY, SECONDS, SPEED = range(6)
+OTHER_X, OTHER_Y, OTHER_VX, OTHER_VY, COST = range(5)
 
 
 @lean()
@@ -62,20 +55,21 @@ def preferred_now(i: int, state: CrowdState) -> float:
 
 
 @lean()
-def lay_ends(me: Stance, rows: NDArray[np.int64], table: OptionTable, to: Ends, at: int) -> None:
-    """Write the ends of a pedestrian's options in ``rows``, from row ``at`` of ``to`` on."""
+def lay_ends(
+    me: Stance, rows: NDArray[np.int64], table: OptionTable, to: NDArray[np.float64], at: int
+) -> None:
+    """Write the ends (6, n) of a pedestrian's options in ``rows``, from column ``at`` on."""
     c, s, px, py = me.c, me.s, me.x, me.y
-    x, y, ux, uy, speed, frames = table.x, table.y, table.ux, table.uy, table.speed, table.frames
-    to_x, to_y, to_duration = to.x[at:], to.y[at:], to.duration[at:]
-    to_ux, to_uy, to_speed = to.ux[at:], to.uy[at:], to.speed[at:]
+    to_x, to_y, to_duration = to[END_X, at:], to[END_Y, at:], to[SECONDS, at:]
+    to_ux, to_uy, to_speed = to[END_UX, at:], to[END_UY, at:], to[SPEED, at:]
     for k in range(len(rows)):
-        o = rows[k]
-        to_x[k] = px + c * x[o] - s * y[o]
-        to_y[k] = py + s * x[o] + c * y[o]
-        to_ux[k] = c * ux[o] - s * uy[o]
-        to_uy[k] = s * ux[o] + c * uy[o]
-        to_duration[k] = frames[o] * FRAME_SECONDS
-        to_speed[k] = speed[o]
+        o = table.options[rows[k]]
+        to_x[k] = px + c * o.x - s * o.y
+        to_y[k] = py + s * o.x + c * o.y
+        to_ux[k] = c * o.ux - s * o.uy
+        to_uy[k] = s * o.ux + c * o.uy
+        to_duration[k] = o.frames * FRAME_SECONDS
+        to_speed[k] = o.speed
 
 
 @lean()
@@ -86,16 +80,17 @@ def group_bounds(
     groups: OptionGroups,
     state: CrowdState,
     terms: Terms,
-    ends: Ends,
+    ends: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
     """Write lower bounds of what the option terms cost in groups ``first`` to ``last``.
 
-    ``ends`` is space to work in.  All terms must have bounds.
+    ``ends`` (6, n) is space to work in.  All terms must have bounds.
     """
     c, s, px, py = me.c, me.s, me.x, me.y
-    x, y, ux, uy = groups.x[first:], groups.y[first:], groups.ux[first:], groups.uy[first:]
-    to_x, to_y, to_ux, to_uy = ends.x, ends.y, ends.ux, ends.uy
+    of = groups.ends
+    x, y, ux, uy = of[X, first:], of[Y, first:], of[UX, first:], of[UY, first:]
+    to_x, to_y, to_ux, to_uy = ends[END_X], ends[END_Y], ends[END_UX], ends[END_UY]
     for k in range(last - first):
         to_x[k] = px + c * x[k] - s * y[k]
         to_y[k] = py + s * x[k] + c * y[k]
@@ -105,9 +100,9 @@ def group_bounds(
     preferred = preferred_now(me.row, state)
     for t in range(len(terms.bound_address)):
         call_bound_loop(
-            terms.bound_address[t], last - first, to_x, to_y, groups.radius[first:], to_ux, to_uy,
-            groups.turn[first:], groups.duration[first:], groups.slowest[first:],
-            groups.fastest[first:], state.target_x[me.row], state.target_y[me.row], preferred,
+            terms.bound_address[t], last - first, to_x, to_y, of[RADIUS, first:], to_ux, to_uy,
+            of[TURN, first:], of[DURATION, first:], of[SLOWEST, first:], of[FASTEST, first:],
+            state.target_x[me.row], state.target_y[me.row], preferred,
             terms.option_parameters[t], terms.option_weight[t], out,
         )  # fmt: skip
 
@@ -116,7 +111,7 @@ def group_bounds(
 def option_costs(
     first: int,
     last: int,
-    ends: Ends,
+    ends: NDArray[np.float64],
     target_x: float,
     target_y: float,
     preferred: float,
@@ -126,25 +121,27 @@ def option_costs(
     """Add the weighted sum of the option terms to ``out``, for rows ``first`` to ``last``."""
     for t in range(len(terms.option_address)):
         call_option_loop(
-            terms.option_address[t], last - first, ends.x[first:], ends.y[first:],
-            ends.ux[first:], ends.uy[first:], ends.duration[first:], ends.speed[first:],
+            terms.option_address[t], last - first, ends[END_X, first:], ends[END_Y, first:],
+            ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
             target_x, target_y, preferred, terms.option_parameters[t], terms.option_weight[t],
             out[first:],
         )  # fmt: skip
 
 
 @lean()
-def pair_cost(k: int, ends: Ends, count: int, others: Others, terms: Terms) -> float:
+def pair_cost(
+    k: int, ends: NDArray[np.float64], count: int, others: NDArray[np.float64], terms: Terms
+) -> float:
     """Weighted sum of the pair terms of option k over the first ``count`` neighbours."""
     total = 0.0
     for t in range(len(terms.pair_address)):
         call_pair_loop(
-            terms.pair_address[t], count, ends.x[k], ends.y[k], ends.ux[k], ends.uy[k],
-            ends.duration[k], ends.speed[k], others.x, others.y, others.vx, others.vy,
-            terms.pair_parameters[t], others.cost,
+            terms.pair_address[t], count, ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
+            ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], others[OTHER_X], others[OTHER_Y],
+            others[OTHER_VX], others[OTHER_VY], terms.pair_parameters[t], others[COST],
         )  # fmt: skip
         summed = 0.0
         for a in range(count):
-            summed += others.cost[a]
+            summed += others[COST, a]
         total += terms.pair_weight[t] * summed
     return total

@@ -51,7 +51,7 @@ def fall_back(
         turn = math.atan2(math.sin(turn), math.cos(turn))
         most = FALLBACK_TURN_RATE * FALLBACK_SECONDS
         turn = min(max(turn, -most), most)
-    path = state.path[i]
+    path = state[i].path
     trial[0, 0], trial[1, 0], trial[2, 0] = state.x[i], state.y[i], state.heading[i]
     trial[2, 1] = state.heading[i] + turn
     gone = -1

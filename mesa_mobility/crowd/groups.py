@@ -26,38 +26,40 @@ _SLACK = 1e-6
 """Added to what a group spans, for rounding: metres, radians, m/s."""
 
 
+CLUSTER = np.dtype(
+    [
+        ("first", "i8"),
+        ("last", "i8"),
+        ("whole", "f8", (4,)),
+        ("reach", "f8", (len(LEVELS),)),
+        ("around", "f8", (len(LEVELS), 3)),
+        ("spans", "f8", (len(LEVELS), 4)),
+    ],
+    align=True,
+)
+"""What the options of a cluster span: ``first`` of its groups and the one after its ``last``;
+``whole`` least x and y, greatest x and y of all options on the way; ``around`` (levels, 3) x, y and
+radius of a circle around all of them at a level, ``spans`` (levels, 4) a box around the circles of
+its groups then, ``reach`` (levels,) the farthest that they have led by then.
+"""
+
+X, Y, RADIUS, UX, UY, TURN, DURATION, SLOWEST, FASTEST = range(9)
+"""Rows of ``OptionGroups.ends``; of ``OptionGroups.at`` the first three."""
+
+
 class OptionGroups(NamedTuple):
     """What the groups of a table span.
 
-    By cluster: ``of`` (clusters + 1,) its first group; ``whole`` (clusters, 4) least x and y,
-    greatest x and y of all its options on the way; ``around`` (clusters, levels, 3) x, y and
-    radius of a circle around all of them at a level, ``spans`` (clusters, levels, 4) a box
-    around the circles of its groups then, ``reach`` (clusters, levels) the farthest that they
-    have led by then.  By group: ``first`` (groups + 1,) its first option; ``x``, ``y``,
-    ``radius`` a circle around the ends; ``ux``, ``uy`` and ``turn``: all face within ``turn``
-    radians of that unit vector at the end; ``duration``, seconds; ``slowest`` and ``fastest``,
-    m/s; ``at_x``, ``at_y``, ``at_radius`` (levels, groups) circles around the places at the
-    levels.
+    ``clusters``: records of ``CLUSTER``.  By group: ``first`` (groups + 1,) its first option;
+    ``ends`` (9, groups) x, y and radius of a circle around the ends, metres; unit vector that all
+    face at the end within so many radians; duration, seconds; least and greatest speed, m/s; ``at``
+    (levels, 3, groups) x, y and radius of circles around the places at the levels.
     """
 
-    of: NDArray[np.int64]
-    whole: NDArray[np.float64]
-    around: NDArray[np.float64]
-    spans: NDArray[np.float64]
-    reach: NDArray[np.float64]
+    clusters: NDArray[np.void]
     first: NDArray[np.int64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    ux: NDArray[np.float64]
-    uy: NDArray[np.float64]
-    turn: NDArray[np.float64]
-    duration: NDArray[np.float64]
-    slowest: NDArray[np.float64]
-    fastest: NDArray[np.float64]
-    at_x: NDArray[np.float32]
-    at_y: NDArray[np.float32]
-    at_radius: NDArray[np.float32]
+    ends: NDArray[np.float64]
+    at: NDArray[np.float32]
 
 
 def alike(
@@ -154,36 +156,39 @@ def make_groups(table: OptionTable) -> OptionGroups:
     """What the groups of a table span."""
     starts, clusters = table.groups, table.offsets[:-1]
     ends = _circles(table.path[:, :2, -1], starts)
-    heading, speed = table.heading.astype(np.float64), table.speed.astype(np.float64)
+    heading, speed = table.heading.astype(np.float64), table.options.speed.astype(np.float64)
     low, high = np.minimum.reduceat(heading, starts), np.maximum.reduceat(heading, starts)
     at = [table.path[:, :2, level] for level in LEVELS]
     away = [np.hypot(*table.path[:, :2, k].astype(np.float64).T) for k in range(LEVELS[-1] + 1)]
     reach = [np.maximum.reduceat(np.max(away[: level + 1], axis=0), clusters) for level in LEVELS]
     circles = np.array([_circles(places, starts) for places in at]).astype(np.float32)
-    circles = np.ascontiguousarray(circles.swapaxes(0, 1))
     of = np.searchsorted(starts, table.offsets).astype(np.int64)
     first = of[:-1]
-    x0, y0 = (np.minimum.reduceat(circles[k] - circles[2], first, axis=1) for k in (0, 1))
-    x1, y1 = (np.maximum.reduceat(circles[k] + circles[2], first, axis=1) for k in (0, 1))
+    r = circles[:, 2]
+    x0, y0 = (np.minimum.reduceat(circles[:, k] - r, first, axis=1) for k in (0, 1))
+    x1, y1 = (np.maximum.reduceat(circles[:, k] + r, first, axis=1) for k in (0, 1))
+    spanned = np.empty(len(clusters), CLUSTER)
+    spanned["first"], spanned["last"] = of[:-1], of[1:]
+    spanned["whole"] = _boxes(table.path[:, :2], clusters)
+    spanned["around"] = np.stack([np.column_stack(_circles(each, clusters)) for each in at], axis=1)
+    spanned["spans"] = np.stack([x0.T, y0.T, x1.T, y1.T], axis=2)
+    spanned["reach"] = np.column_stack(reach)
+    alike_ends = [
+        ends[0],
+        ends[1],
+        ends[2] + _SLACK,
+        np.cos((low + high) / 2),
+        np.sin((low + high) / 2),
+        (high - low) / 2 + _SLACK,
+        table.options.frames[starts] * FRAME_SECONDS,
+        np.minimum.reduceat(speed, starts) - _SLACK,
+        np.maximum.reduceat(speed, starts) + _SLACK,
+    ]
     return OptionGroups(
-        of=of,
-        whole=_boxes(table.path[:, :2], clusters),
-        around=np.stack([np.column_stack(_circles(places, clusters)) for places in at], axis=1),
-        spans=np.stack([x0.T, y0.T, x1.T, y1.T], axis=2).astype(np.float64),
-        reach=np.column_stack(reach),
-        first=np.append(starts, len(table.x)),
-        x=ends[0],
-        y=ends[1],
-        radius=ends[2] + _SLACK,
-        ux=np.cos((low + high) / 2),
-        uy=np.sin((low + high) / 2),
-        turn=(high - low) / 2 + _SLACK,
-        duration=(table.frames[starts] * FRAME_SECONDS).astype(np.float64),
-        slowest=np.minimum.reduceat(speed, starts) - _SLACK,
-        fastest=np.maximum.reduceat(speed, starts) + _SLACK,
-        at_x=circles[0],
-        at_y=circles[1],
-        at_radius=circles[2],
+        clusters=spanned,
+        first=np.append(starts, len(speed)),
+        ends=np.array(alike_ends),
+        at=np.ascontiguousarray(circles),
     )
 
 

@@ -16,7 +16,7 @@ from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.choice import decide
 from mesa_mobility.crowd.motion import move
-from mesa_mobility.crowd.neighbours import Grid, build_grid
+from mesa_mobility.crowd.neighbours import Grid, build_grid, velocities
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.placing import Newcomer, check_column, check_places, face, place
@@ -27,7 +27,7 @@ from mesa_mobility.crowd.replan import stop_where_blocked, too_close
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.stall import StallWatch
-from mesa_mobility.crowd.state import CrowdState, empty_state, grown
+from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.summary import CrowdMeasures
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
@@ -59,7 +59,7 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
 
     Attributes:
         space: Mesa's continuous space with everybody inside.
-        crowd: the crowd's arrays; see ``CrowdState``.
+        crowd: the crowd's arrays; see ``Crowd``.
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
         occupancy: (seconds, people inside) each simulated second.
@@ -113,7 +113,7 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         self.frames_per_step = frames_per_step
         self.frame = 0
         self.recorder = Recorder() if record else None
-        self.crowd: CrowdState = empty_state(64)
+        self.crowd = Crowd(64)
         self.count = 0
 
         core = max(kind.core_radius for kind in self.pedestrian_types)
@@ -196,7 +196,7 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         )
         if self._rules.cores:
             where, who = too_close(
-                points, ptype.core_radius, self.frame, self._rows, self.crowd,
+                points, ptype.core_radius, self.frame, self._rows, self.crowd.records,
                 self._rules.search_radius,
             )  # fmt: skip
             if where >= 0:
@@ -207,7 +207,7 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
                 )
         rows = np.arange(self.count, self.count + n)
         if self.count + n > len(self.crowd.x):
-            self.crowd = grown(self.crowd, max(self.count + n, 2 * len(self.crowd.x)))
+            self.crowd.grow(max(self.count + n, 2 * len(self.crowd.x)))
         place(self.crowd, rows, points, speeds, self.frame, new)
         aim = self._set_targets(rows).points - points
         face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
@@ -296,14 +296,14 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         if self._plan_version != self.floor_plan.version:
             self._plan_version = self.floor_plan.version
             stop_where_blocked(
-                rows, self.frame, self._repertoire.table, self.crowd, self._site.surroundings,
-                self._rules,
+                rows, self.frame, self._repertoire.table, self.crowd.records,
+                self._site.surroundings, self._rules,
             )  # fmt: skip
         deciding = rows[self.crowd.end[rows] <= self.frame]
         if len(deciding):
             self._decide(deciding, rows)
         self.frame += 1
-        left, speeds = move(rows, self.frame, self.crowd)
+        left, speeds = move(rows, self.frame, self.crowd.records)
         self._walked += speeds
         if self.recorder is not None:
             self.recorder.add(self.frame, rows, self.crowd)
@@ -326,8 +326,8 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         if others:
             extra, extra_offsets = extra_costs(others, order, table, state, grid, self._rules)
         failed = decide(
-            order, self.frame, table, groups, state, grid, self._site.surroundings, compiled,
-            extra, extra_offsets, self._rules, state.vx.copy(), state.vy.copy(),
+            order, self.frame, table, groups, state.records, grid, self._site.surroundings,
+            compiled, extra, extra_offsets, self._rules, velocities(grid, state.records),
             self._work_for(len(rows)),
         )  # fmt: skip
         if failed >= 0:

@@ -26,7 +26,8 @@ def lay_path(
         path[0, k] = x + c * own[0, k] - s * own[1, k]
         path[1, k] = y + s * own[0, k] + c * own[1, k]
         path[2, k] = heading + own[2, k]
-    return table.frames[o] // SAMPLE_FRAMES
+    pieces: int = table.options[o].frames // SAMPLE_FRAMES
+    return pieces
 
 
 @lean()
@@ -49,7 +50,7 @@ def commit(
     state: CrowdState,
 ) -> None:
     """Commit pedestrian i to the path in its row of ``state.path``."""
-    path = state.path[i]
+    path = state[i].path
     seconds = pieces * spacing * FRAME_SECONDS
     state.option[i] = option
     state.start[i], state.end[i], state.gone[i] = frame, frame + pieces * spacing, gone
@@ -77,7 +78,7 @@ def move(active: NDArray[np.int64], frame: int, state: CrowdState) -> tuple[int,
         last = state.knots[i] - 1
         u = (frame - state.start[i]) / state.spacing[i]
         k = int(u)
-        path = state.path[i]
+        path = state[i].path
         if k >= last:
             state.x[i], state.y[i], state.heading[i] = path[0, last], path[1, last], path[2, last]
         else:

@@ -8,13 +8,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import lean
 
 CELL_SIZE = 1.5
 
 
 class Grid(NamedTuple):
-    """People by cell: cell c holds ``people[offsets[c]:offsets[c + 1]]``, in order of row."""
+    """People by cell: cell c holds ``people[offsets[c]:offsets[c + 1]]``, in order of row, and
+    ``x`` and ``y`` of the same; they lie side by side, as all around somebody are looked at."""
 
     x0: float
     y0: float
@@ -22,11 +24,13 @@ class Grid(NamedTuple):
     ny: int
     offsets: NDArray[np.int64]
     people: NDArray[np.int64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
 
 
 @njit(cache=True)
 def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.float64]) -> Grid:
-    """Sort the pedestrians in rows ``active`` into cells (counting sort)."""
+    """Sort the people in rows ``active`` of ``x`` and ``y`` into cells (counting sort)."""
     x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
     for i in active:
         x0, x1 = min(x0, x[i]), max(x1, x[i])
@@ -43,40 +47,31 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
     offsets = np.cumsum(offsets)
     fill = offsets[:-1].copy()
     people = np.empty(len(active), np.int64)
+    their_x, their_y = np.empty(len(active)), np.empty(len(active))
     for a, i in enumerate(active):
-        people[fill[cell[a]]] = i
+        at = fill[cell[a]]
+        people[at], their_x[at], their_y[at] = i, x[i], y[i]
         fill[cell[a]] += 1
-    return Grid(x0, y0, nx, ny, offsets, people)
+    return Grid(x0, y0, nx, ny, offsets, people, their_x, their_y)
 
 
-@lean()
-def neighbours_of(
-    grid: Grid,
-    i: int,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    radius: float,
-    found: NDArray[np.int64],
-) -> int:
-    """Write the people within ``radius`` of pedestrian i, itself left out; return their number.
-
-    ``found`` must have room for everybody: there is no cap on neighbours.
-    """
-    return people_within(grid, x[i], y[i], i, x, y, radius, found)
+@njit(cache=True)
+def velocities(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
+    """(2, n) velocities of the people in a grid, in its order, m/s."""
+    found = np.empty((2, len(grid.people)))
+    for a, i in enumerate(grid.people):
+        found[0, a], found[1, a] = state.vx[i], state.vy[i]
+    return found
 
 
 @lean()
 def people_within(
-    grid: Grid,
-    px: float,
-    py: float,
-    but: int,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    radius: float,
-    found: NDArray[np.int64],
+    grid: Grid, px: float, py: float, but: int, radius: float, found: NDArray[np.int64]
 ) -> int:
-    """Write the people within ``radius`` of (px, py) but one; return their number."""
+    """Write the places in the grid of people within ``radius`` of (px, py), but for ``but``.
+
+    ``found`` must have room for everybody: there is no cap on neighbours.  Returns their number.
+    """
     cx0 = max(int((px - radius - grid.x0) / CELL_SIZE), 0)
     cx1 = min(int((px + radius - grid.x0) / CELL_SIZE), grid.nx - 1)
     cy0 = max(int((py - radius - grid.y0) / CELL_SIZE), 0)
@@ -86,9 +81,7 @@ def people_within(
         return count
     for cy in range(cy0, cy1 + 1):
         for a in range(grid.offsets[cy * grid.nx + cx0], grid.offsets[cy * grid.nx + cx1 + 1]):
-            j = grid.people[a]
-            dx, dy = x[j] - px, y[j] - py
-            if j != but and dx * dx + dy * dy <= radius * radius:
-                found[count] = j
-                count += 1
+            dx, dy = grid.x[a] - px, grid.y[a] - py
+            found[count] = a
+            count += int(dx * dx + dy * dy <= radius * radius and grid.people[a] != but)
     return count

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 
 FRAME_SECONDS = 1.0 / 30.0
@@ -21,6 +22,33 @@ LEVELS = (4, 8, 12, 15)
 """Samples, at 0.4, 0.8, 1.2 and 1.5 s, at which all options of a cluster are looked at together."""
 
 
+OptionRecords: TypeAlias = "np.recarray[Any, Any]"
+
+OPTION = np.dtype(
+    [
+        ("x", "f4"),
+        ("y", "f4"),
+        ("ux", "f4"),
+        ("uy", "f4"),
+        ("speed", "f4"),
+        ("stride", "f4"),
+        ("reach", "f4"),
+        ("frames", "i2"),
+        ("cluster", "u2"),
+        ("at_x", "f4", (len(LEVELS),)),
+        ("at_y", "f4", (len(LEVELS),)),
+    ],
+    align=True,
+)
+"""What the choice reads of an option, the path aside: 64 bytes, a line of the cache.
+
+Fields: ``x``, ``y`` of the end, metres, and ``ux``, ``uy`` the unit vector of facing there;
+``speed`` (displacement over duration, m/s); ``stride`` (longest way between two samples, metres,
+rounded up); ``reach`` (largest distance of the path from its start, metres, rounded up);
+``frames``; ``cluster`` at the end; ``at_x``, ``at_y`` (levels,) where it has led at the ``LEVELS``.
+"""
+
+
 class OptionTable(NamedTuple):
     """Options of all capabilities in a model, stacked.
 
@@ -28,31 +56,18 @@ class OptionTable(NamedTuple):
     cluster are in groups of a few that are alike (see ``groups``).
 
     Fields: ``offsets`` (clusters + 1,) and ``groups`` (groups,) first option of each; ``farthest``
-    (clusters,) reach of its options; by option: ``x``, ``y``, ``heading`` of the end and its unit
-    vector ``ux``, ``uy``, ``speed`` (displacement over duration, m/s), ``frames``, ``cluster`` at
-    the end, ``reach`` (largest distance of the path from its start), ``stride`` (longest way
-    between two samples, metres), ``path`` (n, 3, 16): x, y, heading at the samples, the start
-    among them and the end again once it has come, ``at_x``, ``at_y`` (levels, n) the same at the
-    ``LEVELS`` alone.  Single precision, as the map: what is read
-    at each decision comes from main memory.
+    (clusters,) reach of its options; ``options`` (n,) records of ``OPTION``; ``heading`` (n,) at
+    the end; ``path`` (n, 3, 16): x, y, heading at the samples, the start among them and the end
+    again once it has come.  Single precision, as the map: what is read at each decision comes
+    from main memory.
     """
 
     offsets: NDArray[np.int64]
     groups: NDArray[np.int64]
     farthest: NDArray[np.float64]
-    x: NDArray[np.float32]
-    y: NDArray[np.float32]
+    options: OptionRecords
     heading: NDArray[np.float32]
-    ux: NDArray[np.float32]
-    uy: NDArray[np.float32]
-    speed: NDArray[np.float32]
-    frames: NDArray[np.int32]
-    cluster: NDArray[np.int32]
-    reach: NDArray[np.float64]
-    stride: NDArray[np.float32]
     path: NDArray[np.float32]
-    at_x: NDArray[np.float32]
-    at_y: NDArray[np.float32]
 
 
 def padded_paths(mobility_map: MobilityMap, rows: NDArray[np.int64]) -> NDArray[np.float32]:
@@ -75,46 +90,55 @@ def option_table(
     path = padded_paths(mobility_map, rows)
     x, y = mobility_map.end_points[rows].astype(np.float32).T
     heading = mobility_map.end_headings[rows].astype(np.float32)
-    frames = mobility_map.durations[rows].astype(np.int32)
+    frames = mobility_map.durations[rows]
     places = path[:, :2].astype(np.float64)
     reach = np.hypot(places[:, 0], places[:, 1]).max(axis=1)
     steps = np.hypot(*np.moveaxis(np.diff(places, axis=2), 1, 0)).max(axis=1)
     wide = heading.astype(np.float64)
     speed = np.hypot(x.astype(np.float64), y) / (frames * FRAME_SECONDS)
+    options = np.empty(len(rows), OPTION).view(np.recarray)
+    options.x, options.y = x, y
+    options.ux, options.uy = np.cos(wide), np.sin(wide)
+    options.speed, options.frames = speed, frames
+    options.stride, options.reach = rounded_up(steps), rounded_up(reach)
+    options.cluster = mobility_map.end_clusters[rows]
+    options.at_x, options.at_y = path[:, 0, LEVELS], path[:, 1, LEVELS]
     return OptionTable(
         offsets=offsets,
         groups=groups,
         farthest=np.maximum.reduceat(reach, offsets[:-1]),
-        x=np.ascontiguousarray(x),
-        y=np.ascontiguousarray(y),
+        options=options,
         heading=heading,
-        ux=np.cos(wide).astype(np.float32),
-        uy=np.sin(wide).astype(np.float32),
-        speed=speed.astype(np.float32),
-        frames=frames,
-        cluster=mobility_map.end_clusters[rows].astype(np.int32),
-        reach=reach,
-        stride=np.nextafter(steps.astype(np.float32), np.float32(np.inf)),
         path=path,
-        at_x=np.ascontiguousarray(path[:, 0, LEVELS].T),
-        at_y=np.ascontiguousarray(path[:, 1, LEVELS].T),
     )
+
+
+def rounded_up(values: NDArray[np.float64]) -> NDArray[np.float32]:
+    """The same in single precision, or a little more."""
+    return np.nextafter(values.astype(np.float32), np.float32(np.inf))
 
 
 def stack_tables(tables: Sequence[OptionTable]) -> OptionTable:
     """One table for several, clusters and rows numbered through."""
     if len(tables) == 1:
         return tables[0]
-    options = np.cumsum([0] + [len(table.x) for table in tables])
+    options = np.cumsum([0] + [len(table.options) for table in tables])
     clusters = np.cumsum([0] + [len(table.farthest) for table in tables])
-    shift = {"offsets": options, "groups": options, "cluster": clusters}
-    columns = {}
-    for name in OptionTable._fields:
-        parts = [getattr(table, name) for table in tables]
-        if name in shift:
-            parts = [part + by for part, by in zip(parts, shift[name], strict=False)]
-        if name == "offsets":
-            parts = [parts[0], *(part[1:] for part in parts[1:])]
-        axis = 1 if name in ("at_x", "at_y") else 0
-        columns[name] = np.concatenate(parts, axis=axis).astype(getattr(tables[0], name).dtype)
-    return OptionTable(**columns)
+    if clusters[-1] > np.iinfo(OPTION["cluster"].type).max:
+        raise ModelError(
+            f"pedestrian types: their maps have {clusters[-1]} clusters together, "
+            f"expected {np.iinfo(OPTION['cluster'].type).max} at most"
+        )
+    records = np.concatenate([table.options for table in tables]).view(np.recarray)
+    records.cluster += np.repeat(clusters[:-1], np.diff(options)).astype(records.cluster.dtype)
+    firsts = [table.offsets[:-1] + by for table, by in zip(tables, options, strict=False)]
+    return OptionTable(
+        offsets=np.concatenate([*firsts, options[-1:]]),
+        groups=np.concatenate(
+            [table.groups + by for table, by in zip(tables, options, strict=False)]
+        ),
+        farthest=np.concatenate([table.farthest for table in tables]),
+        options=records,
+        heading=np.concatenate([table.heading for table in tables]),
+        path=np.concatenate([table.path for table in tables]),
+    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.crowd.state import NO_OPTION, CrowdState
+from mesa_mobility.crowd.state import NO_OPTION, Crowd
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 
@@ -54,7 +54,7 @@ def check_column(name: str, values: ArrayLike, n: int) -> NDArray[np.float64]:
 
 
 def place(
-    state: CrowdState,
+    state: Crowd,
     rows: NDArray[np.int64],
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
@@ -77,7 +77,7 @@ def place(
     state.active[rows] = True
 
 
-def face(state: CrowdState, rows: NDArray[np.int64], headings: NDArray[np.float64]) -> None:
+def face(state: Crowd, rows: NDArray[np.int64], headings: NDArray[np.float64]) -> None:
     """Turn people who have just been placed."""
     state.heading[rows] = headings
     state.path[rows, 2, 0] = headings

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.state import Crowd
 
 
 class Recorder:
@@ -14,7 +14,7 @@ class Recorder:
     def __init__(self) -> None:
         self._blocks: list[tuple[NDArray[np.generic], ...]] = []
 
-    def add(self, frame: int, rows: NDArray[np.int64], state: CrowdState) -> None:
+    def add(self, frame: int, rows: NDArray[np.int64], state: Crowd) -> None:
         """Keep the people in ``rows`` at ``frame``."""
         self._blocks.append(
             (

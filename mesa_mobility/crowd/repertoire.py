@@ -54,7 +54,7 @@ def repertoire(maps: tuple[MobilityMap, ...], durations: tuple[int, ...]) -> Rep
     capabilities = tuple(own[map_] for map_ in maps)
     table = stack_tables([each.table for each in capabilities])
     clusters = np.cumsum([0] + [each.n_clusters for each in capabilities])[:-1]
-    options = np.cumsum([0] + [len(each.table.x) for each in capabilities])[:-1]
+    options = np.cumsum([0] + [len(each.table.options) for each in capabilities])[:-1]
     standing = clusters + [each.standing for each in capabilities]
     return Repertoire(
         capabilities=capabilities,

@@ -14,7 +14,7 @@ from mesa_mobility.crowd.collision import (
     near_walls,
 )
 from mesa_mobility.crowd.motion import cover
-from mesa_mobility.crowd.neighbours import build_grid, neighbours_of, people_within
+from mesa_mobility.crowd.neighbours import build_grid, people_within
 from mesa_mobility.crowd.options import SAMPLES, OptionTable
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import NO_OPTION, CrowdState
@@ -33,7 +33,7 @@ def stop_where_blocked(
 
     They stand where they are and decide again in this frame.  Returns their number.
     """
-    reach = table.reach.max()
+    reach = table.farthest.max()
     stopped = np.zeros(len(rows), np.bool_)
     newly = np.empty(len(rows), np.int64)
     count = 0
@@ -128,19 +128,20 @@ def too_close(
     The latter is a row of the crowd, or -1 for one of the places before it; (-1, -1) if all
     of them are free.  Nobody farther than ``search_radius`` is on the way to a place.
     """
-    x, y = points[:, 0].copy(), points[:, 1].copy()
+    x, y = points[:, 0], points[:, 1]
     others = build_grid(np.arange(len(points)), x, y)
     people = build_grid(rows, state.x, state.y)
     found = np.empty(max(len(points), len(rows)), np.int64)
     still = np.zeros((3, 2))
     for k in range(len(points)):
-        for m in found[: neighbours_of(others, k, x, y, 2.0 * core, found)]:
+        for at in found[: people_within(others, x[k], y[k], k, 2.0 * core, found)]:
+            m = others.people[at]
             dx, dy = x[k] - x[m], y[k] - y[m]
             if m < k and dx * dx + dy * dy < 4.0 * core * core:
                 return k, -1
         still[0], still[1] = x[k], y[k]
-        count = people_within(people, x[k], y[k], -1, state.x, state.y, search_radius, found)
-        for j in np.sort(found[:count]):
+        count = people_within(people, x[k], y[k], np.int64(-1), search_radius, found)
+        for j in np.sort(people.people[found[:count]]):
             c = core + state.core[j]
             dx, dy = x[k] - state.x[j], y[k] - state.y[j]
             if dx * dx + dy * dy < c * c or (

@@ -160,11 +160,12 @@ def cheapest_free(
             return o, work.leaving[k]
         who, doubtful = -1, 0
         # Whoever may be out before may not meet anybody of those ahead.
-        exits_near = table.reach[o] >= now.exits_from
+        reach = np.float64(table.options[o].reach)
+        exits_near = reach >= now.exits_from
         if cores and not exits_near:
             who, doubtful = meets(
-                me, now.frame, table.path[o], table.stride[o], now.found, met, state, work.close,
-                work.unsure,
+                me, now.frame, table.path[o], table.options[o].stride, now.found, met, state,
+                work.close, work.unsure,
             )  # fmt: skip
         gone = NOT_A_NUMBER
         if who >= 0:
@@ -172,14 +173,14 @@ def cheapest_free(
         else:
             if exits_near:
                 for a in range(now.found):
-                    work.unsure[a] = work.close.who[a]
+                    work.unsure[a] = work.close.people[a].who
                 doubtful = now.found
-            for a in range(now.touching, len(work.close.who)):
-                work.unsure[doubtful] = work.close.who[a]
+            for a in range(now.touching, len(work.close.people)):
+                work.unsure[doubtful] = work.close.people[a].who
                 doubtful += 1
             pieces = lay_path(me.row, o, table, state, work.path)
             gone = path_gone_or_blocked(
-                me.row, work.path, pieces, np.int64(SAMPLE_FRAMES), table.reach[o], now.frame,
+                me.row, work.path, pieces, np.int64(SAMPLE_FRAMES), reach, now.frame,
                 state, walls, around, work.unsure[:doubtful], exits_near, cores,
             )  # fmt: skip
         if gone >= -1:

@@ -1,87 +1,126 @@
-"""The state of the crowd: one set of arrays that the model owns.
+"""The state of the crowd: one array that the model owns, a record for each pedestrian.
 
 A pedestrian keeps its row for ever; rows of people who left are simply not
 active any more.  ``Pedestrian`` objects are views of a row.
+
+One array of records and not an array for each field: a compiled function takes it as seven
+numbers instead of two hundred, and what it reads of a person lies side by side.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options import SAMPLES
 
+PERSON = np.dtype(
+    [
+        # What those around read of somebody comes first.
+        ("x", "f8"),
+        ("y", "f8"),
+        ("vx", "f8"),
+        ("vy", "f8"),
+        ("core", "f8"),
+        ("sweep", "f8", (3,)),
+        ("stride", "f8"),
+        ("start", "i8"),
+        ("gone", "i8"),
+        ("spacing", "i4"),
+        ("knots", "i4"),
+        ("box", "f8", (4,)),
+        ("path", "f8", (3, SAMPLES)),
+        ("heading", "f8"),
+        ("target_x", "f8"),
+        ("target_y", "f8"),
+        ("route", "f8"),
+        ("preferred", "f8"),
+        ("end", "i8"),
+        ("option", "i8"),
+        ("cluster", "i4"),
+        ("kind", "i4"),
+        ("destination", "i4"),
+        ("active", "?"),
+        ("decisions", "i8"),
+        ("fallbacks", "i8"),
+        ("fallback_frames", "i8"),
+        ("active_frames", "i8"),
+    ],
+    align=True,
+)
+"""What the model keeps of a pedestrian.
 
-class CrowdState(NamedTuple):
-    """Arrays with one row a pedestrian.
+Now: ``x``, ``y``, ``heading`` (metres, radians), ``vx``, ``vy`` (mean velocity of the movement
+under way, m/s), ``active`` (in the model).  Person: ``preferred`` speed (m/s), ``core`` radius
+(m), ``kind`` (index of the pedestrian type), ``destination`` (the router's number).  Movement
+under way: ``option`` (row of the option table; -1 none yet, -2 fallback), ``cluster`` (at its
+end), ``start`` and ``end`` frames, ``gone`` (frame at which the person has crossed an exit,
+or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``path`` (3, 16) world
+x, y, heading at the knots, ``box`` (4,) what the path covers: least x, least y, greatest x,
+greatest y, ``sweep`` (3,) x, y and radius of a circle around that, ``stride``
+most metres on the way in the time between two samples.  Where to: ``target_x``, ``target_y``,
+``route`` (metres left).
+Counters: ``decisions``, ``fallbacks``, ``fallback_frames``, ``active_frames``.
+"""
 
-    Now: ``x``, ``y``, ``heading`` (metres, radians), ``vx``, ``vy`` (mean velocity of the movement
-    under way, m/s), ``active`` (in the model).  Person: ``preferred`` speed (m/s), ``core`` radius
-    (m), ``kind`` (index of the pedestrian type), ``destination`` (the router's number).  Movement
-    under way: ``option`` (row of the option table; -1 none yet, -2 fallback), ``cluster`` (at its
-    end), ``start`` and ``end`` frames, ``gone`` (frame at which the person has crossed an exit,
-    or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``path`` (n, 3, 16) world
-    x, y, heading at the knots, ``box`` (n, 4) what the path covers: least x, least y, greatest x,
-    greatest y, ``sweep`` (n, 3) x, y and radius of a circle around that, ``stride``
-    most metres on the way in the time between two samples.  Where to: ``target_x``, ``target_y``,
-    ``route`` (metres left).
-    Counters: ``decisions``, ``fallbacks``, ``fallback_frames``, ``active_frames``.
-    """
-
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    heading: NDArray[np.float64]
-    vx: NDArray[np.float64]
-    vy: NDArray[np.float64]
-    active: NDArray[np.bool_]
-    preferred: NDArray[np.float64]
-    core: NDArray[np.float64]
-    kind: NDArray[np.int32]
-    destination: NDArray[np.int32]
-    option: NDArray[np.int64]
-    cluster: NDArray[np.int32]
-    start: NDArray[np.int64]
-    end: NDArray[np.int64]
-    gone: NDArray[np.int64]
-    spacing: NDArray[np.int32]
-    knots: NDArray[np.int32]
-    path: NDArray[np.float64]
-    box: NDArray[np.float64]
-    sweep: NDArray[np.float64]
-    stride: NDArray[np.float64]
-    target_x: NDArray[np.float64]
-    target_y: NDArray[np.float64]
-    route: NDArray[np.float64]
-    decisions: NDArray[np.int64]
-    fallbacks: NDArray[np.int64]
-    fallback_frames: NDArray[np.int64]
-    active_frames: NDArray[np.int64]
-
+CrowdState: TypeAlias = "np.recarray[Any, Any]"
+"""(n,) records of ``PERSON``, as compiled functions take them."""
 
 NO_OPTION = -1
 FALLBACK = -2
 
 
-def empty_state(capacity: int) -> CrowdState:
-    """Arrays for ``capacity`` people, none of them active."""
-    kinds: dict[str, type[np.generic]] = {"active": np.bool_}
-    kinds |= dict.fromkeys(("kind", "destination", "cluster", "spacing", "knots"), np.int32)
-    kinds |= dict.fromkeys(("option", "start", "end", "gone"), np.int64)
-    kinds |= dict.fromkeys(("decisions", "fallbacks", "fallback_frames", "active_frames"), np.int64)
-    shapes = {"path": (3, SAMPLES), "box": (4,), "sweep": (3,)}
-    arrays: list[NDArray[Any]] = [
-        np.zeros((capacity, *shapes.get(name, ())), dtype=kinds.get(name, np.float64))
-        for name in CrowdState._fields
-    ]
-    return CrowdState(*arrays)
+class Crowd:
+    """Everybody's records, and a view of each field: ``crowd.x`` is everybody's x.
 
+    Args:
+        capacity: people there is room for; none of them is active.
 
-def grown(state: CrowdState, capacity: int) -> CrowdState:
-    """The same people in larger arrays."""
-    larger = empty_state(capacity)
-    for name in CrowdState._fields:
-        old = getattr(state, name)
-        getattr(larger, name)[: len(old)] = old
-    return larger
+    Attributes:
+        records: (capacity,) records of ``PERSON``; each of its fields is an attribute as well.
+    """
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    vx: NDArray[np.float64]
+    vy: NDArray[np.float64]
+    core: NDArray[np.float64]
+    sweep: NDArray[np.float64]
+    stride: NDArray[np.float64]
+    start: NDArray[np.int64]
+    gone: NDArray[np.int64]
+    spacing: NDArray[np.int32]
+    knots: NDArray[np.int32]
+    box: NDArray[np.float64]
+    path: NDArray[np.float64]
+    heading: NDArray[np.float64]
+    target_x: NDArray[np.float64]
+    target_y: NDArray[np.float64]
+    route: NDArray[np.float64]
+    preferred: NDArray[np.float64]
+    end: NDArray[np.int64]
+    option: NDArray[np.int64]
+    cluster: NDArray[np.int32]
+    kind: NDArray[np.int32]
+    destination: NDArray[np.int32]
+    active: NDArray[np.bool_]
+    decisions: NDArray[np.int64]
+    fallbacks: NDArray[np.int64]
+    fallback_frames: NDArray[np.int64]
+    active_frames: NDArray[np.int64]
+
+    def __init__(self, capacity: int) -> None:
+        self._take(np.zeros(capacity, dtype=PERSON))
+
+    def grow(self, capacity: int) -> None:
+        """Make room for more people."""
+        larger = np.zeros(capacity, dtype=PERSON)
+        larger[: len(self.records)] = self.records
+        self._take(larger)
+
+    def _take(self, records: NDArray[np.void]) -> None:
+        self.records = cast(CrowdState, records)
+        for name in PERSON.names or ():
+            setattr(self, name, records[name])

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options import FRAME_SECONDS
-from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.state import Crowd
 
 
 class CrowdMeasures:
     """Figures of a model, worked out from its crowd."""
 
-    crowd: CrowdState
+    crowd: Crowd
     frame: int
     count: int
     preset: str

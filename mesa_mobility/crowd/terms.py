@@ -16,7 +16,19 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.costs import Ends, Others
+from mesa_mobility.crowd.costs import (
+    COST,
+    END_UX,
+    END_UY,
+    END_X,
+    END_Y,
+    OTHER_VX,
+    OTHER_VY,
+    OTHER_X,
+    OTHER_Y,
+    SECONDS,
+    SPEED,
+)
 from mesa_mobility.crowd.kernels import (
     BoundKernel,
     CostKernel,
@@ -87,23 +99,25 @@ class CompiledTerm(CostTerm):
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
         """Cost of each option, by calling the kernel on each row."""
         numbers = np.array(self.parameters() or (0.0,), dtype=np.float64)
-        ends = (
-            *np.ascontiguousarray(candidates.points.T),
-            np.cos(candidates.headings),
-            np.sin(candidates.headings),
-            candidates.durations,
-            candidates.speeds,
+        ends = np.array(
+            [
+                *candidates.points.T,
+                np.cos(candidates.headings),
+                np.sin(candidates.headings),
+                candidates.durations,
+                candidates.speeds,
+            ]
         )
         if isinstance(self.kernel, PairKernel):
-            x, y = np.ascontiguousarray(candidates.neighbour_positions.T)
-            vx, vy = np.ascontiguousarray(candidates.neighbour_velocities.T)
+            x, y = candidates.neighbour_positions.T
+            vx, vy = candidates.neighbour_velocities.T
             return _each_pair(
-                self.kernel.address, candidates.owner, Ends(*ends), candidates.neighbour_offsets,
-                Others(x, y, vx, vy, np.empty(len(candidates.neighbours))),
+                self.kernel.address, candidates.owner, ends, candidates.neighbour_offsets,
+                np.array([x, y, vx, vy, np.empty_like(x)]),
                 numbers,
             )  # fmt: skip
         return _each_option(
-            self.kernel.address, candidates.offsets, Ends(*ends), candidates.targets,
+            self.kernel.address, candidates.offsets, ends, candidates.targets,
             candidates.preferred_speeds, numbers,
         )  # fmt: skip
 
@@ -112,18 +126,18 @@ class CompiledTerm(CostTerm):
 def _each_option(
     address: int,
     offsets: NDArray[np.int64],
-    ends: Ends,
+    ends: NDArray[np.float64],
     targets: NDArray[np.float64],
     preferred: NDArray[np.float64],
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    out = np.zeros(len(ends.x))
+    out = np.zeros(ends.shape[1])
     for b in range(len(preferred)):
         at = slice(offsets[b], offsets[b + 1])
         call_option_loop(
-            address, offsets[b + 1] - offsets[b], ends.x[at], ends.y[at], ends.ux[at], ends.uy[at],
-            ends.duration[at], ends.speed[at], targets[b, 0], targets[b, 1], preferred[b], numbers,
-            1.0, out[at],
+            address, offsets[b + 1] - offsets[b], ends[END_X, at], ends[END_Y, at],
+            ends[END_UX, at], ends[END_UY, at], ends[SECONDS, at], ends[SPEED, at],
+            targets[b, 0], targets[b, 1], preferred[b], numbers, 1.0, out[at],
         )  # fmt: skip
     return out
 
@@ -132,21 +146,22 @@ def _each_option(
 def _each_pair(
     address: int,
     owner: NDArray[np.int64],
-    ends: Ends,
+    ends: NDArray[np.float64],
     offsets: NDArray[np.int64],
-    others: Others,
+    others: NDArray[np.float64],
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     out = np.empty(len(owner))
     for k in range(len(owner)):
         at = slice(offsets[owner[k]], offsets[owner[k] + 1])
         call_pair_loop(
-            address, offsets[owner[k] + 1] - offsets[owner[k]], ends.x[k], ends.y[k], ends.ux[k],
-            ends.uy[k], ends.duration[k], ends.speed[k], others.x[at], others.y[at],
-            others.vx[at], others.vy[at], numbers, others.cost[at],
+            address, offsets[owner[k] + 1] - offsets[owner[k]], ends[END_X, k], ends[END_Y, k],
+            ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k],
+            others[OTHER_X, at], others[OTHER_Y, at], others[OTHER_VX, at], others[OTHER_VY, at],
+            numbers, others[COST, at],
         )  # fmt: skip
         summed = 0.0
-        for cost in others.cost[at]:
+        for cost in others[COST, at]:
             summed += cost
         out[k] = summed
     return out

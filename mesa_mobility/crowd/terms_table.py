@@ -13,7 +13,7 @@ from mesa_mobility.crowd.kernels import PairKernel
 from mesa_mobility.crowd.neighbours import Grid
 from mesa_mobility.crowd.options import OptionTable
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
 from mesa_mobility.errors import ModelError
 
@@ -75,7 +75,7 @@ def extra_costs(
     terms: Sequence[CostTerm],
     rows: NDArray[np.int64],
     table: OptionTable,
-    state: CrowdState,
+    state: Crowd,
     grid: Grid,
     rules: Rules,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.clearing import Bodies, Circles
-from mesa_mobility.crowd.close import Close
-from mesa_mobility.crowd.costs import Ends, Others
+from mesa_mobility.crowd.close import Close, make_close
+from mesa_mobility.crowd.costs import COST, SPEED
 from mesa_mobility.crowd.options import LEVELS, SAMPLES
 
 
@@ -43,7 +43,7 @@ class Work(NamedTuple):
 
     near: NDArray[np.int64]
     unsure: NDArray[np.int64]
-    others: Others
+    others: NDArray[np.float64]
     close: Close
     bodies: Bodies
     walls: NDArray[np.float64]
@@ -52,7 +52,7 @@ class Work(NamedTuple):
     every: NDArray[np.float64]
     circles: Circles
     rows: NDArray[np.int64]
-    ends: Ends
+    ends: NDArray[np.float64]
     costs: NDArray[np.float64]
     leaving: NDArray[np.int64]
     key: NDArray[np.float64]
@@ -66,35 +66,18 @@ def make_work(people: int, walls: int, options: int) -> Work:
     return Work(
         near=np.empty(people, np.int64),
         unsure=np.empty(people, np.int64),
-        others=Others(*(np.empty(people) for _ in Others._fields)),
-        close=Close(
-            who=np.empty(people, np.int64),
-            x=np.empty(people),
-            y=np.empty(people),
-            sweep=np.empty(people),
-            apart=np.empty(people),
-            ahead_x=np.empty((people, SAMPLES), np.float32),
-            ahead_y=np.empty((people, SAMPLES), np.float32),
-            laid=np.empty(people, np.bool_),
-            run_x=np.empty(2 * SAMPLES),
-            run_y=np.empty(2 * SAMPLES),
-        ),
+        others=np.empty((COST + 1, people)),
+        close=make_close(people),
         bodies=Bodies(
-            np.empty(len(LEVELS), np.int64),
-            *(np.empty((len(LEVELS), people), np.float32) for _ in range(3)),
+            np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people), np.float32)
         ),
         walls=np.empty((walls, 5)),
         bounds=np.empty(options),
         alive=np.empty(options, np.int64),
         every=np.empty(options),
-        circles=Circles(
-            x=np.empty(options, np.float32),
-            y=np.empty(options, np.float32),
-            radius=np.empty(options, np.float32),
-            dropped=np.empty(options, np.int32),
-        ),
+        circles=Circles(np.empty((3, options), np.float32), np.empty(options, np.int32)),
         rows=np.empty(options, np.int64),
-        ends=Ends(*(np.empty(options) for _ in Ends._fields)),
+        ends=np.empty((SPEED + 1, options)),
         costs=np.empty(options),
         leaving=np.empty(options, np.int64),
         key=np.empty(options),

@@ -8,7 +8,14 @@ from mesa_mobility.floorplan.crossing import nearest, nearest_serves, opening_be
 from mesa_mobility.floorplan.kernels import segments_cross
 from mesa_mobility.floorplan.nodes import CORNER, EXIT, GATE
 from mesa_mobility.floorplan.routes import IN_LINE, Ways, in_view, side
-from mesa_mobility.floorplan.sight import Sight, clear_line, free_length, unwalled, wall_distance
+from mesa_mobility.floorplan.sight import (
+    NO_WALL,
+    Sight,
+    clear_line,
+    free_length,
+    unwalled,
+    wall_distance,
+)
 from mesa_mobility.floorplan.views import Views, is_known, nodes_maybe_in_view
 from mesa_mobility.jit import lean
 
@@ -20,7 +27,7 @@ _LEAST_BEYOND = 0.3
 _THROUGH = 0.05
 
 # Nodes looked for in order of length before what may be in view from here is worked out.
-_TRIES = 3
+_TRIES = np.int64(3)
 
 # How far past a corner people may aim, as shares of the distance beyond a gate; the first that
 # keeps the next node in view is taken.
@@ -212,7 +219,7 @@ def _past_corner(
         py = ny + share * ways.beyond * (ny - y) / away
         if ways.kind[after] != CORNER and side(ways, after, px, py) > -IN_LINE:
             continue
-        if clear_line(sight, nx, ny, px, py, clearance, np.inf, -1) and in_view(
+        if clear_line(sight, nx, ny, px, py, clearance, np.inf, NO_WALL) and in_view(
             sight, ways, px, py, after, ways.xy[after, 0], ways.xy[after, 1], clearance, np.inf
         ):
             return px, py
@@ -285,10 +292,10 @@ def _through(
         normal_x, normal_y = -normal_x, -normal_y
     qx, qy = nearest(ways.ends[gate], x, y)
     if not (
-        clear_line(sight, x, y, qx, qy, ways.view_clearance, own, -1)
-        and clear_line(sight, qx, qy, px, py, ways.view_clearance, np.inf, -1)
+        clear_line(sight, x, y, qx, qy, ways.view_clearance, own, NO_WALL)
+        and clear_line(sight, qx, qy, px, py, ways.view_clearance, np.inf, NO_WALL)
     ):
         share = ((ax - x) * normal_x + (ay - y) * normal_y) / abs(ahead)
         qx = x + share * (px - x)
         qy = y + share * (py - y)
-    return _beyond(sight, ways, x, y, qx, qy, normal_x, normal_y, False)
+    return _beyond(sight, ways, x, y, qx, qy, normal_x, normal_y, np.bool_(False))

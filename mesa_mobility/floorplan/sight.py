@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 TOUCH = 1e-9
 """A line nearer to a wall than this touches it (metres)."""
 
+NO_WALL = np.int64(-1)
+"""Number of no wall; typed, as functions are compiled once more for literal numbers."""
+
 # Somebody close to a wall that bulges cannot but come a little nearer to it.
 _OWN_SHARE = 0.5
 
@@ -91,7 +94,7 @@ def clear_line(
     `own` is the distance of p itself to the nearest wall. Where that is less than the
     clearance, half of it will do for walls near p: so somebody close to a wall has a
     view at all, and keeps it on the straight way there (inf: no such person). The wall
-    with number `ignored` does not count (-1: all count).
+    with number `ignored` does not count (`NO_WALL`: all count).
     """
     walls, solid, table = sight
     x0, x1, y0, y1 = min(px, qx), max(px, qx), min(py, qy), max(py, qy)
@@ -241,7 +244,7 @@ def _clear_lines(
     for i in range(len(starts)):
         px, py = starts[i]
         qx, qy = ends[i]
-        clear[i] = clear_line(sight, px, py, qx, qy, clearance, np.inf, -1)
+        clear[i] = clear_line(sight, px, py, qx, qy, clearance, np.inf, NO_WALL)
     return clear
 
 

@@ -51,7 +51,7 @@ def test_options_name_rows_of_the_persons_own_capability():
         assert options.displacements.tolist() == reach
         assert options.options.tolist() == list(person.capability.options(person.cluster))
         table = person.capability.table
-        ends = np.hypot(table.x[options.options], table.y[options.options])
+        ends = np.hypot(table.options.x[options.options], table.options.y[options.options])
         assert ends.tolist() == reach
 
 

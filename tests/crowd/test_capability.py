@@ -13,17 +13,17 @@ def test_all_options_of_the_map():
     assert capability.standing == STANDING
     assert list(capability.options(STANDING)) == [0, 1, 2, 3]
     assert list(capability.options(WALKING)) == [4, 5, 6, 7]
-    assert capability.table.x.tolist() == [0.0, 0.5, 1.0, 1.875, 0.5, 0.0, 1.0, 1.875]
-    assert capability.table.frames.tolist() == [12, 12, 24, 45, 12, 12, 24, 45]
-    assert capability.table.cluster.tolist() == [0, 1, 1, 1, 1, 0, 1, 1]
+    assert capability.table.options.x.tolist() == [0.0, 0.5, 1.0, 1.875, 0.5, 0.0, 1.0, 1.875]
+    assert capability.table.options.frames.tolist() == [12, 12, 24, 45, 12, 12, 24, 45]
+    assert capability.table.options.cluster.tolist() == [0, 1, 1, 1, 1, 0, 1, 1]
     assert capability.longest_reach == 1.875
 
 
 def test_options_of_some_durations():
     capability = Capability(strider(), durations=(24, 45))
     assert [list(capability.options(c)) for c in (STANDING, WALKING)] == [[0, 1], [2, 3]]
-    assert capability.table.x.tolist() == [1.0, 1.875, 1.0, 1.875]
-    assert capability.table.frames.tolist() == [24, 45, 24, 45]
+    assert capability.table.options.x.tolist() == [1.0, 1.875, 1.0, 1.875]
+    assert capability.table.options.frames.tolist() == [24, 45, 24, 45]
     assert capability.rows.tolist() == [2, 3, 5, 6]
 
 

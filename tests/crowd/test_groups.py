@@ -9,7 +9,19 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from mesa_mobility import MobilityMap
-from mesa_mobility.crowd.groups import GROUP_SIZE, group
+from mesa_mobility.crowd.groups import (
+    DURATION,
+    FASTEST,
+    GROUP_SIZE,
+    RADIUS,
+    SLOWEST,
+    TURN,
+    UX,
+    UY,
+    X,
+    Y,
+    group,
+)
 from mesa_mobility.crowd.options import LEVELS
 from mesa_mobility.crowd.repertoire import repertoire
 from tests.fixtures.maps import make_map, stand, straight, strider
@@ -58,34 +70,35 @@ def two_small():
 def test_groups_span_their_options(maps):
     known = repertoire(maps(), (12, 24, 45))
     table, groups = known.table, known.groups
-    n = len(table.x)
+    n = len(table.options)
+    option, spanned = table.options, groups.clusters
     of_group = np.repeat(np.arange(len(table.groups)), np.diff(groups.first))
     cluster = np.repeat(np.arange(len(table.offsets) - 1), np.diff(table.offsets))
     assert len(of_group) == n
-    group_cluster = np.repeat(np.arange(len(groups.of) - 1), np.diff(groups.of))
+    group_cluster = np.repeat(np.arange(len(spanned)), spanned["last"] - spanned["first"])
     assert (group_cluster[of_group] == cluster).all()
-    assert groups.duration[of_group] == pytest.approx(table.frames / 30.0)
+    assert groups.ends[DURATION][of_group] == pytest.approx(option.frames / 30.0)
     slack = 1e-5
     path = table.path.astype(float)
-    away = np.hypot(table.x - groups.x[of_group], table.y - groups.y[of_group])
-    assert (away <= groups.radius[of_group] + slack).all()
-    cosine = table.ux * groups.ux[of_group] + table.uy * groups.uy[of_group]
-    sine = table.uy * groups.ux[of_group] - table.ux * groups.uy[of_group]
-    assert (np.abs(np.arctan2(sine, cosine)) <= groups.turn[of_group] + slack).all()
-    assert (table.speed >= groups.slowest[of_group]).all()
-    assert (table.speed <= groups.fastest[of_group]).all()
-    box = groups.whole[cluster]
+    away = np.hypot(option.x - groups.ends[X][of_group], option.y - groups.ends[Y][of_group])
+    assert (away <= groups.ends[RADIUS][of_group] + slack).all()
+    cosine = option.ux * groups.ends[UX][of_group] + option.uy * groups.ends[UY][of_group]
+    sine = option.uy * groups.ends[UX][of_group] - option.ux * groups.ends[UY][of_group]
+    assert (np.abs(np.arctan2(sine, cosine)) <= groups.ends[TURN][of_group] + slack).all()
+    assert (option.speed >= groups.ends[SLOWEST][of_group]).all()
+    assert (option.speed <= groups.ends[FASTEST][of_group]).all()
+    box = spanned["whole"][cluster]
     assert (path[:, :2].min(axis=2) >= box[:, :2] - slack).all()
     assert (path[:, :2].max(axis=2) <= box[:, 2:] + slack).all()
     for level, sample in enumerate(LEVELS):
         x, y = path[:, 0, sample], path[:, 1, sample]
-        dx, dy = x - groups.at_x[level][of_group], y - groups.at_y[level][of_group]
-        assert (np.hypot(dx, dy) <= groups.at_radius[level][of_group] + slack).all()
-        around = groups.around[cluster, level]
+        dx, dy = x - groups.at[level, X][of_group], y - groups.at[level, Y][of_group]
+        assert (np.hypot(dx, dy) <= groups.at[level, RADIUS][of_group] + slack).all()
+        around = spanned["around"][cluster, level]
         assert (np.hypot(x - around[:, 0], y - around[:, 1]) <= around[:, 2] + slack).all()
-        span = groups.spans[cluster, level]
+        span = spanned["spans"][cluster, level]
         assert (np.minimum(x - span[:, 0], span[:, 2] - x) >= -slack).all()
         assert (np.minimum(y - span[:, 1], span[:, 3] - y) >= -slack).all()
         farthest = np.hypot(path[:, 0, : sample + 1], path[:, 1, : sample + 1]).max(axis=1)
         for k in np.unique(cluster)[:20]:
-            assert groups.reach[k, level] == pytest.approx(farthest[cluster == k].max())
+            assert spanned["reach"][k, level] == pytest.approx(farthest[cluster == k].max())
