@@ -37,7 +37,7 @@ from mesa_mobility.crowd.ranking import (
 )
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import fetch, lean
 
 NONE = -1
 NOT_A_NUMBER = -2
@@ -155,6 +155,10 @@ def cheapest_free(
         if size == 0:
             return NONE, -1
         o = item[0]
+        # One of these two is likely to be next.
+        if size > 2:
+            fetch(table.path, item[1], 192)
+            fetch(table.path, item[2], 192)
         k = work.slot[o - base]
         if work.leaving[k] != _UNTRIED:
             return o, work.leaving[k]
