@@ -1,8 +1,8 @@
-"""Cost of a simulated person-second against people, density, options and processes at once.
+"""Cost of a simulated person-second against people, density, options and processors.
 
 python benchmarks/scaling.py [--most 100000] [--plot docs/images/scaling.png]
 
-Open walk, 10 s, in one process but for the last part; compilation is not counted. A
+Open walk, 10 s, compilation not counted; the last two parts are in processes of their own. A
 person-second costs more or less as its decisions do, so their number is printed as well.
 """
 
@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import multiprocessing
+import os
 import resource
 import time
 from dataclasses import replace
@@ -27,6 +28,7 @@ PEOPLE = (1_000, 3_000, 10_000, 30_000, 100_000)
 DENSITIES = (0.1, 0.25, 0.5, 1.0, 1.5)
 KEEP_EVERY = (8, 4, 2, 1)
 SECONDS = 10.0
+CORES = (1, os.cpu_count() or 1)
 
 
 def thinned(map_: MobilityMap, every: int) -> MobilityMap:
@@ -88,6 +90,14 @@ def _one(people: int) -> dict[str, Any]:
     return timed(open_walk(people, seconds=SECONDS))
 
 
+def in_processes(count: int, people: int, threads: int) -> dict[str, Any]:
+    """The slowest of so many runs at once, each in a process of its own with so many threads."""
+    os.environ["NUMBA_NUM_THREADS"] = str(threads)
+    with multiprocessing.get_context("spawn").Pool(count) as pool:
+        runs = pool.map(_one, [people] * count)
+    return max(runs, key=lambda run: float(run["wall_s"]))
+
+
 def main() -> None:
     """Run all parts, print tables and one JSON line, and draw the plot."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -113,13 +123,21 @@ def main() -> None:
         options.append(
             show("options", "mean", mean, timed(open_walk(3_000, seconds=SECONDS), map_))
         )
-    processes = []
-    for count in (1, 2):
-        with multiprocessing.get_context("spawn").Pool(count) as pool:
-            runs = pool.map(_one, [3_000] * count)
-        slowest = max(runs, key=lambda run: float(run["wall_s"]))
-        processes.append(show("processes", "at once", count, slowest))
-    parts = {"people": people, "density": densities, "options": options, "processes": processes}
+    threads = [
+        show("threads", "threads", count, in_processes(1, given.most, threads=count))
+        for count in CORES
+    ]
+    processes = [
+        show("processes", "at once", count, in_processes(count, 3_000, threads=1))
+        for count in CORES
+    ]
+    parts = {
+        "people": people,
+        "density": densities,
+        "options": options,
+        "threads": threads,
+        "processes": processes,
+    }
     print(json.dumps(parts))
     if given.plot:
         figure, axes = plt.subplots(1, 3, figsize=(12, 3.6), layout="constrained", sharey=True)

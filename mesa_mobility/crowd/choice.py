@@ -23,17 +23,20 @@ from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import commit, lay_path
 from mesa_mobility.crowd.neighbours import Grid, people_within
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.queue import Queue, await_neighbours
 from mesa_mobility.crowd.ranking import all_finite, least
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.search import NONE, NOT_A_NUMBER, cheapest_free
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import called, lean
+from mesa_mobility.machine import fetch, take_number, tell
 
 
 @called()
 def decide(
     rows: NDArray[np.int64],
+    queue: Queue,
     frame: int,
     table: OptionTable,
     groups: OptionGroups,
@@ -50,10 +53,12 @@ def decide(
     """Decide for the pedestrians in ``rows``, one after the other, and commit them.
 
     Costs see the crowd as it was when the frame began; collisions see what
-    those before have committed to.
+    those before have committed to.  Several threads may share the work: each takes the next
+    pedestrian in turn, and waits for those before whom that one could meet.
 
     Args:
         rows: pedestrians, in the order in which they decide.
+        queue: the same of all threads, as new.
         frame: now.
         table: options of all capabilities.
         groups: what the groups of these options span.
@@ -67,25 +72,34 @@ def decide(
         rules: what holds for everybody.
         moving: (2, people) velocities at the beginning of the frame, in the order of the grid:
             terms see them as they were, also of those who have just decided.
-        work: space to work in.
+        work: space to work in, of this thread alone.
 
     Returns:
-        -1, or the pedestrian for whom a cost was not a number; nobody after it has decided.
+        Place in ``rows`` of a pedestrian for whom a cost was not a number, or their number. The
+        least that any thread returns is the first such pedestrian.
     """
     eager = least(terms.pair_weight) < 0.0
     bounded = len(extra) == 0 and not eager
     for address in terms.bound_address:
         bounded = bounded and address != 0
-    for d in range(len(rows)):
+    n = len(rows)
+    before = np.int64(0)
+    while True:
+        d = take_number(queue.next, 0)
+        if d >= n:
+            return n
+        before = await_neighbours(d, before, rows, queue, state, rules.search_radius)
         own_extra = extra
         if len(extra) > 0:
             own_extra = extra[extra_offsets[d] : extra_offsets[d + 1]]
-        if not _decide_one(
+        fine = _decide_one(
             rows[d], frame, table, groups, state, grid, around, terms, own_extra, rules, moving,
             eager, bounded, work,
-        ):  # fmt: skip
-            return rows[d]
-    return -1
+        )  # fmt: skip
+        tell(queue.done, d, 1)
+        if not fine:
+            tell(queue.next, 0, n)
+            return d
 
 
 @lean()
@@ -116,6 +130,7 @@ def _decide_one(
         others[OTHER_X, a], others[OTHER_Y, a] = grid.x[at], grid.y[at]
         others[OTHER_VX, a], others[OTHER_VY, a] = moving[0, at], moving[1, at]
         near[a] = grid.people[at]
+        fetch(state, near[a], 128)
     farthest = table.farthest[cluster]
     walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
     exits_from = exit_distance(around, x, y, destination)

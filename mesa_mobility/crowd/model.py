@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.crowd.batch import make_candidates
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
-from mesa_mobility.crowd.choice import decide
-from mesa_mobility.crowd.motion import move
-from mesa_mobility.crowd.neighbours import Grid, build_grid, velocities
+from mesa_mobility.crowd.decisions import Decisions
+from mesa_mobility.crowd.motion import due, move
+from mesa_mobility.crowd.neighbours import Grid, build_grid
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.placing import Newcomer, check_column, check_places, face, place
@@ -32,8 +32,6 @@ from mesa_mobility.crowd.summary import CrowdMeasures
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
 from mesa_mobility.crowd.terms import CostTerm
-from mesa_mobility.crowd.terms_table import NO_EXTRA, CompiledTerms, extra_costs
-from mesa_mobility.crowd.work import Work, make_work
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.mobility import MobilityMap
@@ -108,8 +106,6 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         )
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
         self.target_choice = target_choice or rules.make_target_choice()
-        self._compiled = CompiledTerms()
-        self._work = make_work(0, 0, 0)
         self.frames_per_step = frames_per_step
         self.frame = 0
         self.recorder = Recorder() if record else None
@@ -124,6 +120,11 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
             standing=self._repertoire.standing,
             first_option=self._repertoire.first_option,
         )
+        self._decisions = Decisions(
+            self._repertoire,
+            self._rules,
+            least_core=min(kind.core_radius for kind in self.pedestrian_types),
+        )
         self._site = Site(floor_plan, reach=reach + core + 0.02, body=core)
         self._plan_version = floor_plan.version
         x0, y0, x1, y1 = floor_plan.bounds
@@ -134,7 +135,7 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
             n_agents=64,
         )
         self._rows = np.empty(0, dtype=np.int64)
-        self._agent_of: dict[int, Pedestrian] = {}
+        self._agents_by_row: list[Pedestrian | None] = []
         self._stall_watch = StallWatch()
         self.stalled = False
         self.last_left: float | None = None
@@ -214,7 +215,8 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         self.count += n
         self._rows = np.concatenate([self._rows, rows])
         people = [Pedestrian(self, int(row)) for row in rows]
-        self._agent_of.update(zip(rows.tolist(), people, strict=True))
+        self._agents_by_row.extend(people)
+        self.space.forget_tables()
         self._write_space()
         self.running = True
         return people
@@ -225,7 +227,7 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         for person in leaving:
             self.crowd.active[person.row] = False
             self.deregister_agent(person)
-            del self._agent_of[person.row]
+            self._agents_by_row[person.row] = None
         stay = self.crowd.active[self._rows]
         self.space.keep(stay)
         self._rows = self._rows[stay]
@@ -261,7 +263,8 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
                 break  # the last has left: this step ends with it
         if len(rows) < len(self._rows):
             stay = self.crowd.active[self._rows]
-            self.remove_pedestrians([self._agent_of[int(row)] for row in self._rows[~stay]])
+            leaving = [self._agents_by_row[row] for row in self._rows[~stay].tolist()]
+            self.remove_pedestrians([person for person in leaving if person is not None])
         self._write_space()
         self.stalled = self._stall_watch.stalled(self.elapsed, self.crowd.route[self._rows])
         self.datacollector.collect(self)
@@ -299,7 +302,8 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
                 rows, self.frame, self._repertoire.table, self.crowd.records,
                 self._site.surroundings, self._rules,
             )  # fmt: skip
-        deciding = rows[self.crowd.end[rows] <= self.frame]
+        deciding = np.empty_like(rows)
+        deciding = deciding[: due(rows, self.frame, self.crowd.records, deciding)]
         if len(deciding):
             self._decide(deciding, rows)
         self.frame += 1
@@ -315,40 +319,12 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
         return rows
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
-        state = self.crowd
         targets = self._set_targets(deciding)
         # Those nearest to where they go decide first: that frees space for those behind.
         order = deciding[np.argsort(targets.distances, kind="stable")]
-        compiled, others = self._compiled(self.terms)
-        table, groups = self._repertoire.table, self._repertoire.groups
-        extra, extra_offsets = NO_EXTRA
-        grid = build_grid(rows, state.x, state.y)
-        if others:
-            extra, extra_offsets = extra_costs(others, order, table, state, grid, self._rules)
-        failed = decide(
-            order, self.frame, table, groups, state.records, grid, self._site.surroundings,
-            compiled, extra, extra_offsets, self._rules, velocities(grid, state.records),
-            self._work_for(len(rows)),
-        )  # fmt: skip
-        if failed >= 0:
-            names = ", ".join(term.name for term in self.terms)
-            raise ModelError(
-                f"cost of an option of pedestrian {failed}: not a number, expected finite numbers "
-                f"from each of the behaviours {names}"
-            )
-
-    def _work_for(self, people: int) -> Work:
-        """Space for decisions among so many people."""
-        around = self._site.surroundings
-        walls = len(around.segments) + len(around.exits)
-        if self._rules.cores:
-            # No more bodies than have room within the search radius.
-            least = min(kind.core_radius for kind in self.pedestrian_types)
-            people = min(people, int((self._rules.search_radius / least + 1.0) ** 2) + 1)
-        if people > len(self._work.near) or walls > len(self._work.walls):
-            options = int(np.diff(self._repertoire.table.offsets).max())
-            self._work = make_work(people, walls, options)
-        return self._work
+        self._decisions.take(
+            order, self.frame, rows, self.crowd, self._site.surroundings, self.terms
+        )
 
     def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
         state = self.crowd

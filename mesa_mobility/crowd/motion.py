@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.collision import box_of
 from mesa_mobility.crowd.options import FRAME_SECONDS, SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import called, lean
+from mesa_mobility.threads import together
 
 
 @lean()
@@ -67,12 +67,33 @@ def commit(
     cover(i, x0, y0, x1, y1, state)
 
 
-@njit(cache=True)
+BLOCK = 8192
+"""People moved at a time. A number of its own, not a share of the crowd for each thread: sums of
+floats must not depend on how many threads there are."""
+
+
 def move(active: NDArray[np.int64], frame: int, state: CrowdState) -> tuple[int, float]:
-    """Put everybody where its movement has it at ``frame``.
+    """Put everybody in rows ``active`` where its movement has it at ``frame``.
 
     Returns how many have left, and the sum of everybody's mean speed, m/s.
     """
+    blocks = [active[k : k + BLOCK] for k in range(0, max(len(active), 1), BLOCK)]
+    left, speeds = zip(*together(lambda rows: _move(rows, frame, state), blocks), strict=True)
+    return sum(left), sum(speeds)
+
+
+@called()
+def due(active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray[np.int64]) -> int:
+    """Write those in rows ``active`` whose movement has ended by ``frame``; return their number."""
+    count = 0
+    for i in active:
+        found[count] = i
+        count += int(state.end[i] <= frame)
+    return count
+
+
+@called()
+def _move(active: NDArray[np.int64], frame: int, state: CrowdState) -> tuple[int, float]:
     left, speeds = 0, 0.0
     for i in active:
         last = state.knots[i] - 1

@@ -37,7 +37,8 @@ from mesa_mobility.crowd.ranking import (
 )
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
-from mesa_mobility.jit import fetch, lean
+from mesa_mobility.jit import lean
+from mesa_mobility.machine import fetch
 
 NONE = -1
 NOT_A_NUMBER = -2

@@ -34,7 +34,11 @@ _TRIES = np.int64(3)
 _PAST_CORNER = (0.5, 0.25, 0.125)
 
 
-@njit(cache=True)
+UNSEEN = -2
+"""Gate of somebody whose target could not be found without working out a new view."""
+
+
+@njit(cache=True, nogil=True)
 def aim(
     sight: Sight,
     ways: Ways,
@@ -43,11 +47,13 @@ def aim(
     destinations: NDArray[np.int64],
     distances: NDArray[np.float64],
     follow: NDArray[np.int64],
+    learn: bool,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Targets (n, 2), gates (n,) and route lengths (n,); see `Router.targets`.
 
     For every destination and node, `distances` is the route length in metres and
-    `follow` the next node of the route (-1 at exits).
+    `follow` the next node of the route (-1 at exits). Only one thread at a time may
+    `learn`, that is, work out new views; the others leave those who need one `UNSEEN`.
     """
     n = len(positions)
     nodes = len(ways.kind)
@@ -72,6 +78,9 @@ def aim(
             node = _first_in_view(
                 sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES
             )
+        if node < 0 and not (hidden_known or learn):
+            gates[person] = UNSEEN
+            continue
         if node < 0:
             maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
             for clearance in (view, 0.0):

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import networkx as nx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.aiming import aim
+from mesa_mobility.floorplan.aiming import UNSEEN, aim
 from mesa_mobility.floorplan.edges import opening_segments
 from mesa_mobility.floorplan.gaps import narrow_gaps
 from mesa_mobility.floorplan.nodes import EDGE_SHARE, NODE_SHARE, VIEW_SHARE, Nodes, find_nodes
@@ -17,9 +17,12 @@ from mesa_mobility.floorplan.openings import Exit
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
 from mesa_mobility.floorplan.views import no_views
+from mesa_mobility.threads import threads_for, together
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
+
+Found: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
 
 _KIND_NAMES = ("corner", "gate", "exit")
 
@@ -143,7 +146,22 @@ class Router:
         if len(xy) == 0:
             return Targets(xy, numbers, np.empty(0))
         lengths, follow = self._table(int(numbers.min()), int(numbers.max()))
-        return Targets(*aim(self._sight, self._ways, self._views, xy, numbers, lengths, follow))
+
+        def aims(people: NDArray[np.intp], learn: bool) -> Found:
+            return aim(
+                self._sight, self._ways, self._views, xy[people], numbers[people], lengths, follow,
+                learn,
+            )  # fmt: skip
+
+        everybody = np.arange(len(xy))
+        threads = threads_for(len(xy))
+        if threads == 1:
+            return Targets(*aims(everybody, True))
+        parts = together(lambda part: aims(part, False), np.array_split(everybody, threads))
+        points, gates, route = (np.concatenate(each) for each in zip(*parts, strict=True))
+        unseen = np.flatnonzero(gates == UNSEEN)
+        points[unseen], gates[unseen], route[unseen] = aims(unseen, True)
+        return Targets(points, gates, route)
 
     def _table(self, lowest: int, highest: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Route lengths and next nodes of all destinations, (destinations, nodes) each."""

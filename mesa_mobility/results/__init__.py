@@ -1,5 +1,8 @@
 """Trajectories, measures, pictures and exports."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from mesa_mobility.results.export import to_pedpy, write_juelich_text, write_jupedsim_sqlite
 from mesa_mobility.results.files import check_writable
 from mesa_mobility.results.gait import Sway, lateral_sway
@@ -16,10 +19,12 @@ from mesa_mobility.results.measures import (
     speeds,
 )
 from mesa_mobility.results.parquet import read_parquet, write_parquet
-from mesa_mobility.results.plots import plot_occupancy, plot_snapshots, plot_trajectories
 from mesa_mobility.results.run import write_run
 from mesa_mobility.results.safety import Overlap, SafetyReport, WallCrossing, check_safety
 from mesa_mobility.results.trajectories import Trajectories
+
+if TYPE_CHECKING:
+    from mesa_mobility.results.plots import plot_occupancy, plot_snapshots, plot_trajectories
 
 __all__ = [
     "Crossings",
@@ -50,3 +55,10 @@ __all__ = [
     "write_parquet",
     "write_run",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # Matplotlib takes half a second, for nothing where no picture is asked for.
+    if name.startswith("plot_") and name in __all__:
+        return getattr(import_module("mesa_mobility.results.plots"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

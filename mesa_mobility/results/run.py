@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.files import check_writable, json_text
 from mesa_mobility.results.measures import egress_time, occupancy
-from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 from mesa_mobility.results.trajectories import Trajectories
 
 if TYPE_CHECKING:
@@ -49,6 +48,9 @@ def write_run(
     Raises:
         ResultsError: the folder or a file cannot be written.
     """
+    # Matplotlib takes half a second to load, and is for those alone who ask for pictures.
+    from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
+
     folder = check_writable(directory)
     title = _title(summary, trajectories)
     try:

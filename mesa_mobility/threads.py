@@ -1,0 +1,42 @@
+"""The threads that share the work of large crowds; results never depend on their number."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+from typing import TypeVar
+
+from numba import config
+
+Part = TypeVar("Part")
+Result = TypeVar("Result")
+
+THREADS: int = config.NUMBA_NUM_THREADS
+"""As many as Numba uses: the processors, unless NUMBA_NUM_THREADS says less."""
+
+MANY = 256
+"""People from whom on threads are worth their while: in small crowds they mostly wait for one
+another."""
+
+
+def threads_for(people: int) -> int:
+    """Threads to share the work for so many people."""
+    return THREADS if people >= MANY else 1
+
+
+def together(work: Callable[[Part], Result], parts: Sequence[Part]) -> list[Result]:
+    """``work`` of each part, in several threads; it must let go of Python's lock to gain by it."""
+    return [work(parts[0])] if len(parts) == 1 else list(_pool().map(work, parts))
+
+
+@lru_cache(maxsize=1)
+def _pool() -> ThreadPoolExecutor:
+    """The threads; they serve all models of the process."""
+    return ThreadPoolExecutor(THREADS, thread_name_prefix="mesa-mobility")
+
+
+if hasattr(os, "register_at_fork"):
+    # Threads do not live on in a forked process, which would wait for them for ever.
+    os.register_at_fork(after_in_child=_pool.cache_clear)
