@@ -7,7 +7,7 @@ import pytest
 
 from mesa_mobility.errors import FloorPlanError, ResultsError
 from mesa_mobility.floorplan import FloorPlan
-from mesa_mobility.results import check_writable, read_parquet, run, write_run
+from mesa_mobility.results import check_writable, plots, read_parquet, run, write_run
 from mesa_mobility.results.files import json_text, replacing
 
 RUN_FILES = [
@@ -104,7 +104,7 @@ def test_a_run_leaves_five_files(two_leave_one_stays, room, tmp_path):
 
 def test_the_curve_ends_when_the_last_one_leaves(walk, room, tmp_path, monkeypatch):
     drawn = []
-    monkeypatch.setattr(run, "plot_occupancy", lambda curve, path, **_: drawn.extend(curve))
+    monkeypatch.setattr(plots, "plot_occupancy", lambda curve, path, **_: drawn.extend(curve))
     monkeypatch.setattr(run, "RUN_FILES", ("summary.json",))
     leaving = walk({0: (0, [(1, 1)] * 4)}, frame_rate=2.0, inside_at_end=[])
     write_run(tmp_path, summary={}, trajectories=leaving, plan=room)
