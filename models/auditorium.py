@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from shapely import Polygon, box, union_all
 
 from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
+from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 
 WIDTH = 28.0
@@ -48,6 +49,7 @@ class Auditorium(PedestrianModel):
 
     Args:
         pedestrians: people; a twelfth of them, but no more than ten an office, are in the offices.
+        pre_movement: seconds before people set off, or their distribution.
         preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         frames_per_step: frames that one step advances; 3 are 0.1 s.
@@ -60,6 +62,7 @@ class Auditorium(PedestrianModel):
     def __init__(
         self,
         pedestrians: int = 750,
+        pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
         frames_per_step: int = 3,
@@ -84,7 +87,7 @@ class Auditorium(PedestrianModel):
         taken = self.rng.choice(len(seats), pedestrians - in_offices, replace=False)
         taken.sort()
         facing_stage = np.full(len(taken), -np.pi / 2)
-        self.add_pedestrians(seats[taken], headings=facing_stage)
+        self.add_pedestrians(seats[taken], headings=facing_stage, pre_movement=pre_movement)
         for office in range(OFFICES):
             count = in_offices // OFFICES + (office < in_offices % OFFICES)
             if count:
@@ -92,7 +95,7 @@ class Auditorium(PedestrianModel):
                     count, self.rng, within=office_floor(office), spacing=0.7, clearance=0.35
                 )
                 headings = self.rng.uniform(-np.pi, np.pi, count)
-                self.add_pedestrians(places, headings=headings)
+                self.add_pedestrians(places, headings=headings, pre_movement=pre_movement)
 
 
 def seat_places() -> NDArray[np.float64]:

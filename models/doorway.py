@@ -6,6 +6,7 @@ import numpy as np
 from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
+from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 
 ROOM = 10.0
@@ -22,6 +23,7 @@ class Doorway(PedestrianModel):
     Args:
         pedestrians: people, all in the room at the start.
         door_width: width of both doors, metres.
+        pre_movement: seconds before people set off, or their distribution.
         preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         frames_per_step: frames that one step advances; 3 are 0.1 s.
@@ -33,6 +35,7 @@ class Doorway(PedestrianModel):
         self,
         pedestrians: int = 60,
         door_width: float = 1.0,
+        pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
         frames_per_step: int = 3,
@@ -59,7 +62,7 @@ class Doorway(PedestrianModel):
             spacing=0.5,
             clearance=0.3,
         )
-        self.add_pedestrians(places)
+        self.add_pedestrians(places, pre_movement=pre_movement)
 
 
 def doorway_plan(door_width: float) -> FloorPlan:

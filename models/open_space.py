@@ -6,6 +6,7 @@ import numpy as np
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel
+from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 
 
@@ -15,6 +16,7 @@ class OpenSpace(PedestrianModel):
     Args:
         pedestrians: people in both groups together.
         size: side of the plaza, metres.
+        pre_movement: seconds before people set off, or their distribution.
         preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         frames_per_step: frames that one step advances; 3 are 0.1 s.
@@ -26,6 +28,7 @@ class OpenSpace(PedestrianModel):
         self,
         pedestrians: int = 100,
         size: float = 30.0,
+        pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
         frames_per_step: int = 3,
@@ -64,4 +67,4 @@ class OpenSpace(PedestrianModel):
                 places = plan.random_points(
                     count, self.rng, within=area, spacing=0.6, clearance=0.3
                 )
-                self.add_pedestrians(places, exits=[exit_name])
+                self.add_pedestrians(places, exits=[exit_name], pre_movement=pre_movement)

@@ -11,12 +11,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from mesa_mobility.distributions import Distribution, parse
 from mesa_mobility.errors import ModelError
 from mesa_mobility.registry import did_you_mean
 
 # Parameters that have an option of their own, or are the command's business.
 OWN_OPTION = {"rng": "--seed", "preset": "--preset", "mobility_map": "--map"}
 NOT_SETTABLE = {*OWN_OPTION, "record"}
+_NAMES = {types.NoneType: "none", Distribution: "distribution"}
 TRUE, FALSE = {"true", "yes", "on", "1"}, {"false", "no", "off", "0"}
 
 
@@ -26,7 +28,8 @@ class Parameter:
 
     Attributes:
         name: as in the constructor.
-        kinds: the types it takes: int, float, bool, str, NoneType, or tuples of literal values.
+        kinds: the types it takes: int, float, bool, str, NoneType, Distribution, or tuples of
+            literal values.
         default: its default, or `inspect.Parameter.empty`.
     """
 
@@ -49,6 +52,8 @@ class Parameter:
                 return _convert(text, kind)
             except ValueError:
                 continue
+            except ModelError as error:
+                raise ModelError(f"model {model}: {self.name}: {error}") from None
         raise ModelError(
             f"model {model}: {self.name}={text} is not {_kinds_text(self.kinds)} (parameter {self})"
         )
@@ -124,14 +129,15 @@ def _kinds(annotation: Any) -> Iterable[Any]:
     if annotation in (inspect.Parameter.empty, Any):
         yield str
     elif typing.get_origin(annotation) in (typing.Union, types.UnionType):
-        # None before str, numbers before str: a text fits str always.
+        # None and numbers before str, which any text fits, and before a distribution, which says
+        # itself what is wrong with a text.
         members = [kind for each in typing.get_args(annotation) for kind in _kinds(each)]
-        yield from sorted(members, key=lambda kind: kind is str)
+        yield from sorted(members, key=lambda kind: kind in (str, Distribution))
     elif typing.get_origin(annotation) is typing.Literal:
         yield typing.get_args(annotation)
     elif annotation is None:
         yield types.NoneType
-    elif annotation in (bool, int, float, str, types.NoneType):
+    elif annotation in (bool, int, float, str, types.NoneType, Distribution):
         yield annotation
 
 
@@ -149,6 +155,9 @@ def _convert(text: str, kind: Any) -> Any:
     elif kind is float:
         if math.isfinite(value := float(text)):
             return value
+    elif kind is Distribution:
+        # Whatever is wrong with it, its own message says so.
+        return parse(text)
     else:
         return kind(text)
     raise ValueError(text)
@@ -160,5 +169,5 @@ def _kinds_text(kinds: tuple[Any, ...]) -> str:
         if isinstance(kind, tuple):
             names.extend(str(value) for value in kind)
         else:
-            names.append("none" if kind is types.NoneType else kind.__name__)
+            names.append(_NAMES.get(kind, kind.__name__))
     return " or ".join(names) or "settable from Python only"

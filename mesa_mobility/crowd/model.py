@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-import mesa
 import numpy as np
 from mesa.datacollection import DataCollector
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mesa_mobility.crowd.batch import make_candidates
 from mesa_mobility.crowd.candidates import Candidates
@@ -19,11 +18,11 @@ from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
-from mesa_mobility.crowd.placing import Newcomer, check_column, check_places, face, place
+from mesa_mobility.crowd.people import People
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.recorder import Recorder
 from mesa_mobility.crowd.repertoire import repertoire
-from mesa_mobility.crowd.replan import stop_where_blocked, too_close
+from mesa_mobility.crowd.replan import stop_where_blocked
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.stall import StallWatch
@@ -37,7 +36,7 @@ from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.mobility import MobilityMap
 
 
-class PedestrianModel(CrowdMeasures, mesa.Model):
+class PedestrianModel(CrowdMeasures, People):
     """Pedestrians on a floor plan, driven by recorded movement.
 
     Concrete models build a floor plan, call this constructor and then
@@ -150,88 +149,6 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
             }
         )
 
-    # -- people ---------------------------------------------------------------------------------
-
-    def add_pedestrians(
-        self,
-        positions: ArrayLike,
-        *,
-        headings: ArrayLike | None = None,
-        preferred_speeds: ArrayLike | None = None,
-        exits: Sequence[str] | None = None,
-        kind: int = 0,
-    ) -> list[Pedestrian]:
-        """Put people on the floor, standing.
-
-        Args:
-            positions: (n, 2) metres, on free floor.
-            headings: (n,) radians; by default everybody faces its first target.
-            preferred_speeds: (n,) m/s; by default drawn from the type.
-            exits: names of the exits they may leave by; by default the nearest of all.
-            kind: index of their type in ``pedestrian_types``.
-
-        Raises:
-            ModelError: positions off the floor or where somebody is or will be, an unknown type,
-                or arrays of other lengths.
-            FloorPlanError: an unknown exit, or no way from a position to any exit.
-        """
-        points = check_places(positions, self.floor_plan)
-        n = len(points)
-        if not 0 <= kind < len(self.pedestrian_types):
-            raise ModelError(
-                f"kind: got {kind}, expected the index of a type, "
-                f"0 to {len(self.pedestrian_types) - 1}"
-            )
-        ptype = self.pedestrian_types[kind]
-        if preferred_speeds is None:
-            preferred_speeds = ptype.draw_speeds(n, self.rng)
-        speeds = check_column("preferred_speeds", preferred_speeds, n)
-        if (speeds <= 0.0).any():
-            raise ModelError(f"preferred_speeds: got {speeds.min()}, expected more than 0 m/s")
-        facing = None if headings is None else check_column("headings", headings, n)
-        new = Newcomer(
-            kind=kind,
-            core=ptype.core_radius,
-            standing=int(self._rules.standing[kind]),
-            destination=self._site.destination(None if exits is None else tuple(exits)),
-        )
-        if self._rules.cores:
-            where, who = too_close(
-                points, ptype.core_radius, self.frame, self._rows, self.crowd.records,
-                self._rules.search_radius,
-            )  # fmt: skip
-            if where >= 0:
-                other = "another newcomer" if who < 0 else f"where pedestrian {who} is or will be"
-                raise ModelError(
-                    f"pedestrian {where} at {points[where].tolist()}: too close to {other}, "
-                    "expected room for both bodies"
-                )
-        rows = np.arange(self.count, self.count + n)
-        if self.count + n > len(self.crowd.x):
-            self.crowd.grow(max(self.count + n, 2 * len(self.crowd.x)))
-        place(self.crowd, rows, points, speeds, self.frame, new)
-        aim = self._set_targets(rows).points - points
-        face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
-        self.count += n
-        self._rows = np.concatenate([self._rows, rows])
-        people = [Pedestrian(self, int(row)) for row in rows]
-        self._agents_by_row.extend(people)
-        self.space.forget_tables()
-        self._write_space()
-        self.running = True
-        return people
-
-    def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
-        """Take people out of the model."""
-        leaving = list(people)
-        for person in leaving:
-            self.crowd.active[person.row] = False
-            self.deregister_agent(person)
-            self._agents_by_row[person.row] = None
-        stay = self.crowd.active[self._rows]
-        self.space.keep(stay)
-        self._rows = self._rows[stay]
-
     @property
     def capabilities(self) -> tuple[Capability, ...]:
         """What the body of each pedestrian type can do."""
@@ -241,16 +158,6 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
     def first_cluster(self) -> NDArray[np.int32]:
         """(types,) number in ``crowd.cluster`` of the first cluster of each type."""
         return self._repertoire.first_cluster
-
-    @property
-    def rows(self) -> NDArray[np.int64]:
-        """Rows of the people inside, in the order of ``space.active_agents``."""
-        return self._rows
-
-    @property
-    def core_radii(self) -> NDArray[np.float64]:
-        """(n,) core radius of everybody who was ever in the model, metres."""
-        return self.crowd.core[: self.count].copy()
 
     # -- time -----------------------------------------------------------------------------------
 
@@ -266,7 +173,10 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
             leaving = [self._agents_by_row[row] for row in self._rows[~stay].tolist()]
             self.remove_pedestrians([person for person in leaving if person is not None])
         self._write_space()
-        self.stalled = self._stall_watch.stalled(self.elapsed, self.crowd.route[self._rows])
+        waiting = self.crowd.agenda["waits_until"][self._rows] > self.frame
+        self.stalled = self._stall_watch.stalled(
+            self.elapsed, self.crowd.route[self._rows], bool(waiting.any())
+        )
         self.datacollector.collect(self)
         self.running = self.inside > 0 and not self.stalled
 
@@ -349,9 +259,3 @@ class PedestrianModel(CrowdMeasures, mesa.Model):
 
     def _grid(self) -> Grid:
         return build_grid(self._rows, self.crowd.x, self.crowd.y)
-
-    def _write_space(self) -> None:
-        if self.inside:
-            positions = self.space.agent_positions
-            positions[:, 0] = self.crowd.x[self._rows]
-            positions[:, 1] = self.crowd.y[self._rows]

@@ -54,7 +54,12 @@ class Pedestrian(ContinuousSpaceAgent):
     @property
     def preferred_speed(self) -> float:
         """Speed at which the person likes to walk, m/s."""
-        return float(self.model.crowd.preferred[self.row])
+        return float(self.model.crowd.agenda["speed"][self.row])
+
+    @property
+    def start_time(self) -> float:
+        """Seconds of simulated time at which the person sets off: its pre-movement time is over."""
+        return float(self.model.crowd.agenda["sets_off"][self.row]) * FRAME_SECONDS
 
     @property
     def target(self) -> NDArray[np.float64]:

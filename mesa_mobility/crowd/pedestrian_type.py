@@ -3,36 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.distributions import Clipped, Distribution, Normal
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.map import CORE_RADIUS
+
+PREFERRED_SPEED = Clipped(Normal(1.34, 0.26), 0.6, 2.0)
+"""Weidmann (1993): 1.34 +- 0.26 m/s, in the range that recordings of walking adults serve."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PedestrianType:
     """Pedestrians who share one mobility map.
 
-    Preferred speeds are normal, mean 1.34 and standard deviation 0.26 m/s
-    (Weidmann 1993), clipped to the range that the type's recordings serve.
-
     Attributes:
         mobility_map: the type's clustered mobility map.
         name: by default the map's own.
-        speed_mean: mean preferred speed, m/s.
-        speed_sd: its standard deviation, m/s.
-        speed_range: least and greatest preferred speed, m/s.
+        preferred_speed: distribution of preferred speeds, m/s, or one speed for everybody.
         core_radius: radius of the disc that no other body enters, metres; by default the map's.
     """
 
     mobility_map: MobilityMap
     name: str = ""
-    speed_mean: float = 1.34
-    speed_sd: float = 0.26
-    speed_range: tuple[float, float] = (0.6, 2.0)
+    preferred_speed: Distribution | float = PREFERRED_SPEED
     core_radius: float = field(default=0.0)
 
     def __post_init__(self) -> None:
@@ -45,13 +43,16 @@ class PedestrianType:
             raise ModelError(
                 f"type {self.name!r}: core_radius {self.core_radius}, expected 0 to 1 m"
             )
-        low, high = self.speed_range
-        if not (0.0 < low <= self.speed_mean <= high and self.speed_sd >= 0.0):
-            raise ModelError(
-                f"type {self.name!r}: speeds {self.speed_mean} +- {self.speed_sd} in {low} to "
-                f"{high} m/s, expected 0 < least <= mean <= greatest and no negative deviation"
-            )
+        if not isinstance(self.preferred_speed, Distribution):
+            speed = self.preferred_speed
+            if not (isinstance(speed, Real) and 0.0 < speed < np.inf):
+                raise ModelError(
+                    f"type {self.name!r}: preferred_speed {speed!r}, expected a distribution or "
+                    "more than 0 m/s"
+                )
 
     def draw_speeds(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
         """(n,) preferred speeds, m/s."""
-        return np.clip(rng.normal(self.speed_mean, self.speed_sd, n), *self.speed_range)
+        if isinstance(self.preferred_speed, Distribution):
+            return self.preferred_speed.draw(n, rng)
+        return np.full(n, float(self.preferred_speed))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.state import NO_OPTION, Crowd
+from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 
@@ -47,10 +48,25 @@ def check_column(name: str, values: ArrayLike, n: int) -> NDArray[np.float64]:
     Raises:
         ModelError: another length, or not finite.
     """
-    column = np.asarray(values, dtype=np.float64)
+    try:
+        column = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ModelError(f"{name}: got {values!r}, expected {n} finite numbers") from None
     if column.shape not in ((n,), ()) or not np.isfinite(column).all():
         raise ModelError(f"{name}: shape {column.shape}, expected {n} finite numbers")
     return np.broadcast_to(column, (n,))
+
+
+def draw_column(
+    name: str, values: ArrayLike | Distribution, n: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """(n,) numbers, drawn if a distribution is given.
+
+    Raises:
+        ModelError: another length, or not finite.
+    """
+    drawn = values.draw(n, rng) if isinstance(values, Distribution) else values
+    return check_column(name, drawn, n)
 
 
 def place(
@@ -59,25 +75,34 @@ def place(
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
     frame: int,
+    sets_off: NDArray[np.int64],
     new: Newcomer,
 ) -> None:
-    """Fill the rows of people who appear at ``points``, standing; their headings come later."""
+    """Fill the rows of people who appear at ``points``, standing; their headings come later.
+
+    Until the frame in which somebody ``sets_off`` its movement is one of standing there.
+    """
     state.x[rows], state.y[rows] = points.T
     state.preferred[rows] = speeds
     state.core[rows], state.kind[rows] = new.core, new.kind
     state.destination[rows], state.cluster[rows] = new.destination, new.standing
     state.vx[rows] = state.vy[rows] = 0.0
     state.option[rows], state.gone[rows] = NO_OPTION, -1
-    state.start[rows] = state.end[rows] = frame
-    state.spacing[rows] = state.knots[rows] = 1
-    state.path[rows, :2, 0] = points
+    state.start[rows], state.end[rows] = frame, sets_off
+    waits = sets_off > frame
+    state.spacing[rows] = np.where(waits, sets_off - frame, 1)
+    state.knots[rows] = 1 + waits
+    state.path[rows, :2, 0] = state.path[rows, :2, 1] = points
     state.box[rows] = np.column_stack([points, points])
     state.sweep[rows, :2], state.sweep[rows, 2] = points, 0.0
     state.stride[rows] = 0.0
     state.active[rows] = True
+    agenda = state.agenda
+    agenda["speed"][rows] = speeds
+    agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 
 
 def face(state: Crowd, rows: NDArray[np.int64], headings: NDArray[np.float64]) -> None:
     """Turn people who have just been placed."""
     state.heading[rows] = headings
-    state.path[rows, 2, 0] = headings
+    state.path[rows, 2, 0] = state.path[rows, 2, 1] = headings

@@ -19,16 +19,21 @@ class StallWatch:
         self._since = 0.0
         self._mark: tuple[int, int, float] = (-1, 0, 0.0)
 
-    def stalled(self, elapsed: float, routes: NDArray[np.float64]) -> bool:
+    def stalled(self, elapsed: float, routes: NDArray[np.float64], awaited: bool) -> bool:
         """Whether nothing has got better for a minute.
 
         Args:
             elapsed: simulated seconds.
             routes: (n,) metres that each person inside still has to go, inf without a way out.
+            awaited: somebody inside is yet to set off, and others may stand because of that.
         """
         finite = routes[np.isfinite(routes)]
         inside, with_way, left = len(routes), len(finite), float(finite.sum())
         # More way to go is news as well: a door closed, and people are on another way.
-        if (inside, with_way) != self._mark[:2] or abs(left - self._mark[2]) > STALL_PROGRESS:
+        if (
+            awaited
+            or (inside, with_way) != self._mark[:2]
+            or abs(left - self._mark[2]) > STALL_PROGRESS
+        ):
             self._since, self._mark = elapsed, (inside, with_way, left)
         return inside > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9

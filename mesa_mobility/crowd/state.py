@@ -72,6 +72,22 @@ NO_OPTION = -1
 FALLBACK = -2
 
 
+AGENDA = np.dtype(
+    [
+        ("speed", "f8"),
+        ("sets_off", "i8"),
+        ("waits_until", "i8"),
+    ],
+    align=True,
+)
+"""What is needed of a pedestrian only when it gets a target: beside the records, lest these grow.
+
+Fields: ``speed``, its preferred speed where nothing slows it down, m/s (``preferred`` in the
+record is that of its last decision); ``sets_off``, frame of its first decision; ``waits_until``,
+frame before which it does not walk.
+"""
+
+
 class Crowd:
     """Everybody's records, and a view of each field: ``crowd.x`` is everybody's x.
 
@@ -80,7 +96,10 @@ class Crowd:
 
     Attributes:
         records: (capacity,) records of ``PERSON``; each of its fields is an attribute as well.
+        agenda: (capacity,) records of ``AGENDA``.
     """
+
+    agenda: NDArray[np.void]
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
@@ -113,14 +132,20 @@ class Crowd:
 
     def __init__(self, capacity: int) -> None:
         self._take(np.zeros(capacity, dtype=PERSON))
+        self.agenda = np.zeros(capacity, dtype=AGENDA)
 
     def grow(self, capacity: int) -> None:
         """Make room for more people."""
-        larger = np.zeros(capacity, dtype=PERSON)
-        larger[: len(self.records)] = self.records
-        self._take(larger)
+        self._take(_larger(self.records, capacity))
+        self.agenda = _larger(self.agenda, capacity)
 
     def _take(self, records: NDArray[np.void]) -> None:
         self.records = cast(CrowdState, records)
         for name in PERSON.names or ():
             setattr(self, name, records[name])
+
+
+def _larger(records: NDArray[np.void], capacity: int) -> NDArray[np.void]:
+    larger = np.zeros(capacity, dtype=records.dtype)
+    larger[: len(records)] = records
+    return larger

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.collision import Surroundings
+from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Router, Targets, WallIndex
 
 CELL_SIZE = 1.0
@@ -26,7 +27,8 @@ class Site:
     def __init__(self, plan: FloorPlan, *, reach: float, body: float) -> None:
         self._plan = plan
         self._reach = reach
-        self._router = Router(plan, clearance=body + BERTH)
+        self._clearance = body + BERTH
+        self._router = Router(plan, clearance=self._clearance)
         self._destinations: list[tuple[str, ...] | None] = []
         self._version = -1
         self.destination(None)
@@ -42,6 +44,25 @@ class Site:
     def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int32]) -> Targets:
         """Where people at ``points`` (n, 2) should aim now."""
         return self._router.targets(points, destinations)
+
+    def check_way_out(self, points: NDArray[np.float64], destination: int) -> None:
+        """Raise FloorPlanError for places without a way out, were everything open."""
+        lost = points[_without_way(self._router, points, destination)]
+        plan = self._plan
+        if len(lost) and not all(plan.is_open(opening.name) for opening in plan.openings()):
+            plan = FloorPlan(
+                plan.walkable, exits=plan.exits, gates=plan.gates, obstacles=plan.obstacles.values()
+            )
+            router = Router(plan, clearance=self._clearance)
+            number = router.destination(self._destinations[destination])
+            lost = lost[_without_way(router, lost, number)]
+        if len(lost):
+            names = self._destinations[destination]
+            to = "any exit" if names is None else " or ".join(repr(name) for name in names)
+            raise FloorPlanError(
+                f"{len(lost)} of {len(points)} people have no way to {to}; the first stands at "
+                f"({lost[0, 0]:.2f}, {lost[0, 1]:.2f})"
+            )
 
     @property
     def surroundings(self) -> Surroundings:
@@ -77,3 +98,9 @@ class Site:
             exits=np.array([[*exit_.a, *exit_.b] for exit_ in exits], dtype=np.float64),
             leads_out=leads_out,
         )
+
+
+def _without_way(
+    router: Router, points: NDArray[np.float64], destination: int
+) -> NDArray[np.bool_]:
+    return ~np.isfinite(router.targets(points, np.full(len(points), destination)).distances)

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mesa_mobility.commands.parameters import chosen, parameters
+from mesa_mobility.distributions import Distribution, LogNormal
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ class Model:
         either: str | int = "x",
         plan: FloorPlan | str | None = None,
         only_python: FloorPlan | None = None,
+        delay: Distribution | float = 0.0,
         free=2,
         *,
         preset: str = "default",
@@ -56,6 +58,8 @@ def value(setting):
         ("door=right", "right"),
         ("door=3", 3),
         ("limit=none", None),
+        ("delay=2.5", 2.5),
+        ("delay=lognormal(3.44, 0.94)", LogNormal(3.44, 0.94)),
         ("limit=2.5", 2.5),
         ("shape=None", None),
         ("shape=4", 4),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from shapely import box
 
 from mesa_mobility import PedestrianModel, PedestrianType
 from mesa_mobility.errors import FloorPlanError, MapError, MobilityError, ModelError
@@ -99,6 +100,20 @@ def test_exits_that_there_are_not(model):
     refuses(FloorPlanError, "'north'.*'east'",
             lambda: model.add_pedestrians([(1, 1)], exits=["north"]))  # fmt: skip
     refuses(FloorPlanError, "exit", lambda: model.add_pedestrians([(1, 1)], exits=[]))
+    refuses(ModelError, r"exits: got 'east'.*\['east'\]",
+            lambda: model.add_pedestrians([(1, 1)], exits="east"))  # fmt: skip
+
+
+def test_places_from_where_no_exit_can_be_reached(model):
+    # A cabin with a slit of 0.2 m, too narrow for anybody.
+    for x0, y0, x1, y1 in ((4, 1, 6, 1.2), (4, 3, 6, 3.2), (4, 1, 4.2, 3.2), (5.8, 1, 6, 1.9),
+                           (5.8, 2.1, 6, 3.2)):  # fmt: skip
+        model.floor_plan.add_obstacle(box(x0, y0, x1, y1))
+    for close in (lambda: None, lambda: model.floor_plan.close_gate("east")):
+        close()
+        refuses(FloorPlanError, r"1 of 2 people.*any exit.*\(5.00, 2.00\)",
+                lambda: model.add_pedestrians([(1, 1), (5, 2)]))  # fmt: skip
+    assert model.inside == 0
 
 
 @pytest.mark.parametrize("kind", [1, 7, -1])

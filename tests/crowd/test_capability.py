@@ -76,11 +76,10 @@ def test_preferred_speeds_are_normal_and_clipped():
         {"core_radius": -0.1},
         {"core_radius": 1.5},
         {"core_radius": float("nan")},
-        {"speed_mean": 3.0},
-        {"speed_mean": float("nan")},
-        {"speed_sd": -0.1},
-        {"speed_range": (0.0, 2.0)},
-        {"speed_range": (2.0, 0.6)},
+        {"preferred_speed": 0.0},
+        {"preferred_speed": -1.3},
+        {"preferred_speed": float("nan")},
+        {"preferred_speed": "1.3"},
     ],
 )
 def test_types_out_of_range_are_refused(wrong):

@@ -62,7 +62,7 @@ def test_people_of_different_sizes_keep_their_own_distances():
 
 
 def test_types_have_speeds_of_their_own():
-    kinds = [PedestrianType(mobility_map=strider(), speed_mean=m, speed_sd=0.0)
+    kinds = [PedestrianType(mobility_map=strider(), preferred_speed=m)
              for m in (0.8, 1.6)]  # fmt: skip
     model = PedestrianModel(corridor(), pedestrian_types=kinds)
     assert [put(model, 1.0, 1.0 + k, kind=k).preferred_speed for k in (0, 1)] == [0.8, 1.6]

@@ -1,0 +1,166 @@
+"""The people in a model: who comes, who goes, who is inside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import mesa
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.crowd.options import FRAME_SECONDS
+from mesa_mobility.crowd.pedestrian import Pedestrian
+from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.placing import (
+    Newcomer,
+    check_column,
+    check_places,
+    draw_column,
+    face,
+    place,
+)
+from mesa_mobility.crowd.replan import too_close
+from mesa_mobility.crowd.rules import Rules
+from mesa_mobility.crowd.space import CrowdSpace
+from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import FloorPlan
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan import Targets
+
+LONGEST_WAIT = 1e6
+"""Seconds of pre-movement at most; eleven days."""
+
+
+class People(mesa.Model):
+    """A model's people, in rows of the crowd's arrays that they keep for ever."""
+
+    floor_plan: FloorPlan
+    pedestrian_types: tuple[PedestrianType, ...]
+    space: CrowdSpace
+    crowd: Crowd
+    count: int
+    frame: int
+    _rules: Rules
+    _site: Site
+    _rows: NDArray[np.int64]
+    _agents_by_row: list[Pedestrian | None]
+
+    def add_pedestrians(
+        self,
+        positions: ArrayLike,
+        *,
+        headings: ArrayLike | None = None,
+        preferred_speeds: ArrayLike | Distribution | None = None,
+        pre_movement: ArrayLike | Distribution = 0.0,
+        exits: Sequence[str] | None = None,
+        kind: int = 0,
+    ) -> list[Pedestrian]:
+        """Put people on the floor, standing.
+
+        Args:
+            positions: (n, 2) metres, on free floor.
+            headings: (n,) radians; by default everybody faces its first target.
+            preferred_speeds: (n,) m/s or a distribution; by default drawn from the type.
+            pre_movement: (n,) seconds, or a distribution of them, for which they stand where they
+                are before they set off: their first decision is in the first frame after that.
+            exits: names of the exits they may leave by; by default the nearest of all.
+            kind: index of their type in ``pedestrian_types``.
+
+        Raises:
+            ModelError: positions off the floor or where somebody is or will be, an unknown type,
+                or arrays of other lengths.
+            FloorPlanError: an unknown exit, or no way from a position to any exit.
+        """
+        points = check_places(positions, self.floor_plan)
+        n = len(points)
+        if not 0 <= kind < len(self.pedestrian_types):
+            raise ModelError(
+                f"kind: got {kind}, expected the index of a type, "
+                f"0 to {len(self.pedestrian_types) - 1}"
+            )
+        if isinstance(exits, str):
+            raise ModelError(f"exits: got {exits!r}, expected a list of names such as [{exits!r}]")
+        ptype = self.pedestrian_types[kind]
+        if preferred_speeds is None:
+            preferred_speeds = ptype.draw_speeds(n, self.rng)
+        speeds = draw_column("preferred_speeds", preferred_speeds, n, self.rng)
+        if (speeds <= 0.0).any():
+            raise ModelError(f"preferred_speeds: got {speeds.min()}, expected more than 0 m/s")
+        waits = draw_column("pre_movement", pre_movement, n, self.rng)
+        if ((waits < 0.0) | (waits > LONGEST_WAIT)).any():
+            wrong = waits.min() if (waits < 0.0).any() else waits.max()
+            raise ModelError(f"pre_movement: got {wrong}, expected 0 to {LONGEST_WAIT:g} s")
+        facing = None if headings is None else check_column("headings", headings, n)
+        new = Newcomer(
+            kind=kind,
+            core=ptype.core_radius,
+            standing=int(self._rules.standing[kind]),
+            destination=self._site.destination(None if exits is None else tuple(exits)),
+        )
+        self._check_room(points, new.core)
+        self._site.check_way_out(points, new.destination)
+        rows = np.arange(self.count, self.count + n)
+        if self.count + n > len(self.crowd.x):
+            self.crowd.grow(max(self.count + n, 2 * len(self.crowd.x)))
+        # The first frame that is not before the time, whatever its last bit.
+        sets_off = self.frame + np.ceil(waits / FRAME_SECONDS - 1e-6).astype(np.int64)
+        place(self.crowd, rows, points, speeds, self.frame, sets_off, new)
+        aim = self._set_targets(rows).points - points
+        face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
+        self.count += n
+        self._rows = np.concatenate([self._rows, rows])
+        people = [Pedestrian(self, int(row)) for row in rows]
+        self._agents_by_row.extend(people)
+        self.space.forget_tables()
+        self._write_space()
+        self.running = True
+        return people
+
+    def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
+        """Take people out of the model."""
+        leaving = list(people)
+        for person in leaving:
+            self.crowd.active[person.row] = False
+            self.deregister_agent(person)
+            self._agents_by_row[person.row] = None
+        stay = self.crowd.active[self._rows]
+        self.space.keep(stay)
+        self._rows = self._rows[stay]
+
+    @property
+    def rows(self) -> NDArray[np.int64]:
+        """Rows of the people inside, in the order of ``space.active_agents``."""
+        return self._rows
+
+    @property
+    def core_radii(self) -> NDArray[np.float64]:
+        """(n,) core radius of everybody who was ever in the model, metres."""
+        return self.crowd.core[: self.count].copy()
+
+    def _check_room(self, points: NDArray[np.float64], core: float) -> None:
+        if not self._rules.cores:
+            return
+        where, who = too_close(
+            points, core, self.frame, self._rows, self.crowd.records, self._rules.search_radius
+        )
+        if where >= 0:
+            other = "another newcomer" if who < 0 else f"where pedestrian {who} is or will be"
+            raise ModelError(
+                f"pedestrian {where} at {points[where].tolist()}: too close to {other}, "
+                "expected room for both bodies"
+            )
+
+    def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
+        """Give the people in ``rows`` their targets."""
+        raise NotImplementedError
+
+    def _write_space(self) -> None:
+        if len(self._rows):
+            positions = self.space.agent_positions
+            positions[:, 0] = self.crowd.x[self._rows]
+            positions[:, 1] = self.crowd.y[self._rows]

@@ -1,0 +1,160 @@
+"""Distributions against their closed forms, and the texts that they are read from."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from mesa_mobility.distributions import (
+    Clipped,
+    Constant,
+    Empirical,
+    Gamma,
+    LogNormal,
+    Normal,
+    Uniform,
+    Weibull,
+    parse,
+)
+from mesa_mobility.errors import ModelError
+
+MANY = 20_000
+
+
+def drawn(distribution, n=MANY, seed=1):
+    return distribution.draw(n, np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize(
+    ("distribution", "cdf"),
+    [
+        (Uniform(10.0, 100.0), lambda x: (x - 10.0) / 90.0),
+        (Weibull(139.285, 1.195), lambda x: 1.0 - np.exp(-((x / 139.285) ** 1.195))),
+        (Normal(1.2, 0.2), lambda x: 0.5 + 0.5 * np.vectorize(math.erf)((x - 1.2) / 0.2 / 2**0.5)),
+        (
+            LogNormal(4.586, 0.967),
+            lambda x: 0.5 + 0.5 * np.vectorize(math.erf)((np.log(x) - 4.586) / 0.967 / 2**0.5),
+        ),
+        # An Erlang distribution has a closed form: two exponential times of mean 3 in a row.
+        (Gamma(2.0, 3.0), lambda x: 1.0 - np.exp(-x / 3.0) * (1.0 + x / 3.0)),
+    ],
+)
+def test_draws_follow_the_closed_form(distribution, cdf):
+    assert stats.kstest(drawn(distribution), cdf).pvalue > 0.01
+
+
+def test_a_constant_draws_nothing_from_the_generator():
+    rng = np.random.default_rng(3)
+    assert Constant(2.5).draw(3, rng).tolist() == [2.5] * 3
+    assert rng.random() == np.random.default_rng(3).random()
+
+
+def test_gamma_has_mean_shape_times_scale_as_nist_gives_it():
+    assert drawn(Gamma(1.291, 103.901)).mean() == pytest.approx(1.291 * 103.901, rel=0.03)
+
+
+def test_imo_response_times_by_day_are_cut_off_at_300_s():
+    # Of lognormal(3.44, 0.94), Phi((ln 300 - 3.44) / 0.94) = Phi(2.408) = 0.9920 lie below 300 s.
+    x = drawn(LogNormal(3.44, 0.94, 0.0, 300.0))
+    assert x.max() <= 300.0
+    assert np.mean(x < math.exp(3.44)) == pytest.approx(0.5 / 0.9920, abs=0.012)
+
+
+def test_a_cut_normal_has_no_lumps_at_its_bounds_and_a_clipped_one_has():
+    # Beyond one deviation on one side lie 15.87 %.
+    cut, clipped = Normal(0.0, 1.0, -1.0, 1.0), Clipped(Normal(0.0, 1.0), -1.0, 1.0)
+    for distribution, lump in ((cut, 0.0), (clipped, 0.1587)):
+        x = drawn(distribution)
+        assert x.min() >= -1.0
+        assert x.max() <= 1.0
+        assert np.mean(x == -1.0) == pytest.approx(lump, abs=0.01)
+        assert np.mean(x == 1.0) == pytest.approx(lump, abs=0.01)
+
+
+def test_a_cut_far_out_in_the_tail_is_drawn_all_the_same():
+    x = drawn(Normal(0.0, 1.0, 12.0, 13.0), n=100)
+    assert ((x >= 12.0) & (x <= 13.0)).all()
+
+
+def test_measured_values_are_drawn_alike():
+    x = drawn(Empirical([1.0, 2.0, 4.0]))
+    assert [np.mean(x == v) for v in (1.0, 2.0, 4.0)] == pytest.approx([1 / 3] * 3, abs=0.015)
+
+
+def test_measured_values_from_a_file(tmp_path):
+    file = tmp_path / "times.csv"
+    file.write_text("# measured\nwho, seconds\na, 3\nb, 5\n\n")
+    assert Empirical.from_csv(file, "seconds").values.tolist() == [3.0, 5.0]
+    assert Empirical.from_csv(file, 1).values.tolist() == [3.0, 5.0]
+    for column, match in (("minutes", "seconds"), (2, "who"), ("who", "number"), (-1, "who")):
+        with pytest.raises(ModelError, match=match):
+            Empirical.from_csv(file, column)
+    with pytest.raises(ModelError, match=r"nobody\.csv"):
+        Empirical.from_csv(tmp_path / "nobody.csv")
+    (tmp_path / "empty.csv").write_text("")
+    with pytest.raises(ModelError, match="empty"):
+        Empirical.from_csv(tmp_path / "empty.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("lognormal(3.44, 0.94)", LogNormal(3.44, 0.94)),
+        ("LogNormal( 3.95,0.84 , 0, 300 )", LogNormal(3.95, 0.84, 0.0, 300.0)),
+        ("uniform(10,100)", Uniform(10.0, 100.0)),
+        ("normal(1.2, 0.2)", Normal(1.2, 0.2)),
+        ("weibull(139.285, 1.195)", Weibull(139.285, 1.195)),
+        ("gamma(1.291, 103.901)", Gamma(1.291, 103.901)),
+        ("constant(5)", Constant(5.0)),
+        (" 12.5 ", Constant(12.5)),
+    ],
+)
+def test_texts(text, expected):
+    assert parse(text) == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "poisson(3)", "normal", "normal(1)", "normal(1,2,3,4,5)", "uniform(a,b)", "uniform(2,1)",
+     "(3)", "3)", "lognormal(3.44, 0.94", "normal(nan, 1)", "weibull(0, 1)", "gamma(1, -1)"],
+)  # fmt: skip
+def test_texts_that_are_none(text):
+    with pytest.raises(ModelError, match="distribution") as refused:
+        parse(text)
+    assert "\n" not in str(refused.value)
+
+
+@given(st.text(max_size=30).filter(lambda text: not any(c.isdigit() for c in text)))
+def test_texts_without_numbers_are_refused_in_one_line(text):
+    with pytest.raises(ModelError) as refused:
+        parse(text)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Constant(math.inf),
+        lambda: Constant("three"),
+        lambda: Uniform(0.0, math.inf),
+        lambda: Normal(0.0, -1.0),
+        lambda: Normal("0", 1.0),
+        lambda: Normal(0.0, 1.0, 2.0, 2.0),
+        lambda: Normal(5.0, 0.0, 0.0, 1.0),
+        lambda: LogNormal(0.0, 0.0),
+        lambda: LogNormal(0.0, 1.0, -1.0),
+        lambda: Weibull(math.nan, 1.0),
+        lambda: Clipped(3.0, 0.0, 1.0),
+        lambda: Clipped(Constant(3.0), 1.0, 0.0),
+        lambda: Empirical([]),
+        lambda: Empirical([[1.0]]),
+        lambda: Empirical([math.nan]),
+        lambda: Empirical("abc"),
+    ],
+)
+def test_what_cannot_be_is_refused(make):
+    with pytest.raises(ModelError):
+        make()
