@@ -2,6 +2,7 @@
 
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
+from mesa_mobility.crowd.explain import FREE, PERSON, WALL, Explanation, Watch
 from mesa_mobility.crowd.kernels import bound_kernel, option_kernel, pair_kernel
 from mesa_mobility.crowd.model import PedestrianModel
 from mesa_mobility.crowd.pedestrian import Pedestrian
@@ -11,17 +12,22 @@ from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
 from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
 
 __all__ = [
+    "FREE",
+    "PERSON",
     "PRESETS",
+    "WALL",
     "Candidates",
     "Capability",
     "CompiledTerm",
     "CostTerm",
     "Deciding",
+    "Explanation",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
     "Preset",
     "TargetChoice",
+    "Watch",
     "bound_kernel",
     "option_kernel",
     "pair_kernel",

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.choice import decide
-from mesa_mobility.crowd.neighbours import build_grid, velocities
+from mesa_mobility.crowd.explain import Explanation, Watch, judge, weigh
+from mesa_mobility.crowd.neighbours import Grid, build_grid, velocities
 from mesa_mobility.crowd.queue import new_queue
 from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.rules import Rules
@@ -45,6 +46,7 @@ class Decisions:
         crowd: Crowd,
         around: Surroundings,
         terms: Sequence[CostTerm],
+        watch: Watch | None = None,
     ) -> None:
         """Decide for the pedestrians in ``order``, one after the other, and commit them.
 
@@ -55,6 +57,7 @@ class Decisions:
             crowd: the crowd; targets must be set.
             around: walls and exits.
             terms: cost terms.
+            watch: gets the decision of the pedestrian that it watches.
 
         Raises:
             ModelError: a cost is not a number, or a term does not give one for each option.
@@ -65,23 +68,51 @@ class Decisions:
         grid = build_grid(rows, crowd.x, crowd.y)
         if others:
             extra, extra_offsets = extra_costs(others, order, table, crowd, grid, self._rules)
-        queue = new_queue(len(order))
         moving = velocities(grid, crowd.records)
-
-        def work_off(work: Work) -> int:
-            return decide(
-                order, queue, frame, table, groups, crowd.records, grid, around, compiled, extra,
-                extra_offsets, self._rules, moving, work,
-            )  # fmt: skip
-
         works = self._works_for(threads_for(len(order)), len(rows), around)
-        failed = min(together(work_off, works))
-        if failed < len(order):
-            names = ", ".join(term.name for term in terms)
-            raise ModelError(
-                f"cost of an option of pedestrian {order[failed]}: not a number, expected finite "
-                f"numbers from each of the behaviours {names}"
-            )
+
+        def part(first: int, last: int) -> None:
+            people, offsets = order[first:last], extra_offsets[first : last + 1]
+            queue = new_queue(len(people))
+
+            def work_off(work: Work) -> int:
+                return decide(
+                    people, queue, frame, table, groups, crowd.records, grid, around, compiled,
+                    extra, offsets, self._rules, moving, work,
+                )  # fmt: skip
+
+            failed = min(together(work_off, works))
+            if failed < len(people):
+                names = ", ".join(term.name for term in terms)
+                raise ModelError(
+                    f"cost of an option of pedestrian {people[failed]}: not a number, expected "
+                    f"finite numbers from each of the behaviours {names}"
+                )
+
+        if watch is None or watch.pedestrian not in order:
+            part(0, len(order))
+            return
+        # Costs see the crowd as it is before anybody decides, collisions what those before have
+        # committed to. To decide in two parts changes nothing.
+        weighed = self.weigh(watch.pedestrian, frame, grid, crowd, terms)
+        at = int(np.flatnonzero(order == watch.pedestrian)[0])
+        if at > 0:
+            part(0, at)
+        watch.decision = self.judge(weighed, crowd, around)
+        part(at, len(order))
+        watch.commits(crowd, self._rules.first_option)
+
+    def weigh(
+        self, row: int, frame: int, grid: Grid, crowd: Crowd, terms: Sequence[CostTerm]
+    ) -> Explanation:
+        """What the options of the pedestrian in ``row`` cost; see ``explain.weigh``."""
+        first_cluster = int(self._repertoire.first_cluster[crowd.kind[row]])
+        table = self._repertoire.table
+        return weigh(row, frame, table, crowd, grid, self._rules, first_cluster, terms)
+
+    def judge(self, weighed: Explanation, crowd: Crowd, around: Surroundings) -> Explanation:
+        """Which of these options hit something now; see ``explain.judge``."""
+        return judge(weighed, self._repertoire.table, crowd, around, self._rules)
 
     def _works_for(self, threads: int, people: int, around: Surroundings) -> list[Work]:
         """Space for decisions among so many people, for each thread."""

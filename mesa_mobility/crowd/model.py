@@ -14,6 +14,7 @@ from mesa_mobility.crowd.batch import make_candidates
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.decisions import Decisions
+from mesa_mobility.crowd.explain import Explanation, Watch
 from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
 from mesa_mobility.crowd.pedestrian import Pedestrian
@@ -62,6 +63,7 @@ class PedestrianModel(CrowdMeasures, People):
         occupancy: (seconds, people inside) each simulated second.
         last_left: seconds at which somebody last left.
         stalled: nobody left or came nearer to an exit for a minute.
+        watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
         datacollector: time, people inside, mean speed and fallback share after each step.
 
     Raises:
@@ -110,6 +112,7 @@ class PedestrianModel(CrowdMeasures, People):
         self.recorder = Recorder() if record else None
         self.crowd = Crowd(64)
         self.count = 0
+        self.watch: Watch | None = None
 
         core = max(kind.core_radius for kind in self.pedestrian_types)
         reach = self._repertoire.reach
@@ -233,7 +236,7 @@ class PedestrianModel(CrowdMeasures, People):
         # Those nearest to where they go decide first: that frees space for those behind.
         order = deciding[np.argsort(targets.distances, kind="stable")]
         self._decisions.take(
-            order, self.frame, rows, self.crowd, self._site.surroundings, self.terms
+            order, self.frame, rows, self.crowd, self._site.surroundings, self.terms, self.watch
         )
 
     def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
@@ -256,6 +259,19 @@ class PedestrianModel(CrowdMeasures, People):
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows``, were they to decide here and now."""
         return make_candidates(rows, self._repertoire.table, self.crowd, self._grid(), self._rules)
+
+    def explain(self, row: int) -> Explanation:
+        """The decision of the person in ``row``, were it to decide here and now, before others.
+
+        It keeps the target of its last decision. Set ``watch`` to have decisions as they are taken.
+
+        Raises:
+            ModelError: nobody inside has this row.
+        """
+        if not (0 <= row < self.count and self.crowd.active[row]):
+            raise ModelError(f"pedestrian {row}: expected the row of somebody inside")
+        weighed = self._decisions.weigh(row, self.frame, self._grid(), self.crowd, self.terms)
+        return self._decisions.judge(weighed, self.crowd, self._site.surroundings)
 
     def _grid(self) -> Grid:
         return build_grid(self._rows, self.crowd.x, self.crowd.y)

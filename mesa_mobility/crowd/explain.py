@@ -1,0 +1,195 @@
+"""Why a pedestrian moves as it does: one decision, option by option.
+
+Costs come from the terms themselves and what is in the way from the engine's own tests, so
+that what is told here is what the choice sees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.batch import make_candidates
+from mesa_mobility.crowd.candidates import Candidates
+from mesa_mobility.crowd.collision import (
+    Surroundings,
+    exit_distance,
+    near_walls,
+    path_gone_or_blocked,
+)
+from mesa_mobility.crowd.motion import lay_path
+from mesa_mobility.crowd.neighbours import Grid
+from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES, OptionTable
+from mesa_mobility.crowd.rules import Rules
+from mesa_mobility.crowd.state import Crowd, CrowdState
+from mesa_mobility.crowd.terms import CostTerm
+from mesa_mobility.jit import called
+
+FREE, WALL, PERSON = 0, 1, 2
+"""Verdicts on an option: it hits nothing, a wall, or a person."""
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """One decision of one pedestrian; its n options are those of ``candidates``.
+
+    Attributes:
+        pedestrian: row in the crowd.
+        frame: when.
+        taken: whether the decision was taken then, or is the one it would have taken.
+        cluster: cluster of the pose it decides from, in the map of its type.
+        candidates: its options, of a batch of one.
+        terms: names of the terms.
+        weights: (terms,) their factors in the sum.
+        costs: (terms, n) cost of each option, without the weights.
+        verdicts: (n,) ``FREE``, ``WALL`` or ``PERSON``.
+        blockers: (n,) row of the person in the way, or -1.
+        paths: (n, 3, 16) x, y, heading in the world every 3 frames, from the start on.
+        knots: (n,) places of a path that count; beyond, the end is repeated.
+        chosen: the option that is taken, or -1 for the fallback.
+    """
+
+    pedestrian: int
+    frame: int
+    taken: bool
+    cluster: int
+    candidates: Candidates
+    terms: tuple[str, ...]
+    weights: NDArray[np.float64]
+    costs: NDArray[np.float64]
+    verdicts: NDArray[np.int8]
+    blockers: NDArray[np.int64]
+    paths: NDArray[np.float64]
+    knots: NDArray[np.int64]
+    chosen: int
+
+    @property
+    def totals(self) -> NDArray[np.float64]:
+        """(n,) cost of each option: the weighted sum of the terms."""
+        totals: NDArray[np.float64] = self.weights @ self.costs
+        return totals
+
+
+@dataclass
+class Watch:
+    """Keeps the last decision of one pedestrian, as it was taken.
+
+    Attributes:
+        pedestrian: row in the crowd.
+        decision: its last decision since it is watched, if any.
+    """
+
+    pedestrian: int
+    decision: Explanation | None = field(default=None, init=False)
+
+    def commits(self, crowd: Crowd, first_option: NDArray[np.int64]) -> None:
+        """Note which option the engine has committed the pedestrian to."""
+        if self.decision is not None:
+            option = int(crowd.option[self.pedestrian])
+            option -= int(first_option[crowd.kind[self.pedestrian]])
+            at = np.flatnonzero(self.decision.candidates.options == option)
+            self.decision = replace(self.decision, taken=True, chosen=int(at[0]) if len(at) else -1)
+
+
+def weigh(
+    row: int,
+    frame: int,
+    table: OptionTable,
+    crowd: Crowd,
+    grid: Grid,
+    rules: Rules,
+    first_cluster: int,
+    terms: Sequence[CostTerm],
+) -> Explanation:
+    """What the options of the pedestrian in ``row`` cost; whether they are free is still open."""
+    candidates = make_candidates(np.array([row]), table, crowd, grid, rules)
+    n = len(candidates)
+    costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
+    return Explanation(
+        pedestrian=row,
+        frame=frame,
+        taken=False,
+        cluster=int(crowd.cluster[row]) - first_cluster,
+        candidates=candidates,
+        terms=tuple(term.name for term in terms),
+        weights=np.array([term.weight for term in terms]),
+        costs=np.array(costs).reshape(len(costs), n),
+        verdicts=np.zeros(n, dtype=np.int8),
+        blockers=np.full(n, -1),
+        paths=np.empty((n, 3, SAMPLES)),
+        knots=np.empty(n, dtype=np.int64),
+        chosen=-1,
+    )
+
+
+def judge(
+    weighed: Explanation,
+    table: OptionTable,
+    crowd: Crowd,
+    around: Surroundings,
+    rules: Rules,
+) -> Explanation:
+    """The same with verdicts, against walls and what everybody is committed to now."""
+    row = weighed.pedestrian
+    options = weighed.candidates.options + rules.first_option[crowd.kind[row]]
+    verdicts, blockers = weighed.verdicts.copy(), weighed.blockers.copy()
+    walls = np.empty((len(around.segments) + len(around.exits), 5))
+    _judge(
+        row, options, weighed.frame, table, crowd.records, around, weighed.candidates.neighbours,
+        rules.cores, walls, weighed.paths, weighed.knots, verdicts, blockers,
+    )  # fmt: skip
+    totals = np.where(verdicts == FREE, weighed.totals, np.inf)
+    return replace(
+        weighed,
+        verdicts=verdicts,
+        blockers=blockers,
+        chosen=int(np.argmin(totals)) if (verdicts == FREE).any() else -1,
+    )
+
+
+@called()
+def _judge(
+    i: int,
+    options: NDArray[np.int64],
+    frame: int,
+    table: OptionTable,
+    state: CrowdState,
+    around: Surroundings,
+    near: NDArray[np.int64],
+    cores: bool,
+    walls: NDArray[np.float64],
+    paths: NDArray[np.float64],
+    knots: NDArray[np.int64],
+    verdicts: NDArray[np.int8],
+    blockers: NDArray[np.int64],
+) -> None:
+    x, y, destination = state.x[i], state.y[i], state.destination[i]
+    farthest = table.farthest[state.cluster[i]]
+    count = near_walls(around, x, y, destination, farthest + state.core[i] + 0.01, walls)
+    exits_from = exit_distance(around, x, y, destination)
+    spacing = np.int64(SAMPLE_FRAMES)
+    for k in range(len(options)):
+        o = options[k]
+        pieces = lay_path(i, o, table, state, paths[k])
+        knots[k] = pieces + 1
+        reach = np.float64(table.options[o].reach)
+        exits_near = reach >= exits_from
+        gone = path_gone_or_blocked(
+            i, paths[k], pieces, spacing, reach, frame, state, walls[:count], around, near,
+            exits_near, cores,
+        )  # fmt: skip
+        if gone >= -1:
+            continue
+        verdicts[k] = WALL if gone == -3 else PERSON
+        if gone == -2:
+            for a in range(len(near)):
+                alone = path_gone_or_blocked(
+                    i, paths[k], pieces, spacing, reach, frame, state, walls[:count], around,
+                    near[a : a + 1], exits_near, cores,
+                )  # fmt: skip
+                if alone == -2:
+                    blockers[k] = near[a]
+                    break
