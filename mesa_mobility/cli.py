@@ -14,6 +14,8 @@ from typer.core import TyperGroup
 
 from mesa_mobility.commands import mobility_map, plugins
 from mesa_mobility.commands.run import run
+from mesa_mobility.commands.validate import validate
+from mesa_mobility.commands.verify import verify
 from mesa_mobility.errors import MobilityError
 
 BAD_INPUT, INTERRUPTED = 2, 130
@@ -39,6 +41,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command("run")(run)
+app.command("verify")(verify)
+app.command("validate")(validate)
 app.add_typer(mobility_map.app, name="map")
 app.command("models")(plugins.models)
 app.command("behaviors")(plugins.behaviors)

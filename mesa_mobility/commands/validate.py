@@ -1,0 +1,106 @@
+"""`mesa-mobility validate`: crowds beside measured ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mesa_mobility.commands.console import answer_json, progress_bar, say
+from mesa_mobility.commands.verify import FAILED, AsJson, Jobs, Seeds, processes
+
+if TYPE_CHECKING:
+    from mesa_mobility.validation import Experiment
+    from mesa_mobility.verification import Verdict
+
+
+def validate(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME]...", help="Experiments; all without.")
+    ] = None,
+    seeds: Seeds = 1,
+    jobs: Jobs = None,
+    as_json: AsJson = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for a picture of each and validation.json.")
+    ] = None,
+) -> None:
+    """Compare crowds with measured ones: speeds, flows, densities, lanes, standing.
+
+    Ends with status 1 if a figure is not as measured.
+    """
+    from mesa_mobility.results import check_writable
+    from mesa_mobility.validation import chosen, judged
+    from mesa_mobility.verification import run_cases
+
+    experiments = chosen(names or [])
+    if out is not None:
+        check_writable(out)
+    numbers = range(1, seeds + 1)
+    cases = [each for experiment in experiments for each in experiment.cases]
+    with progress_bar() as report:
+        results = run_cases(cases, numbers, processes(jobs), report)
+    verdicts = {
+        experiment.name: judged(
+            experiment, [[results[each, seed] for each in experiment.cases] for seed in numbers]
+        )
+        for experiment in experiments
+    }
+    answer = {each.name: _as_json(each, verdicts[each.name]) for each in experiments}
+    if out is not None:
+        _write(out, experiments, verdicts, answer)
+        say(f"written to {out}")
+    _print_table(experiments, verdicts)
+    if as_json:
+        answer_json(answer)
+    if not all(verdict.passed for verdict in verdicts.values()):
+        raise typer.Exit(FAILED)
+
+
+def _as_json(experiment: Experiment, verdict: Verdict) -> dict[str, Any]:
+    return {
+        "passed": verdict.passed,
+        "measured": verdict.measured,
+        "criterion": {check.figure: check.wanted for check in verdict.checks},
+        "source": experiment.source,
+        "what": experiment.what,
+        "failed": [check.figure for check in verdict.checks if check.gates and not check.met],
+        "reported": [check.figure for check in verdict.checks if not check.gates],
+    }
+
+
+def _write(
+    out: Path,
+    experiments: list[Experiment],
+    verdicts: dict[str, Verdict],
+    answer: dict[str, Any],
+) -> None:
+    from mesa_mobility.results.files import json_text, replacing
+
+    for each in experiments:
+        figures = verdicts[each.name].figures
+        if figures:
+            with replacing(out / f"{each.name}.png") as temporary:
+                each.draw(figures).savefig(temporary)
+    with replacing(out / "validation.json") as temporary:
+        temporary.write_text(json_text(answer, indent=1) + "\n", encoding="utf-8")
+
+
+def _print_table(experiments: list[Experiment], verdicts: dict[str, Verdict]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for column in ("experiment", "figure", "measured", "wanted", "verdict"):
+        table.add_column(column, overflow="fold")
+    for each in experiments:
+        verdict = verdicts[each.name]
+        for check in verdict.checks:
+            word = "pass" if check.met else "FAIL" if check.gates else "outside"
+            value = "-" if check.value is None else f"{check.value:.4g}"
+            table.add_row(each.name, check.figure, value, check.wanted, word)
+        for name, figure in verdict.figures.items():
+            if isinstance(figure, int | float):
+                table.add_row(each.name, name, f"{figure:.4g}", "", "")
+    Console(highlight=False, markup=False).print(table)

@@ -1,0 +1,119 @@
+"""`mesa-mobility verify`: the field's verification tests."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mesa_mobility.commands.console import answer_json, progress_bar, say
+
+if TYPE_CHECKING:
+    from mesa_mobility.verification import Entry, Outcome
+
+FAILED = 1
+WORDS = {"pass": "pass", "fail": "FAIL", "cap": "cap exceeded"}
+
+Seeds = Annotated[int, typer.Option(min=1, metavar="N", help="Runs of each test, seeds 1 to N.")]
+Jobs = Annotated[
+    int | None, typer.Option(min=1, help="Processes side by side (one for each processor).")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
+
+
+def verify(
+    ids: Annotated[
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Tests to run; all without.")
+    ] = None,
+    seeds: Seeds = 1,
+    jobs: Jobs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run the verification tests of RiMEA, IMO, NIST and ISO for a level floor.
+
+    Ends with status 1 if a test fails.
+    """
+    from mesa_mobility.verification import catalogue, suite, verify
+
+    tests = suite(ids or [])
+    entries = catalogue()
+    with progress_bar() as report:
+        outcomes = verify(
+            tests,
+            range(1, seeds + 1),
+            processes(jobs),
+            caps=[name for name, entry in entries.items() if entry.cap],
+            progress=report,
+        )
+    _print_table(entries, outcomes)
+    failing = [name for name, outcome in outcomes.items() if outcome.verdict == "fail"]
+    capped = [name for name, outcome in outcomes.items() if outcome.verdict == "cap"]
+    for name in failing:
+        for reason in outcomes[name].failed:
+            say(f"{name}: {reason}")
+    for name in capped:
+        say(f"{name}: {outcomes[name].reported[0]}: {entries[name].cap}")
+    say(
+        f"{len(outcomes) - len(failing) - len(capped)} passed, {len(failing)} failed"
+        + (f", design cap exceeded as measured crowds exceed it: {', '.join(capped)}"
+           if capped else "")
+    )  # fmt: skip
+    if as_json:
+        answer_json({name: _as_json(entries[name], outcomes[name]) for name in outcomes})
+    if failing:
+        raise typer.Exit(FAILED)
+
+
+def processes(jobs: int | None) -> int:
+    """Processes to use where `jobs` were asked for."""
+    import os
+
+    if jobs is not None:
+        return jobs
+    # Only Linux tells which processors this process may use.
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _as_json(entry: Entry, outcome: Outcome) -> dict[str, Any]:
+    return {
+        "passed": outcome.passed,
+        "measured": outcome.measured,
+        "criterion": entry.asked,
+        "source": entry.source,
+        "what": entry.what,
+        "verdict": outcome.verdict,
+        "failed": outcome.failed,
+        "reported": outcome.reported,
+        "chosen": entry.chosen,
+        "cap": entry.cap,
+        "seeds": outcome.seeds,
+        "per_seed": outcome.per_seed,
+        "safety": outcome.safety,
+    }
+
+
+def _print_table(entries: dict[str, Entry], outcomes: dict[str, Outcome]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for column in ("id", "what", "measured", "criterion", "verdict"):
+        table.add_column(column, overflow="fold", no_wrap=column == "id")
+    for name, outcome in outcomes.items():
+        entry = entries[name]
+        shown = ", ".join(
+            f"{figure} {_text(value)}"
+            for figure, value in outcome.measured.items()
+            if not isinstance(value, list | dict) and figure not in outcome.safety
+        )
+        table.add_row(name, entry.what, shown, entry.asked, WORDS[outcome.verdict])
+    Console(highlight=False, markup=False).print(table)
+
+
+def _text(value: Any) -> str:
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,40 @@
+"""Comparison with experiments: what measured crowds did, beside ours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mesa_mobility.errors import ModelError
+from mesa_mobility.registry import did_you_mean
+from mesa_mobility.validation import (
+    bidirectional,
+    bottleneck,
+    corridor,
+    single_file,
+    standing,
+    walking,
+)
+from mesa_mobility.validation.experiment import Experiment, judged
+
+EXPERIMENTS = {
+    each.EXPERIMENT.name: each.EXPERIMENT
+    for each in (walking, single_file, corridor, bidirectional, bottleneck, standing)
+}
+
+
+def chosen(names: Sequence[str]) -> list[Experiment]:
+    """Experiments by name; all of them where none is named.
+
+    Raises:
+        ModelError: an unknown name.
+    """
+    for name in names:
+        if name not in EXPERIMENTS:
+            raise ModelError(
+                f"unknown experiment {name!r}{did_you_mean(name, EXPERIMENTS)}; "
+                f"there are {', '.join(EXPERIMENTS)}"
+            )
+    return [EXPERIMENTS[name] for name in (dict.fromkeys(names) or EXPERIMENTS)]
+
+
+__all__ = ["EXPERIMENTS", "Experiment", "chosen", "judged"]

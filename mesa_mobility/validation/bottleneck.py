@@ -1,0 +1,183 @@
+"""Flow through bottlenecks of several widths, and the crowd in front of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import shapely
+from matplotlib.figure import Figure
+from shapely import Polygon, box
+
+from mesa_mobility import Exit, FloorPlan, Gate
+from mesa_mobility.results import flow
+from mesa_mobility.validation import drawing
+from mesa_mobility.validation.experiment import Experiment, Runs
+from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification.checks import Check, at_most, exactly, rising, within
+from mesa_mobility.verification.references import BOTTLENECK_TOLERANCE, bottleneck_fit, columns
+from mesa_mobility.verification.runs import CLEARANCE, SPACING, Run, crowd_model, evacuate
+from mesa_mobility.verification.voronoi import individual_densities
+
+WIDTHS = (0.8, 0.9, 1.0, 1.2, 1.6, 2.0, 2.5)
+JUDGED = (0.9, 1.0, 1.2, 1.6, 2.0)
+"""Widths at which a figure is asked for."""
+PEOPLE = 180
+ROOM_WIDTH, ROOM_DEPTH, NECK = 8.0, 10.0, 1.0
+START = box(-4.0, -8.5, 4.0, -1.0)
+FRONT = box(-1.0, -1.5, 1.0, -0.5)
+"""Where the density in front is measured, metres; the neck begins at y = 0."""
+FROM, TO = 30, 150
+"""Passages that count, the first and the last: without the run-up and without the tail."""
+DENSITY_IN_FRONT = (3.5, 6.0)
+
+
+def plan(width: float) -> FloorPlan:
+    """A holding area 8 m wide and 10 m deep, a neck 1 m long, a free area behind."""
+    half, side = width / 2, ROOM_WIDTH / 2
+    floor = Polygon(
+        [
+            (-side, -ROOM_DEPTH), (side, -ROOM_DEPTH), (side, 0), (half, 0), (half, NECK),
+            (side, NECK), (side, NECK + 5), (-side, NECK + 5), (-side, NECK), (-half, NECK),
+            (-half, 0), (-side, 0),
+        ]
+    )  # fmt: skip
+    end = NECK + 5
+    return FloorPlan(
+        floor,
+        exits=[Exit("end", (-side, end), (side, end))],
+        gates=[Gate("neck", (-half, NECK / 2), (half, NECK / 2))],
+        name=f"bottleneck {width:g} m",
+    )
+
+
+def bottleneck(seed: int, *, width: float, people: int = PEOPLE) -> dict[str, Any]:
+    """People leave a holding area, 3 persons/m2 at the start, through a neck.
+
+    Args:
+        seed: of the run.
+        width: of the neck, metres.
+        people: how many.
+
+    Returns:
+        With what every run tells: ``flow_per_s`` between the 30th and the 150th passage of the
+        middle of the neck, and ``density_in_front``, the median over that time of the mean
+        individual Voronoi density in a box 2 m x 1 m, half a metre in front of it.
+    """
+    floor = plan(width)
+    model = crowd_model(floor, seed)
+    places = floor.random_points(
+        people, model.rng, within=START, spacing=SPACING, clearance=CLEARANCE
+    )
+    model.add_pedestrians(places)
+    run = evacuate(model, 600.0)
+    gate = floor.gates[0]
+    times = run.crossing_times(gate.a, gate.b)
+    through = len(times) >= TO
+    return {
+        **run.figures(),
+        "passed": len(times),
+        "flow_per_s": flow(times[FROM - 1 : TO]) if through else None,
+        "density_in_front": _in_front(run, times[FROM - 1], times[TO - 1]) if through else None,
+    }
+
+
+def _in_front(run: Run, start: float, end: float) -> float | None:
+    tracks = run.trajectories
+    offsets, means = tracks.frame_offsets, []
+    for time in np.arange(start, end, 0.5):
+        frame = round(time * tracks.frame_rate)
+        rows = slice(offsets[frame], offsets[frame + 1])
+        points = np.column_stack([tracks.x[rows], tracks.y[rows]])
+        points = points[shapely.intersects_xy(run.model.floor_plan.free, *points.T)]
+        inside = shapely.contains_xy(FRONT, *points.T)
+        if inside.any():
+            means.append(individual_densities(points, run.model.floor_plan.free)[inside].mean())
+    return float(np.median(means)) if means else None
+
+
+def judge(runs: Runs) -> Verdict:
+    """Flow near the fit of the experiments and rising with width, density in front as measured."""
+    columns_ = list(zip(*runs, strict=True))
+    flows = [_median([each["flow_per_s"] for each in of]) for of in columns_]
+    densities = [_median([each["density_in_front"] for each in of]) for of in columns_]
+    checks: list[Check] = []
+    for width, rate, density in zip(WIDTHS, flows, densities, strict=True):
+        fit = bottleneck_fit(width)
+        gates = width in JUDGED
+        checks.append(
+            within(f"flow at {width:g} m", rate, fit - BOTTLENECK_TOLERANCE,
+                   fit + BOTTLENECK_TOLERANCE, gates=gates)
+        )  # fmt: skip
+        checks.append(
+            within(f"density in front at {width:g} m", density, *DENSITY_IN_FRONT, gates=gates)
+        )
+    checks.append(rising("least rise of flow with width", flows))
+    left = sum(each["left_inside"] for row in runs for each in row)
+    checks.append(exactly("left inside", left, 0))
+    shares = [_median([each["fallback_time_share"] for each in of]) for of in columns_]
+    checks.append(at_most("greatest fallback share", max(shares), 0.05))  # type: ignore[type-var]
+    figures = {
+        "width": list(WIDTHS),
+        "flow": flows,
+        "flow range": [
+            [min(values), max(values)] if (values := [f for f in found if f is not None]) else None
+            for found in ([each["flow_per_s"] for each in of] for of in columns_)
+        ],
+        "fit": [bottleneck_fit(width) for width in WIDTHS],
+        "density in front": densities,
+        "fallback share": shares,
+    }
+    return Verdict(tuple(checks), figures)
+
+
+def _median(values: list[float | None]) -> float | None:
+    """Median over the seeds; None where one of them gave nothing."""
+    return None if None in values else float(np.median(values))  # type: ignore[arg-type]
+
+
+def draw(figures: dict[str, Any]) -> Figure:
+    """Flow and density in front against width."""
+    figure, axes = drawing.panels(2)
+    widths = np.array(figures["width"])
+    studies = columns("bottleneck_flow_envelope")
+    shown = studies["width_m"] <= 2.8
+    axes[0].errorbar(
+        studies["width_m"][shown],
+        studies["flow_mean"][shown],
+        yerr=[
+            (studies["flow_mean"] - studies["flow_min"])[shown],
+            (studies["flow_max"] - studies["flow_mean"])[shown],
+        ],
+        **drawing.MEASURED.dots,
+    )
+    fit = np.array(figures["fit"])
+    axes[0].fill_between(
+        widths,
+        fit - BOTTLENECK_TOLERANCE,
+        fit + BOTTLENECK_TOLERANCE,
+        color=drawing.MEASURED.colour,
+        alpha=0.2,
+        linewidth=0,
+        label="J = 2.23 b - 0.155 ± 0.7",
+    )
+    axes[0].plot(widths, drawing.numbers(figures["flow"]), **drawing.OURS.line)
+    axes[0].set_ylabel("flow (1/s)")
+    axes[1].axhspan(*DENSITY_IN_FRONT, color=drawing.MEASURED.colour, alpha=0.2, linewidth=0,
+                    label="experiments")  # fmt: skip
+    axes[1].plot(widths, drawing.numbers(figures["density in front"]), **drawing.OURS.line)
+    axes[1].set_ylabel("density in front (1/m²)")
+    for each in axes:
+        each.set_xlabel("width (m)")
+    drawing.finish(axes)
+    return figure
+
+
+EXPERIMENT = Experiment(
+    name="bottleneck",
+    what="flow through necks 0.8 to 2.5 m wide, 180 people, and density in front",
+    source="eight studies of bottlenecks (bottleneck_flow_envelope.csv)",
+    cases=tuple(case(bottleneck, effort=4.0, width=width) for width in WIDTHS),
+    judge=judge,
+    draw=draw,
+)

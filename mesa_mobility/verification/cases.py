@@ -1,0 +1,107 @@
+"""Cases: scenarios with their numbers, run for a seed each, in processes side by side."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from typing import Any, TypeAlias
+
+Figures: TypeAlias = dict[str, Any]
+Scenario: TypeAlias = Callable[..., Figures]
+
+THREADS = "NUMBA_NUM_THREADS"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scenario with its numbers; equal cases are run once.
+
+    Attributes:
+        scenario: an importable function of a seed and keywords; gives figures.
+        numbers: its keywords, in alphabetical order.
+        effort: processor seconds it takes, roughly: the longest are begun first.
+    """
+
+    scenario: Scenario
+    numbers: tuple[tuple[str, Any], ...]
+    effort: float = field(default=1.0, compare=False)
+
+    def __call__(self, seed: int) -> Figures:
+        """Run it."""
+        return self.scenario(seed, **dict(self.numbers))
+
+    def __str__(self) -> str:
+        numbers = ", ".join(f"{name} {value}" for name, value in self.numbers)
+        return f"{self.scenario.__name__}({numbers})"
+
+
+def case(scenario: Scenario, *, effort: float = 1.0, **numbers: Any) -> Case:
+    """A case of a scenario; see `Case`."""
+    return Case(scenario, tuple(sorted(numbers.items())), effort)
+
+
+def run_cases(
+    cases: Sequence[Case],
+    seeds: Sequence[int],
+    jobs: int,
+    progress: Callable[[str, float, float], None] | None = None,
+) -> Mapping[tuple[Case, int], Figures]:
+    """Run every case for every seed.
+
+    A case that fails gives ``{"error": message}``. What comes out does not depend on `jobs`.
+
+    Args:
+        cases: what to run; a case that comes twice is run once.
+        seeds: one run each.
+        jobs: processes.
+        progress: told what has just been done, how much effort that makes, and of how much.
+    """
+    todo = [(each, seed) for each in dict.fromkeys(cases) for seed in seeds]
+    todo.sort(key=lambda unit: -unit[0].effort)
+    total = sum(each.effort for each, _ in todo)
+    results: dict[tuple[Case, int], Figures] = {}
+    done = 0.0
+    with _one_thread_each(), _pool(jobs) as pool:
+        waiting = {pool.submit(_run, each, seed): (each, seed) for each, seed in todo}
+        for future in as_completed(waiting):
+            unit = waiting[future]
+            results[unit] = future.result()
+            done += unit[0].effort
+            if progress is not None:
+                progress(f"{unit[0]} seed {unit[1]}", done, total)
+    return results
+
+
+def _run(each: Case, seed: int) -> Figures:
+    # One scenario that breaks is one test that fails, and not the end of all the others.
+    try:
+        return each(seed)
+    except Exception as error:
+        return {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
+
+
+@contextmanager
+def _pool(jobs: int) -> Iterator[ProcessPoolExecutor]:
+    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=get_context("spawn"))
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Processes started within use one thread each: side by side, more would be in their way."""
+    before = os.environ.get(THREADS)
+    os.environ[THREADS] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[THREADS]
+        else:
+            os.environ[THREADS] = before

@@ -1,0 +1,73 @@
+"""The catalogue of tests: what each asks for and where that is written."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from mesa_mobility.errors import ModelError
+from mesa_mobility.registry import did_you_mean
+from mesa_mobility.verification.suite import VerificationTest
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One test of the catalogue.
+
+    Attributes:
+        id: its name.
+        what: what it is about, in a line.
+        source: standard, and where its numbers were read.
+        applies: "flat", or "flat*" for a stand-in on a level floor.
+        geometry: floor, start and exits; WKT in metres where the source gives it.
+        population: people.
+        criterion: what is asked for.
+        criterion_strict: a number for it, where there is one.
+        chosen: what the source leaves open, chosen here, and why.
+        cap: why a figure of the criterion is a design cap that need not be met.
+    """
+
+    id: str
+    what: str
+    source: str
+    applies: str
+    geometry: str
+    population: str
+    criterion: str
+    criterion_strict: str = ""
+    chosen: str = ""
+    cap: str = ""
+
+    @property
+    def asked(self) -> str:
+        """Criterion and its number."""
+        return "; strictly: ".join(text for text in (self.criterion, self.criterion_strict) if text)
+
+
+@cache
+def catalogue() -> dict[str, Entry]:
+    """All tests by id, in the order of the standards."""
+    text = files("mesa_mobility.verification").joinpath("catalogue.toml").read_text("utf-8")
+    return {each["id"]: Entry(**each) for each in tomllib.loads(text)["test"]}
+
+
+def suite(ids: Sequence[str] = ()) -> dict[str, VerificationTest]:
+    """Tests by id, in the catalogue's order; all of them where none is named.
+
+    Raises:
+        ModelError: an unknown id.
+    """
+    from mesa_mobility.verification import imo, nist, rimea
+
+    known = {**rimea.TESTS, **imo.TESTS, **nist.TESTS}
+    for name in ids:
+        if name not in known:
+            raise ModelError(
+                f"unknown test {name!r}{did_you_mean(name, known)}; "
+                f"there are {', '.join(n for n in catalogue() if n in known)}"
+            )
+    wanted = set(ids) or set(known)
+    return {name: known[name] for name in catalogue() if name in wanted}

@@ -1,0 +1,63 @@
+"""IMO MSC.1/Circ.1533: the tests of a level floor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scipy import stats
+
+from mesa_mobility.verification import judging
+from mesa_mobility.verification.cases import Figures, case
+from mesa_mobility.verification.checks import Verdict, at_most, within
+from mesa_mobility.verification.scenarios import rooms, walks
+from mesa_mobility.verification.scenarios.counterflow import counterflow
+from mesa_mobility.verification.suite import VerificationTest
+
+DESIGN_CAP = 1.33
+"""Persons a second through 1 m: what designs may reckon with, not what people do."""
+
+COUNTERFLOW = tuple(
+    case(counterflow, effort=3.0 + 0.05 * opposing, opposing=opposing)
+    for opposing in (0, 10, 50, 100)
+)
+ROOM_OF_100 = case(rooms.small_room, effort=2.0, people=100)
+CORNER = case(rooms.corner, people=20, start_x=2.0, speed=1.0)
+
+LOW, HIGH = rooms.MALES_30_TO_50
+
+
+def exit_flow(runs: Sequence[Figures]) -> Verdict:
+    """Flow within what was measured at openings of 1 m; the design cap is reported beside it."""
+    from mesa_mobility.verification.references import bottleneck_envelope
+
+    flow = runs[0]["flow_per_s"]
+    least, most = bottleneck_envelope(1.0)
+    return Verdict(
+        (
+            *judging.everybody_out(runs),
+            within("flow per s", flow, least, most),
+            at_most("flow per s against the design cap", flow, DESIGN_CAP, gates=False),
+        )
+    )
+
+
+TESTS = {
+    "imo-01": VerificationTest(
+        (case(walks.lone_walker, length=40.0, speed=1.0, measured_from=10.0, measured_to=30.0),),
+        judge=judging.lone_walk((37.7, 43.5), 1.0),
+    ),
+    "imo-04": VerificationTest((ROOM_OF_100,), judge=exit_flow),
+    "imo-06": VerificationTest((CORNER,), judge=judging.corner(60.0)),
+    "imo-07": VerificationTest(
+        (case(walks.uniform_speeds, effort=2.0, people=50, low=LOW, high=HIGH),),
+        pooled=judging.speed_spread(stats.uniform(LOW, HIGH - LOW), 1.295, 0.188),
+    ),
+    "imo-08": VerificationTest(COUNTERFLOW, judge=judging.counterflow),
+    "imo-09": VerificationTest(
+        (
+            case(rooms.hall, effort=10.0, people=1000, exits=4, population="males"),
+            case(rooms.hall, effort=20.0, people=1000, exits=2, population="males"),
+        ),
+        judge=judging.closed_exits,
+    ),
+}

@@ -1,0 +1,4 @@
+"""Scenarios that the tests of several standards share.
+
+Each is a function of a seed and numbers that builds a crowd, runs it and gives figures.
+"""

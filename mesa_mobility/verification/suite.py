@@ -1,0 +1,165 @@
+"""What a test of a standard consists of, and how it is judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mesa_mobility.verification.cases import Case, Figures, run_cases
+from mesa_mobility.verification.checks import Check, Verdict, exactly
+
+Judge = Callable[[Sequence[Figures]], Verdict]
+PooledJudge = Callable[[Sequence[Sequence[Figures]]], Verdict]
+
+PASS, FAIL, CAP = "pass", "fail", "cap"
+
+
+@dataclass(frozen=True)
+class VerificationTest:
+    """A test: cases to run and a judge of what they gave.
+
+    Attributes:
+        cases: what is run for each seed.
+        judge: verdict on one seed, from the figures of the cases in their order.
+        pooled: verdict on all seeds together, where the criterion is one of statistics.
+    """
+
+    cases: tuple[Case, ...]
+    judge: Judge | None = None
+    pooled: PooledJudge | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a test found over all its seeds.
+
+    Attributes:
+        verdict: "pass", "fail", or "cap": only a design cap that real crowds exceed is exceeded.
+        measured: figures; medians over the seeds.
+        failed: what was not met, each with the seed.
+        reported: what was not met and does not gate the verdict, each with the seed.
+        seeds: the seeds.
+        per_seed: verdict and figures of each seed, or of all together.
+        safety: overlaps and wall crossings, and the share of time in the fallback.
+    """
+
+    verdict: str
+    measured: dict[str, Any]
+    failed: list[str]
+    reported: list[str]
+    seeds: list[int]
+    per_seed: list[dict[str, Any]]
+    safety: dict[str, Any]
+
+    @property
+    def passed(self) -> bool:
+        """Whether the test's criterion is met on every seed."""
+        return self.verdict == PASS
+
+
+def verify(
+    tests: Mapping[str, VerificationTest],
+    seeds: Sequence[int],
+    jobs: int,
+    *,
+    caps: Sequence[str] = (),
+    progress: Callable[[str, float, float], None] | None = None,
+) -> dict[str, Outcome]:
+    """Run tests and judge them; cases that several tests share are run once.
+
+    Args:
+        tests: by id.
+        seeds: each test runs once for each.
+        jobs: processes.
+        caps: ids of tests whose reported figures are design caps of the standard.
+        progress: told how far the runs have come.
+    """
+    cases = [each for test in tests.values() for each in test.cases]
+    results = run_cases(cases, seeds, jobs, progress)
+    outcomes = {}
+    for name, test in tests.items():
+        runs = [[results[each, seed] for each in test.cases] for seed in seeds]
+        outcomes[name] = judged(test, seeds, runs, is_cap=name in caps)
+    return outcomes
+
+
+def judged(
+    test: VerificationTest,
+    seeds: Sequence[int],
+    runs: Sequence[Sequence[Figures]],
+    *,
+    is_cap: bool = False,
+) -> Outcome:
+    """The outcome of a test from the figures of its cases, for each seed in turn."""
+    verdicts: list[tuple[int | None, Verdict]]
+    if test.pooled is not None:
+        verdicts = [(None, _verdict(test.pooled, runs, [f for row in runs for f in row]))]
+    else:
+        assert test.judge is not None
+        verdicts = [
+            (seed, _verdict(test.judge, row, row)) for seed, row in zip(seeds, runs, strict=True)
+        ]
+    failed: list[str] = []
+    reported: list[str] = []
+    for seed, verdict in verdicts:
+        where = "" if seed is None else f" (seed {seed})"
+        for check in verdict.checks:
+            if not check.met:
+                (failed if check.gates else reported).append(_said(check) + where)
+    verdict_word = PASS if all(verdict.passed for _, verdict in verdicts) else FAIL
+    if verdict_word == PASS and is_cap and reported:
+        verdict_word = CAP
+    flat = [figures for row in runs for figures in row if "error" not in figures]
+    return Outcome(
+        verdict=verdict_word,
+        measured=_medians([verdict.measured for _, verdict in verdicts]),
+        failed=failed,
+        reported=reported,
+        seeds=list(seeds),
+        per_seed=[
+            {"seed": seed, "passed": verdict.passed, "measured": verdict.measured}
+            for seed, verdict in verdicts
+        ],
+        safety=_safety(flat),
+    )
+
+
+def _verdict(judge: Callable[[Any], Verdict], runs: Any, figures: Sequence[Figures]) -> Verdict:
+    errors = [each["error"] for each in figures if "error" in each]
+    if errors:
+        return Verdict((Check("error", None, f"no error, got {errors[0]}", met=False),))
+    verdict = judge(runs)
+    safe = tuple(
+        exactly(name, sum(each[name] for each in figures), 0)
+        for name in ("overlaps", "wall_crossings")
+    )
+    return Verdict(verdict.checks + safe, verdict.figures)
+
+
+def _said(check: Check) -> str:
+    value = "not measured" if check.value is None else f"{check.value:.4g}"
+    return f"{check.figure}: {value}, wanted {check.wanted}"
+
+
+def _medians(measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Median over the seeds of each figure that is a number, the first seed's of any other."""
+    middle: dict[str, Any] = {}
+    for name in dict.fromkeys(name for each in measured for name in each):
+        values = [each.get(name) for each in measured]
+        numbers = [v for v in values if isinstance(v, int | float) and not isinstance(v, bool)]
+        middle[name] = float(np.median(numbers)) if len(numbers) == len(values) else values[0]
+    return middle
+
+
+def _safety(figures: Sequence[Figures]) -> dict[str, Any]:
+    time = sum(each["person_s"] for each in figures)
+    fallback = sum(each["fallback_time_share"] * each["person_s"] for each in figures)
+    return {
+        "runs": len(figures),
+        "overlaps": sum(each["overlaps"] for each in figures),
+        "wall_crossings": sum(each["wall_crossings"] for each in figures),
+        "fallback_time_share": fallback / time if time else 0.0,
+    }

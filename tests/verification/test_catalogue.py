@@ -1,0 +1,31 @@
+import pytest
+
+from mesa_mobility.errors import ModelError
+from mesa_mobility.verification import catalogue, suite
+
+
+def test_the_catalogue_has_the_39_tests_of_a_level_floor():
+    entries = catalogue()
+    # RiMEA 15, IMO 9, NIST 13, ISO 2.
+    standards = [name.partition("-")[0] for name in entries]
+    counts = {name: standards.count(name) for name in ("rimea", "imo", "nist", "iso")}
+    assert counts == {"rimea": 15, "imo": 9, "nist": 13, "iso": 2}
+    assert all(entry.applies in ("flat", "flat*") for entry in entries.values())
+    assert [name for name, entry in entries.items() if entry.cap] == ["imo-04"]
+    assert all(entry.criterion and entry.source and entry.what for entry in entries.values())
+
+
+def test_every_test_that_runs_is_in_the_catalogue_and_has_one_judge():
+    for name, test in suite().items():
+        assert name in catalogue()
+        assert test.cases
+        assert (test.judge is None) != (test.pooled is None)
+
+
+def test_tests_are_chosen_by_id_in_the_order_of_the_catalogue():
+    assert list(suite(["imo-01", "rimea-01", "imo-01"])) == ["rimea-01", "imo-01"]
+
+
+def test_an_unknown_id_is_said_with_what_there_is():
+    with pytest.raises(ModelError, match=r"unknown test 'imo-99', did you mean 'imo-0\d'\?.*rimea"):
+        suite(["imo-01", "imo-99"])
