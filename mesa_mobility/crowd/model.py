@@ -15,6 +15,7 @@ from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.explain import Explanation, Watch
+from mesa_mobility.crowd.journeys import Journeys
 from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
 from mesa_mobility.crowd.pedestrian import Pedestrian
@@ -58,6 +59,7 @@ class PedestrianModel(CrowdMeasures, People):
     Attributes:
         space: Mesa's continuous space with everybody inside.
         crowd: the crowd's arrays; see ``Crowd``.
+        journeys: the itineraries of those who have one.
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
         occupancy: (seconds, people inside) each simulated second.
@@ -128,6 +130,7 @@ class PedestrianModel(CrowdMeasures, People):
             least_core=min(kind.core_radius for kind in self.pedestrian_types),
         )
         self._site = Site(floor_plan, reach=reach + core + 0.02, body=core)
+        self.journeys = Journeys(floor_plan, self._site)
         self._plan_version = floor_plan.version
         x0, y0, x1, y1 = floor_plan.bounds
         self.space = CrowdSpace(
@@ -178,7 +181,7 @@ class PedestrianModel(CrowdMeasures, People):
         self._write_space()
         waiting = self.crowd.agenda["waits_until"][self._rows] > self.frame
         self.stalled = self._stall_watch.stalled(
-            self.elapsed, self.crowd.route[self._rows], bool(waiting.any())
+            self.elapsed, self.crowd.route[self._rows], self.journeys.crossed, bool(waiting.any())
         )
         self.datacollector.collect(self)
         self.running = self.inside > 0 and not self.stalled
@@ -193,7 +196,17 @@ class PedestrianModel(CrowdMeasures, People):
         Args:
             max_seconds: simulated seconds at most.
             progress: called as ``progress(elapsed, inside)`` each simulated second.
+
+        Raises:
+            ModelError: no end is given where people go round for ever.
         """
+        if max_seconds is None and any(
+            self.journeys.endless(number)
+            for number in np.unique(self.crowd.agenda["journey"][self._rows]).tolist()
+        ):
+            raise ModelError(
+                "max_seconds: got none, expected some: there are people who never leave"
+            )
         told = 0
         self._stall_watch = StallWatch()
         self.stalled = False
@@ -211,6 +224,8 @@ class PedestrianModel(CrowdMeasures, People):
                 self.recorder.add(0, rows, self.crowd)
         if self._plan_version != self.floor_plan.version:
             self._plan_version = self.floor_plan.version
+            # The paths of those who stop are forgotten.
+            self.journeys.advance(rows, self.frame, self.crowd)
             stop_where_blocked(
                 rows, self.frame, self._repertoire.table, self.crowd.records,
                 self._site.surroundings, self._rules,
@@ -232,6 +247,7 @@ class PedestrianModel(CrowdMeasures, People):
         return rows
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
+        self.journeys.advance(deciding, self.frame, self.crowd)
         targets = self._set_targets(deciding)
         # Those nearest to where they go decide first: that frees space for those behind.
         order = deciding[np.argsort(targets.distances, kind="stable")]

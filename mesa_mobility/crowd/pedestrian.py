@@ -62,6 +62,16 @@ class Pedestrian(ContinuousSpaceAgent):
         return float(self.model.crowd.agenda["sets_off"][self.row]) * FRAME_SECONDS
 
     @property
+    def route(self) -> tuple[str, ...]:
+        """Names of the gates on the person's journey, in order; none if it has no journey."""
+        return self.model.journeys.gates(int(self.model.crowd.agenda["journey"][self.row]))
+
+    @property
+    def gates_crossed(self) -> int:
+        """Gates of its route that the person had crossed when it last decided, laps and all."""
+        return int(self.model.crowd.agenda["crossed"][self.row])
+
+    @property
     def target(self) -> NDArray[np.float64]:
         """(2,) where the person was heading for when it last decided, metres."""
         state = self.model.crowd

@@ -9,6 +9,7 @@ import mesa
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.crowd.journeys import Journeys
 from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
@@ -47,6 +48,7 @@ class People(mesa.Model):
     frame: int
     _rules: Rules
     _site: Site
+    journeys: Journeys
     _rows: NDArray[np.int64]
     _agents_by_row: list[Pedestrian | None]
 
@@ -58,6 +60,8 @@ class People(mesa.Model):
         preferred_speeds: ArrayLike | Distribution | None = None,
         pre_movement: ArrayLike | Distribution = 0.0,
         exits: Sequence[str] | None = None,
+        route: Sequence[str] = (),
+        loop: bool = False,
         kind: int = 0,
     ) -> list[Pedestrian]:
         """Put people on the floor, standing.
@@ -69,12 +73,15 @@ class People(mesa.Model):
             pre_movement: (n,) seconds, or a distribution of them, for which they stand where they
                 are before they set off: their first decision is in the first frame after that.
             exits: names of the exits they may leave by; by default the nearest of all.
+            route: names of gates that they cross, in this order, before they leave.
+            loop: the route's first gate follows its last again; they never leave.
             kind: index of their type in ``pedestrian_types``.
 
         Raises:
             ModelError: positions off the floor or where somebody is or will be, an unknown type,
                 or arrays of other lengths.
-            FloorPlanError: an unknown exit, or no way from a position to any exit.
+            FloorPlanError: an unknown exit or gate, or no way from a position to any exit, or to
+                the route's first gate, or on from a gate.
         """
         points = check_places(positions, self.floor_plan)
         n = len(points)
@@ -85,6 +92,8 @@ class People(mesa.Model):
             )
         if isinstance(exits, str):
             raise ModelError(f"exits: got {exits!r}, expected a list of names such as [{exits!r}]")
+        if loop and not len(route):
+            raise ModelError("loop: got no route, expected names of at least two gates")
         ptype = self.pedestrian_types[kind]
         if preferred_speeds is None:
             preferred_speeds = ptype.draw_speeds(n, self.rng)
@@ -96,11 +105,13 @@ class People(mesa.Model):
             wrong = waits.min() if (waits < 0.0).any() else waits.max()
             raise ModelError(f"pre_movement: got {wrong}, expected 0 to {LONGEST_WAIT:g} s")
         facing = None if headings is None else check_column("headings", headings, n)
+        destination, journey = self._where_to(exits, route, loop)
         new = Newcomer(
             kind=kind,
             core=ptype.core_radius,
             standing=int(self._rules.standing[kind]),
-            destination=self._site.destination(None if exits is None else tuple(exits)),
+            destination=destination,
+            journey=journey,
         )
         self._check_room(points, new.core)
         self._site.check_way_out(points, new.destination)
@@ -141,6 +152,16 @@ class People(mesa.Model):
     def core_radii(self) -> NDArray[np.float64]:
         """(n,) core radius of everybody who was ever in the model, metres."""
         return self.crowd.core[: self.count].copy()
+
+    def _where_to(
+        self, exits: Sequence[str] | None, route: Sequence[str], loop: bool
+    ) -> tuple[int, int]:
+        """Numbers of the first destination and of the journey."""
+        names = None if exits is None else tuple(exits)
+        if not len(route):
+            return self._site.destination(names), 0
+        journey = self.journeys.add(route, loop, names)
+        return self.journeys.leg(journey, 0)[0], journey
 
     def _check_room(self, points: NDArray[np.float64], core: float) -> None:
         if not self._rules.cores:

@@ -17,23 +17,22 @@ class StallWatch:
 
     def __init__(self) -> None:
         self._since = 0.0
-        self._mark: tuple[int, int, float] = (-1, 0, 0.0)
+        self._mark: tuple[int, int, int, float] = (-1, 0, 0, 0.0)
 
-    def stalled(self, elapsed: float, routes: NDArray[np.float64], awaited: bool) -> bool:
+    def stalled(
+        self, elapsed: float, routes: NDArray[np.float64], crossed: int, awaited: bool
+    ) -> bool:
         """Whether nothing has got better for a minute.
 
         Args:
             elapsed: simulated seconds.
             routes: (n,) metres that each person inside still has to go, inf without a way out.
+            crossed: gates that people have crossed on their journeys so far.
             awaited: somebody inside is yet to set off, and others may stand because of that.
         """
         finite = routes[np.isfinite(routes)]
-        inside, with_way, left = len(routes), len(finite), float(finite.sum())
+        now, left = (len(routes), len(finite), crossed), float(finite.sum())
         # More way to go is news as well: a door closed, and people are on another way.
-        if (
-            awaited
-            or (inside, with_way) != self._mark[:2]
-            or abs(left - self._mark[2]) > STALL_PROGRESS
-        ):
-            self._since, self._mark = elapsed, (inside, with_way, left)
-        return inside > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9
+        if awaited or now != self._mark[:3] or abs(left - self._mark[3]) > STALL_PROGRESS:
+            self._since, self._mark = elapsed, (*now, left)
+        return len(routes) > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9

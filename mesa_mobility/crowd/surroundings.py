@@ -41,6 +41,14 @@ class Site:
             self._version = -1
         return number
 
+    def crossing(self, gate: str) -> int:
+        """Number of the destination "across this gate"; to whoever goes there no exit is a way."""
+        number = self._router.crossing(gate)
+        if number == len(self._destinations):
+            self._destinations.append((gate,))
+            self._version = -1
+        return number
+
     def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int32]) -> Targets:
         """Where people at ``points`` (n, 2) should aim now."""
         return self._router.targets(points, destinations)
@@ -48,21 +56,42 @@ class Site:
     def check_way_out(self, points: NDArray[np.float64], destination: int) -> None:
         """Raise FloorPlanError for places without a way out, were everything open."""
         lost = points[_without_way(self._router, points, destination)]
-        plan = self._plan
-        if len(lost) and not all(plan.is_open(opening.name) for opening in plan.openings()):
-            plan = FloorPlan(
-                plan.walkable, exits=plan.exits, gates=plan.gates, obstacles=plan.obstacles.values()
-            )
-            router = Router(plan, clearance=self._clearance)
-            number = router.destination(self._destinations[destination])
-            lost = lost[_without_way(router, lost, number)]
+        if len(lost) and not self._all_open():
+            router = self._router_when_open()
+            lost = lost[_without_way(router, lost, destination)]
         if len(lost):
-            names = self._destinations[destination]
-            to = "any exit" if names is None else " or ".join(repr(name) for name in names)
             raise FloorPlanError(
-                f"{len(lost)} of {len(points)} people have no way to {to}; the first stands at "
-                f"({lost[0, 0]:.2f}, {lost[0, 1]:.2f})"
+                f"{len(lost)} of {len(points)} people have no way to {self._text(destination)}; "
+                f"the first stands at ({lost[0, 0]:.2f}, {lost[0, 1]:.2f})"
             )
+
+    def check_way_on(self, gate: str, destination: int) -> None:
+        """Raise FloorPlanError where there is no way on from a gate, were everything open."""
+        router = self._router if self._all_open() else self._router_when_open()
+        if not np.isfinite(router.way_from(gate, destination)):
+            raise FloorPlanError(f"there is no way from {gate!r} to {self._text(destination)}")
+
+    def _all_open(self) -> bool:
+        return all(self._plan.is_open(opening.name) for opening in self._plan.openings())
+
+    def _router_when_open(self) -> Router:
+        """Routes as they would be with everything open; destinations have the same numbers."""
+        plan = self._plan
+        plan = FloorPlan(
+            plan.walkable, exits=plan.exits, gates=plan.gates, obstacles=plan.obstacles.values()
+        )
+        router = Router(plan, clearance=self._clearance)
+        gates = {gate.name for gate in plan.gates}
+        for names in self._destinations:
+            if names is not None and names[0] in gates:
+                router.crossing(names[0])
+            else:
+                router.destination(names)
+        return router
+
+    def _text(self, destination: int) -> str:
+        names = self._destinations[destination]
+        return "any exit" if names is None else " or ".join(repr(name) for name in names)
 
     @property
     def surroundings(self) -> Surroundings:
@@ -95,8 +124,8 @@ class Site:
             size=cells.cell_size,
             offsets=cells.offsets,
             indices=cells.indices,
-            exits=np.array([[*exit_.a, *exit_.b] for exit_ in exits], dtype=np.float64),
-            leads_out=leads_out,
+            exits=np.array([[*e.a, *e.b] for e in exits], dtype=np.float64).reshape(-1, 4),
+            leads_out=leads_out.reshape(len(self._destinations), len(exits)),
         )
 
 

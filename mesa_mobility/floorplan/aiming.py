@@ -52,7 +52,7 @@ def aim(
     """Targets (n, 2), gates (n,) and route lengths (n,); see `Router.targets`.
 
     For every destination and node, `distances` is the route length in metres and
-    `follow` the next node of the route (-1 at exits). Only one thread at a time may
+    `follow` the next node of the route (-1 where it ends). Only one thread at a time may
     `learn`, that is, work out new views; the others leave those who need one `UNSEEN`.
     """
     n = len(positions)
@@ -185,7 +185,7 @@ def _aim_at(
     nx, ny = ways.xy[node]
     length = np.hypot(nx - x, ny - y) + to_go[node]
     qx, qy, away = place(sight, ways, x, y, node, after[node], own)
-    if ways.kind[node] == GATE and np.hypot(qx - x, qy - y) < _THROUGH:
+    if ways.kind[node] == GATE and after[node] >= 0 and np.hypot(qx - x, qy - y) < _THROUGH:
         node = after[node]
         qx, qy, away = place(sight, ways, x, y, node, after[node], own)
     elif ways.kind[node] == CORNER:
@@ -197,7 +197,7 @@ def _aim_at(
         px, py = _past_corner(sight, ways, x, y, node, after[node])
     else:
         leaves = ways.kind[node] == EXIT
-        if leaves:
+        if after[node] < 0:
             length = min(length, away)
         px, py = _beyond(
             sight, ways, x, y, qx, qy, ways.normal[node, 0], ways.normal[node, 1], leaves

@@ -64,10 +64,10 @@ def check_names(openings: Sequence[Opening]) -> None:
         seen.add(opening.name)
 
 
-def check_exits(walkable: Polygon, exits: Sequence[Exit]) -> None:
-    """There must be an exit; each lies on the edge of the walkable area; none overlap."""
-    if not exits:
-        raise FloorPlanError("the floor plan has no exit")
+def check_exits(walkable: Polygon, exits: Sequence[Exit], gates: Sequence[Gate]) -> None:
+    """There must be an exit or a gate; exits lie on the edge of the walkable area; none overlap."""
+    if not exits and not gates:
+        raise FloorPlanError("the floor plan has no exit, and no gate that people could go to")
     edge = walkable.boundary
     near_edge = edge.buffer(EDGE_TOLERANCE)
     for i, opening in enumerate(exits):
@@ -102,14 +102,17 @@ def check_gates(walkable: Polygon, gates: Iterable[Gate]) -> None:
 
 
 def free_area(
-    walkable: Polygon, obstacles: Sequence[Polygon], exits: Sequence[Exit]
+    walkable: Polygon,
+    obstacles: Sequence[Polygon],
+    exits: Sequence[Exit],
+    gates: Sequence[Gate],
 ) -> BaseGeometry:
     """Walkable area minus obstacles, without pockets that can hold nobody.
 
     Raises
     ------
     FloorPlanError
-        Nothing is left, or a piece that is left touches no exit.
+        Nothing is left, or a piece that is left touches no exit; in a plan without exits, no gate.
     """
     free = walkable.difference(shapely.union_all(list(obstacles)))
     pieces = [
@@ -120,11 +123,15 @@ def free_area(
     if not pieces:
         raise FloorPlanError("the obstacles leave no walkable area")
     for piece in pieces:
-        if not any(_touches(piece, opening) for opening in exits):
+        if exits:
+            connected = any(_touches(piece, opening) for opening in exits)
+        else:
+            connected = any(piece.intersects(gate.line) for gate in gates)
+        if not connected:
             spot = piece.representative_point()
             raise FloorPlanError(
                 f"a piece of {piece.area:.2f} m² around ({spot.x:.2f}, {spot.y:.2f}) "
-                "is disconnected from every exit"
+                f"is disconnected from every {'exit' if exits else 'gate'}"
             )
     return pieces[0] if len(pieces) == 1 else shapely.MultiPolygon(pieces)
 

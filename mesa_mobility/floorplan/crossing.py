@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.floorplan.nodes import CORNER, EXIT, GATE
+from mesa_mobility.floorplan.nodes import CORNER
 from mesa_mobility.floorplan.routes import Ways, in_view
 from mesa_mobility.floorplan.sight import Sight
 from mesa_mobility.jit import lean
@@ -25,7 +25,7 @@ def place(
     """The place to go to at a node, and how far it is at least to the line there (metres).
 
     That is the node itself, or the nearest place of its opening that will do: clear of the
-    jambs if such a one will.
+    jambs if such a one will. At the end of a route `after` is -1.
     """
     qx, qy = ways.xy[node]
     away = np.hypot(qx - x, qy - y)
@@ -81,7 +81,7 @@ def opening_behind(
         qx = nx + k / _PLACES * (bx - nx)
         qy = ny + k / _PLACES * (by - ny)
         way = np.hypot(qx - x, qy - y)
-        if ways.kind[node] == GATE:
+        if after[node] >= 0:
             way += np.hypot(ways.xy[node, 0] - qx, ways.xy[node, 1] - qy) + to_go[node]
         if way > _DETOUR * by_corner:
             break
@@ -132,12 +132,12 @@ def _serves(
 ) -> bool:
     """Whether place q in the opening of `node` will do as well as the node.
 
-    It must be in view and, in a gate, have the node `after` in view; otherwise people
-    would turn back once they are through.
+    It must be in view and, in a gate on the way, have the node `after` in view; otherwise
+    people would turn back once they are through.
     """
     if not in_view(sight, ways, x, y, node, qx, qy, clearance, own):
         return False
-    if ways.kind[node] == EXIT:
+    if after < 0:
         return True
     ax, ay = ways.xy[after]
     return in_view(sight, ways, qx, qy, after, ax, ay, ways.view_clearance, np.inf)

@@ -69,7 +69,7 @@ class Opening:
 
 @dataclass(frozen=True)
 class Gate(Opening):
-    """A door inside the plan: people cross its line and walk on."""
+    """A door, or another line inside the plan, that people cross and walk on."""
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,10 @@ class FloorPlan:
     walkable
         One connected polygon, holes allowed; shapely or WKT, metres.
     exits
-        Lines on the edge of the walkable area (within 1 cm), at least one.
+        Lines on the edge of the walkable area (within 1 cm); at least one, unless there are
+        gates for people to walk to and fro or round between.
     gates
-        Doors inside the walkable area.
+        Doors, and other lines to cross, inside the walkable area.
     obstacles
         Polygons (shapely or WKT) to subtract; their ids are 0, 1, 2, ...
     name
@@ -48,7 +49,7 @@ class FloorPlan:
         self,
         walkable: Polygon | str,
         *,
-        exits: Iterable[Exit],
+        exits: Iterable[Exit] = (),
         gates: Iterable[Gate] = (),
         obstacles: Iterable[Polygon | str] = (),
         name: str = "",
@@ -64,7 +65,7 @@ class FloorPlan:
             for i, obstacle in enumerate(obstacles)
         }
         self._next_obstacle = len(self._obstacles)
-        checks.check_exits(self._walkable, self._exits)
+        checks.check_exits(self._walkable, self._exits, self._gates)
         checks.check_gates(self._walkable, self._gates)
         checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
@@ -76,7 +77,7 @@ class FloorPlan:
         cls,
         wkt: str,
         *,
-        exits: Iterable[Exit],
+        exits: Iterable[Exit] = (),
         gates: Iterable[Gate] = (),
         obstacles: Iterable[Polygon | str] = (),
         name: str = "",
@@ -267,7 +268,9 @@ class FloorPlan:
         )
 
     def _set_free(self, obstacles: dict[int, Polygon]) -> None:
-        self._free = checks.free_area(self._walkable, list(obstacles.values()), self._exits)
+        self._free = checks.free_area(
+            self._walkable, list(obstacles.values()), self._exits, self._gates
+        )
         self._obstacles = obstacles
         shapely.prepare(self._free)
 

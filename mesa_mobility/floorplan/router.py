@@ -1,4 +1,4 @@
-"""Routes: where each person should aim now, and how far it is to the exit."""
+"""Routes: where each person should aim now, and how far it is to the exit or gate it goes to."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from mesa_mobility.floorplan.aiming import UNSEEN, aim
 from mesa_mobility.floorplan.edges import opening_segments
 from mesa_mobility.floorplan.gaps import narrow_gaps
 from mesa_mobility.floorplan.nodes import EDGE_SHARE, NODE_SHARE, VIEW_SHARE, Nodes, find_nodes
-from mesa_mobility.floorplan.openings import Exit
+from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
 from mesa_mobility.floorplan.views import no_views
@@ -41,7 +41,8 @@ class Targets:
         (n,) the gate or exit aimed through, as its number in `FloorPlan.openings()`
         (gates first, then exits); -1 for a corner.
     distances
-        (n,) length of the route to the exit's line in metres; inf where there is none.
+        (n,) length of the route to the line of the exit, or of the gate to cross, in metres; inf
+        where there is none.
     """
 
     points: NDArray[np.float64]
@@ -50,7 +51,7 @@ class Targets:
 
 
 class Router:
-    """Shortest routes to the exits of a floor plan, kept up to date with it.
+    """Shortest routes to the exits and gates of a floor plan, kept up to date with it.
 
     Routes bend at corners that stand `clearance` from the walls and lead through
     gates and exits; other exits than those of the destination are no way. A person
@@ -116,10 +117,18 @@ class Router:
         for name in names:
             if not isinstance(self._plan.gate(name), Exit):
                 raise FloorPlanError(f"{name!r} is a gate, a destination needs exits")
-        key = tuple(sorted(names))
-        if key not in self._destinations:
-            self._destinations.append(key)
-        return self._destinations.index(key)
+        return self._number(tuple(sorted(names)))
+
+    def crossing(self, gate_name: str) -> int:
+        """A number for "across this gate", whichever way; FloorPlanError if it is not a gate's."""
+        if not isinstance(self._plan.gate(gate_name), Gate):
+            raise FloorPlanError(f"{gate_name!r} is an exit, expected a gate to cross")
+        return self._number((gate_name,))
+
+    def _number(self, names: tuple[str, ...]) -> int:
+        if names not in self._destinations:
+            self._destinations.append(names)
+        return self._destinations.index(names)
 
     def distances(self, destination: int) -> NDArray[np.float64]:
         """(nodes,) length of the route from every node of `graph` in metres; inf where none."""
@@ -173,13 +182,15 @@ class Router:
             self._nexts = np.stack([self._follow[i] for i in every])
         return self._lengths, self._nexts
 
-    def _shortest(self, exit_names: tuple[str, ...] | None) -> NDArray[np.float64]:
-        names = {e.name for e in self._plan.exits} if exit_names is None else set(exit_names)
-        sources = {
-            n
-            for n, data in self._graph.nodes(data=True)
-            if data["kind"] == "exit" and data["opening"] in names
-        }
+    def way_from(self, gate_name: str, destination: int) -> float:
+        """Metres from the places of a gate to a destination at least; inf where there is no way."""
+        lengths = self.distances(destination)
+        there = [n for n, name in self._graph.nodes(data="opening") if name == gate_name]
+        return float(lengths[there].min(initial=np.inf))
+
+    def _shortest(self, opening_names: tuple[str, ...] | None) -> NDArray[np.float64]:
+        names = set(opening_names or (e.name for e in self._plan.exits))
+        sources = {n for n, name in self._graph.nodes(data="opening") if name in names}
         result = np.full(self._graph.number_of_nodes(), np.inf)
         if sources:
             backwards = self._graph.reverse(copy=False)
@@ -196,6 +207,8 @@ class Router:
         first = order[np.unique(start[order], return_index=True)[1]]
         first = first[np.isfinite(through[first])]
         follow[start[first]] = end[first]
+        # A gate that is the destination is the end of its route, though others lead on from it.
+        follow[lengths == 0.0] = -1
         return follow
 
     def _update(self) -> None:

@@ -5,6 +5,7 @@ import pytest
 import shapely
 from shapely import LineString, box
 
+from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Router
 
 
@@ -171,3 +172,38 @@ def test_what_cannot_be_in_view_is_left_out_rightly(plans, places_in, name: str)
 def test_people_outside_the_plan_do_no_harm(plans) -> None:
     found = Router(plans["room"]()).targets([(-5, -5), (1e6, 3), (np.nan, 1)], [0, 0, 0])
     assert np.isfinite(found.points[:2]).all()
+
+
+def test_a_gate_to_cross_is_aimed_at_from_behind(plans) -> None:
+    plan = plans["two_rooms"]()
+    router = Router(plan)
+    across = router.crossing("door")
+    # From either side, 2 m behind the line at x = 6.1; places aimed through are 0.45 m clear of
+    # the jambs at y = 1 and 2.
+    found = router.targets([(3, 1.5), (9, 1.5)], [across, across])
+    assert found.points == pytest.approx(np.array([(8.1, 1.5), (4.1, 1.5)]))
+    assert found.distances == pytest.approx([3.1, 2.9])
+    assert found.gates.tolist() == [0, 0]
+    # Just before the line, and past it, it is still the gate that is aimed at.
+    near = router.targets([(6.07, 1.5), (6.13, 1.5)], [across, across])
+    assert near.points[:, 0] == pytest.approx([8.07, 4.13], abs=0.04)
+
+
+def test_a_gate_round_the_corner_is_reached_by_the_shortest_way() -> None:
+    plan = FloorPlan(
+        "POLYGON((0 0, 12 0, 12 10, 10 10, 10 2, 0 2, 0 0))",
+        exits=[Exit("top", (10, 10), (12, 10))],
+        gates=[Gate("g", (10, 6), (12, 6))],
+    )
+    router = Router(plan)
+    found = router.targets([(1, 1)], [router.crossing("g")])
+    # By the corner (10.2, 1.8), straight up from there.
+    assert found.distances == pytest.approx([hypot(9.2, 0.8) + 4.2], abs=0.01)
+
+
+def test_only_gates_can_be_crossed_and_only_exits_left_by(plans) -> None:
+    router = Router(plans["two_rooms"]())
+    with pytest.raises(FloorPlanError, match="'out' is an exit"):
+        router.crossing("out")
+    with pytest.raises(FloorPlanError, match="'door' is a gate"):
+        router.destination(["door"])

@@ -1,0 +1,166 @@
+"""Journeys: gates that people cross one after the other, then an exit, or round again for ever.
+
+Which gates somebody has crossed is looked up when it decides, on the path that it has just walked:
+nobody needs to know before, and people without a journey cost nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.state import Crowd, CrowdState
+from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.kernels import point_segment_distance2
+from mesa_mobility.floorplan.routes import IN_LINE
+from mesa_mobility.jit import called
+
+
+@dataclass(frozen=True)
+class Journey:
+    """An itinerary.
+
+    Attributes:
+        gates: names of the gates, in the order in which they are crossed.
+        loop: whether the first follows the last again.
+        legs: the site's number of the destination of each leg; of one more, behind the last gate,
+            unless it is a loop.
+        lines: (legs, 4) the gate that ends each leg, metres; nan for the exits.
+    """
+
+    gates: tuple[str, ...]
+    loop: bool
+    legs: NDArray[np.int32]
+    lines: NDArray[np.float64]
+
+
+class Journeys:
+    """The journeys of a model's people.
+
+    Attributes:
+        crossed: gates crossed so far by everybody together.
+    """
+
+    def __init__(self, plan: FloorPlan, site: Site) -> None:
+        self._plan = plan
+        self._site = site
+        self._known: list[Journey] = []
+        self._numbers: dict[tuple[tuple[str, ...], bool, tuple[str, ...] | None], int] = {}
+        self.crossed = 0
+
+    def add(self, route: Sequence[str], loop: bool, exits: tuple[str, ...] | None) -> int:
+        """A number, above 0, for this route.
+
+        Raises:
+            ModelError: no list of gates, one gate twice in a row, or a loop that ends at exits.
+            FloorPlanError: an unknown gate, or no way from one to the next.
+        """
+        names = tuple(route)
+        key = names, loop, exits
+        if key in self._numbers:
+            return self._numbers[key]
+        if isinstance(route, str) or not names:
+            raise ModelError(f"route: got {route!r}, expected a list of names of gates")
+        following = [*names[1:], names[0]] if loop else names[1:]
+        for one, next_one in zip(names, following, strict=False):
+            if one == next_one:
+                raise ModelError(f"route: gate {one!r} follows itself, expected another one next")
+        if loop and exits is not None:
+            raise ModelError("exits: got some for a route that goes round for ever, expected none")
+        legs = [self._site.crossing(name) for name in names]
+        if not loop:
+            legs.append(self._site.destination(exits))
+        for name, leg in zip(names, [*legs[1:], legs[0]] if loop else legs[1:], strict=True):
+            self._site.check_way_on(name, leg)
+        lines = [(*self._plan.gate(name).a, *self._plan.gate(name).b) for name in names]
+        self._known.append(
+            Journey(
+                gates=names,
+                loop=loop,
+                legs=np.array(legs, dtype=np.int32),
+                lines=np.array([*lines, *[(np.nan,) * 4] * (not loop)]),
+            )
+        )
+        self._numbers[key] = len(self._known)
+        return len(self._known)
+
+    def gates(self, number: int) -> tuple[str, ...]:
+        """Names of the gates of the journey with this number."""
+        return self._known[number - 1].gates if number else ()
+
+    def endless(self, number: int) -> bool:
+        """Whether whoever is on the journey with this number goes round for ever."""
+        return number > 0 and self._known[number - 1].loop
+
+    def leg(self, number: int, crossed: int) -> tuple[int, NDArray[np.float64]]:
+        """Destination, and line to cross, of somebody who has crossed so many gates."""
+        journey = self._known[number - 1]
+        k = crossed % len(journey.legs)
+        return int(journey.legs[k]), journey.lines[k]
+
+    def advance(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
+        """Send those in ``rows`` on who have crossed the gate that they went for."""
+        if not self._known:
+            return
+        agenda = crowd.agenda
+        on = rows[agenda["journey"][rows] > 0]
+        while len(on):
+            lines = np.array(
+                [
+                    self.leg(number, crossed)[1]
+                    for number, crossed in agenda[["journey", "crossed"]][on].tolist()
+                ]
+            )
+            when = np.full(len(on), np.inf)
+            _find_crossings(on, lines, frame, agenda["checked"][on], crowd.records, when)
+            over = np.isfinite(when)
+            agenda["checked"][on] = np.where(over, when, frame)
+            on = on[over]
+            agenda["crossed"][on] += 1
+            self.crossed += len(on)
+            for row in on.tolist():
+                number, crossed = agenda[["journey", "crossed"]][row].tolist()
+                crowd.destination[row] = self.leg(number, crossed)[0]
+
+
+@called()
+def _find_crossings(
+    rows: NDArray[np.int64],
+    lines: NDArray[np.float64],
+    frame: int,
+    since: NDArray[np.float64],
+    state: CrowdState,
+    when: NDArray[np.float64],
+) -> None:
+    """Write when, in frames, people first crossed their line after ``since``, if they have."""
+    for a in range(len(rows)):
+        i = rows[a]
+        cx, cy, dx, dy = lines[a]
+        vx, vy = dx - cx, dy - cy
+        path = state[i].path
+        for k in range(state.knots[i] - 1):
+            begin = state.start[i] + k * state.spacing[i]
+            if begin + state.spacing[i] <= since[a] or begin >= frame:
+                continue
+            ux, uy = path[0, k + 1] - path[0, k], path[1, k + 1] - path[1, k]
+            det = ux * vy - uy * vx
+            if det == 0.0:
+                continue
+            wx, wy = cx - path[0, k], cy - path[1, k]
+            u = (wx * vy - wy * vx) / det
+            v = (wx * uy - wy * ux) / det
+            t = begin + u * state.spacing[i]
+            if 0.0 <= u <= 1.0 and 0.0 <= v <= 1.0 and since[a] < t <= frame:
+                when[a] = t
+                break
+        # Routes take whoever is that near to have passed it.
+        if math.isinf(when[a]) and since[a] < frame:
+            d2 = point_segment_distance2(state.x[i], state.y[i], cx, cy, dx, dy)
+            if d2 <= IN_LINE * IN_LINE:
+                when[a] = frame
