@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         CompiledTerm,
         CostTerm,
         Deciding,
+        Pace,
         Pedestrian,
         PedestrianModel,
         PedestrianType,
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
         pair_kernel,
     )
     from mesa_mobility.errors import MobilityError
-    from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Targets
+    from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone, Targets
     from mesa_mobility.mobility import MobilityMap, MotionGraph
     from mesa_mobility.results import Trajectories
 
@@ -50,9 +51,11 @@ _ROOMS = {
     "MobilityError": "errors",
     "MobilityMap": "mobility",
     "MotionGraph": "mobility",
+    "Pace": "crowd",
     "Pedestrian": "crowd",
     "PedestrianModel": "crowd",
     "PedestrianType": "crowd",
+    "SpeedZone": "floorplan",
     "TargetChoice": "crowd",
     "Targets": "floorplan",
     "Trajectories": "results",
@@ -74,9 +77,11 @@ __all__ = [
     "MobilityError",
     "MobilityMap",
     "MotionGraph",
+    "Pace",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
+    "SpeedZone",
     "TargetChoice",
     "Targets",
     "Trajectories",

@@ -5,6 +5,7 @@ from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.explain import FREE, PERSON, WALL, Explanation, Watch
 from mesa_mobility.crowd.kernels import bound_kernel, option_kernel, pair_kernel
 from mesa_mobility.crowd.model import PedestrianModel
+from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import PRESETS, Preset
@@ -22,6 +23,7 @@ __all__ = [
     "CostTerm",
     "Deciding",
     "Explanation",
+    "Pace",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",

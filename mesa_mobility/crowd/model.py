@@ -15,9 +15,11 @@ from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.explain import Explanation, Watch
+from mesa_mobility.crowd.inside import Inside
 from mesa_mobility.crowd.journeys import Journeys
 from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
+from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.people import People
@@ -31,8 +33,10 @@ from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.summary import CrowdMeasures
 from mesa_mobility.crowd.surroundings import Site
-from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
+from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
 from mesa_mobility.crowd.terms import CostTerm
+from mesa_mobility.crowd.waits import Waits
+from mesa_mobility.crowd.wishes import set_wishes
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.mobility import MobilityMap
@@ -60,6 +64,10 @@ class PedestrianModel(CrowdMeasures, People):
         space: Mesa's continuous space with everybody inside.
         crowd: the crowd's arrays; see ``Crowd``.
         journeys: the itineraries of those who have one.
+        waits: those who have been told to wait.
+        groups: names of the groups, in the order of their numbers from 1 on.
+        paces: behaviours that slow people down, the preset's one for groups from the first group
+            on; may be added to and removed at run time.
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
         occupancy: (seconds, people inside) each simulated second.
@@ -108,6 +116,7 @@ class PedestrianModel(CrowdMeasures, People):
             tuple(kind.mobility_map for kind in self.pedestrian_types), rules.durations
         )
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
+        self.paces: list[Pace] = []
         self.target_choice = target_choice or rules.make_target_choice()
         self.frames_per_step = frames_per_step
         self.frame = 0
@@ -131,6 +140,8 @@ class PedestrianModel(CrowdMeasures, People):
         )
         self._site = Site(floor_plan, reach=reach + core + 0.02, body=core)
         self.journeys = Journeys(floor_plan, self._site)
+        self.waits = Waits()
+        self.groups: list[str | int] = []
         self._plan_version = floor_plan.version
         x0, y0, x1, y1 = floor_plan.bounds
         self.space = CrowdSpace(
@@ -248,29 +259,27 @@ class PedestrianModel(CrowdMeasures, People):
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
         self.journeys.advance(deciding, self.frame, self.crowd)
-        targets = self._set_targets(deciding)
+        targets = self._set_targets(deciding, rows)
         # Those nearest to where they go decide first: that frees space for those behind.
         order = deciding[np.argsort(targets.distances, kind="stable")]
         self._decisions.take(
             order, self.frame, rows, self.crowd, self._site.surroundings, self.terms, self.watch
         )
 
-    def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
+    def _set_targets(self, rows: NDArray[np.int64], inside: NDArray[np.int64]) -> Targets:
         state = self.crowd
-        targets = ask(
-            self.target_choice,
-            Deciding(
-                pedestrians=rows,
-                positions=np.column_stack([state.x[rows], state.y[rows]]),
-                destinations=state.destination[rows],
-                types=state.kind[rows].astype(np.int64),
-                elapsed=self.elapsed,
-                site=self._site,
-            ),
+        deciding = Deciding(
+            pedestrians=rows,
+            positions=np.column_stack([state.x[rows], state.y[rows]]),
+            destinations=state.destination[rows],
+            types=state.kind[rows].astype(np.int64),
+            elapsed=self.elapsed,
+            inside=Inside(inside, state),
+            rng=self.rng,
+            site=self._site,
         )
-        state.target_x[rows], state.target_y[rows] = targets.points.T
-        state.route[rows] = targets.distances
-        return targets
+        waiting = self.waits.waiting(rows, self.frame, state)
+        return set_wishes(deciding, state, self.floor_plan, self.target_choice, self.paces, waiting)
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows``, were they to decide here and now."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,6 +61,33 @@ class Pedestrian(ContinuousSpaceAgent):
     def start_time(self) -> float:
         """Seconds of simulated time at which the person sets off: its pre-movement time is over."""
         return float(self.model.crowd.agenda["sets_off"][self.row]) * FRAME_SECONDS
+
+    def wait(
+        self, seconds: float | None = None, *, until: Callable[[], bool] | None = None
+    ) -> None:
+        """Have the person come to a stand when its movement under way has ended, and stay there.
+
+        Args:
+            seconds: for so long from now on.
+            until: or until this function, asked whenever the person could decide, is true.
+
+        It goes on with the decision after that, 0.4 s later at most.
+
+        Raises:
+            ModelError: neither of them, both, or a time out of range.
+        """
+        self.model.waits.tell(self.row, seconds, until, self.model.frame, self.model.crowd)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether the person waits, as told or because its pre-movement time is not over."""
+        return bool(self.model.crowd.agenda["waits_until"][self.row] > self.model.frame)
+
+    @property
+    def group(self) -> str | int | None:
+        """The group that the person belongs to, if any."""
+        number = int(self.model.crowd.agenda["group"][self.row])
+        return self.model.groups[number - 1] if number else None
 
     @property
     def route(self) -> tuple[str, ...]:

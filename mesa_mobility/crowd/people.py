@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.journeys import Journeys
-from mesa_mobility.crowd.options import FRAME_SECONDS
+from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.placing import (
@@ -21,20 +21,19 @@ from mesa_mobility.crowd.placing import (
     face,
     place,
 )
+from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.replan import too_close
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.crowd.waits import frames_of
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import Targets
-
-LONGEST_WAIT = 1e6
-"""Seconds of pre-movement at most; eleven days."""
 
 
 class People(mesa.Model):
@@ -49,6 +48,9 @@ class People(mesa.Model):
     _rules: Rules
     _site: Site
     journeys: Journeys
+    groups: list[str | int]
+    paces: list[Pace]
+    preset: str
     _rows: NDArray[np.int64]
     _agents_by_row: list[Pedestrian | None]
 
@@ -62,6 +64,7 @@ class People(mesa.Model):
         exits: Sequence[str] | None = None,
         route: Sequence[str] = (),
         loop: bool = False,
+        group: str | int | None = None,
         kind: int = 0,
     ) -> list[Pedestrian]:
         """Put people on the floor, standing.
@@ -75,6 +78,7 @@ class People(mesa.Model):
             exits: names of the exits they may leave by; by default the nearest of all.
             route: names of gates that they cross, in this order, before they leave.
             loop: the route's first gate follows its last again; they never leave.
+            group: the name or number of a group that they belong to, with whoever else is given it.
             kind: index of their type in ``pedestrian_types``.
 
         Raises:
@@ -101,9 +105,7 @@ class People(mesa.Model):
         if (speeds <= 0.0).any():
             raise ModelError(f"preferred_speeds: got {speeds.min()}, expected more than 0 m/s")
         waits = draw_column("pre_movement", pre_movement, n, self.rng)
-        if ((waits < 0.0) | (waits > LONGEST_WAIT)).any():
-            wrong = waits.min() if (waits < 0.0).any() else waits.max()
-            raise ModelError(f"pre_movement: got {wrong}, expected 0 to {LONGEST_WAIT:g} s")
+        sets_off = self.frame + frames_of(waits, "pre_movement")
         facing = None if headings is None else check_column("headings", headings, n)
         destination, journey = self._where_to(exits, route, loop)
         new = Newcomer(
@@ -112,16 +114,15 @@ class People(mesa.Model):
             standing=int(self._rules.standing[kind]),
             destination=destination,
             journey=journey,
+            group=self._group_number(group),
         )
         self._check_room(points, new.core)
         self._site.check_way_out(points, new.destination)
         rows = np.arange(self.count, self.count + n)
         if self.count + n > len(self.crowd.x):
             self.crowd.grow(max(self.count + n, 2 * len(self.crowd.x)))
-        # The first frame that is not before the time, whatever its last bit.
-        sets_off = self.frame + np.ceil(waits / FRAME_SECONDS - 1e-6).astype(np.int64)
         place(self.crowd, rows, points, speeds, self.frame, sets_off, new)
-        aim = self._set_targets(rows).points - points
+        aim = self._set_targets(rows, np.concatenate([self._rows, rows])).points - points
         face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
         self.count += n
         self._rows = np.concatenate([self._rows, rows])
@@ -163,6 +164,17 @@ class People(mesa.Model):
         journey = self.journeys.add(route, loop, names)
         return self.journeys.leg(journey, 0)[0], journey
 
+    def _group_number(self, group: str | int | None) -> int:
+        if group is None:
+            return 0
+        if not isinstance(group, str | int):
+            raise ModelError(f"group: got {group!r}, expected a name or number")
+        if group not in self.groups:
+            if not self.groups:
+                self.paces += preset_named(self.preset).make_group_paces()
+            self.groups.append(group)
+        return self.groups.index(group) + 1
+
     def _check_room(self, points: NDArray[np.float64], core: float) -> None:
         if not self._rules.cores:
             return
@@ -176,8 +188,8 @@ class People(mesa.Model):
                 "expected room for both bodies"
             )
 
-    def _set_targets(self, rows: NDArray[np.int64]) -> Targets:
-        """Give the people in ``rows`` their targets."""
+    def _set_targets(self, rows: NDArray[np.int64], inside: NDArray[np.int64]) -> Targets:
+        """Give the people in ``rows``, who are among those ``inside``, their targets."""
         raise NotImplementedError
 
     def _write_space(self) -> None:

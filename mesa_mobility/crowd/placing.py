@@ -16,13 +16,15 @@ from mesa_mobility.floorplan import FloorPlan
 @dataclass(frozen=True)
 class Newcomer:
     """What new people have in common: index of their type, core radius in metres, number of the
-    cluster in which they stand, numbers of their destination and of their journey, 0 for none."""
+    cluster in which they stand, numbers of their destination, and of their journey and group, 0 for
+    none."""
 
     kind: int
     core: float
     standing: int
     destination: int
     journey: int
+    group: int
 
 
 def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
@@ -102,6 +104,7 @@ def place(
     agenda["speed"][rows] = speeds
     agenda["journey"][rows], agenda["crossed"][rows] = new.journey, 0
     agenda["checked"][rows] = frame - 1
+    agenda["group"][rows] = new.group
     agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 
 

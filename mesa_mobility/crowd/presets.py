@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.target_choice import TargetChoice
 from mesa_mobility.crowd.terms import CostTerm
 from mesa_mobility.errors import ModelError
@@ -18,6 +19,7 @@ class Preset:
         name: as it is asked for.
         terms: weight of each registered cost term.
         target_choice: registered behaviour that gives people their targets.
+        group_pace: registered behaviour that keeps groups together, where there are any.
         durations: option durations in frames.
         cores: whether bodies are hard.
     """
@@ -25,12 +27,17 @@ class Preset:
     name: str
     terms: dict[str, float]
     target_choice: str
+    group_pace: str | None
     durations: tuple[int, ...]
     cores: bool
 
     def make_target_choice(self) -> TargetChoice:
         """The target choice, looked up among the installed behaviours."""
         return load_behavior(self.target_choice)()
+
+    def make_group_paces(self) -> list[Pace]:
+        """What a model with groups needs, looked up among the installed behaviours."""
+        return [load_behavior(self.group_pace)()] if self.group_pace else []
 
     def make_terms(self) -> list[CostTerm]:
         """The cost terms, looked up among the installed behaviours."""
@@ -49,6 +56,7 @@ PRESETS = {
             "interference": 1.0,
         },
         target_choice="nearest_exit",
+        group_pace=None,
         durations=(45,),
         cores=False,
     ),
@@ -63,6 +71,7 @@ PRESETS = {
             "interference": 1.0,
         },
         target_choice="nearest_exit",
+        group_pace="walk_together",
         durations=(12, 24, 45),
         cores=True,
     ),

@@ -79,6 +79,7 @@ AGENDA = np.dtype(
         ("waits_until", "i8"),
         ("journey", "i4"),
         ("crossed", "i4"),
+        ("group", "i4"),
         ("checked", "f8"),
     ],
     align=True,
@@ -88,7 +89,8 @@ AGENDA = np.dtype(
 Fields: ``speed``, its preferred speed where nothing slows it down, m/s (``preferred`` in the
 record is that of its last decision); ``sets_off``, frame of its first decision; ``waits_until``,
 frame before which it does not walk; ``journey``, the number of its itinerary, 0 for none;
-``crossed``, gates of it that it has crossed, looked up until frame ``checked``.
+``crossed``, gates of it that it has crossed, looked up until frame ``checked``; ``group``, the
+number of its group, 0 for none.
 """
 
 

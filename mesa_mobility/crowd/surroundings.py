@@ -41,6 +41,16 @@ class Site:
             self._version = -1
         return number
 
+    def exits(self, destination: int) -> tuple[str, ...]:
+        """Names of the exits of a destination, open or closed; none if it is a gate to cross."""
+        names = self._destinations[destination]
+        return tuple(e.name for e in self._plan.exits if names is None or e.name in names)
+
+    @property
+    def plan(self) -> FloorPlan:
+        """The floor plan."""
+        return self._plan
+
     def crossing(self, gate: str) -> int:
         """Number of the destination "across this gate"; to whoever goes there no exit is a way."""
         number = self._router.crossing(gate)

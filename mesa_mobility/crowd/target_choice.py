@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.inside import Inside
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
@@ -24,8 +25,11 @@ class Deciding:
         destinations: (n,) number of the set of exits that each may leave by.
         types: (n,) index of the pedestrian type.
         elapsed: simulated seconds.
+        inside: everybody inside, themselves included.
+        rng: the model's generator.
         site: routes: ``site.targets(positions, destinations)`` and
-            ``site.destination(exit_names)``, the number of a set of exits.
+            ``site.destination(exit_names)``, the number of a set of exits;
+            ``site.exits(destination)``, their names.
     """
 
     pedestrians: NDArray[np.int64]
@@ -33,6 +37,8 @@ class Deciding:
     destinations: NDArray[np.int32]
     types: NDArray[np.int64]
     elapsed: float
+    inside: Inside
+    rng: np.random.Generator
     site: Site
 
 

@@ -14,11 +14,12 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.openings import Exit, Gate, Opening
+from mesa_mobility.floorplan.zones import SpeedZone
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
 
-KINDS = ("walkable", "obstacle", "gate", "exit")
+KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
 """What the property `kind` of a feature can be."""
 
 
@@ -31,6 +32,7 @@ class Content:
     exits: list[Exit] = field(default_factory=list)
     gates: list[Gate] = field(default_factory=list)
     obstacles: list[Polygon] = field(default_factory=list)
+    zones: list[SpeedZone] = field(default_factory=list)
     closed: list[str] = field(default_factory=list)
 
 
@@ -44,6 +46,10 @@ def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
         feature = _feature(opening.kind, opening.name, opening.line)
         if not plan.is_open(opening.name):
             feature["properties"]["closed"] = True
+        features.append(feature)
+    for zone in plan.zones:
+        feature = _feature("zone", zone.name, zone.area)
+        feature["properties"]["factor"] = zone.factor
         features.append(feature)
     return {"type": "FeatureCollection", "features": features}
 
@@ -98,21 +104,26 @@ def _content(data: object, where: str) -> Content:
     features = data.get("features")
     if not isinstance(features, list):
         raise FloorPlanError(f"{where}: features must be a list")
-    found: list[tuple[str, str, BaseGeometry, bool, str]] = []
+    found: list[tuple[str, str, BaseGeometry, Mapping[str, Any], str]] = []
     for number, feature in enumerate(features):
         found.append((*_parse(feature, f"{where}: feature {number}"), f"{where}: feature {number}"))
     areas = [(name, geometry) for kind, name, geometry, _, _ in found if kind == "walkable"]
     if len(areas) != 1:
         raise FloorPlanError(f"{where}: expected one feature of kind walkable, found {len(areas)}")
     content = Content(name=areas[0][0], walkable=areas[0][1])
-    for kind, name, geometry, closed, at in found:
+    for kind, name, geometry, properties, at in found:
         if kind == "obstacle":
             content.obstacles.append(geometry)
         elif kind in ("gate", "exit"):
             opening = _opening(Gate if kind == "gate" else Exit, name, geometry, at)
             (content.gates if kind == "gate" else content.exits).append(opening)
-            if closed:
+            if properties.get("closed") is True:
                 content.closed.append(name)
+        elif kind == "zone":
+            try:
+                content.zones.append(SpeedZone(geometry, properties.get("factor", 0.0), name))
+            except FloorPlanError as error:
+                raise FloorPlanError(f"{at}: {error}") from None
     return content
 
 
@@ -124,7 +135,7 @@ def _feature(kind: str, name: str, geometry: BaseGeometry) -> dict[str, Any]:
     }
 
 
-def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, bool]:
+def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, Mapping[str, Any]]:
     if not isinstance(feature, Mapping):
         raise FloorPlanError(f"{at}: expected a Feature, found {type(feature).__name__}")
     properties = feature.get("properties") or {}
@@ -138,10 +149,10 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, bool]:
     except Exception as error:  # shapely raises whatever the malformed mapping led it into
         text = " ".join(str(error).split())
         raise FloorPlanError(f"{at}: the geometry cannot be read ({text})") from None
-    expected = "Polygon" if kind in ("walkable", "obstacle") else "LineString"
+    expected = "Polygon" if kind in ("walkable", "obstacle", "zone") else "LineString"
     if geometry.geom_type != expected:
         raise FloorPlanError(f"{at}: {kind} must be a {expected}, found {geometry.geom_type}")
-    return kind, str(properties.get("name") or ""), geometry, properties.get("closed") is True
+    return kind, str(properties.get("name") or ""), geometry, properties
 
 
 def _opening(cls: type[Any], name: str, geometry: BaseGeometry, at: str) -> Any:

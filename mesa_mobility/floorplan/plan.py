@@ -14,6 +14,7 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import checks, edges, geojson, placement, reach
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.walls import WallIndex
+from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
 
 
 class FloorPlan:
@@ -30,6 +31,8 @@ class FloorPlan:
         Doors, and other lines to cross, inside the walkable area.
     obstacles
         Polygons (shapely or WKT) to subtract; their ids are 0, 1, 2, ...
+    zones
+        Parts of the floor where people walk more slowly.
     name
         For titles and files.
 
@@ -37,7 +40,7 @@ class FloorPlan:
     ------
     FloorPlanError
         Geometry that is empty, not valid, not finite or in several pieces; an exit
-        off the edge; a gate outside; a name used twice; free area without an exit.
+        off the edge; a gate or a zone outside; a name used twice; free area without an exit.
 
     Attributes
     ----------
@@ -52,6 +55,7 @@ class FloorPlan:
         exits: Iterable[Exit] = (),
         gates: Iterable[Gate] = (),
         obstacles: Iterable[Polygon | str] = (),
+        zones: Iterable[SpeedZone] = (),
         name: str = "",
     ) -> None:
         self.name = name
@@ -67,6 +71,8 @@ class FloorPlan:
         self._next_obstacle = len(self._obstacles)
         checks.check_exits(self._walkable, self._exits, self._gates)
         checks.check_gates(self._walkable, self._gates)
+        self._zones = tuple(zones)
+        check_zones(self._walkable, self._zones)
         checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
         self._set_free(self._obstacles)
@@ -80,10 +86,11 @@ class FloorPlan:
         exits: Iterable[Exit] = (),
         gates: Iterable[Gate] = (),
         obstacles: Iterable[Polygon | str] = (),
+        zones: Iterable[SpeedZone] = (),
         name: str = "",
     ) -> "FloorPlan":
         """A floor plan whose walkable area is given as the WKT of a POLYGON, in metres."""
-        return cls(wkt, exits=exits, gates=gates, obstacles=obstacles, name=name)
+        return cls(wkt, exits=exits, gates=gates, obstacles=obstacles, zones=zones, name=name)
 
     @classmethod
     def from_geojson(cls, source: "str | os.PathLike[str] | dict[str, Any]") -> "FloorPlan":
@@ -99,6 +106,7 @@ class FloorPlan:
                 exits=content.exits,
                 gates=content.gates,
                 obstacles=content.obstacles,
+                zones=content.zones,
                 name=content.name,
             )
         except FloorPlanError as error:
@@ -111,9 +119,9 @@ class FloorPlan:
     def to_geojson(self) -> dict[str, Any]:
         """The plan as a GeoJSON FeatureCollection, coordinates in metres.
 
-        Every feature has the properties `kind` (walkable, obstacle, gate or exit)
-        and `name`; a closed gate or exit has `closed` true. Reading it back gives
-        the same coordinates to the last bit; obstacle ids count from 0 again.
+        Every feature has the properties `kind` (walkable, obstacle, gate, exit or zone)
+        and `name`; a closed gate or exit has `closed` true, a zone its `factor`.
+        Reading it back gives the same coordinates to the last bit; obstacle ids count from 0 again.
         """
         return geojson.feature_collection(self)
 
@@ -155,6 +163,15 @@ class FloorPlan:
     def obstacles(self) -> dict[int, Polygon]:
         """The obstacles by id."""
         return dict(self._obstacles)
+
+    @property
+    def zones(self) -> tuple[SpeedZone, ...]:
+        """The zones of reduced speed."""
+        return self._zones
+
+    def speed_factors(self, points: ArrayLike) -> NDArray[np.float64]:
+        """(n,) share of their preferred speed at which people walk at (n, 2) points, metres."""
+        return speed_factors(self._zones, np.asarray(points, dtype=np.float64).reshape(-1, 2))
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

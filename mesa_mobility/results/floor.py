@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
 OUTSIDE, OBSTACLE, WALL, EXIT, DOOR = "#f2f2f0", "#b5b5b5", "#2b2b2b", "#00a03c", "#18a5d6"
+ZONE = "#fbe9c8"
 # Room on the page for labels, colour bar and legend, inches.
 FRAME = (1.6, 1.4)
 LARGEST = (11.0, 9.5)
@@ -36,7 +37,7 @@ def floor_figure(plan: FloorPlan, *, rows: int, columns: int) -> tuple[Figure, l
 
 
 def draw_floor(axes: Axes, plan: FloorPlan) -> list[Line2D | Patch]:
-    """Draw free floor white, obstacles grey, walls dark, exits and doors coloured.
+    """Draw free floor white, obstacles grey, walls dark, exits, doors and slow zones coloured.
 
     Returns:
         Handles for a legend that explains what was drawn.
@@ -49,6 +50,13 @@ def draw_floor(axes: Axes, plan: FloorPlan) -> list[Line2D | Patch]:
     if not solid.is_empty:
         axes.add_patch(PathPatch(_path(solid), facecolor=OBSTACLE, linewidth=0, zorder=1))
         handles.append(Patch(color=OBSTACLE, label="obstacle"))
+    for zone in plan.zones:
+        inside = shapely.intersection(zone.area, plan.free)
+        if inside.is_empty:
+            continue
+        axes.add_patch(PathPatch(_path(inside), facecolor=ZONE, linewidth=0, zorder=2))
+    if plan.zones:
+        handles.append(Patch(color=ZONE, label="slow zone"))
     axes.add_collection(
         LineCollection(
             list(np.asarray(plan.walls).reshape(-1, 2, 2)), colors=WALL, linewidths=1.1, zorder=4

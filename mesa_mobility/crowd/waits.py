@@ -1,0 +1,71 @@
+"""People who have been told to wait."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options import FRAME_SECONDS
+from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.errors import ModelError
+
+LONGEST_WAIT = 1e6
+"""Seconds at most; eleven days."""
+
+_UNTIL_TOLD = np.iinfo(np.int64).max
+
+
+def frames_of(seconds: NDArray[np.float64], name: str) -> NDArray[np.int64]:
+    """(n,) frames of so many seconds: the first that are not less, whatever the last bit.
+
+    Raises:
+        ModelError: a negative or endless time.
+    """
+    off = ~((seconds >= 0.0) & (seconds <= LONGEST_WAIT))
+    if off.any():
+        raise ModelError(f"{name}: got {seconds[off][0]}, expected 0 to {LONGEST_WAIT:g} s")
+    return np.ceil(seconds / FRAME_SECONDS - 1e-6).astype(np.int64)
+
+
+class Waits:
+    """Who waits for what."""
+
+    def __init__(self) -> None:
+        self._conditions: dict[int, Callable[[], bool]] = {}
+
+    def tell(
+        self,
+        row: int,
+        seconds: float | None,
+        until: Callable[[], bool] | None,
+        frame: int,
+        crowd: Crowd,
+    ) -> None:
+        """Have the person in ``row`` wait from ``frame`` on.
+
+        Raises:
+            ModelError: neither a time nor a condition, both, or a time out of range.
+        """
+        if (seconds is None) == (until is None):
+            raise ModelError("wait: expected either seconds or until")
+        if until is not None and not callable(until):
+            raise ModelError(f"wait: until is {until!r}, expected a function without arguments")
+        if until is not None:
+            self._conditions[row] = until
+            crowd.agenda["waits_until"][row] = _UNTIL_TOLD
+        else:
+            self._conditions.pop(row, None)
+            frames = frames_of(np.array([seconds], dtype=np.float64), "wait")
+            crowd.agenda["waits_until"][row] = frame + frames[0]
+
+    def waiting(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> NDArray[np.bool_]:
+        """(n,) who of those in ``rows`` waits; asks the conditions, and forgets those fulfilled."""
+        until = crowd.agenda["waits_until"]
+        for row in rows[until[rows] == _UNTIL_TOLD].tolist() if self._conditions else ():
+            if self._conditions[row]():
+                del self._conditions[row]
+                until[row] = frame
+        waiting: NDArray[np.bool_] = until[rows] > frame
+        return waiting

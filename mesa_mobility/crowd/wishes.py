@@ -1,0 +1,51 @@
+"""What those who decide wish for: where to go, and how fast."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.pace import Pace, ask_paces
+from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
+from mesa_mobility.floorplan import FloorPlan, Targets
+
+
+def set_wishes(
+    deciding: Deciding,
+    crowd: Crowd,
+    plan: FloorPlan,
+    choice: TargetChoice,
+    paces: Sequence[Pace],
+    waiting: NDArray[np.bool_],
+) -> Targets:
+    """Give those who decide their targets and the speed that they prefer here and now.
+
+    Args:
+        deciding: the pedestrians.
+        crowd: the crowd; gets their targets, ways left to go and speeds.
+        plan: the floor plan, with its zones of reduced speed.
+        choice: where they go.
+        paces: what slows them down.
+        waiting: (n,) who stays where it is.
+
+    Raises:
+        ModelError: a behaviour gives what it should not.
+    """
+    rows = deciding.pedestrians
+    targets = ask(choice, deciding)
+    crowd.target_x[rows], crowd.target_y[rows] = targets.points.T
+    crowd.route[rows] = targets.distances
+    speeds: NDArray[np.float64] = crowd.agenda["speed"][rows]
+    if plan.zones:
+        speeds = speeds * plan.speed_factors(deciding.positions)
+    speeds = ask_paces(paces, deciding, speeds)
+    if waiting.any():
+        # Like those who have no way to go: they come to a stand, and stay.
+        speeds = np.where(waiting, 0.0, speeds)
+        stay = rows[waiting]
+        crowd.target_x[stay], crowd.target_y[stay] = crowd.x[stay], crowd.y[stay]
+    crowd.preferred[rows] = speeds
+    return targets

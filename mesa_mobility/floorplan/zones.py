@@ -1,0 +1,71 @@
+"""Zones of reduced speed: stairs drawn flat, soft ground, a crowded shop front."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Real
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import Polygon
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.checks import read_polygon
+
+
+@dataclass(frozen=True)
+class SpeedZone:
+    """Part of the floor where people walk at a share of their preferred speed.
+
+    The factor holds for decisions that are taken in the zone, its edge included, and for the whole
+    of the movement decided on: up to 1.5 s later for those who come in, and as much longer for
+    those who go out. Where zones overlap their factors multiply.
+
+    Parameters
+    ----------
+    polygon
+        shapely or WKT, metres.
+    factor
+        More than 0, at most 1.
+    name
+        For files and pictures.
+
+    Raises
+    ------
+    FloorPlanError
+        A polygon that is none, or a factor out of range.
+    """
+
+    polygon: Polygon | str
+    factor: float
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        what = f"speed zone {self.name!r}" if self.name else "speed zone"
+        object.__setattr__(self, "polygon", read_polygon(self.polygon, what))
+        if not (isinstance(self.factor, Real) and 0.0 < self.factor <= 1.0):
+            raise FloorPlanError(f"{what}: factor must be above 0, at most 1, found {self.factor}")
+        shapely.prepare(self.polygon)
+
+    @property
+    def area(self) -> Polygon:
+        """The polygon as a shapely geometry."""
+        assert isinstance(self.polygon, Polygon)
+        return self.polygon
+
+
+def check_zones(walkable: Polygon, zones: Sequence[SpeedZone]) -> None:
+    """Zones must be SpeedZone objects that have floor in them; FloorPlanError otherwise."""
+    for number, zone in enumerate(zones):
+        if not isinstance(zone, SpeedZone):
+            raise FloorPlanError(f"zones must be SpeedZone objects, found {type(zone).__name__}")
+        if not zone.area.intersection(walkable).area > 0.0:
+            raise FloorPlanError(f"speed zone {zone.name or number} has no floor in it")
+
+
+def speed_factors(zones: Sequence[SpeedZone], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) share of the preferred speed at (n, 2) points."""
+    factors = np.ones(len(points))
+    for zone in zones:
+        factors[shapely.intersects_xy(zone.area, points[:, 0], points[:, 1])] *= zone.factor
+    return factors
