@@ -10,13 +10,19 @@ from matplotlib.figure import Figure
 from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan, Gate
-from mesa_mobility.results import flow
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict, case
 from mesa_mobility.verification.checks import Check, at_most, exactly, rising, within
 from mesa_mobility.verification.references import BOTTLENECK_TOLERANCE, bottleneck_fit, columns
-from mesa_mobility.verification.runs import CLEARANCE, SPACING, Run, crowd_model, evacuate
+from mesa_mobility.verification.runs import (
+    CLEARANCE,
+    SPACING,
+    Run,
+    crowd_model,
+    evacuate,
+    steady_flow,
+)
 from mesa_mobility.verification.voronoi import individual_densities
 
 WIDTHS = (0.8, 0.9, 1.0, 1.2, 1.6, 2.0, 2.5)
@@ -27,8 +33,6 @@ ROOM_WIDTH, ROOM_DEPTH, NECK = 8.0, 10.0, 1.0
 START = box(-4.0, -8.5, 4.0, -1.0)
 FRONT = box(-1.0, -1.5, 1.0, -0.5)
 """Where the density in front is measured, metres; the neck begins at y = 0."""
-FROM, TO = 30, 150
-"""Passages that count, the first and the last: without the run-up and without the tail."""
 DENSITY_IN_FRONT = (3.5, 6.0)
 
 
@@ -73,12 +77,14 @@ def bottleneck(seed: int, *, width: float, people: int = PEOPLE) -> dict[str, An
     run = evacuate(model, 600.0)
     gate = floor.gates[0]
     times = run.crossing_times(gate.a, gate.b)
-    through = len(times) >= TO
+    first, last = round(people / 6) - 1, round(people * 5 / 6) - 1
     return {
         **run.figures(),
         "passed": len(times),
-        "flow_per_s": flow(times[FROM - 1 : TO]) if through else None,
-        "density_in_front": _in_front(run, times[FROM - 1], times[TO - 1]) if through else None,
+        "flow_per_s": steady_flow(times, people),
+        "density_in_front": _in_front(run, times[first], times[last])
+        if len(times) > last
+        else None,
     }
 
 
@@ -92,7 +98,7 @@ def _in_front(run: Run, start: float, end: float) -> float | None:
         points = points[shapely.intersects_xy(run.model.floor_plan.free, *points.T)]
         inside = shapely.contains_xy(FRONT, *points.T)
         if inside.any():
-            means.append(individual_densities(points, run.model.floor_plan.free)[inside].mean())
+            means.append(individual_densities(points, run.model.floor_plan.free, inside).mean())
     return float(np.median(means)) if means else None
 
 

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 from scipy import stats
 
-from mesa_mobility.verification import judging
+from mesa_mobility.verification import judging, rimea
 from mesa_mobility.verification.cases import Figures, case
-from mesa_mobility.verification.checks import Verdict, at_most, within
+from mesa_mobility.verification.checks import Verdict, at_most, less_than, within
+from mesa_mobility.verification.references import bottleneck_envelope
 from mesa_mobility.verification.scenarios import rooms, walks
 from mesa_mobility.verification.scenarios.counterflow import counterflow
 from mesa_mobility.verification.suite import VerificationTest
@@ -28,8 +29,6 @@ LOW, HIGH = rooms.MALES_30_TO_50
 
 def exit_flow(runs: Sequence[Figures]) -> Verdict:
     """Flow within what was measured at openings of 1 m; the design cap is reported beside it."""
-    from mesa_mobility.verification.references import bottleneck_envelope
-
     flow = runs[0]["flow_per_s"]
     least, most = bottleneck_envelope(1.0)
     return Verdict(
@@ -41,12 +40,27 @@ def exit_flow(runs: Sequence[Figures]) -> Verdict:
     )
 
 
+def flow_at_high_density(runs: Sequence[Figures]) -> Verdict:
+    """Specific flow at 4 to 6 persons/m2 below the highest at 1 to 3 persons/m2."""
+    flows = {
+        density: run["mean_speed"] * run["mean_density"]
+        for density, run in zip(rimea.DENSITIES, runs, strict=True)
+    }
+    moderate = max(flow for density, flow in flows.items() if 1.0 <= density <= 3.0)
+    high = max(flow for density, flow in flows.items() if density >= 4.0)
+    return Verdict(
+        (less_than("highest flow at 4 to 6/m2 per m s", high, moderate),),
+        {"highest flow at 1 to 3/m2 per m s": moderate},
+    )
+
+
 TESTS = {
     "imo-01": VerificationTest(
         (case(walks.lone_walker, length=40.0, speed=1.0, measured_from=10.0, measured_to=30.0),),
         judge=judging.lone_walk((37.7, 43.5), 1.0),
     ),
     "imo-04": VerificationTest((ROOM_OF_100,), judge=exit_flow),
+    "imo-05": rimea.TESTS["rimea-05"],
     "imo-06": VerificationTest((CORNER,), judge=judging.corner(60.0)),
     "imo-07": VerificationTest(
         (case(walks.uniform_speeds, effort=2.0, people=50, low=LOW, high=HIGH),),
@@ -60,4 +74,6 @@ TESTS = {
         ),
         judge=judging.closed_exits,
     ),
+    "imo-10": rimea.TESTS["rimea-10"],
+    "imo-12": VerificationTest(rimea.TRACKS, judge=flow_at_high_density),
 }

@@ -20,10 +20,17 @@ from mesa_mobility.verification.checks import (
     within,
 )
 from mesa_mobility.verification.references import published
+from mesa_mobility.verification.suite import PooledJudge
 
 KS_LEVEL = 0.05
 LEAST_ENTRIES = 50
 """Entries that a bin needs to count."""
+
+
+def mean(values: Sequence[float | None]) -> float | None:
+    """Mean over the seeds; None where one of them gave nothing."""
+    known = [value for value in values if value is not None]
+    return float(np.mean(known)) if known and len(known) == len(values) else None
 
 
 def everybody_out(figures: Sequence[Figures]) -> list[Check]:
@@ -158,3 +165,41 @@ def single_file_share(bins: Figures) -> tuple[Check, Figures]:
         "bins compared": len(inside),
         "bins outside": [round(float(d), 1) for d in bins["density"][known][~inside]],
     }
+
+
+def allocated(runs: Sequence[Figures]) -> Verdict:
+    """15 people leave by the main exit and 8 by the other, as they were told."""
+    (run,) = runs
+    return Verdict(
+        (
+            exactly("to the main exit", run["to_main"], 15),
+            exactly("to the secondary exit", run["to_secondary"], 8),
+            exactly("by another exit than allocated", run["astray"], 0),
+        )
+    )
+
+
+def starts_follow(names: Sequence[str], distributions: Sequence[Any]) -> PooledJudge:
+    """Times at which people start follow the distributions, one for each case."""
+
+    def judge(seeds: Sequence[Sequence[Figures]]) -> Verdict:
+        checks: list[Check] = []
+        for name, distribution, of in zip(
+            names, distributions, zip(*seeds, strict=True), strict=True
+        ):
+            pairs = [
+                (start, time)
+                for run in of
+                for start, time in zip(run["started"], run["assigned"], strict=True)
+            ]
+            late = [start - time for start, time in pairs if start is not None]
+            known = [start for start, _ in pairs if start is not None]
+            p_value = float(stats.kstest(known, distribution.cdf).pvalue) if known else None
+            checks += [
+                exactly(f"{name}: people who never started", len(pairs) - len(known), 0),
+                at_least(f"{name}: KS p", p_value, KS_LEVEL),
+                within(f"{name}: latest start after its time s", max(late, default=None), 0, 1.5),
+            ]
+        return Verdict(tuple(checks))
+
+    return judge

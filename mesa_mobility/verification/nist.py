@@ -2,14 +2,73 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from scipy import stats
 
-from mesa_mobility.verification import imo, judging
-from mesa_mobility.verification.cases import case
-from mesa_mobility.verification.scenarios import walks
+from mesa_mobility.distributions import Gamma, LogNormal, Uniform, Weibull
+from mesa_mobility.verification import imo, judging, rimea
+from mesa_mobility.verification.cases import Figures, case
+from mesa_mobility.verification.checks import Verdict, at_least, exactly, less_than, rising
+from mesa_mobility.verification.scenarios import closures, impaired, premovement, walks
 from mesa_mobility.verification.suite import VerificationTest
 
+PRE_MOVEMENT = {
+    "uniform": (Uniform(10.0, 100.0), stats.uniform(10.0, 90.0)),
+    "gamma": (Gamma(1.291, 103.901), stats.gamma(1.291, scale=103.901)),
+    "log-normal": (LogNormal(4.586, 0.967), stats.lognorm(0.967, scale=98.1013)),
+    "Weibull": (Weibull(139.285, 1.195), stats.weibull_min(1.195, scale=139.285)),
+}
+"""What people draw from, and the same as SciPy has it; exp(4.586) = 98.1013."""
+
+NARROW, WIDE = 1.2, 4.0
+
+
+def impaired_person(seeds: Sequence[Sequence[Figures]]) -> Verdict:
+    """The impaired person holds the others up in the narrow passage; in the wide one they pass."""
+    control, narrow, wide = zip(*seeds, strict=True)
+    times = [judging.mean([run["egress_s"] for run in of]) for of in (control, narrow)]
+    overtakers = judging.mean([run["overtaken_by"] for run in wide])
+    left = sum(run["left_inside"] for row in seeds for run in row)
+    return Verdict(
+        (
+            exactly("left inside", left, 0),
+            rising("T with the impaired person less T without s", times),
+            at_least("people who overtake where it is wide", overtakers, 1.0),
+        ),
+        {
+            "T without s": times[0],
+            "T with s": times[1],
+            "people who overtake where it is narrow": judging.mean(
+                [run["overtaken_by"] for run in narrow]
+            ),
+        },
+    )
+
+
+def other_exit(runs: Sequence[Figures]) -> Verdict:
+    """Heads for exit 1 until that closes, and leaves by exit 2."""
+    (run,) = runs
+    return Verdict(
+        (
+            exactly("by exit 2", run["by_exit_2"], 1),
+            exactly("by exit 1", run["by_exit_1"], 0),
+            at_least("x when exit 1 closes m", run["x_when_closed"], 6.1),
+            less_than("out after s", run["egress_s"], 60.0),
+        )
+    )
+
+
 TESTS = {
+    "nist-1.1": VerificationTest(
+        tuple(
+            case(premovement.late_starters, effort=3.0, people=10, times=times)
+            for times, _ in PRE_MOVEMENT.values()
+        ),
+        pooled=judging.starts_follow(
+            list(PRE_MOVEMENT), [reference for _, reference in PRE_MOVEMENT.values()]
+        ),
+    ),
     "nist-2.1": VerificationTest(
         (case(walks.lone_walker, length=60.0, speed=1.0, measured_from=10.0, measured_to=50.0),),
         judge=judging.lone_walk((56.7, 64.6), 1.0),
@@ -20,5 +79,15 @@ TESTS = {
         pooled=judging.speed_spread(stats.norm(1.2, 0.2), 1.2, 0.2),
     ),
     "nist-2.8": VerificationTest(imo.COUNTERFLOW, judge=judging.counterflow),
+    "nist-2.10": VerificationTest(
+        (
+            case(impaired.passage, width=NARROW, impaired=False),
+            case(impaired.passage, width=NARROW, impaired=True),
+            case(impaired.passage, width=WIDE, impaired=True),
+        ),
+        pooled=impaired_person,
+    ),
+    "nist-3.1": rimea.TESTS["rimea-10"],
+    "nist-4.1": VerificationTest((case(closures.closing_exit),), judge=other_exit),
     "nist-5.2": VerificationTest((imo.ROOM_OF_100,), judge=imo.exit_flow),
 }

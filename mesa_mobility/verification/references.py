@@ -68,3 +68,11 @@ def published(experiment: str) -> dict[str, FloatArray]:
     if not rows:
         raise KeyError(experiment)
     return {key: np.array([float(row[key]) for row in rows]) for key in rows[0] if key != "set"}
+
+
+def speed_by_age(ages: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Mean walking speed and its standard deviation, m/s, at ages in years (Weidmann 1993)."""
+    text = files("mesa_mobility").joinpath("data", "weidmann_age_speed.csv").read_text("utf-8")
+    lines = [line for line in text.splitlines() if line[:1].isdigit()]
+    age, mean, sd = np.array([[float(cell) for cell in line.split(",")] for line in lines]).T
+    return np.interp(ages, age, mean), np.interp(ages, age, sd)

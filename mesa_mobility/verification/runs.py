@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility import FloorPlan, MobilityMap, PedestrianModel, Trajectories
-from mesa_mobility.results import check_safety, crossings
+from mesa_mobility.results import check_safety, crossings, flow
 
 FloatArray = NDArray[np.float64]
 
@@ -99,6 +99,16 @@ def evacuate(
         if model.stalled and stop_when_stalled:
             break
     return Run(model, walls)
+
+
+def steady_flow(times: FloatArray, people: int) -> float | None:
+    """Flow between the passage of the sixth part of the people and that of five sixths, 1/s.
+
+    The run-up and the tail, in which no crowd stands in front, are left out. None where
+    fewer got through.
+    """
+    first, last = round(people / 6), round(people * 5 / 6)
+    return flow(times[first - 1 : last]) if len(times) >= last else None
 
 
 def passing_time(

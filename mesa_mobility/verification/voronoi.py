@@ -11,7 +11,9 @@ from shapely.geometry.base import BaseGeometry
 FloatArray = NDArray[np.float64]
 
 
-def individual_densities(points: FloatArray, floor: BaseGeometry) -> FloatArray:
+def individual_densities(
+    points: FloatArray, floor: BaseGeometry, of: NDArray[np.bool_] | None = None
+) -> FloatArray:
     """Density that each person stands in: 1 / area of its Voronoi cell on the floor.
 
     Cells end at the walls; of a cell that walls cut to pieces the piece with the person counts.
@@ -20,28 +22,29 @@ def individual_densities(points: FloatArray, floor: BaseGeometry) -> FloatArray:
     Args:
         points: (n, 2) metres, on the floor, all different.
         floor: walkable area.
+        of: (n,) whose density is asked for; by default everybody's.
 
     Returns:
-        (n,) persons per square metre.
+        (k,) persons per square metre, of those asked for.
     """
-    n = len(points)
-    if n == 0:
+    asked = np.arange(len(points)) if of is None else np.flatnonzero(of)
+    if len(asked) == 0:
         return np.empty(0)
     x0, y0, x1, y1 = floor.bounds
     middle, far = np.array([(x0 + x1) / 2, (y0 + y1) / 2]), 10.0 * max(x1 - x0, y1 - y0, 1.0)
     # With four people far outside, every cell of those inside is bounded.
     outside = middle + far * np.array([[-1, 0], [1, 0], [0, -1], [0, 1]])
     diagram = Voronoi(np.concatenate([points, outside]))
-    regions = [diagram.regions[diagram.point_region[k]] for k in range(n)]
+    regions = [diagram.regions[diagram.point_region[k]] for k in asked]
     corners = np.concatenate([diagram.vertices[region] for region in regions])
-    ring = np.repeat(np.arange(n), [len(region) for region in regions])
+    ring = np.repeat(np.arange(len(asked)), [len(region) for region in regions])
     cells = shapely.polygons(shapely.linearrings(_closed(corners, ring), indices=_closed_of(ring)))
     shapely.prepare(floor)
     inside = shapely.contains_properly(floor, cells)
     areas = shapely.area(cells)
     for k in np.flatnonzero(~inside):
         pieces = shapely.get_parts(shapely.intersection(cells[k], floor))
-        here = shapely.points(points[k])
+        here = shapely.points(points[asked[k]])
         areas[k] = shapely.area(pieces[np.argmin(shapely.distance(pieces, here))])
     return 1.0 / areas
 

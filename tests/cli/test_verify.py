@@ -23,10 +23,10 @@ def test_json_names_what_was_measured_and_wanted(command):
 
 
 def test_an_unknown_id_is_bad_input_in_one_line(command):
-    outcome = command("verify", "rimea-1")
+    outcome = command("verify", "rimea-01b")
     assert outcome.status == 2
     assert outcome.out == ""
-    assert outcome.err.startswith("error: unknown test 'rimea-1', did you mean 'rimea-01'?")
+    assert outcome.err.startswith("error: unknown test 'rimea-01b', did you mean 'rimea-01'?")
     assert len(outcome.err.splitlines()) == 1
 
 

@@ -9,13 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import LineString, Polygon, box
 
-from mesa_mobility import Deciding, Exit, FloorPlan, PedestrianModel, TargetChoice, Targets
+from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
 from mesa_mobility.verification.runs import crowd_model
 
 FloatArray = NDArray[np.float64]
-
-AHEAD = 3.0
-"""How far ahead on the track people aim, metres."""
 
 SERVICE_DOOR = "service door"
 """A floor plan needs an exit; this one is shut before anybody comes."""
@@ -49,10 +46,17 @@ class Oval:
         return Polygon(outer.exterior, [inner.exterior])
 
     def plan(self) -> FloorPlan:
-        """The track as a floor plan without a way out."""
-        y = -self.radius - self.width / 2
-        plan = FloorPlan(self.floor, exits=[Exit(SERVICE_DOOR, (-0.5, y), (0.5, y))], name="oval")
-        return plan
+        """The track as a floor plan, with gates across the middle of straights and half circles."""
+        inner, outer = self.radius - self.width / 2, self.radius + self.width / 2
+        end = self.straight / 2
+        gates = [
+            Gate("south", (0.0, -inner), (0.0, -outer)),
+            Gate("east", (end + inner, 0.0), (end + outer, 0.0)),
+            Gate("north", (0.0, inner), (0.0, outer)),
+            Gate("west", (-end - inner, 0.0), (-end - outer, 0.0)),
+        ]
+        service = Exit(SERVICE_DOOR, (1.0, -outer), (2.0, -outer))
+        return FloorPlan(self.floor, exits=[service], gates=gates, name="oval")
 
     def boxes(self, length: float) -> tuple[Polygon, Polygon]:
         """The middle of both straights, `length` metres of them, the lower one first."""
@@ -101,30 +105,6 @@ class Oval:
         return places
 
 
-class RoundAndRound(TargetChoice):
-    """Everybody walks round an oval for ever, some the other way round.
-
-    Args:
-        oval: the track.
-        clockwise: rows of those who walk clockwise.
-    """
-
-    name = "round_and_round"
-
-    def __init__(self, oval: Oval, clockwise: frozenset[int] = frozenset()) -> None:
-        self.oval = oval
-        self.clockwise = np.array(sorted(clockwise), dtype=np.int64)
-
-    def targets(self, deciding: Deciding) -> Targets:
-        """A point ahead on one's own side of the track."""
-        along, across = self.oval.unroll(deciding.positions)
-        back = np.isin(deciding.pedestrians, self.clockwise)
-        points = self.oval.roll(along + np.where(back, -AHEAD, AHEAD), across)
-        n = len(deciding.pedestrians)
-        # Nobody is nearer to a goal than anybody else: people decide in the order of their rows.
-        return Targets(points, np.full(n, -1, dtype=np.int64), np.full(n, AHEAD))
-
-
 def oval_model(
     oval: Oval,
     people: int,
@@ -135,11 +115,21 @@ def oval_model(
     spacing: float,
     clearance: float,
 ) -> PedestrianModel:
-    """People all over an oval, `clockwise` of them the other way round."""
+    """People all over an oval, walking round it for ever, `clockwise` of them that way round.
+
+    Those who walk clockwise come first in the crowd's rows.
+    """
     plan = oval.plan()
-    backwards = frozenset(range(clockwise))
-    model = crowd_model(plan, seed, target_choice=RoundAndRound(oval, backwards))
+    model = crowd_model(plan, seed)
     places = plan.random_points(people, model.rng, spacing=spacing, clearance=clearance)
     plan.close_gate(SERVICE_DOOR)
-    model.add_pedestrians(places, preferred_speeds=speed)
+    names = [gate.name for gate in plan.gates]
+    lines = oval.unroll(np.array([gate.midpoint for gate in plan.gates]))[0]
+    ahead = np.searchsorted(lines, oval.unroll(places)[0]) % len(names)
+    backwards = np.arange(people) < clockwise
+    groups = [(backwards & (ahead == k), (names[k:] + names[:k])[::-1]) for k in range(len(names))]
+    groups += [(~backwards & (ahead == k), names[k:] + names[:k]) for k in range(len(names))]
+    for group, route in groups:
+        if group.any():
+            model.add_pedestrians(places[group], preferred_speeds=speed, route=route, loop=True)
     return model

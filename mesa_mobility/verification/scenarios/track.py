@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.runs import Run
 from mesa_mobility.verification.scenarios.oval import Oval, oval_model
 from mesa_mobility.verification.voronoi import individual_densities
@@ -16,6 +18,8 @@ FloatArray = NDArray[np.float64]
 
 STRAIGHT, RADIUS, BOX_M = 15.0, 3.0, 4.0
 SETTLE_S, MEASURE_S, WINDOW_S, EVERY_S = 30.0, 60.0, 1.5, 1.0
+DENSITY_BIN, DENSEST_BIN = 0.25, 5.25
+"""Bins of individual density as the reference has them, and where they end, persons/m2."""
 DENSEST = 0.34
 """Spacing of people at the start, metres: two cores and a little, room for 6 persons/m2."""
 
@@ -54,7 +58,7 @@ def track(
         for box in boxes:
             inside |= shapely.contains_xy(box, places[:, 0], places[:, 1])
         counts.append(int(inside.sum()))
-        densities.append(individual_densities(places, model.floor_plan.free)[inside])
+        densities.append(individual_densities(places, model.floor_plan.free, inside))
         speeds.append(gone[inside] / WINDOW_S)
     area = sum(box.area for box in boxes)
     along = np.concatenate(speeds)
@@ -79,3 +83,17 @@ def _around(run: Run, time: float, oval: Oval) -> tuple[FloatArray, FloatArray]:
     )
     gone = oval.unroll(after)[0] - oval.unroll(before)[0]
     return now, np.mod(gone + oval.length / 2, oval.length) - oval.length / 2
+
+
+def binned(runs: Sequence[Figures], least: int = 20) -> dict[str, FloatArray]:
+    """p10, p50, p90 of the speed in bins of individual density that hold `least` entries."""
+    density = np.concatenate([each["density"] for each in runs])
+    along = np.concatenate([each["along"] for each in runs])
+    number = np.floor(density / DENSITY_BIN).astype(np.int64)
+    rows = []
+    for k in range(1, round(DENSEST_BIN / DENSITY_BIN)):
+        here = along[number == k]
+        if len(here) >= least:
+            rows.append(((k + 0.5) * DENSITY_BIN, len(here), *np.percentile(here, (10, 50, 90))))
+    table = np.array(rows).reshape(-1, 5)
+    return dict(zip(("density", "n", "p10", "p50", "p90"), table.T, strict=True))

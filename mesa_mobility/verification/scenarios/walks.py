@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
+from mesa_mobility.populations import walking_speed
+from mesa_mobility.verification.references import speed_by_age
 from mesa_mobility.verification.runs import CLEARANCE, Run, crowd_model, evacuate, passing_time
 
 WIDTH = 2.0
@@ -89,6 +91,21 @@ def normal_speeds(seed: int, *, people: int, mean: float, sd: float) -> dict[str
     """People with speeds from N(mean, sd)."""
     model = lanes_model(people, seed)
     return _walked(model, model.rng.normal(mean, sd, people))
+
+
+def speeds_by_age(seed: int, *, people: int, youngest: float, oldest: float) -> dict[str, Any]:
+    """People of ages spread evenly, with speeds from the curve of ages.
+
+    Returns:
+        As of the others, and ``deviation``: of the speed walked from the mean of the age, in
+        standard deviations of that age.
+    """
+    model = lanes_model(people, seed)
+    ages = np.linspace(youngest, oldest, people)
+    figures = _walked(model, walking_speed(ages, model.rng))
+    mean, sd = speed_by_age(ages)
+    walked = np.array(figures["walked_mps"], dtype=np.float64)
+    return {**figures, "deviation": ((walked - mean) / sd).tolist()}
 
 
 def _walked(model: PedestrianModel, speeds: NDArray[np.float64]) -> dict[str, Any]:
