@@ -1,17 +1,28 @@
 """Behaviours that ship, each a plug-in like any other."""
 
+from mesa_mobility.behaviors.exit_choice import Choosing, ExitChoice
+from mesa_mobility.behaviors.familiar_exit import FamiliarExit
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.nearest_exit import NearestExit
+from mesa_mobility.behaviors.quickest_exit import QuickestExit
+from mesa_mobility.behaviors.random_utility import RandomUtility
+from mesa_mobility.behaviors.social_influence import SocialInfluence
 from mesa_mobility.behaviors.speed import Displacement, PreferredSpeed
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
 from mesa_mobility.behaviors.walk_together import WalkTogether
 
 __all__ = [
+    "Choosing",
     "Displacement",
+    "ExitChoice",
     "FacingDeviation",
+    "FamiliarExit",
     "Interference",
     "NearestExit",
     "PreferredSpeed",
+    "QuickestExit",
+    "RandomUtility",
+    "SocialInfluence",
     "TargetDistance",
     "WalkTogether",
 ]

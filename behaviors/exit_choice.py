@@ -1,0 +1,145 @@
+"""Choosing among exits: what the behaviours that do so have in common."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility import Deciding, TargetChoice, Targets
+from mesa_mobility.errors import ModelError
+
+UNDECIDED = -1
+
+
+@dataclass(frozen=True)
+class Choosing:
+    """Those who choose an exit now: k people, and e exits.
+
+    Attributes:
+        pedestrians: (k,) their rows in the crowd.
+        positions: (k, 2) where they are, metres.
+        preferred_speeds: (k,) how fast each would walk if nothing slowed it down, m/s.
+        distances: (k, e) metres to each exit; inf where it is closed, out of reach or not theirs.
+        current: (k,) number of the exit that each heads for, -1 for none.
+        heading: (m,) the same of everybody inside, in the order of ``deciding.inside``.
+        deciding: everybody who decides, and everybody inside.
+    """
+
+    pedestrians: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    preferred_speeds: NDArray[np.float64]
+    distances: NDArray[np.float64]
+    current: NDArray[np.int64]
+    heading: NDArray[np.int64]
+    deciding: Deciding
+
+
+class ExitChoice(TargetChoice):
+    """Everybody picks one of the exits that it may leave by, and thinks again from time to time.
+
+    Whoever has no exit, or whose exit has closed, chooses at its next decision; the others think
+    again every ``interval`` seconds on average, at random, so that not everybody runs to and fro at
+    once. Those on their way to a gate go there. An object of this class serves one model.
+
+    Args:
+        interval: mean seconds between two thoughts.
+
+    Raises:
+        ModelError: an interval that is not positive.
+    """
+
+    def __init__(self, interval: float = 2.0) -> None:
+        if not interval > 0.0:
+            raise ModelError(f"{self.name}: interval {interval}, expected more than 0 s")
+        self.interval = interval
+        self._chosen = np.empty(0, dtype=np.int64)
+        self._thought = np.empty(0)
+
+    @abstractmethod
+    def choose(self, choosing: Choosing) -> NDArray[np.int64]:
+        """(k,) number of the exit that each takes, in the order of the floor plan."""
+
+    def heading(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,) number of the exit that people in these rows head for, -1 for none."""
+        self._make_room(pedestrians)
+        return self._chosen[pedestrians]
+
+    def forget(self, pedestrian: int) -> None:
+        """Have the person in a row of the crowd choose again at its next decision."""
+        self._make_room(np.array([pedestrian]))
+        self._chosen[pedestrian] = UNDECIDED
+
+    def targets(self, deciding: Deciding) -> Targets:
+        """The way to the exit chosen."""
+        rows, site = deciding.pedestrians, deciding.site
+        self._make_room(rows)
+        names = [exit_.name for exit_ in site.plan.exits]
+        numbers = np.array([site.destination((name,)) for name in names], dtype=np.int32)
+        may = self._may(deciding, names)
+        gone = self._closed(rows, deciding, names)
+        for_gate = ~may.any(axis=1)
+        waited = deciding.elapsed - self._thought[rows]
+        again = deciding.rng.random(len(rows)) < 1.0 - np.exp(-waited / self.interval)
+        who = np.flatnonzero((again | (self._chosen[rows] == UNDECIDED) | gone) & ~for_gate)
+        self._thought[rows] = deciding.elapsed
+        if len(who):
+            self._chosen[rows[who]] = self._choice(deciding, who, numbers, may[who])
+        chosen = self._chosen[rows]
+        known = (chosen != UNDECIDED) & ~for_gate
+        to = np.where(known, numbers[chosen] if len(numbers) else 0, deciding.destinations)
+        return site.targets(deciding.positions, to.astype(np.int32))
+
+    def _choice(
+        self,
+        deciding: Deciding,
+        who: NDArray[np.int64],
+        numbers: NDArray[np.int32],
+        may: NDArray[np.bool_],
+    ) -> NDArray[np.int64]:
+        rows, positions, inside = (
+            deciding.pedestrians[who],
+            deciding.positions[who],
+            deciding.inside,
+        )
+        distances = np.column_stack(
+            [
+                deciding.site.targets(positions, np.full(len(who), number)).distances
+                for number in numbers
+            ]
+        )
+        distances[~may] = np.inf
+        heading = self.heading(inside.pedestrians)
+        choosing = Choosing(
+            pedestrians=rows,
+            positions=positions,
+            preferred_speeds=inside.preferred_speeds[inside.places(rows)],
+            distances=distances,
+            current=self._chosen[rows],
+            heading=heading,
+            deciding=deciding,
+        )
+        # Whoever can reach none stays undecided, and asks again.
+        return np.where(np.isfinite(distances).any(axis=1), self.choose(choosing), UNDECIDED)
+
+    def _may(self, deciding: Deciding, names: list[str]) -> NDArray[np.bool_]:
+        """(n, e) which exits each may leave by; none for those on their way to a gate."""
+        destinations, inverse = np.unique(deciding.destinations, return_inverse=True)
+        allowed = [deciding.site.exits(int(number)) for number in destinations]
+        table = np.array([[name in each for name in names] for each in allowed], dtype=np.bool_)
+        return table.reshape(len(destinations), len(names))[inverse.reshape(-1)]
+
+    def _closed(
+        self, rows: NDArray[np.int64], deciding: Deciding, names: list[str]
+    ) -> NDArray[np.bool_]:
+        """(n,) whose exit is closed now."""
+        open_ = np.array([*(deciding.site.plan.is_open(name) for name in names), True])
+        return ~open_[self._chosen[rows]]
+
+    def _make_room(self, rows: NDArray[np.int64]) -> None:
+        more = int(rows.max(initial=-1)) + 1 - len(self._chosen)
+        if more > 0:
+            self._chosen = np.append(self._chosen, np.full(more, UNDECIDED))
+            self._thought = np.append(self._thought, np.zeros(more))
