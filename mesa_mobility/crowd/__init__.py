@@ -9,6 +9,7 @@ from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import PRESETS, Preset
+from mesa_mobility.crowd.source import Inflow, Source
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
 from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
 
@@ -23,11 +24,13 @@ __all__ = [
     "CostTerm",
     "Deciding",
     "Explanation",
+    "Inflow",
     "Pace",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
     "Preset",
+    "Source",
     "TargetChoice",
     "Watch",
     "bound_kernel",

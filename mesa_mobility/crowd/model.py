@@ -28,6 +28,7 @@ from mesa_mobility.crowd.recorder import Recorder
 from mesa_mobility.crowd.repertoire import repertoire
 from mesa_mobility.crowd.replan import stop_where_blocked
 from mesa_mobility.crowd.rules import Rules
+from mesa_mobility.crowd.source import Inflow
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import Crowd
@@ -39,6 +40,7 @@ from mesa_mobility.crowd.waits import Waits
 from mesa_mobility.crowd.wishes import set_wishes
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan, Targets
+from mesa_mobility.floorplan.entrance import Entrance
 from mesa_mobility.mobility import MobilityMap
 
 
@@ -65,6 +67,7 @@ class PedestrianModel(CrowdMeasures, People):
         crowd: the crowd's arrays; see ``Crowd``.
         journeys: the itineraries of those who have one.
         waits: those who have been told to wait.
+        sources: those who come in over time, one for each ``add_source``.
         groups: names of the groups, in the order of their numbers from 1 on.
         paces: behaviours that slow people down, the preset's one for groups from the first group
             on; may be added to and removed at run time.
@@ -142,6 +145,8 @@ class PedestrianModel(CrowdMeasures, People):
         self.journeys = Journeys(floor_plan, self._site)
         self.waits = Waits()
         self.groups: list[str | int] = []
+        self.sources: list[Inflow] = []
+        self._entrances: list[Entrance] = []
         self._plan_version = floor_plan.version
         x0, y0, x1, y1 = floor_plan.bounds
         self.space = CrowdSpace(
@@ -183,7 +188,7 @@ class PedestrianModel(CrowdMeasures, People):
         rows = self._rows
         for _ in range(self.frames_per_step):
             rows = self._advance(rows)
-            if len(rows) == 0:
+            if len(rows) == 0 and not self.expecting:
                 break  # the last has left: this step ends with it
         if len(rows) < len(self._rows):
             stay = self.crowd.active[self._rows]
@@ -195,7 +200,7 @@ class PedestrianModel(CrowdMeasures, People):
             self.elapsed, self.crowd.route[self._rows], self.journeys.crossed, bool(waiting.any())
         )
         self.datacollector.collect(self)
-        self.running = self.inside > 0 and not self.stalled
+        self.running = (self.inside > 0 or self.expecting) and not self.stalled
 
     def run(
         self,
@@ -209,15 +214,12 @@ class PedestrianModel(CrowdMeasures, People):
             progress: called as ``progress(elapsed, inside)`` each simulated second.
 
         Raises:
-            ModelError: no end is given where people go round for ever.
+            ModelError: no end is given where people go round or come for ever.
         """
-        if max_seconds is None and any(
-            self.journeys.endless(number)
-            for number in np.unique(self.crowd.agenda["journey"][self._rows]).tolist()
-        ):
-            raise ModelError(
-                "max_seconds: got none, expected some: there are people who never leave"
-            )
+        journeys = np.unique(self.crowd.agenda["journey"][self._rows]).tolist()
+        endless = any(self.journeys.endless(number) for number in journeys)
+        if max_seconds is None and (endless or any(each.source.endless for each in self.sources)):
+            raise ModelError("max_seconds: got none, but people go round or come for ever")
         told = 0
         self._stall_watch = StallWatch()
         self.stalled = False
@@ -229,6 +231,11 @@ class PedestrianModel(CrowdMeasures, People):
                 progress(self.elapsed, self.inside)
 
     def _advance(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        if self.sources:
+            newcomers = self._let_in()
+            rows = np.concatenate([rows, newcomers])
+            if self.recorder is not None and self.frame > 0 and len(newcomers):
+                self.recorder.add(self.frame, newcomers, self.crowd)
         if self.frame == 0:
             self.occupancy.append((0.0, len(rows)))
             if self.recorder is not None:
@@ -259,14 +266,20 @@ class PedestrianModel(CrowdMeasures, People):
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
         self.journeys.advance(deciding, self.frame, self.crowd)
-        targets = self._set_targets(deciding, rows)
+        waiting = self.waits.waiting(deciding, self.frame, self.crowd)
+        targets = self._set_targets(deciding, rows, waiting)
         # Those nearest to where they go decide first: that frees space for those behind.
         order = deciding[np.argsort(targets.distances, kind="stable")]
         self._decisions.take(
             order, self.frame, rows, self.crowd, self._site.surroundings, self.terms, self.watch
         )
 
-    def _set_targets(self, rows: NDArray[np.int64], inside: NDArray[np.int64]) -> Targets:
+    def _set_targets(
+        self,
+        rows: NDArray[np.int64],
+        inside: NDArray[np.int64],
+        waiting: NDArray[np.bool_] | None = None,
+    ) -> Targets:
         state = self.crowd
         deciding = Deciding(
             pedestrians=rows,
@@ -278,7 +291,6 @@ class PedestrianModel(CrowdMeasures, People):
             rng=self.rng,
             site=self._site,
         )
-        waiting = self.waits.waiting(rows, self.frame, state)
         return set_wishes(deciding, state, self.floor_plan, self.target_choice, self.paces, waiting)
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:

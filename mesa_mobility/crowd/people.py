@@ -22,8 +22,9 @@ from mesa_mobility.crowd.placing import (
     place,
 )
 from mesa_mobility.crowd.presets import preset_named
-from mesa_mobility.crowd.replan import too_close
+from mesa_mobility.crowd.replan import first_free, too_close
 from mesa_mobility.crowd.rules import Rules
+from mesa_mobility.crowd.source import PLACES_TRIED, Inflow, Source
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.surroundings import Site
@@ -31,6 +32,7 @@ from mesa_mobility.crowd.waits import frames_of
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.entrance import Entrance, read_entrance
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import Targets
@@ -50,6 +52,8 @@ class People(mesa.Model):
     journeys: Journeys
     groups: list[str | int]
     paces: list[Pace]
+    sources: list[Inflow]
+    _entrances: list[Entrance]
     preset: str
     _rows: NDArray[np.int64]
     _agents_by_row: list[Pedestrian | None]
@@ -89,15 +93,7 @@ class People(mesa.Model):
         """
         points = check_places(positions, self.floor_plan)
         n = len(points)
-        if not 0 <= kind < len(self.pedestrian_types):
-            raise ModelError(
-                f"kind: got {kind}, expected the index of a type, "
-                f"0 to {len(self.pedestrian_types) - 1}"
-            )
-        if isinstance(exits, str):
-            raise ModelError(f"exits: got {exits!r}, expected a list of names such as [{exits!r}]")
-        if loop and not len(route):
-            raise ModelError("loop: got no route, expected names of at least two gates")
+        self._check_kind(kind)
         ptype = self.pedestrian_types[kind]
         if preferred_speeds is None:
             preferred_speeds = ptype.draw_speeds(n, self.rng)
@@ -122,7 +118,7 @@ class People(mesa.Model):
         if self.count + n > len(self.crowd.x):
             self.crowd.grow(max(self.count + n, 2 * len(self.crowd.x)))
         place(self.crowd, rows, points, speeds, self.frame, sets_off, new)
-        aim = self._set_targets(rows, np.concatenate([self._rows, rows])).points - points
+        aim = self._set_targets(rows, np.concatenate([self._present, rows])).points - points
         face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
         self.count += n
         self._rows = np.concatenate([self._rows, rows])
@@ -132,6 +128,65 @@ class People(mesa.Model):
         self._write_space()
         self.running = True
         return people
+
+    def add_source(self, source: Source) -> Inflow:
+        """Have people come in over time.
+
+        Whoever comes appears at a random place of the source's area where there is room for its
+        body; those for whom there is none are held back, in order.
+
+        Returns:
+            Tells who has come and who is held back.
+
+        Raises:
+            ModelError: an unknown type.
+            FloorPlanError: an area without room for a body, an unknown exit or gate, or no way
+                from there.
+        """
+        self._check_kind(source.kind)
+        core = self.pedestrian_types[source.kind].core_radius
+        entrance = Entrance(self.floor_plan, read_entrance(source.area), core + 0.01)
+        destination, _ = self._where_to(source.exits, source.route, source.loop)
+        somewhere = entrance.room.representative_point()
+        self._site.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
+        inflow = Inflow(source, self.frame, self.rng)
+        self.sources.append(inflow)
+        self._entrances.append(entrance)
+        self.running = True
+        return inflow
+
+    @property
+    def expecting(self) -> bool:
+        """Whether a source has people to come."""
+        return not all(inflow.finished for inflow in self.sources)
+
+    def _let_in(self) -> NDArray[np.int64]:
+        """Let those in who have come, as far as there is room; (n,) their rows."""
+        first = self.count
+        for inflow, entrance in zip(self.sources, self._entrances, strict=True):
+            inflow.count(self.frame)
+            while inflow.waiting:
+                place = self._free_place(entrance, inflow.source.kind)
+                if place is None:
+                    break
+                self.add_pedestrians([place], **inflow.source.keywords())
+                inflow.entered += 1
+        return np.arange(first, self.count)
+
+    def _free_place(self, entrance: Entrance, kind: int) -> NDArray[np.float64] | None:
+        places = entrance.draw(PLACES_TRIED, self.rng)
+        core, rules = self.pedestrian_types[kind].core_radius, self._rules
+        if not rules.cores:
+            return places[0] if len(places) else None
+        free = first_free(
+            places, core, self.frame, self._present, self.crowd.records, rules.search_radius
+        )
+        return places[free] if free >= 0 else None
+
+    @property
+    def _present(self) -> NDArray[np.int64]:
+        """Rows of the people inside, without those who have left since the step began."""
+        return self._rows[self.crowd.active[self._rows]]
 
     def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
         """Take people out of the model."""
@@ -158,11 +213,22 @@ class People(mesa.Model):
         self, exits: Sequence[str] | None, route: Sequence[str], loop: bool
     ) -> tuple[int, int]:
         """Numbers of the first destination and of the journey."""
+        if isinstance(exits, str):
+            raise ModelError(f"exits: got {exits!r}, expected a list of names such as [{exits!r}]")
+        if loop and not len(route):
+            raise ModelError("loop: got no route, expected names of at least two gates")
         names = None if exits is None else tuple(exits)
         if not len(route):
             return self._site.destination(names), 0
         journey = self.journeys.add(route, loop, names)
         return self.journeys.leg(journey, 0)[0], journey
+
+    def _check_kind(self, kind: int) -> None:
+        if not 0 <= kind < len(self.pedestrian_types):
+            raise ModelError(
+                f"kind: got {kind}, expected the index of a type, "
+                f"0 to {len(self.pedestrian_types) - 1}"
+            )
 
     def _group_number(self, group: str | int | None) -> int:
         if group is None:
@@ -179,7 +245,7 @@ class People(mesa.Model):
         if not self._rules.cores:
             return
         where, who = too_close(
-            points, core, self.frame, self._rows, self.crowd.records, self._rules.search_radius
+            points, core, self.frame, self._present, self.crowd.records, self._rules.search_radius
         )
         if where >= 0:
             other = "another newcomer" if who < 0 else f"where pedestrian {who} is or will be"
@@ -188,7 +254,12 @@ class People(mesa.Model):
                 "expected room for both bodies"
             )
 
-    def _set_targets(self, rows: NDArray[np.int64], inside: NDArray[np.int64]) -> Targets:
+    def _set_targets(
+        self,
+        rows: NDArray[np.int64],
+        inside: NDArray[np.int64],
+        waiting: NDArray[np.bool_] | None = None,
+    ) -> Targets:
         """Give the people in ``rows``, who are among those ``inside``, their targets."""
         raise NotImplementedError
 

@@ -14,7 +14,7 @@ from mesa_mobility.crowd.collision import (
     near_walls,
 )
 from mesa_mobility.crowd.motion import cover
-from mesa_mobility.crowd.neighbours import build_grid, people_within
+from mesa_mobility.crowd.neighbours import Grid, build_grid, people_within
 from mesa_mobility.crowd.options import SAMPLES, OptionTable
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import NO_OPTION, CrowdState
@@ -132,23 +132,58 @@ def too_close(
     others = build_grid(np.arange(len(points)), x, y)
     people = build_grid(rows, state.x, state.y)
     found = np.empty(max(len(points), len(rows)), np.int64)
-    still = np.zeros((3, 2))
     for k in range(len(points)):
         for at in found[: people_within(others, x[k], y[k], k, 2.0 * core, found)]:
             m = others.people[at]
             dx, dy = x[k] - x[m], y[k] - y[m]
             if m < k and dx * dx + dy * dy < 4.0 * core * core:
                 return k, -1
-        still[0], still[1] = x[k], y[k]
-        count = people_within(people, x[k], y[k], np.int64(-1), search_radius, found)
-        for j in np.sort(people.people[found[:count]]):
-            c = core + state.core[j]
-            dx, dy = x[k] - state.x[j], y[k] - state.y[j]
-            if dx * dx + dy * dy < c * c or (
-                state.end[j] > frame
-                and hits_neighbour(
-                    still, np.int64(1), np.int64(1), frame, np.int64(-1), state, j, c
-                )
-            ):
-                return k, j
+        j = _comes_near(x[k], y[k], core, frame, people, state, search_radius, found)
+        if j >= 0:
+            return k, j
     return -1, -1
+
+
+@njit(cache=True)
+def first_free(
+    points: NDArray[np.float64],
+    core: float,
+    frame: int,
+    rows: NDArray[np.int64],
+    state: CrowdState,
+    search_radius: float,
+) -> int:
+    """First of some places that nobody is or will come too near to, or -1; as ``too_close``."""
+    people = build_grid(rows, state.x, state.y)
+    found = np.empty(len(rows), np.int64)
+    for k in range(len(points)):
+        if _comes_near(points[k, 0], points[k, 1], core, frame, people, state, search_radius,
+                       found) < 0:  # fmt: skip
+            return k
+    return -1
+
+
+@njit(cache=True)
+def _comes_near(
+    x: float,
+    y: float,
+    core: float,
+    frame: int,
+    people: Grid,
+    state: CrowdState,
+    search_radius: float,
+    found: NDArray[np.int64],
+) -> int:
+    """The lowest row of somebody who is or will be too near to a body at (x, y), or -1."""
+    still = np.zeros((3, 2))
+    still[0], still[1] = x, y
+    count = people_within(people, x, y, np.int64(-1), search_radius, found)
+    for j in np.sort(people.people[found[:count]]):
+        c = core + state.core[j]
+        dx, dy = x - state.x[j], y - state.y[j]
+        if dx * dx + dy * dy < c * c or (
+            state.end[j] > frame
+            and hits_neighbour(still, np.int64(1), np.int64(1), frame, np.int64(-1), state, j, c)
+        ):
+            return int(j)
+    return -1

@@ -21,6 +21,7 @@ class CrowdMeasures:
     stalled: bool
     last_left: float | None
     occupancy: list[tuple[float, int]]
+    expecting: bool
     _rows: NDArray[np.int64]
     _walked: float
 
@@ -69,12 +70,12 @@ class CrowdMeasures:
 
         Returns:
             ``model``, ``preset``, ``pedestrians``, ``simulated_s``, ``egress_s`` (None while
-            anybody is inside, or where nobody ever was), ``left_inside``, ``stalled``,
+            anybody is inside or to come, or where nobody ever was), ``left_inside``, ``stalled``,
             ``decisions``, ``fallback_decision_share``, ``fallback_time_share``,
             ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy`` ([[t, inside], ...]
             each second).
         """
-        out = self.inside == 0 and self.last_left is not None
+        out = self.inside == 0 and self.last_left is not None and not self.expecting
         return {
             "model": type(self).__name__,
             "preset": self.preset,

@@ -19,7 +19,7 @@ def set_wishes(
     plan: FloorPlan,
     choice: TargetChoice,
     paces: Sequence[Pace],
-    waiting: NDArray[np.bool_],
+    waiting: NDArray[np.bool_] | None = None,
 ) -> Targets:
     """Give those who decide their targets and the speed that they prefer here and now.
 
@@ -29,7 +29,7 @@ def set_wishes(
         plan: the floor plan, with its zones of reduced speed.
         choice: where they go.
         paces: what slows them down.
-        waiting: (n,) who stays where it is.
+        waiting: (n,) who stays where it is, if anybody.
 
     Raises:
         ModelError: a behaviour gives what it should not.
@@ -42,7 +42,7 @@ def set_wishes(
     if plan.zones:
         speeds = speeds * plan.speed_factors(deciding.positions)
     speeds = ask_paces(paces, deciding, speeds)
-    if waiting.any():
+    if waiting is not None and waiting.any():
         # Like those who have no way to go: they come to a stand, and stay.
         speeds = np.where(waiting, 0.0, speeds)
         stay = rows[waiting]

@@ -40,6 +40,15 @@ def test_counted_from_when_somebody_comes():
     assert first_move(model, late) == pytest.approx(3.0)
 
 
+def test_faces_its_first_target_all_the_while():
+    model = model_of(two_doors(), strider())
+    (person,) = model.add_pedestrians([(4.0, 5.5)], pre_movement=3.0)
+    aim = person.target - person.position
+    assert person.heading == pytest.approx(np.arctan2(aim[1], aim[0]))
+    advance(model, 60)
+    assert person.heading == pytest.approx(np.arctan2(aim[1], aim[0]))
+
+
 def test_each_its_own_or_all_the_same_or_drawn():
     model = model_of(corridor(), strider(), rng=4)
     places = [(2.0, 0.5), (2.0, 1.5), (2.0, 2.5)]

@@ -1,0 +1,83 @@
+"""Places to come in at: anywhere in an area, or along a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.errors import FloorPlanError
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+_THROWS = 8
+"""Points thrown at the bounds of an area for each that is wanted."""
+
+
+def read_entrance(value: BaseGeometry | str) -> BaseGeometry:
+    """An area or line (shapely or WKT) as a shapely geometry; FloorPlanError otherwise."""
+    geometry: Any = value
+    if isinstance(value, str):
+        try:
+            geometry = shapely.from_wkt(value)
+        except shapely.errors.GEOSException as error:
+            text = " ".join(str(error).split())
+            raise FloorPlanError(f"entrance: the WKT cannot be read ({text})") from None
+    kind = getattr(geometry, "geom_type", type(geometry).__name__)
+    if kind not in ("Polygon", "LineString"):
+        raise FloorPlanError(f"entrance: expected a Polygon or a LineString, found a {kind}")
+    if geometry.is_empty or not geometry.is_valid:
+        raise FloorPlanError(f"entrance: the {kind} is empty or not valid")
+    made: BaseGeometry = geometry
+    return made
+
+
+class Entrance:
+    """Draws random places with room between walls for a body, as the plan is now.
+
+    Args:
+        plan: the floor plan.
+        geometry: a polygon or a line, metres.
+        clearance: distance to walls, metres.
+    """
+
+    def __init__(self, plan: FloorPlan, geometry: BaseGeometry, clearance: float) -> None:
+        self._plan = plan
+        self._geometry = geometry
+        self._clearance = clearance
+        self._version = -1
+        if self.room.is_empty:
+            raise FloorPlanError(
+                f"entrance: no place in it is on the floor and {clearance:.2f} m from every wall"
+            )
+
+    @property
+    def room(self) -> BaseGeometry:
+        """Where the middle of a body can be: (multi)polygon or (multi)line, or empty."""
+        if self._version != self._plan.version:
+            self._version = self._plan.version
+            free = self._plan.free.buffer(-self._clearance, quad_segs=32)
+            found = shapely.get_parts(free.intersection(self._geometry))
+            parts = [part for part in found if part.geom_type == self._geometry.geom_type]
+            self._room = shapely.union_all(parts)
+            shapely.prepare(self._room)
+        return self._room
+
+    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
+        """(k, 2) up to n places, metres; fewer, or none, where there is little room."""
+        room = self.room
+        if room.is_empty:
+            return np.empty((0, 2))
+        if self._geometry.geom_type == "LineString":
+            parts = shapely.get_parts(room)
+            lengths = shapely.length(parts)
+            at = rng.choice(len(parts), n, p=lengths / lengths.sum())
+            points = shapely.line_interpolate_point(parts[at], rng.random(n), normalized=True)
+            return shapely.get_coordinates(points)
+        x0, y0, x1, y1 = room.bounds
+        thrown = rng.uniform((x0, y0), (x1, y1), (_THROWS * n, 2))
+        return thrown[shapely.contains_xy(room, thrown[:, 0], thrown[:, 1])][:n]
