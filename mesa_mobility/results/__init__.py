@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 from mesa_mobility.results.export import to_pedpy, write_juelich_text, write_jupedsim_sqlite
 from mesa_mobility.results.files import check_writable
 from mesa_mobility.results.gait import Sway, lateral_sway
+from mesa_mobility.results.lines import flow_over_time, passed_by
 from mesa_mobility.results.measures import (
     Crossings,
+    SpeedsAlong,
     crossings,
     density,
     departures,
@@ -17,11 +19,13 @@ from mesa_mobility.results.measures import (
     mean_speed,
     occupancy,
     speeds,
+    speeds_along,
 )
 from mesa_mobility.results.parquet import read_parquet, write_parquet
 from mesa_mobility.results.run import write_run
 from mesa_mobility.results.safety import Overlap, SafetyReport, WallCrossing, check_safety
 from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.voronoi import individual_densities, voronoi_cells, voronoi_density
 
 if TYPE_CHECKING:
     from mesa_mobility.results.plots import plot_occupancy, plot_snapshots, plot_trajectories
@@ -30,6 +34,7 @@ __all__ = [
     "Crossings",
     "Overlap",
     "SafetyReport",
+    "SpeedsAlong",
     "Sway",
     "Trajectories",
     "WallCrossing",
@@ -41,15 +46,21 @@ __all__ = [
     "direction_changes",
     "egress_time",
     "flow",
+    "flow_over_time",
+    "individual_densities",
     "lateral_sway",
     "mean_speed",
     "occupancy",
+    "passed_by",
     "plot_occupancy",
     "plot_snapshots",
     "plot_trajectories",
     "read_parquet",
     "speeds",
+    "speeds_along",
     "to_pedpy",
+    "voronoi_cells",
+    "voronoi_density",
     "write_juelich_text",
     "write_jupedsim_sqlite",
     "write_parquet",

@@ -40,14 +40,23 @@ def occupancy(trajectories: Trajectories, every: float = 1.0) -> list[list[float
     Raises:
         ResultsError: `every` is shorter than a frame.
     """
+    inside = trajectories.inside()
+    return [[time, int(inside[frame])] for time, frame in frames_at(trajectories, every)]
+
+
+def frames_at(trajectories: Trajectories, every: float) -> list[tuple[float, int]]:
+    """(seconds, frame) from the start on, ``every`` seconds apart, none of them after the end.
+
+    Raises:
+        ResultsError: `every` is shorter than a frame.
+    """
     if not every * trajectories.frame_rate >= 1.0:
         raise ResultsError(
-            f"occupancy every {every} s asked of {trajectories.frame_rate} frames a second"
+            f"measures every {every} s asked of {trajectories.frame_rate} frames a second"
         )
     ticks = np.arange(int(trajectories.duration / every + 1e-9) + 1)
     frames = np.rint(ticks * every * trajectories.frame_rate).astype(np.int64)
-    inside = trajectories.inside()[frames]
-    return [[float(tick * every), int(count)] for tick, count in zip(ticks, inside, strict=True)]
+    return list(zip((ticks * every).tolist(), frames.tolist(), strict=True))
 
 
 def departures(trajectories: Trajectories) -> FloatArray:
@@ -75,6 +84,70 @@ def speeds(trajectories: Trajectories, window: float = 1.0) -> FloatArray:
     dx = trajectories.x[end] - trajectories.x[start]
     dy = trajectories.y[end] - trajectories.y[start]
     return np.hypot(dx, dy) * (trajectories.frame_rate / frames)
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedsAlong:
+    """Speeds in one direction, by person, then frame.
+
+    Attributes:
+        time: (k,) seconds, in the middle of the window.
+        person: (k,) int32.
+        point: (k, 2) where the person was then, metres.
+        speed: (k,) m/s, negative for those who went back.
+    """
+
+    time: FloatArray
+    person: NDArray[np.int32]
+    point: FloatArray
+    speed: FloatArray
+
+
+def speeds_along(
+    trajectories: Trajectories,
+    direction: ArrayLike,
+    *,
+    window: float = 1.5,
+    area: shapely.Polygon | None = None,
+) -> SpeedsAlong:
+    """Displacement in a direction over a window, divided by it: v = (x(t + w/2) - x(t - w/2)) / w.
+
+    In every frame in which a person has positions half a window before and after, and is in the
+    measuring area.  1.5 s are about a gait cycle: shorter windows count the swing of the pelvis.
+
+    Args:
+        trajectories: the run.
+        direction: (2,) of any length.
+        window: seconds.
+        area: measuring polygon, metres; by default everywhere.
+
+    Raises:
+        ResultsError: a direction without length, or a window shorter than a frame.
+    """
+    along = np.asarray(direction, dtype=np.float64)
+    length = float(np.hypot(*along)) if along.shape == (2,) else 0.0
+    if not 0.0 < length < np.inf:
+        raise ResultsError(f"speeds along {direction!r}: expected a direction (x, y)")
+    frames = _frames(window, trajectories, "window")
+    order = trajectories.by_person
+    start, end = order[:-frames], order[frames:]
+    middle = order[frames // 2 : len(order) - frames + frames // 2]
+    kept = (trajectories.person[start] == trajectories.person[end]) & (
+        trajectories.frame[end] - trajectories.frame[start] == frames
+    )
+    if area is not None:
+        shapely.prepare(area)
+        kept &= shapely.contains_xy(area, trajectories.x[middle], trajectories.y[middle])
+    start, middle, end = start[kept], middle[kept], end[kept]
+    dx = trajectories.x[end] - trajectories.x[start]
+    dy = trajectories.y[end] - trajectories.y[start]
+    seconds = frames / trajectories.frame_rate
+    return SpeedsAlong(
+        time=trajectories.frame[start] / trajectories.frame_rate + seconds / 2,
+        person=trajectories.person[middle],
+        point=np.column_stack([trajectories.x[middle], trajectories.y[middle]]),
+        speed=(dx * along[0] + dy * along[1]) / (length * seconds),
+    )
 
 
 def mean_speed(trajectories: Trajectories, window: float = 1.0) -> float | None:
@@ -163,7 +236,7 @@ def density(
 ) -> list[list[float]]:
     """People in an area divided by its size, as [[t, people / m2], ...].
 
-    The classic density N / A; PedPy computes Voronoi densities from `Trajectories.to_pedpy()`.
+    The classic density N / A; see `voronoi_density` for one without its jumps.
 
     Args:
         trajectories: the run.
@@ -178,8 +251,7 @@ def density(
     shapely.prepare(area)
     offsets = trajectories.frame_offsets
     result: list[list[float]] = []
-    for tick, _ in occupancy(trajectories, every):
-        frame = round(tick * trajectories.frame_rate)
+    for tick, frame in frames_at(trajectories, every):
         rows = slice(offsets[frame], offsets[frame + 1])
         inside = shapely.contains_xy(area, trajectories.x[rows], trajectories.y[rows])
         result.append([tick, float(np.count_nonzero(inside) / area.area)])

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan, Gate
+from mesa_mobility.results import individual_densities
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict, case
@@ -23,7 +24,6 @@ from mesa_mobility.verification.runs import (
     evacuate,
     steady_flow,
 )
-from mesa_mobility.verification.voronoi import individual_densities
 
 WIDTHS = (0.8, 0.9, 1.0, 1.2, 1.6, 2.0, 2.5)
 JUDGED = (0.9, 1.0, 1.2, 1.6, 2.0)

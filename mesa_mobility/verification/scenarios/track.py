@@ -9,10 +9,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mesa_mobility.results import individual_densities
 from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.runs import Run
 from mesa_mobility.verification.scenarios.oval import Oval, oval_model
-from mesa_mobility.verification.voronoi import individual_densities
 
 FloatArray = NDArray[np.float64]
 
