@@ -10,6 +10,7 @@ from mesa_mobility.validation import (
     bidirectional,
     bottleneck,
     corridor,
+    fallback,
     single_file,
     standing,
     walking,
@@ -18,7 +19,7 @@ from mesa_mobility.validation.experiment import Experiment, judged
 
 EXPERIMENTS = {
     each.EXPERIMENT.name: each.EXPERIMENT
-    for each in (walking, single_file, corridor, bidirectional, bottleneck, standing)
+    for each in (walking, single_file, corridor, bidirectional, bottleneck, standing, fallback)
 }
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import islice
 from multiprocessing import get_context
 from typing import Any, TypeAlias
 
@@ -65,15 +66,29 @@ def run_cases(
     total = sum(each.effort for each, _ in todo)
     results: dict[tuple[Case, int], Figures] = {}
     done = 0.0
-    with _one_thread_each(), _pool(jobs) as pool:
-        waiting = {pool.submit(_run, each, seed): (each, seed) for each, seed in todo}
-        for future in as_completed(waiting):
-            unit = waiting[future]
-            results[unit] = future.result()
-            done += unit[0].effort
-            if progress is not None:
-                progress(f"{unit[0]} seed {unit[1]}", done, total)
+    for each, seed, figures in run_units(todo, jobs):
+        results[each, seed] = figures
+        done += each.effort
+        if progress is not None:
+            progress(f"{each} seed {seed}", done, total)
     return results
+
+
+def run_units(units: Iterable[tuple[Case, int]], jobs: int) -> Iterator[tuple[Case, int, Figures]]:
+    """Run cases, each with its seed, and give what comes out as soon as it does.
+
+    Units are begun in their order; one is taken when a process is free for it.
+    """
+    ahead = iter(units)
+    with _one_thread_each(), _pool(jobs) as pool:
+        waiting = {pool.submit(_run, *unit): unit for unit in islice(ahead, jobs)}
+        while waiting:
+            done, _ = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in done:
+                unit = waiting.pop(future)
+                for following in islice(ahead, 1):
+                    waiting[pool.submit(_run, *following)] = following
+                yield (*unit, future.result())
 
 
 def _run(each: Case, seed: int) -> Figures:

@@ -9,8 +9,23 @@ from scipy import stats
 from mesa_mobility.distributions import Gamma, LogNormal, Uniform, Weibull
 from mesa_mobility.verification import imo, judging, rimea
 from mesa_mobility.verification.cases import Figures, case
-from mesa_mobility.verification.checks import Verdict, at_least, exactly, less_than, rising
-from mesa_mobility.verification.scenarios import closures, impaired, premovement, walks
+from mesa_mobility.verification.checks import (
+    Verdict,
+    at_least,
+    at_most,
+    exactly,
+    less_than,
+    more_than,
+    rising,
+)
+from mesa_mobility.verification.scenarios import (
+    closures,
+    groups,
+    impaired,
+    premovement,
+    stair_foot,
+    walks,
+)
 from mesa_mobility.verification.suite import VerificationTest
 
 PRE_MOVEMENT = {
@@ -59,6 +74,38 @@ def other_exit(runs: Sequence[Figures]) -> Verdict:
     )
 
 
+def group_together(runs: Sequence[Figures]) -> Verdict:
+    """The group arrives together; without it, the fast ones would have run away."""
+    group, alone = runs
+    return Verdict(
+        (
+            *judging.everybody_out(runs),
+            at_most("spread of the group's arrivals s", group["spread_s"], 10.0),
+            more_than("spread of the same people on their own s", alone["spread_s"], 10.0),
+        )
+    )
+
+
+def jams(runs: Sequence[Figures]) -> Verdict:
+    """Densest at the neck, and at the foot of the slow stretch once there is one."""
+    plain, slow = runs
+    return Verdict(
+        (
+            *judging.everybody_out(runs),
+            more_than("peak at the neck less that in the corridor per m2",
+                      plain["neck"] - plain["corridor"], 0.0),
+            more_than("slow stretch: peak at the neck less that beyond its foot per m2",
+                      slow["neck"] - slow["corridor"], 0.0),
+            more_than("5 s peak at its foot with the slow stretch less without per m2",
+                      slow["foot_5_s"] - plain["foot_5_s"], 0.0),
+        ),
+        {
+            **{f"{name} per m2": plain[name] for name in ("neck", "corridor", "foot")},
+            **{f"slow stretch: {name} per m2": slow[name] for name in ("neck", "corridor", "foot")},
+        },
+    )  # fmt: skip
+
+
 TESTS = {
     "nist-1.1": VerificationTest(
         tuple(
@@ -79,6 +126,10 @@ TESTS = {
         pooled=judging.speed_spread(stats.norm(1.2, 0.2), 1.2, 0.2),
     ),
     "nist-2.8": VerificationTest(imo.COUNTERFLOW, judge=judging.counterflow),
+    "nist-2.9": VerificationTest(
+        (case(groups.group_behind, together=True), case(groups.group_behind, together=False)),
+        judge=group_together,
+    ),
     "nist-2.10": VerificationTest(
         (
             case(impaired.passage, width=NARROW, impaired=False),
@@ -89,5 +140,9 @@ TESTS = {
     ),
     "nist-3.1": rimea.TESTS["rimea-10"],
     "nist-4.1": VerificationTest((case(closures.closing_exit),), judge=other_exit),
+    "nist-5.1": VerificationTest(
+        (case(stair_foot.into_corridor, slow=False), case(stair_foot.into_corridor, slow=True)),
+        judge=jams,
+    ),
     "nist-5.2": VerificationTest((imo.ROOM_OF_100,), judge=imo.exit_flow),
 }

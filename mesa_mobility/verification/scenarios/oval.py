@@ -9,13 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import LineString, Polygon, box
 
-from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
+from mesa_mobility import FloorPlan, Gate, PedestrianModel
 from mesa_mobility.verification.runs import crowd_model
 
 FloatArray = NDArray[np.float64]
-
-SERVICE_DOOR = "service door"
-"""A floor plan needs an exit; this one is shut before anybody comes."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +52,7 @@ class Oval:
             Gate("north", (0.0, inner), (0.0, outer)),
             Gate("west", (-end - inner, 0.0), (-end - outer, 0.0)),
         ]
-        service = Exit(SERVICE_DOOR, (1.0, -outer), (2.0, -outer))
-        return FloorPlan(self.floor, exits=[service], gates=gates, name="oval")
+        return FloorPlan(self.floor, exits=[], gates=gates, name="oval")
 
     def boxes(self, length: float) -> tuple[Polygon, Polygon]:
         """The middle of both straights, `length` metres of them, the lower one first."""
@@ -122,7 +118,6 @@ def oval_model(
     plan = oval.plan()
     model = crowd_model(plan, seed)
     places = plan.random_points(people, model.rng, spacing=spacing, clearance=clearance)
-    plan.close_gate(SERVICE_DOOR)
     names = [gate.name for gate in plan.gates]
     lines = oval.unroll(np.array([gate.midpoint for gate in plan.gates]))[0]
     ahead = np.searchsorted(lines, oval.unroll(places)[0]) % len(names)

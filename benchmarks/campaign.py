@@ -1,0 +1,114 @@
+"""Is anybody ever frozen or lost?  500 runs, each with a seed of its own, counted independently.
+
+python benchmarks/campaign.py campaign.jsonl [--runs 500] [--minutes 9] [--jobs 2]
+
+Appends one JSON line a run and goes on where the file ends, so that it can be run in pieces;
+with nothing left to run it prints the figures and ends with status 1 if anybody was frozen or lost.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from mesa_mobility.results.files import json_text
+from mesa_mobility.validation.bottleneck import bottleneck
+from mesa_mobility.verification import Case, case
+from mesa_mobility.verification.cases import run_units
+from mesa_mobility.verification.scenarios.counterflow import counterflow
+from mesa_mobility.verification.scenarios.shipped import shipped
+
+ROUND: tuple[Case, ...] = (
+    case(shipped, model="doorway"),
+    case(bottleneck, width=0.8),
+    case(counterflow, opposing=100),
+    case(bottleneck, width=0.9),
+    case(shipped, model="doorway"),
+    case(bottleneck, width=1.0),
+    case(counterflow, opposing=50),
+    case(bottleneck, width=1.2),
+    case(bottleneck, width=1.6),
+    case(bottleneck, width=2.0),
+    case(counterflow, opposing=100),
+    case(shipped, model="auditorium"),
+)
+"""What is run in turn: in 500 runs 84 doorways, 251 bottlenecks, 124 counterflows, 41 halls."""
+
+SEED = 10_000
+"""Of the first run; each one after it has the next."""
+
+KEPT = (
+    "pedestrians", "left_inside", "stalled", "overlaps", "wall_crossings", "min_distance_m",
+    "simulated_s", "egress_s", "fallback_time_share", "person_s",
+)  # fmt: skip
+
+
+def main() -> None:
+    """Run what is missing, then say what came out."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path, help="one JSON line a run")
+    parser.add_argument("--runs", type=int, default=500)
+    parser.add_argument("--minutes", type=float, default=9.0, help="begin no run after this")
+    parser.add_argument("--jobs", type=int, default=2)
+    given = parser.parse_args()
+    done = {row["seed"]: row for row in _rows(given.file)}
+    begun = time.monotonic()
+
+    def missing() -> Iterator[tuple[Case, int]]:
+        for number in range(given.runs):
+            if time.monotonic() - begun > 60.0 * given.minutes:
+                return
+            if SEED + number not in done:
+                yield ROUND[number % len(ROUND)], SEED + number
+
+    with given.file.open("a", encoding="utf-8") as file:
+        for each, seed, figures in run_units(missing(), given.jobs):
+            kept = {name: figures[name] for name in KEPT if name in figures}
+            if "error" in figures:
+                kept["error"] = figures["error"]
+            row = {"seed": seed, "scenario": str(each), **kept}
+            file.write(json_text(row) + "\n")
+            file.flush()
+            done[seed] = row
+    wanted = [done[SEED + k] for k in range(given.runs) if SEED + k in done]
+    print(f"{len(wanted)} of {given.runs} runs")
+    bad = report(wanted)
+    sys.exit(1 if bad else 0)
+
+
+def report(rows: list[dict[str, Any]]) -> bool:
+    """Print figures for each scenario; whether anything was wrong in any run."""
+    print("| scenario | runs | people | frozen or lost | runs with any | overlaps | wall crossings "
+          "| fallback, share of time |")  # fmt: skip
+    print("|---" * 8 + "|")
+    wrong = False
+    for name in [*dict.fromkeys(row["scenario"] for row in rows), "all"]:
+        mine = [row for row in rows if name in (row["scenario"], "all")]
+        failed = [row for row in mine if "error" in row]
+        good = [row for row in mine if "error" not in row]
+        total = {key: sum(row[key] for row in good)
+                 for key in ("pedestrians", "left_inside", "overlaps", "wall_crossings")}  # fmt: skip
+        time_ = sum(row["person_s"] for row in good)
+        share = sum(row["fallback_time_share"] * row["person_s"] for row in good) / (time_ or 1.0)
+        stuck = sum(row["left_inside"] > 0 for row in good)
+        print(f"| {name} | {len(mine)} | {total['pedestrians']} | {total['left_inside']} | {stuck} "
+              f"| {total['overlaps']} | {total['wall_crossings']} | {share:.1%} |")  # fmt: skip
+        for row in failed:
+            print(f"seed {row['seed']}: {row['error']}")
+        wrong |= bool(failed or stuck or total["overlaps"] or total["wall_crossings"])
+    return wrong
+
+
+def _rows(file: Path) -> list[dict[str, Any]]:
+    if not file.exists():
+        return []
+    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+
+
+if __name__ == "__main__":
+    main()

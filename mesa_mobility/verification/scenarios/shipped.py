@@ -1,0 +1,16 @@
+"""The models that ship, as cases."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mesa_mobility.registry import load_model
+from mesa_mobility.verification.runs import evacuate
+
+LIMIT_S = 900.0
+
+
+def shipped(seed: int, *, model: str) -> dict[str, Any]:
+    """A model that ships, with its own numbers, until everybody is out."""
+    run = evacuate(load_model(model)(record=True, rng=seed), LIMIT_S)
+    return run.figures()
