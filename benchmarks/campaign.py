@@ -47,6 +47,8 @@ KEPT = (
     "simulated_s", "egress_s", "fallback_time_share", "person_s",
 )  # fmt: skip
 
+COUNTED = ("pedestrians", "left_inside", "overlaps", "wall_crossings")
+
 
 def main() -> None:
     """Run what is missing, then say what came out."""
@@ -91,8 +93,7 @@ def report(rows: list[dict[str, Any]]) -> bool:
         mine = [row for row in rows if name in (row["scenario"], "all")]
         failed = [row for row in mine if "error" in row]
         good = [row for row in mine if "error" not in row]
-        total = {key: sum(row[key] for row in good)
-                 for key in ("pedestrians", "left_inside", "overlaps", "wall_crossings")}  # fmt: skip
+        total = {key: sum(row[key] for row in good) for key in COUNTED}
         time_ = sum(row["person_s"] for row in good)
         share = sum(row["fallback_time_share"] * row["person_s"] for row in good) / (time_ or 1.0)
         stuck = sum(row["left_inside"] > 0 for row in good)

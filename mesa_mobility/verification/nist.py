@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from scipy import stats
 
 from mesa_mobility.distributions import Gamma, LogNormal, Uniform, Weibull
@@ -17,8 +18,10 @@ from mesa_mobility.verification.checks import (
     less_than,
     more_than,
     rising,
+    within,
 )
 from mesa_mobility.verification.scenarios import (
+    choices,
     closures,
     groups,
     impaired,
@@ -37,6 +40,7 @@ PRE_MOVEMENT = {
 """What people draw from, and the same as SciPy has it; exp(4.586) = 98.1013."""
 
 NARROW, WIDE = 1.2, 4.0
+TRIALS = 40
 
 
 def impaired_person(seeds: Sequence[Sequence[Figures]]) -> Verdict:
@@ -72,6 +76,37 @@ def other_exit(runs: Sequence[Figures]) -> Verdict:
             less_than("out after s", run["egress_s"], 60.0),
         )
     )
+
+
+def social_influence(seeds: Sequence[Sequence[Figures]]) -> Verdict:
+    """On its own a person takes either exit as often; with another bound for exit 2, that more."""
+    alone, other, trials = _shares(seeds)
+    # What 99 of 100 fair coins show in so many throws.
+    spread = 2.576 * (0.25 / trials) ** 0.5
+    return Verdict(
+        (
+            within("share of exit 2 alone", alone, 0.5 - spread, 0.5 + spread),
+            more_than("rise of the share of exit 2", other - alone, 0.0),
+        ),
+        {"share of exit 2 with another": other, "trials": trials},
+    )
+
+
+def familiarity(seeds: Sequence[Sequence[Figures]]) -> Verdict:
+    """The far exit is used more by those who know it."""
+    unknown, known, trials = _shares(seeds)
+    return Verdict(
+        (more_than("rise of the share of the far exit", known - unknown, 0.0),),
+        {"share unknown": unknown, "share known": known, "trials": trials},
+    )
+
+
+def _shares(seeds: Sequence[Sequence[Figures]]) -> tuple[float, float, int]:
+    """Share of exit 2 in either case over all seeds, and how many trials each is of."""
+    first, second = (
+        float(np.mean([run["share"] for run in of])) for of in zip(*seeds, strict=True)
+    )
+    return first, second, sum(row[0]["trials"] for row in seeds)
 
 
 def group_together(runs: Sequence[Figures]) -> Verdict:
@@ -139,6 +174,20 @@ TESTS = {
         pooled=impaired_person,
     ),
     "nist-3.1": rimea.TESTS["rimea-10"],
+    "nist-3.2": VerificationTest(
+        (
+            case(choices.influenced, effort=2.0, trials=TRIALS, other=False),
+            case(choices.influenced, effort=2.0, trials=TRIALS, other=True),
+        ),
+        pooled=social_influence,
+    ),
+    "nist-3.3": VerificationTest(
+        (
+            case(choices.familiar, trials=TRIALS, knows=False),
+            case(choices.familiar, trials=TRIALS, knows=True),
+        ),
+        pooled=familiarity,
+    ),
     "nist-4.1": VerificationTest((case(closures.closing_exit),), judge=other_exit),
     "nist-5.1": VerificationTest(
         (case(stair_foot.into_corridor, slow=False), case(stair_foot.into_corridor, slow=True)),

@@ -22,7 +22,9 @@ SPACING = 0.4
 """Metres that people are put apart where a crowd is not too dense for it."""
 
 
-def crowd_model(plan: FloorPlan, seed: int, **keywords: Any) -> PedestrianModel:
+def crowd_model(
+    plan: FloorPlan, seed: int | np.random.Generator, **keywords: Any
+) -> PedestrianModel:
     """A recording model of the default preset on the map that ships."""
     if "pedestrian_types" not in keywords:
         keywords["mobility_map"] = MobilityMap.load()

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan
+from mesa_mobility.behaviors import QuickestExit
 from mesa_mobility.results import flow
 from mesa_mobility.verification.runs import CLEARANCE, SPACING, Run, crowd_model, evacuate
 
@@ -94,15 +95,19 @@ def hall(seed: int, *, people: int, exits: int, population: str) -> dict[str, An
 
 
 def two_exits(seed: int, *, people: int, population: str) -> dict[str, Any]:
-    """People crowd the left half of a hall whose two exits of 1 m lie on the right."""
+    """People crowd the left half of a hall whose two exits of 1 m lie on the right.
+
+    They weigh the walk against the queue.
+    """
     plan = FloorPlan(HALL, exits=[Exit(name, *line) for name, line in TWO_EXITS.items()])
-    return _empty(plan, box(2.0, 2.0, 15.0, 18.0), people, population, seed)
+    start = box(2.0, 2.0, 15.0, 18.0)
+    return _empty(plan, start, people, population, seed, target_choice=QuickestExit())
 
 
 def _empty(
-    plan: FloorPlan, start: Polygon, people: int, population: str, seed: int
+    plan: FloorPlan, start: Polygon, people: int, population: str, seed: int, **keywords: Any
 ) -> dict[str, Any]:
-    model = crowd_model(plan, seed)
+    model = crowd_model(plan, seed, **keywords)
     places = plan.random_points(
         people, model.rng, within=start, spacing=SPACING, clearance=CLEARANCE
     )
