@@ -44,7 +44,7 @@ class FamiliarExit(RandomUtility):
             raise ModelError(f"{self.name}: affiliation {affiliation}, expected 0 m or more")
         self.affiliation = affiliation
         self.familiar = _names(familiar)
-        self._known: dict[int, frozenset[str]] = {}
+        self._known = np.empty((0, 0), dtype=np.bool_)
 
     def know(self, people: Iterable[Pedestrian], exits: Iterable[str]) -> None:
         """Say which exits some people know; they choose again at their next decision.
@@ -54,26 +54,31 @@ class FamiliarExit(RandomUtility):
         """
         names = _names(exits)
         for person in people:
-            self._check(names, person.model.floor_plan)
-            self._known[person.row] = names
+            plan = person.model.floor_plan
+            self._make_known(person.row, plan)
+            self._known[person.row] = self._mask(names, plan)
             self.forget(person.row)
 
     def bonus(self, choosing: Choosing):  # type: ignore[no-untyped-def]
         """(k, e) metres: the affiliation where an exit is known."""
-        exits = choosing.deciding.site.plan.exits
-        self._check(self.familiar, choosing.deciding.site.plan)
-        known = [
-            [exit_.name in self._known.get(row, self.familiar) for exit_ in exits]
-            for row in choosing.pedestrians.tolist()
-        ]
-        return self.affiliation * np.array(known, dtype=np.float64).reshape(-1, len(exits))
+        self._make_known(int(choosing.pedestrians.max()), choosing.deciding.site.plan)
+        return self.affiliation * self._known[choosing.pedestrians]
 
-    def _check(self, names: frozenset[str], plan: FloorPlan) -> None:
+    def _make_known(self, row: int, plan: FloorPlan) -> None:
+        """Have rows for everybody up to this one."""
+        more = row + 1 - len(self._known)
+        if more > 0:
+            new = np.tile(self._mask(self.familiar, plan), (more, 1))
+            self._known = np.concatenate([self._known.reshape(-1, new.shape[1]), new])
+
+    def _mask(self, names: frozenset[str], plan: FloorPlan):  # type: ignore[no-untyped-def]
+        """(e,) which exits have one of these names."""
         there = [exit_.name for exit_ in plan.exits]
         for name in sorted(names.difference(there)):
             raise ModelError(
                 f"{self.name}: exit {name!r} is unknown, expected one of {', '.join(there)}"
             )
+        return np.array([name in names for name in there], dtype=np.bool_)
 
 
 def _names(exits: Iterable[str]) -> frozenset[str]:

@@ -51,15 +51,16 @@ class SocialInfluence(RandomUtility):
         inside, exits = choosing.deciding.inside, choosing.distances.shape[1]
         decided = np.flatnonzero(choosing.heading >= 0)
         places = inside.positions[decided]
-        near = cKDTree(places).query_ball_point(choosing.positions, self.sight)
-        seen = np.concatenate([np.array(each, dtype=np.int64) for each in near])
-        who = np.repeat(np.arange(len(near)), [len(each) for each in near])
+        near = cKDTree(choosing.positions).sparse_distance_matrix(
+            cKDTree(places), self.sight, output_type="ndarray"
+        )
+        who, seen = near["i"], near["j"]
         others = inside.pedestrians[decided[seen]] != choosing.pedestrians[who]
         seen, who = seen[others], who[others]
         clear = lines_of_sight(
             choosing.deciding.site.plan, choosing.positions[who], places[seen], 0.0
         )
         seen, who = seen[clear], who[clear]
-        headed = np.zeros((len(near), exits))
+        headed = np.zeros((len(choosing.positions), exits))
         np.add.at(headed, (who, choosing.heading[decided[seen]]), 1.0)
         return self.influence * headed / np.maximum(headed.sum(axis=1, keepdims=True), 1.0)

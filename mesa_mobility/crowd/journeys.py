@@ -51,6 +51,7 @@ class Journeys:
         self._plan = plan
         self._site = site
         self._known: list[Journey] = []
+        self._take_stock()
         self._numbers: dict[tuple[tuple[str, ...], bool, tuple[str, ...] | None], int] = {}
         self.crossed = 0
 
@@ -87,6 +88,7 @@ class Journeys:
                 lines=np.array([*lines, *[(np.nan,) * 4] * (not loop)]),
             )
         )
+        self._take_stock()
         self._numbers[key] = len(self._known)
         return len(self._known)
 
@@ -98,11 +100,24 @@ class Journeys:
         """Whether whoever is on the journey with this number goes round for ever."""
         return number > 0 and self._known[number - 1].loop
 
-    def leg(self, number: int, crossed: int) -> tuple[int, NDArray[np.float64]]:
-        """Destination, and line to cross, of somebody who has crossed so many gates."""
-        journey = self._known[number - 1]
-        k = crossed % len(journey.legs)
-        return int(journey.legs[k]), journey.lines[k]
+    def first(self, number: int) -> int:
+        """Number of the destination of the first leg of a journey."""
+        return int(self._known[number - 1].legs[0])
+
+    def _take_stock(self) -> None:
+        """Lay out the legs of all journeys one after the other."""
+        none = Journey((), False, np.zeros(1, dtype=np.int32), np.full((1, 4), np.nan))
+        known = [none, *self._known]
+        self._counts = np.array([len(each.legs) for each in known])
+        self._firsts = np.cumsum(self._counts) - self._counts
+        self._legs = np.concatenate([each.legs for each in known])
+        self._lines = np.concatenate([each.lines for each in known])
+
+    def _now(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.int64]:
+        """(n,) the leg, counted through all journeys, that each is on."""
+        journey, crossed = crowd.agenda["journey"][rows], crowd.agenda["crossed"][rows]
+        legs: NDArray[np.int64] = self._firsts[journey] + crossed % self._counts[journey]
+        return legs
 
     def advance(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
         """Send those in ``rows`` on who have crossed the gate that they went for."""
@@ -111,12 +126,7 @@ class Journeys:
         agenda = crowd.agenda
         on = rows[agenda["journey"][rows] > 0]
         while len(on):
-            lines = np.array(
-                [
-                    self.leg(number, crossed)[1]
-                    for number, crossed in agenda[["journey", "crossed"]][on].tolist()
-                ]
-            )
+            lines = self._lines[self._now(on, crowd)]
             when = np.full(len(on), np.inf)
             _find_crossings(on, lines, frame, agenda["checked"][on], crowd.records, when)
             over = np.isfinite(when)
@@ -124,9 +134,7 @@ class Journeys:
             on = on[over]
             agenda["crossed"][on] += 1
             self.crossed += len(on)
-            for row in on.tolist():
-                number, crossed = agenda[["journey", "crossed"]][row].tolist()
-                crowd.destination[row] = self.leg(number, crossed)[0]
+            crowd.destination[on] = self._legs[self._now(on, crowd)]
 
 
 @called()

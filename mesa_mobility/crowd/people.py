@@ -80,8 +80,10 @@ class People(mesa.Model):
             pre_movement: (n,) seconds, or a distribution of them, for which they stand where they
                 are before they set off: their first decision is in the first frame after that.
             exits: names of the exits they may leave by; by default the nearest of all.
-            route: names of gates that they cross, in this order, before they leave.
-            loop: the route's first gate follows its last again; they never leave.
+            route: names of gates that they cross, in this order and whichever way, before they
+                leave.
+            loop: the route's first gate follows its last again; they never leave. On a closed track
+                three gates or more tell which way round.
             group: the name or number of a group that they belong to, with whoever else is given it.
             kind: index of their type in ``pedestrian_types``.
 
@@ -221,7 +223,7 @@ class People(mesa.Model):
         if not len(route):
             return self._site.destination(names), 0
         journey = self.journeys.add(route, loop, names)
-        return self.journeys.leg(journey, 0)[0], journey
+        return self.journeys.first(journey), journey
 
     def _check_kind(self, kind: int) -> None:
         if not 0 <= kind < len(self.pedestrian_types):
