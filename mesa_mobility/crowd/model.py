@@ -21,7 +21,7 @@ from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
 from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
-from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.people import People
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.recorder import Recorder
@@ -104,17 +104,9 @@ class PedestrianModel(CrowdMeasures, People):
         if not isinstance(frames_per_step, int) or frames_per_step < 1:
             raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
         rules = preset_named(preset)
-        if pedestrian_types is None:
-            if not isinstance(mobility_map, MobilityMap):
-                mobility_map = MobilityMap.load(mobility_map)
-            pedestrian_types = [PedestrianType(mobility_map=mobility_map)]
-        elif mobility_map is not None:
-            raise ModelError("mobility_map and pedestrian_types: got both, expected one of them")
-        if not pedestrian_types:
-            raise ModelError("pedestrian_types: got none, expected at least one")
         self.preset = rules.name
         self.floor_plan = floor_plan
-        self.pedestrian_types = tuple(pedestrian_types)
+        self.pedestrian_types = types_of(mobility_map, pedestrian_types)
         self._repertoire = repertoire(
             tuple(kind.mobility_map for kind in self.pedestrian_types), rules.durations
         )
@@ -216,9 +208,7 @@ class PedestrianModel(CrowdMeasures, People):
         Raises:
             ModelError: no end is given where people go round or come for ever.
         """
-        journeys = np.unique(self.crowd.agenda["journey"][self._rows]).tolist()
-        endless = any(self.journeys.endless(number) for number in journeys)
-        if max_seconds is None and (endless or any(each.source.endless for each in self.sources)):
+        if max_seconds is None and self._endless:
             raise ModelError("max_seconds: got none, but people go round or come for ever")
         told = 0
         self._stall_watch = StallWatch()

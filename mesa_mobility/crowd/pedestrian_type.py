@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from numbers import Real
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,3 +58,23 @@ class PedestrianType:
         if isinstance(self.preferred_speed, Distribution):
             return self.preferred_speed.draw(n, rng)
         return np.full(n, float(self.preferred_speed))
+
+
+def types_of(
+    mobility_map: MobilityMap | str | Path | None, types: Sequence[PedestrianType] | None
+) -> tuple[PedestrianType, ...]:
+    """A model's types: those given, or a single one for a map, its file, or the one that ships.
+
+    Raises:
+        ModelError: both are given, or no types at all.
+        MapError: an unusable map file.
+    """
+    if types is None:
+        if not isinstance(mobility_map, MobilityMap):
+            mobility_map = MobilityMap.load(mobility_map)
+        return (PedestrianType(mobility_map=mobility_map),)
+    if mobility_map is not None:
+        raise ModelError("mobility_map and pedestrian_types: got both, expected one of them")
+    if not types:
+        raise ModelError("pedestrian_types: got none, expected at least one")
+    return tuple(types)

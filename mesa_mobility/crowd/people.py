@@ -162,6 +162,13 @@ class People(mesa.Model):
         """Whether a source has people to come."""
         return not all(inflow.finished for inflow in self.sources)
 
+    @property
+    def _endless(self) -> bool:
+        """Whether somebody inside never leaves, or people come for ever."""
+        journeys = np.unique(self.crowd.agenda["journey"][self._rows]).tolist()
+        round_ = any(self.journeys.endless(number) for number in journeys)
+        return round_ or any(inflow.source.endless for inflow in self.sources)
+
     def _let_in(self) -> NDArray[np.int64]:
         """Let those in who have come, as far as there is room; (n,) their rows."""
         first = self.count

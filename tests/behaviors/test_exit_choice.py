@@ -181,16 +181,16 @@ def test_one_who_goes_there_draws_others():
     # NIST TN 1822 Verif.3.2: two exits as far off; the share of the second rises.
     shares = []
     for others in (0, 1):
-        chosen = []
-        for seed in range(60):
-            choice = SocialInfluence()
-            model = model_of(hall(), [strider(), statues()], target_choice=choice, rng=seed)
-            bound(model, others)
-            chosen += heads_for(choice, [put(model, 10.0, 3.0)])
-        shares.append(np.mean(chosen))
-    assert shares[0] == pytest.approx(0.5, abs=0.17)
-    # 1 / (1 + exp(-5 / 2)) = 0.924.
-    assert shares[1] == pytest.approx(0.924, abs=0.1)
+        choice = SocialInfluence()
+        model = model_of(
+            hall(), [strider(), strider()], target_choice=choice, preset="paper", rng=4
+        )
+        bound(model, others)
+        # All of them choose at once, before any of the others heads anywhere.
+        people = model.add_pedestrians(np.tile([(10.0, 3.0)], (2000, 1)))
+        shares.append(np.mean(heads_for(choice, people)))
+    # Even, and 1 / (1 + exp(-5 / 2)) = 0.924.
+    assert shares == pytest.approx([0.5, 0.924], abs=0.04)
 
 
 # -- what they have in common ------------------------------------------------------------------
