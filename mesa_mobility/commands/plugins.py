@@ -19,7 +19,7 @@ def models() -> None:
 
 
 def behaviors() -> None:
-    """List the installed behaviours (cost terms), plug-ins included."""
+    """List the installed behaviours (cost terms, target choices, paces), plug-ins included."""
     _list(registry.behaviors())
 
 
