@@ -20,6 +20,8 @@ from mesa_mobility.results.trajectories import Trajectories
 TOLERANCE_M = 1e-5
 # How many of the overlaps and crossings a report names one by one.
 NAMED = 10
+# Least width of the squares by which steps near walls are found, metres.
+SQUARE_M = 0.25
 # Steps looked at together: bounds the memory that shapely's objects take.
 CHUNK = 200_000
 
@@ -101,6 +103,7 @@ def _overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | N
     offsets = trajectories.frame_offsets
     positions = np.column_stack((trajectories.x, trajectories.y))
     radii = trajectories.radii[trajectories.person]
+    reach = 2.0 * float(radii.max(initial=0.0))
     count, named, nearest = 0, list[Overlap](), np.inf
     for frame in range(trajectories.frames):
         rows = slice(offsets[frame], offsets[frame + 1])
@@ -108,13 +111,14 @@ def _overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | N
             continue
         points, cores = positions[rows], radii[rows]
         tree = cKDTree(points)
-        nearest_here = float(tree.query(points, k=2)[0][:, 1].min())
-        nearest = min(nearest, nearest_here)
-        reach = 2.0 * cores.max()
-        if nearest_here >= reach:
+        if not np.isfinite(nearest):
+            nearest = float(tree.query(points, k=2)[0][:, 1].min())
+        # Nobody matters who is neither within reach nor nearer than any two were before.
+        a, b = tree.query_pairs(max(reach, nearest), output_type="ndarray").T
+        if not len(a):
             continue
-        a, b = tree.query_pairs(reach, output_type="ndarray").T
         distance = np.hypot(*(points[a] - points[b]).T)
+        nearest = min(nearest, float(distance.min()))
         close = np.flatnonzero(distance < cores[a] + cores[b] - TOLERANCE_M)
         count += len(close)
         people = trajectories.person[rows]
@@ -127,10 +131,12 @@ def _overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | N
 def _wall_crossings(
     trajectories: Trajectories, walls: NDArray[np.float64]
 ) -> tuple[int, list[WallCrossing]]:
-    if not len(walls):
-        return 0, []
-    tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
     start, end = trajectories.steps()
+    if not len(walls) or not len(start):
+        return 0, []
+    near = _near_walls(trajectories, start, end, walls)
+    start, end = start[near], end[near]
+    tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
     hits, hit_walls = list[NDArray[np.int64]](), list[NDArray[np.int64]]()
     for first in range(0, len(start), CHUNK):
         ends = np.stack((start[first : first + CHUNK], end[first : first + CHUNK]), axis=1)
@@ -150,3 +156,39 @@ def _wall_crossings(
         for k in in_order
     ]
     return len(rows), named
+
+
+def _near_walls(
+    trajectories: Trajectories,
+    start: NDArray[np.int64],
+    end: NDArray[np.int64],
+    walls: NDArray[np.float64],
+) -> NDArray[np.bool_]:
+    """(k,) which steps begin in a square that holds part of a wall, or beside one.
+
+    Squares are as wide as the longest step: no other step can meet a wall.
+    """
+    x, y = trajectories.x, trajectories.y
+    longest = float(np.hypot(x[end] - x[start], y[end] - y[start]).max())
+    side = max(SQUARE_M, 1.01 * longest)
+    # Places on the walls, no farther than half a square from one to the next.
+    lengths = np.hypot(walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1])
+    pieces = np.ceil(2.0 * lengths / side).astype(np.int64) + 1
+    wall = np.repeat(np.arange(len(walls)), pieces)
+    first = np.repeat(np.cumsum(pieces) - pieces, pieces)
+    share = (np.arange(len(wall)) - first) / (pieces[wall] - 1).clip(1)
+    on_walls = walls[wall, :2] + share[:, None] * (walls[wall, 2:] - walls[wall, :2])
+    low = np.minimum(on_walls.min(axis=0), (x.min(), y.min())) - 2.0 * side
+    high = np.maximum(on_walls.max(axis=0), (x.max(), y.max())) + 2.0 * side
+    columns, rows = (np.ceil((high - low) / side).astype(np.int64) + 1).tolist()
+    held = np.zeros((columns, rows), dtype=np.bool_)
+    i, j = np.floor((on_walls - low) / side).astype(np.int64).T
+    # A place up to a quarter of a square off, and a step of one: two squares to either side.
+    for across in range(-2, 3):
+        for up in range(-2, 3):
+            held[np.clip(i + across, 0, columns - 1), np.clip(j + up, 0, rows - 1)] = True
+    here = (
+        ((x[start] - low[0]) / side).astype(np.int64),
+        ((y[start] - low[1]) / side).astype(np.int64),
+    )
+    return held[here]

@@ -18,7 +18,7 @@ DESIGN_CAP = 1.33
 """Persons a second through 1 m: what designs may reckon with, not what people do."""
 
 COUNTERFLOW = tuple(
-    case(counterflow, effort=3.0 + 0.05 * opposing, opposing=opposing)
+    case(counterflow, effort=0.5 + 0.05 * opposing, opposing=opposing)
     for opposing in (0, 10, 50, 100)
 )
 ROOM_OF_100 = case(rooms.small_room, effort=2.0, people=100)
@@ -67,13 +67,7 @@ TESTS = {
         pooled=judging.speed_spread(stats.uniform(LOW, HIGH - LOW), 1.295, 0.188),
     ),
     "imo-08": VerificationTest(COUNTERFLOW, judge=judging.counterflow),
-    "imo-09": VerificationTest(
-        (
-            case(rooms.hall, effort=10.0, people=1000, exits=4, population="males"),
-            case(rooms.hall, effort=20.0, people=1000, exits=2, population="males"),
-        ),
-        judge=judging.closed_exits,
-    ),
+    "imo-09": rimea.TESTS["rimea-09"],
     "imo-10": rimea.TESTS["rimea-10"],
     "imo-12": VerificationTest(rimea.TRACKS, judge=flow_at_high_density),
 }

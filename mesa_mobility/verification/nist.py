@@ -183,8 +183,8 @@ TESTS = {
     ),
     "nist-3.3": VerificationTest(
         (
-            case(choices.familiar, trials=TRIALS, knows=False),
-            case(choices.familiar, trials=TRIALS, knows=True),
+            case(choices.familiar, trials=TRIALS // 2, knows=False),
+            case(choices.familiar, trials=TRIALS // 2, knows=True),
         ),
         pooled=familiarity,
     ),

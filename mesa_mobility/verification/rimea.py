@@ -30,7 +30,15 @@ from mesa_mobility.verification.suite import VerificationTest
 
 DENSITIES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
 TRACKS = tuple(
-    case(track, effort=1.0 + 1.5 * density, density=density, width=2.0, speed=1.34)
+    case(
+        track,
+        effort=0.5 + 0.7 * density,
+        density=density,
+        width=2.0,
+        speed=1.34,
+        settle_s=10.0,
+        measure_s=50.0,
+    )
     for density in DENSITIES
 )
 LEAST_ENTRIES = 50
@@ -238,14 +246,14 @@ TESTS = {
     ),
     "rimea-09": VerificationTest(
         (
-            case(rooms.hall, effort=10.0, people=1000, exits=4, population="default"),
-            case(rooms.hall, effort=20.0, people=1000, exits=2, population="default"),
+            case(rooms.hall, effort=5.0, people=1000, exits=4),
+            case(rooms.hall, effort=9.0, people=1000, exits=2),
         ),
         judge=judging.closed_exits,
     ),
     "rimea-10": VerificationTest((case(cabins.cabins),), judge=judging.allocated),
     "rimea-11": VerificationTest(
-        (case(rooms.two_exits, effort=30.0, people=1000, population="default"),), judge=two_exits
+        (case(rooms.two_exits, effort=11.0, people=1000),), judge=two_exits
     ),
     "rimea-12": VerificationTest((case(necks.two_rooms, effort=3.0),), judge=jam_before_first),
     "rimea-12a": VerificationTest(

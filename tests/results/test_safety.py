@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shapely import LineString
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Overlap, Trajectories, WallCrossing, check_safety, safety
@@ -163,3 +164,52 @@ def meets(p, q, a, b):
         return True
     on_line = ((p, q, a, ends[0]), (p, q, b, ends[1]), (a, b, p, ends[2]), (a, b, q, ends[3]))
     return any(turn == 0 and between(u, v, w) for u, v, w, turn in on_line)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**31), st.floats(0.01, 3.0))
+def test_crossings_are_those_of_each_step_against_each_wall(seed, stride):
+    # Steps from a hundredth of a square to twelve of them, walls of all directions and lengths.
+    rng = np.random.default_rng(seed)
+    frames, people = 6, 8
+    tracks = rng.uniform(-5, 5, (people, 1, 2)) + np.cumsum(
+        rng.normal(0, stride, (people, frames, 2)), axis=1
+    )
+    ends = rng.uniform(-6, 6, (10, 2))
+    walls = np.concatenate([ends, ends + rng.normal(0, 2, (10, 2))], axis=1)
+    run = Trajectories(
+        frame=np.tile(np.arange(frames, dtype=np.int32), people),
+        person=np.repeat(np.arange(people, dtype=np.int32), frames),
+        x=tracks[:, :, 0].ravel(),
+        y=tracks[:, :, 1].ravel(),
+        heading=np.zeros(people * frames),
+    )
+    lines = [LineString([w[:2], w[2:]]) for w in walls]
+    expected = sum(
+        any(LineString(track[k : k + 2]).intersects(line) for line in lines)
+        for track in tracks
+        for k in range(frames - 1)
+    )
+    assert check_safety(run, walls).wall_crossings == expected
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**31), st.integers(2, 30))
+def test_overlaps_are_those_of_each_pair(seed, people):
+    rng = np.random.default_rng(seed)
+    frames = 4
+    places = rng.uniform(0, 3, (frames, people, 2))
+    radii = rng.uniform(0.05, 0.4, people)
+    run = Trajectories(
+        frame=np.repeat(np.arange(frames, dtype=np.int32), people),
+        person=np.tile(np.arange(people, dtype=np.int32), frames),
+        x=places[:, :, 0].ravel(),
+        y=places[:, :, 1].ravel(),
+        heading=np.zeros(people * frames),
+        core_radius=radii,
+    )
+    first, second = np.triu_indices(people, 1)
+    distance = np.hypot(*(places[:, first] - places[:, second]).transpose(2, 0, 1))
+    report = check_safety(run, NO_WALLS)
+    assert report.overlaps == (distance < radii[first] + radii[second] - 1e-5).sum()
+    assert report.min_distance_m == pytest.approx(distance.min())

@@ -358,3 +358,48 @@ def test_the_shortest_way():
     assert not judge([run(0, 1), run(0, 1), run(0, 1)]).passed
     assert not judge([run(1, 0), run(1, 0), run(0, 1)]).passed
     assert not judge([run(1, 0), run(0, 1), run(1, 0)]).passed
+
+
+def test_a_group_stays_together_where_it_would_otherwise_part():
+    judge = nist.TESTS["nist-2.9"].judge
+
+    def runs(group: float | None, alone: float | None) -> list[dict]:
+        return [out(spread_s=group), out(spread_s=alone)]
+
+    assert judge(runs(10.0, 43.0)).passed
+    assert not judge(runs(10.1, 43.0)).passed
+    assert not judge(runs(None, 43.0)).passed
+    assert not judge(runs(5.0, 9.0)).passed
+
+
+def test_jams_are_at_the_neck_and_at_the_foot():
+    judge = nist.TESTS["nist-5.1"].judge
+
+    def run(neck: float, corridor: float, foot: float) -> dict:
+        return out(neck=neck, corridor=corridor, foot=foot, foot_5_s=foot)
+
+    assert judge([run(6.0, 2.5, 2.0), run(6.0, 4.0, 3.0)]).passed
+    assert not judge([run(2.5, 2.5, 2.0), run(6.0, 4.0, 3.0)]).passed
+    assert not judge([run(6.0, 2.5, 2.0), run(4.0, 4.0, 3.0)]).passed
+    assert not judge([run(6.0, 2.5, 2.0), run(6.0, 4.0, 2.0)]).passed
+
+
+def shares(*pairs: tuple[float, float], trials: int = 40) -> list[list[dict]]:
+    return [[{"share": share, "trials": trials} for share in pair] for pair in pairs]
+
+
+def test_another_persons_way_raises_the_share_of_its_exit():
+    judge = nist.TESTS["nist-3.2"].pooled
+    assert judge(shares((0.5, 0.8))).passed
+    assert not judge(shares((0.5, 0.5))).passed
+    # 40 fair coins: 0.5 +- 2.576 sqrt(0.25 / 40) = 0.296 to 0.704; of 400 only 0.436 to 0.564.
+    assert judge(shares((0.30, 0.8))).passed
+    assert not judge(shares((0.29, 0.8))).passed
+    assert not judge(shares(*[(0.43, 0.8)] * 10)).passed
+    assert judge(shares(*[(0.44, 0.8)] * 10)).passed
+
+
+def test_those_who_know_the_far_exit_use_it_more():
+    judge = nist.TESTS["nist-3.3"].pooled
+    assert judge(shares((0.1, 0.2))).passed
+    assert not judge(shares((0.2, 0.2))).passed

@@ -8,6 +8,7 @@ import numpy as np
 from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan, Gate
+from mesa_mobility.distributions import Uniform
 from mesa_mobility.results import crossings
 from mesa_mobility.verification.runs import CLEARANCE, SPACING, crowd_model, evacuate
 from mesa_mobility.verification.scenarios.rooms import MALES_30_TO_50
@@ -44,8 +45,7 @@ def counterflow(seed: int, *, opposing: int, people: int = 100) -> dict[str, Any
             places = plan.random_points(
                 count, model.rng, within=start, spacing=SPACING, clearance=CLEARANCE
             )
-            speeds = model.rng.uniform(*MALES_30_TO_50, count)
-            model.add_pedestrians(places, preferred_speeds=speeds, exits=[goal])
+            model.add_pedestrians(places, preferred_speeds=Uniform(*MALES_30_TO_50), exits=[goal])
     run = evacuate(model, LIMIT_S)
     found = crossings(run.trajectories, *ENTRANCE_2)
     first = found.person < people

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.behaviors import QuickestExit
+from mesa_mobility.distributions import Uniform
 from mesa_mobility.results import flow
 from mesa_mobility.verification.runs import CLEARANCE, SPACING, Run, crowd_model, evacuate
 
@@ -28,19 +28,6 @@ TWO_EXITS = {"exit 1": ((21.0, 20.0), (22.0, 20.0)), "exit 2": ((27.0, 20.0), (2
 CORNER = Polygon([(0, 0), (12, 0), (12, 12), (10, 12), (10, 2), (0, 2)])
 SMALL_ROOM = box(0.0, 0.0, 8.0, 5.0)
 SMALL_ROOM_DOOR = ((8.0, 2.0), (8.0, 3.0))
-
-
-def speeds_of(
-    population: str | float, n: int, rng: np.random.Generator
-) -> NDArray[np.float64] | float | None:
-    """Preferred speeds of a population: a number for all, "males" or "default", the type's own."""
-    if isinstance(population, float):
-        return population
-    if population == "males":
-        return rng.uniform(*MALES_30_TO_50, n)
-    if population == "default":
-        return None
-    raise ValueError(f"unknown population {population!r}")
 
 
 def corner(seed: int, *, people: int, start_x: float, speed: float) -> dict[str, Any]:
@@ -85,33 +72,33 @@ def small_room(seed: int, *, people: int) -> dict[str, Any]:
     return {**run.figures(), "flow_per_s": flow(times), "left": len(times)}
 
 
-def hall(seed: int, *, people: int, exits: int, population: str) -> dict[str, Any]:
-    """People in a hall of 30 m x 20 m leave by four exits of 1 m, or by the last two of them."""
+def hall(seed: int, *, people: int, exits: int) -> dict[str, Any]:
+    """Men of 30 to 50 in a hall of 30 m x 20 m leave by four exits of 1 m, or by the last two."""
     names = list(FOUR_EXITS)
     plan = FloorPlan(HALL, exits=[Exit(name, *FOUR_EXITS[name]) for name in names])
     for name in names[: len(names) - exits]:
         plan.close_gate(name)
-    return _empty(plan, box(2.0, 2.0, 28.0, 18.0), people, population, seed)
+    return _empty(plan, box(2.0, 2.0, 28.0, 18.0), people, seed)
 
 
-def two_exits(seed: int, *, people: int, population: str) -> dict[str, Any]:
+def two_exits(seed: int, *, people: int) -> dict[str, Any]:
     """People crowd the left half of a hall whose two exits of 1 m lie on the right.
 
     They weigh the walk against the queue.
     """
     plan = FloorPlan(HALL, exits=[Exit(name, *line) for name, line in TWO_EXITS.items()])
     start = box(2.0, 2.0, 15.0, 18.0)
-    return _empty(plan, start, people, population, seed, target_choice=QuickestExit())
+    return _empty(plan, start, people, seed, target_choice=QuickestExit())
 
 
 def _empty(
-    plan: FloorPlan, start: Polygon, people: int, population: str, seed: int, **keywords: Any
+    plan: FloorPlan, start: Polygon, people: int, seed: int, **keywords: Any
 ) -> dict[str, Any]:
     model = crowd_model(plan, seed, **keywords)
     places = plan.random_points(
         people, model.rng, within=start, spacing=SPACING, clearance=CLEARANCE
     )
-    model.add_pedestrians(places, preferred_speeds=speeds_of(population, people, model.rng))
+    model.add_pedestrians(places, preferred_speeds=Uniform(*MALES_30_TO_50))
     run = evacuate(model, 900.0)
     lines = {exit_.name: (exit_.a, exit_.b) for exit_ in plan.open_exits()}
     by_exit = {name: len(run.crossing_times(*line)) for name, line in lines.items()}

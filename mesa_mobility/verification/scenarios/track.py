@@ -17,7 +17,7 @@ from mesa_mobility.verification.scenarios.oval import Oval, oval_model
 FloatArray = NDArray[np.float64]
 
 STRAIGHT, RADIUS, BOX_M = 15.0, 3.0, 4.0
-SETTLE_S, MEASURE_S, WINDOW_S, EVERY_S = 30.0, 60.0, 1.5, 1.0
+WINDOW_S, EVERY_S = 1.5, 1.0
 DENSITY_BIN, DENSEST_BIN = 0.25, 5.25
 """Bins of individual density as the reference has them, and where they end, persons/m2."""
 DENSEST = 0.34
@@ -30,6 +30,8 @@ def track(
     density: float,
     width: float,
     speed: float | None = None,
+    settle_s: float = 30.0,
+    measure_s: float = 60.0,
 ) -> dict[str, Any]:
     """People walk round an oval; who is in the middle of a straight is measured each second.
 
@@ -38,6 +40,8 @@ def track(
         density: persons per square metre of the whole track.
         width: of the track, metres.
         speed: preferred by everybody, m/s; by default the type's own spread.
+        settle_s: seconds before anything is measured.
+        measure_s: seconds that count.
 
     Returns:
         With what every run tells: ``density`` (k,) individual Voronoi densities and ``along``
@@ -47,12 +51,12 @@ def track(
     oval = Oval(STRAIGHT, RADIUS, width)
     people = round(density * oval.length * oval.width)
     model = oval_model(oval, people, seed, speed=speed, spacing=DENSEST, clearance=0.18)
-    while model.elapsed < SETTLE_S + MEASURE_S + WINDOW_S:
+    while model.elapsed < settle_s + measure_s + WINDOW_S:
         model.step()
     run = Run(model, model.floor_plan.walls)
     boxes = oval.boxes(BOX_M)
     densities, speeds, counts = [], [], []
-    for time in np.arange(SETTLE_S, SETTLE_S + MEASURE_S, EVERY_S) + WINDOW_S / 2:
+    for time in np.arange(settle_s, settle_s + measure_s, EVERY_S) + WINDOW_S / 2:
         places, gone = _around(run, float(time), oval)
         inside = np.zeros(people, dtype=np.bool_)
         for box in boxes:
