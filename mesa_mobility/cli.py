@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperGroup
 
 from mesa_mobility.commands import mobility_map, plugins
+from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
@@ -43,6 +44,7 @@ app = typer.Typer(
 app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
+app.command("dashboard")(dashboard)
 app.add_typer(mobility_map.app, name="map")
 app.command("models")(plugins.models)
 app.command("behaviors")(plugins.behaviors)

@@ -70,6 +70,29 @@ def parameters(model: type) -> dict[str, Parameter]:
     return found
 
 
+def descriptions(model: type) -> dict[str, str]:
+    """What a model's docstring says of each parameter, under `Args:`, on one line each."""
+    found: dict[str, list[str]] = {}
+    name, indent = "", 0
+    lines = iter((inspect.getdoc(model) or "").splitlines())
+    for line in lines:
+        if line.strip() in ("Args:", "Arguments:", "Parameters:"):
+            break
+    for line in lines:
+        text = line.strip()
+        depth = len(line) - len(line.lstrip())
+        if text and depth == 0:
+            break
+        indent = indent or depth
+        head, colon, rest = text.partition(":")
+        if colon and depth == indent:
+            name = head.split()[0]
+            found[name] = [rest.strip()]
+        elif text and name:
+            found[name].append(text)
+    return {name: " ".join(parts).strip() for name, parts in found.items()}
+
+
 def chosen(model: type, name: str, settings: Iterable[str]) -> dict[str, Any]:
     """Constructor keywords from texts NAME=VALUE.
 

@@ -49,6 +49,7 @@ class Explanation:
         blockers: (n,) row of the person in the way, or -1.
         paths: (n, 3, 16) x, y, heading in the world every 3 frames, from the start on.
         knots: (n,) places of a path that count; beyond, the end is repeated.
+        neighbour_ends: (q, 2) where the neighbours' movements lead that they are committed to.
         chosen: the option that is taken, or -1 for the fallback.
     """
 
@@ -64,6 +65,7 @@ class Explanation:
     blockers: NDArray[np.int64]
     paths: NDArray[np.float64]
     knots: NDArray[np.int64]
+    neighbour_ends: NDArray[np.float64]
     chosen: int
 
     @property
@@ -121,6 +123,7 @@ def weigh(
         blockers=np.full(n, -1),
         paths=np.empty((n, 3, SAMPLES)),
         knots=np.empty(n, dtype=np.int64),
+        neighbour_ends=candidates.neighbour_positions,
         chosen=-1,
     )
 
@@ -135,17 +138,19 @@ def judge(
     """The same with verdicts, against walls and what everybody is committed to now."""
     row = weighed.pedestrian
     options = weighed.candidates.options + rules.first_option[crowd.kind[row]]
+    near = weighed.candidates.neighbours
     verdicts, blockers = weighed.verdicts.copy(), weighed.blockers.copy()
     walls = np.empty((len(around.segments) + len(around.exits), 5))
     _judge(
-        row, options, weighed.frame, table, crowd.records, around, weighed.candidates.neighbours,
-        rules.cores, walls, weighed.paths, weighed.knots, verdicts, blockers,
+        row, options, weighed.frame, table, crowd.records, around, near, rules.cores,
+        walls, weighed.paths, weighed.knots, verdicts, blockers,
     )  # fmt: skip
     totals = np.where(verdicts == FREE, weighed.totals, np.inf)
     return replace(
         weighed,
         verdicts=verdicts,
         blockers=blockers,
+        neighbour_ends=crowd.path[near, :2, crowd.knots[near] - 1],
         chosen=int(np.argmin(totals)) if (verdicts == FREE).any() else -1,
     )
 

@@ -18,6 +18,7 @@ from mesa_mobility.results.measures import (
     flow,
     mean_speed,
     occupancy,
+    passages,
     speeds,
     speeds_along,
 )
@@ -51,6 +52,7 @@ __all__ = [
     "lateral_sway",
     "mean_speed",
     "occupancy",
+    "passages",
     "passed_by",
     "plot_occupancy",
     "plot_snapshots",

@@ -200,23 +200,51 @@ def crossings(trajectories: Trajectories, a: ArrayLike, b: ArrayLike) -> Crossin
     Raises:
         ResultsError: the two ends coincide.
     """
+    start, end = trajectories.steps()
+    places = np.column_stack([trajectories.x, trajectories.y])
+    share, change = passages(places[start], places[end], a, b)
+    on = change != 0
+    time = (trajectories.frame[start[on]] + share[on]) / trajectories.frame_rate
+    order = np.argsort(time, kind="stable")
+    return Crossings(time[order], trajectories.person[start[on]][order], change[on][order])
+
+
+def passages(
+    start: ArrayLike, end: ArrayLike, a: ArrayLike, b: ArrayLike
+) -> tuple[FloatArray, NDArray[np.int8]]:
+    """Which of some straight steps pass over the segment from a to b, and where.
+
+    Args:
+        start: (n, 2) where each step starts, metres.
+        end: (n, 2) where it ends.
+        a: (2,) metres.
+        b: (2,) metres.
+
+    Returns:
+        (n,) share of the step that lies before the line, and (n,) the direction as in
+        :class:`Crossings`, 0 for steps that do not pass.
+
+    Raises:
+        ResultsError: the two ends of the segment coincide.
+    """
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     along = b - a
     length2 = float(along @ along)
     if not length2 > 0:
         raise ResultsError(f"a line to cross needs two ends, both are {tuple(a.tolist())}")
-    dx, dy = trajectories.x - a[0], trajectories.y - a[1]
-    side = along[0] * dy - along[1] * dx
-    at = (along[0] * dx + along[1] * dy) / length2
-    start, end = trajectories.steps()
-    change = (side[end] >= 0).astype(np.int8) - (side[start] >= 0).astype(np.int8)
-    start, end, change = start[change != 0], end[change != 0], change[change != 0]
-    share = side[start] / (side[start] - side[end])
-    where = at[start] + share * (at[end] - at[start])
-    on = (where >= 0) & (where <= 1)
-    time = (trajectories.frame[start[on]] + share[on]) / trajectories.frame_rate
-    order = np.argsort(time, kind="stable")
-    return Crossings(time[order], trajectories.person[start[on]][order], change[on][order])
+
+    def beside(points: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        dx, dy = (np.asarray(points, dtype=np.float64).reshape(-1, 2) - a).T
+        return along[0] * dy - along[1] * dx, (along[0] * dx + along[1] * dy) / length2
+
+    (side, at), (side_end, at_end) = beside(start), beside(end)
+    change = (side_end >= 0).astype(np.int8) - (side >= 0).astype(np.int8)
+    crossing = change != 0
+    share = np.zeros(len(side))
+    share[crossing] = side[crossing] / (side[crossing] - side_end[crossing])
+    where = at + share * (at_end - at)
+    change[(where < 0) | (where > 1)] = 0
+    return share, change
 
 
 def flow(times: ArrayLike) -> float | None:

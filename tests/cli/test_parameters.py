@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesa_mobility.commands.parameters import chosen, parameters
+from mesa_mobility.commands.parameters import chosen, descriptions, parameters
 from mesa_mobility.distributions import Distribution, LogNormal
 from mesa_mobility.errors import ModelError
 
@@ -133,3 +133,24 @@ def test_keywords_that_take_anything_are_no_parameters():
             pass
 
     assert list(parameters(Open)) == ["people"]
+
+
+class Documented:
+    """A model.
+
+    Args:
+        people: how many; more than that
+            do not fit.
+        width: of the door, metres: 0.6 or more.
+
+    Raises:
+        ModelError: never.
+    """
+
+
+def test_descriptions_come_from_the_docstring():
+    assert descriptions(Documented) == {
+        "people": "how many; more than that do not fit.",
+        "width": "of the door, metres: 0.6 or more.",
+    }
+    assert descriptions(Model) == {}

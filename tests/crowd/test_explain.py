@@ -154,6 +154,8 @@ def test_what_those_before_have_committed_to_counts_and_their_velocities_do_not(
     assert decision.taken
     assert (decision.verdicts == FREE).all()
     assert np.array_equal(decision.costs, alone.costs)
+    assert alone.neighbour_ends == pytest.approx(np.array([[6.5, 2.0]]))
+    assert decision.neighbour_ends == pytest.approx(np.array([[8.375, 2.0]]))
     assert math.hypot(*decision.candidates.neighbour_velocities[0]) == 0.0
 
 

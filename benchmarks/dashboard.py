@@ -1,0 +1,257 @@
+"""The dashboard in a real browser: frames a second, time to start, memory, and screenshots.
+
+    python benchmarks/dashboard.py frames            # drawn while three models play at full speed
+    python benchmarks/dashboard.py start             # from the command to the first crowd drawn
+    python benchmarks/dashboard.py memory --minutes 10
+    python benchmarks/dashboard.py screenshots docs/images
+
+Needs `pip install 'mesa-mobility[test]'`, and Chromium: `--browser`, by default that on the path.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+CANVAS = "document.querySelector('.mm-crowd-canvas')"
+ARGUMENTS = (
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+)  # fmt: skip
+SCENES = {
+    "doorway": {"pedestrians": 60},
+    "auditorium": {"pedestrians": 750},
+    "open_space": {"pedestrians": 5000, "size": 150},
+}
+
+
+@contextmanager
+def served(model: str) -> Iterator[tuple[str, int, float]]:
+    """A running `mesa-mobility dashboard`: its address, process number, and when it was started."""
+    started = time.perf_counter()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "mesa_mobility", "dashboard", model, "--port", str(free_port())],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    line = process.stderr.readline()
+    found = re.search(r"http://\S+", line)
+    if not found:
+        raise SystemExit(f"the dashboard did not start: {line}{process.stderr.read()}")
+    # Nobody else reads it: a full pipe would stop the server.
+    threading.Thread(target=process.stderr.read, daemon=True).start()
+    try:
+        yield found[0], process.pid, started
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def free_port() -> int:
+    """A port that nobody listens on."""
+    import socket
+
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port: int = free.getsockname()[1]
+        return port
+
+
+def open_page(browser: Browser, address: str) -> Page:
+    """A tab on the dashboard, the crowd drawn."""
+    page = browser.new_page(viewport={"width": 1440, "height": 1000})
+    page.set_default_timeout(300_000)
+    page.goto(address)
+    page.wait_for_function(f"() => {CANVAS}?.shown?.().drawn > 0")
+    return page
+
+
+def set_parameters(page: Page, parameters: dict[str, int]) -> None:
+    """Type them, and wait for that crowd."""
+    for name, value in parameters.items():
+        if name != "pedestrians":
+            type_in(page, name, value)
+    type_in(page, "pedestrians", parameters["pedestrians"])
+    page.wait_for_function(f"(n) => {CANVAS}.shown().inside === n", arg=parameters["pedestrians"])
+
+
+def type_in(page: Page, name: str, value: int) -> None:
+    """Type into the field of a parameter."""
+    field = page.get_by_label(name, exact=True)
+    field.fill(str(value))
+    field.press("Enter")
+
+
+def choose(page: Page, name: str, option: str) -> None:
+    """Pick from a list."""
+    page.locator(".v-select", has=page.get_by_label(name, exact=True)).click()
+    page.locator(".v-menu__content.menuable__content__active .v-list-item").filter(
+        has_text=re.compile(f"^{re.escape(option)}$")
+    ).click()
+
+
+def drawn(page: Page, seconds: float) -> tuple[float, float, float]:
+    """Frames drawn, pictures received and simulated seconds, all in a second."""
+    state = (
+        f"() => {{const s = {CANVAS}.shown();"
+        "return [performance.now() / 1000, s.drawn, s.number, s.elapsed, s.inside];}"
+    )
+    before = page.evaluate(state)
+    time.sleep(seconds)
+    after = page.evaluate(state)
+    took = after[0] - before[0]
+    if after[4] == 0:
+        raise SystemExit("everybody has left while frames were counted: measure for less long")
+    return tuple((b - a) / took for a, b in zip(before[1:4], after[1:4], strict=True))  # type: ignore[return-value]
+
+
+def frames(browser: Browser, repeats: int, seconds: float) -> None:
+    """Print how many frames are drawn in a second while models play at full speed."""
+    for model, parameters in SCENES.items():
+        with served(model) as (address, _, _):
+            page = open_page(browser, address)
+            set_parameters(page, parameters)
+            choose(page, "speed", "full")
+            rates = []
+            for _ in range(repeats):
+                page.get_by_role("button", name="Play", exact=True).click()
+                page.wait_for_function(f"() => {CANVAS}.shown().elapsed > 0")
+                rates.append(drawn(page, seconds))
+                page.get_by_role("button", name="Reset", exact=True).click()
+                page.wait_for_function(f"() => {CANVAS}.shown().elapsed === 0")
+            middle = [statistics.median(column) for column in zip(*rates, strict=True)]
+            print(
+                f"{model} {parameters['pedestrians']}: {middle[0]:.1f} frames/s drawn "
+                f"(least {min(rate[0] for rate in rates):.1f}), {middle[1]:.1f} pictures/s, "
+                f"{middle[2]:.1f} x real time",
+                flush=True,
+            )
+            page.close()
+
+
+def start(browser: Browser, repeats: int) -> None:
+    """Print the seconds from the command to the first crowd drawn."""
+    took = []
+    for k in range(repeats + 1):
+        with served("doorway") as (address, _, started):
+            page = open_page(browser, address)
+            if k:  # the first may have to compile
+                took.append(time.perf_counter() - started)
+            page.close()
+    print(f"page ready after {statistics.median(took):.1f} s (each: {[round(t, 1) for t in took]})")
+
+
+def memory(browser: Browser, minutes: float) -> None:
+    """Print the memory of server and browser tab while the auditorium plays at full speed."""
+    with served("auditorium") as (address, process, _):
+        page = open_page(browser, address)
+        heap = page.context.new_cdp_session(page)
+        choose(page, "speed", "full")
+        end = time.monotonic() + 60.0 * minutes
+        samples = []
+        while time.monotonic() < end:
+            # Evacuated in under a minute: then it starts anew.
+            if not page.get_by_role("button", name="Pause", exact=True).count():
+                page.get_by_role("button", name="Reset", exact=True).click()
+                page.wait_for_function(f"() => {CANVAS}.shown().elapsed === 0")
+                page.get_by_role("button", name="Play", exact=True).click()
+            time.sleep(5.0)
+            heap.send("HeapProfiler.collectGarbage")
+            used = heap.send("Runtime.getHeapUsage")["usedSize"] / 2**20
+            samples.append((resident(process), used))
+            if len(samples) % 12 == 0:
+                print(f"server {samples[-1][0]:.0f} MB, page {used:.0f} MB", flush=True)
+        for name, column in zip(("server", "page"), zip(*samples, strict=True), strict=True):
+            # Kernels, maps and buffers come in the first minute.
+            steady = column[12:] or column
+            print(
+                f"{name}: {steady[0]:.0f} MB after the first minute, {steady[-1]:.0f} MB at the "
+                f"end, from {min(steady):.0f} to {max(steady):.0f} MB between"
+            )
+
+
+def resident(process: int) -> float:
+    """Resident memory of a process, MB."""
+    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def screenshots(browser: Browser, folder: Path) -> None:
+    """Write pictures of the four views."""
+    with served("auditorium") as (address, _, _):
+        page = open_page(browser, address)
+        choose(page, "speed", "5 x")
+        page.get_by_role("button", name="Play", exact=True).click()
+        page.wait_for_function(f"() => {CANVAS}.shown().elapsed > 25")
+        page.get_by_role("button", name="Pause", exact=True).click()
+        page.get_by_role("button", name="Play", exact=True).wait_for()
+        page.wait_for_timeout(1500)
+        # Somebody in the crowd in front of the left hall door.
+        place = page.evaluate(
+            f"() => {{const c = {CANVAS}, p = c.shown().people; let best = [1e9, 0, 0];"
+            "for (let k = 0; k < p.length; k += 5) {"
+            "const d = Math.hypot(p[k + 1] - 9.6, p[k + 2] - 22.3);"
+            "if (d < best[0]) best = [d, p[k + 1], p[k + 2]];}"
+            "return c.onPage(best[1], best[2]);}"
+        )
+        page.mouse.click(*place)
+        page.get_by_role("button", name="To its next decision").click()
+        page.get_by_text("Decision as taken").wait_for()
+        page.wait_for_timeout(1500)
+        page.screenshot(path=folder / "dashboard.png")
+        page.locator(".mm-crowd").screenshot(path=folder / "dashboard_crowd.png")
+        page.locator(".mm-decision").screenshot(path=folder / "dashboard_decision.png")
+        page.get_by_role("button", name="Play", exact=True).click()
+        choose(page, "speed", "full")
+        page.wait_for_function(f"() => {CANVAS}.shown().elapsed > 200")
+        page.get_by_role("button", name="Pause", exact=True).click()
+        page.wait_for_timeout(1500)
+        page.locator(".mm-charts").screenshot(path=folder / "dashboard_charts.png")
+        page.get_by_role("tab", name="Mobility map").click()
+        page.get_by_label("cluster, 0 to").fill("3")
+        page.get_by_label("cluster, 0 to").press("Enter")
+        page.wait_for_timeout(3000)
+        page.locator(".mm-map").screenshot(path=folder / "dashboard_map.png")
+
+
+def main() -> None:
+    """Measure what the arguments ask for."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("what", choices=("frames", "start", "memory", "screenshots"))
+    parser.add_argument("folder", nargs="?", type=Path, help="for screenshots")
+    parser.add_argument("--browser", default=shutil.which("chromium"))
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=5.0, help="of counting frames")
+    parser.add_argument("--minutes", type=float, default=10.0, help="of play for memory")
+    chosen: Any = parser.parse_args()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chosen.browser, args=list(ARGUMENTS))
+        if chosen.what == "frames":
+            frames(browser, chosen.repeats, chosen.seconds)
+        elif chosen.what == "start":
+            start(browser, chosen.repeats)
+        elif chosen.what == "memory":
+            memory(browser, chosen.minutes)
+        else:
+            if chosen.folder is None:
+                parser.error("screenshots: expected a folder")
+            screenshots(browser, chosen.folder)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+"""The crowd on its floor plan, on a canvas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import solara
+
+
+@solara.component_vue("crowd_view.vue")
+def CrowdCanvas(
+    floor: dict[str, Any],
+    frame: dict[str, Any] = {},  # noqa: B006
+    selected: int = -1,
+    height: str = "62vh",
+    event_seen: Callable[[int], None] | None = None,
+    event_pick: Callable[[int], None] | None = None,
+    event_toggle: Callable[[dict[str, Any]], None] | None = None,
+) -> None:
+    """The canvas.
+
+    Args:
+        floor: what ``wire.floor`` makes.
+        frame: what ``wire.frame`` makes; left out where a feed writes it.
+        selected: row of the person to mark, or -1.
+        height: of the canvas, as CSS says it.
+        event_seen: called with the number of a frame when the page has got it.
+        event_pick: called with the row of the person that was clicked, or -1.
+        event_toggle: called with ``{"opening": name}`` or ``{"obstacle": number}`` when one was
+            clicked.
+    """

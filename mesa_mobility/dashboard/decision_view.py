@@ -1,0 +1,20 @@
+"""One pedestrian's decision: its options, what they cost and why."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import solara
+
+
+@solara.component_vue("decision_view.vue")
+def DecisionCanvas(
+    floor: dict[str, Any],
+    decision: dict[str, Any] = {},  # noqa: B006
+) -> None:
+    """The view; nothing is selected where ``decision`` is empty.
+
+    Args:
+        floor: what ``wire.floor`` makes.
+        decision: what ``decision.described`` makes; left out where a feed writes it.
+    """

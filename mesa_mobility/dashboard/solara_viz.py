@@ -1,0 +1,43 @@
+"""The crowd view for Mesa's own dashboard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import solara
+from mesa.visualization.utils import update_counter
+
+from mesa_mobility import PedestrianModel
+from mesa_mobility.dashboard import wire
+from mesa_mobility.dashboard.colouring import colouring_named
+from mesa_mobility.dashboard.crowd_view import CrowdCanvas
+from mesa_mobility.dashboard.observer import Observer
+
+
+def make_crowd_view(
+    colour_by: str = "speed", height: str = "62vh"
+) -> Callable[[PedestrianModel], solara.Element]:
+    """The crowd view as a component for Mesa's ``SolaraViz``.
+
+    ``SolaraViz(model, components=[make_crowd_view()])`` shows it beside any other component.
+
+    Args:
+        colour_by: "speed", "type", "waiting time" or "density".
+        height: of the canvas, as CSS says it.
+
+    Raises:
+        ModelError: an unknown ``colour_by``.
+    """
+    colouring = colouring_named(colour_by)
+
+    @solara.component
+    def CrowdView(model: PedestrianModel) -> None:
+        update_counter.get()  # Mesa's sign that the model has stepped
+        observer = solara.use_memo(lambda: Observer(model), [model])
+        observer.after_step()
+        plan = model.floor_plan
+        floor = solara.use_memo(lambda: wire.floor(plan), [plan, plan.version])
+        frame = wire.frame(model, colouring, observer, run=id(model), number=model.frame)
+        CrowdCanvas(frame=frame, floor=floor, height=height)
+
+    return CrowdView

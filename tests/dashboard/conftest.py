@@ -1,0 +1,255 @@
+"""A real browser on the page that `mesa-mobility dashboard` serves."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+VARIABLE = "MESA_MOBILITY_BROWSER"
+PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+# Without these Chromium looks for hosts of its makers, which only costs time.
+ARGUMENTS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+PATIENCE_MS = 240_000
+"""For the first page: kernels may have to be compiled before it."""
+
+CANVAS = "document.querySelector('.mm-crowd-canvas')"
+DECISION = "document.querySelector('.mm-decision canvas')"
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """Chromium, driven by Playwright; tests are skipped where either is missing."""
+    for module in ("solara", "playwright.sync_api"):
+        pytest.importorskip(module, reason=f"no {module}: pip install 'mesa-mobility[viz,test]'")
+    from playwright.sync_api import sync_playwright
+
+    program = os.environ.get(VARIABLE) or next(filter(None, map(shutil.which, PROGRAMS)), None)
+    if program is None:
+        pytest.skip(f"no browser: none of {', '.join(PROGRAMS)} found ({VARIABLE} can name one)")
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=program, args=list(ARGUMENTS))
+        yield chromium
+        chromium.close()
+
+
+class Server:
+    """A running `mesa-mobility dashboard`, and what it says."""
+
+    def __init__(self, arguments: list[str], **keywords: Any) -> None:
+        self.process = subprocess.Popen(
+            arguments, stderr=subprocess.STDOUT, stdout=subprocess.PIPE, text=True, **keywords
+        )
+        self.lines: list[str] = []
+        self.address = ""
+        self._up = threading.Event()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        assert self._up.wait(120), "".join(self.lines)
+        assert self.address, "".join(self.lines)
+        self._wait_for_answer()
+
+    def _wait_for_answer(self) -> None:
+        # Solara says where it listens before it does.
+        end = time.monotonic() + 60.0
+        while True:
+            try:
+                urllib.request.urlopen(f"{self.address.rstrip('/')}/readyz", timeout=5.0).close()
+                return
+            except OSError:
+                assert time.monotonic() < end, "".join(self.lines)
+                time.sleep(0.1)
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.lines.append(line)
+            found = re.search(r"http://[^ ]+", line)
+            if found and not self.address:
+                self.address = found[0].strip()
+                self._up.set()
+        self._up.set()
+
+    def threads(self) -> int:
+        """Threads of the process."""
+        return len(os.listdir(f"/proc/{self.process.pid}/task"))
+
+    def stop(self) -> None:
+        self.process.terminate()
+        try:
+            self.process.wait(20)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+
+
+@pytest.fixture(scope="session")
+def server(browser: Any) -> Iterator[Server]:
+    """The dashboard on a free port, for all tests."""
+    import socket
+
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "mesa_mobility", "dashboard", "doorway", "--port", str(port)]
+    running = Server(command)
+    yield running
+    running.stop()
+
+
+class Dashboard:
+    """One browser tab on the dashboard."""
+
+    def __init__(self, page: Any, address: str, server: Server | None = None) -> None:
+        self.page = page
+        self.server = server
+        self.trouble: list[str] = []
+        page.on("console", self._console)
+        page.on("pageerror", lambda error: self.trouble.append(f"page: {error}"))
+        page.on("requestfailed", lambda request: self.trouble.append(f"failed: {request.url}"))
+        page.on("response", self._response)
+        page.on("request", lambda request: self._request(request, address))
+        page.set_default_timeout(PATIENCE_MS)
+        page.goto(address)
+        self.wait(f"() => {CANVAS}?.shown?.().drawn > 0")
+        page.set_default_timeout(30_000)
+
+    def _console(self, message: Any) -> None:
+        if message.type == "error":
+            self.trouble.append(f"console: {message.text}")
+
+    def _response(self, response: Any) -> None:
+        if response.status >= 400:
+            self.trouble.append(f"{response.status}: {response.url}")
+
+    def _request(self, request: Any, address: str) -> None:
+        if not request.url.startswith((address, "data:", "blob:")):
+            self.trouble.append(f"leaves this machine: {request.url}")
+
+    def wait(self, condition: str, argument: Any = None) -> None:
+        self.page.wait_for_function(condition, arg=argument)
+
+    def shown(self) -> dict[str, Any]:
+        """What is on the crowd's canvas."""
+        return self.page.evaluate(f"() => {CANVAS}.shown()")
+
+    def people(self) -> np.ndarray:
+        """(n, 5) row, x, y, heading, value of everybody on the canvas."""
+        return np.array(self.shown()["people"]).reshape(-1, 5)
+
+    def decision(self) -> dict[str, Any]:
+        """What the decision view shows."""
+        return self.page.evaluate(f"() => {DECISION}.shown()")
+
+    def pixels(self) -> str:
+        """The crowd's canvas as a picture."""
+        return self.page.evaluate(f"() => {CANVAS}.toDataURL()")
+
+    def button(self, name: str) -> Any:
+        return self.page.get_by_role("button", name=name, exact=True)
+
+    def at_rest(self, elapsed: float) -> None:
+        """Wait until the canvas shows the crowd at a time, and nothing between two times."""
+        self.wait(f"(t) => Math.abs({CANVAS}.shown().elapsed - t) < 1e-6", elapsed)
+
+    def step(self, times: int = 1) -> None:
+        for _ in range(times):
+            before = self.shown()["elapsed"]
+            self.button("Step").click()
+            self.at_rest(before + 0.1)
+
+    def play(self) -> None:
+        self.button("Play").click()
+        self.button("Pause").wait_for()
+
+    def pause(self) -> None:
+        self.button("Pause").click()
+        self.button("Play").wait_for()
+        self.wait(f"() => !{CANVAS}.shown().moving")
+
+    def set(self, name: str, text: str) -> None:
+        """Type into the field of a parameter."""
+        field = self.page.get_by_label(name, exact=True)
+        field.fill(text)
+        field.press("Enter")
+
+    def choose(self, name: str, option: str) -> None:
+        """Pick from a list."""
+        self.page.locator(".v-select", has=self.page.get_by_label(name, exact=True)).click()
+        self.page.locator(".v-menu__content.menuable__content__active .v-list-item").filter(
+            has_text=re.compile(f"^{re.escape(option)}$")
+        ).click()
+
+    def click_at(self, x: float, y: float) -> None:
+        """Click a place on the floor, metres."""
+        self.page.mouse.click(*self.page.evaluate(f"([x, y]) => {CANVAS}.onPage(x, y)", [x, y]))
+
+    def click_person(self, row: int) -> None:
+        person = next(each for each in self.people() if each[0] == row)
+        self.click_at(person[1], person[2])
+        self.wait(f"(row) => {DECISION}.shown()?.pedestrian === row", row)
+
+
+@pytest.fixture
+def open_tab(browser: Any, server: Server) -> Iterator[Callable[..., Dashboard]]:
+    """Opens tabs on the dashboard, or on another address; nothing may go wrong in any of them."""
+    tabs: list[Dashboard] = []
+    said = len(server.lines)
+
+    def make(address: str | None = None) -> Dashboard:
+        page = browser.new_page(viewport={"width": 1440, "height": 1000}, accept_downloads=True)
+        tabs.append(Dashboard(page, address or server.address, server))
+        return tabs[-1]
+
+    yield make
+    for each in tabs:
+        each.page.close()
+    assert [line for tab in tabs for line in tab.trouble] == []
+    assert server.lines[said:] == []
+
+
+@pytest.fixture
+def tab(open_tab: Callable[..., Dashboard]) -> Dashboard:
+    """One tab."""
+    return open_tab()
+
+
+@pytest.fixture
+def start_server(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Server]]:
+    """Starts `solara run FILE` in a folder of its own."""
+    running: list[Server] = []
+
+    def make(text: str) -> Server:
+        (tmp_path / "page.py").write_text(text)
+        solara = str(Path(sys.executable).parent / "solara")
+        environment = {**os.environ, "SOLARA_TELEMETRY_MIXPANEL_ENABLE": "false"}
+        running.append(
+            Server(
+                [solara, "run", "page.py", "--no-open", "--port", "0", "--no-check-version"],
+                cwd=tmp_path,
+                env=environment,
+            )
+        )
+        return running[-1]
+
+    yield make
+    for each in running:
+        each.stop()

@@ -1,0 +1,96 @@
+"""Pages of somebody's own, and what is left when pages are closed."""
+
+import time
+
+import numpy as np
+import pytest
+from mesa_mobility.models import Doorway
+
+MODEL = '''
+from mesa_mobility import Exit, FloorPlan, PedestrianModel
+
+
+class Room(PedestrianModel):
+    """A room.
+
+    Args:
+        pedestrians: people.
+    """
+
+    def __init__(self, pedestrians: int = 9, rng: int | None = None):
+        plan = FloorPlan(
+            "POLYGON ((0 0, 10 0, 10 8, 0 8, 0 0))", exits=[Exit("door", (10, 3), (10, 5))]
+        )
+        super().__init__(plan, rng=rng)
+        self.add_pedestrians(plan.random_points(pedestrians, self.rng, spacing=0.5, clearance=0.3))
+
+'''
+OWN = MODEL + "from mesa_mobility.dashboard import Dashboard\n\npage = Dashboard(Room)\n"
+MESA = (
+    MODEL
+    + "from mesa.visualization import SolaraViz\n"
+    + "from mesa_mobility.dashboard import make_crowd_view\n\n"
+    + "page = SolaraViz(Room(rng=5), components=[make_crowd_view('density')])\n"
+)
+ELAPSED = "document.querySelector('.mm-crowd-canvas').shown().elapsed"
+
+
+def test_a_model_of_somebodys_own_has_a_page(start_server, open_tab):
+    tab = open_tab(start_server(OWN).address)
+    assert tab.shown()["inside"] == 9
+    tab.set("pedestrians", "4")
+    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 4")
+    tab.step(2)
+    tab.click_person(2)
+    tab.choose("model", "straight_walk")
+    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 50")
+
+
+def test_the_crowd_view_is_a_component_for_mesas_own_page(start_server, open_tab):
+    tab = open_tab(start_server(MESA).address)
+    before = tab.people()
+    assert len(before) == 9
+    tab.page.get_by_role("button", name="step").first.click()
+    tab.wait(f"() => Math.abs({ELAPSED} - 0.1) < 1e-6")
+    assert tab.shown()["legend"]["label"].startswith("people within 1 m")
+    assert np.abs(tab.people()[:, 1:3] - before[:, 1:3]).max() > 0.0
+
+
+@pytest.mark.slow
+def test_two_models_and_twenty_resets_leave_nothing_behind(open_tab, server):
+    tab = open_tab()
+
+    def play_and_reset(model, people, times):
+        tab.choose("model", model)
+        tab.wait("(n) => document.querySelector('.mm-crowd-canvas').shown().inside === n", people)
+        for _ in range(times):
+            tab.play()
+            tab.wait(f"() => {ELAPSED} > 0.3")
+            tab.button("Reset").click()
+            tab.at_rest(0.0)
+
+    # The threads that share the work of large crowds come with the first such crowd, and stay.
+    play_and_reset("auditorium", 750, 1)
+    threads = server.threads()
+    play_and_reset("auditorium", 750, 20)
+    play_and_reset("doorway", 60, 20)
+    assert np.array_equal(tab.people()[:, 0], Doorway(rng=1).rows)
+    assert server.threads() <= threads
+
+
+@pytest.mark.slow
+def test_closed_tabs_leave_no_thread(open_tab, server):
+    keep = open_tab()
+    tabs = 8
+    threads = server.threads()
+    for _ in range(tabs):
+        tab = open_tab()
+        tab.play()
+        tab.wait(f"() => {ELAPSED} > 0.3")
+        tab.page.close()
+    # The web server keeps a few threads for later; a thread left for each tab would be more.
+    end = time.monotonic() + 30.0
+    while server.threads() > threads + tabs // 2 and time.monotonic() < end:
+        time.sleep(0.2)
+    assert server.threads() <= threads + tabs // 2
+    assert keep.shown()["elapsed"] == 0.0

@@ -1,0 +1,200 @@
+"""The thread behind a page: what it publishes, and that it ends."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
+
+from mesa_mobility.models import Doorway, OpenSpace
+
+from mesa_mobility import CostTerm
+from mesa_mobility.dashboard.charts import charts, csv_text
+from mesa_mobility.dashboard.controls import recipe_of, settable
+from mesa_mobility.dashboard.session import FULL_SPEED, IF_NOW, Recipe, Session
+from mesa_mobility.errors import ModelError
+
+
+class Faulty(CostTerm):
+    """Fails in its own way."""
+
+    name = "faulty"
+
+    def cost(self, candidates):
+        raise KeyError("no such thing")
+
+
+class DoorwayWithAFault(Doorway):
+    """A doorway with a term that fails."""
+
+    def __init__(self, rng=None):
+        super().__init__(pedestrians=3, rng=rng)
+        self.terms.append(Faulty())
+
+
+def until(condition, seconds=60.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def session():
+    session = Session()
+    session.start()
+    session.build(Recipe(Doorway, {"pedestrians": 12, "rng": 3}))
+    until(lambda: session.status.value.state == "ready")
+    yield session
+    session.close()
+
+
+def frame_people(session):
+    import base64
+
+    flat = np.frombuffer(base64.b64decode(session.frame.value["people"]), dtype="<f4")
+    return flat.reshape(-1, 5)
+
+
+def answering(session):
+    """Has the page answer each frame at once, as a browser does."""
+    publish = session.frame.set
+
+    def set_and_answer(frame):
+        publish(frame)
+        session.seen(frame["number"])
+
+    session.frame.set = set_and_answer
+
+
+def test_a_closed_session_leaves_no_thread():
+    before = set(threading.enumerate())
+    for _ in range(5):
+        session = Session()
+        session.start()
+        session.build(Recipe(Doorway, {"pedestrians": 5, "rng": 1}))
+        session.set_speed(FULL_SPEED)
+        session.play(True)
+        session.close()
+    until(lambda: not [t for t in set(threading.enumerate()) - before if "page" in t.name])
+
+
+def test_frames_carry_the_crowd(session):
+    model = Doorway(pedestrians=12, rng=3)
+    assert frame_people(session)[:, 1:3] == pytest.approx(
+        np.column_stack([model.crowd.x[:12], model.crowd.y[:12]]), abs=1e-5
+    )
+    session.step()
+    until(lambda: session.frame.value["elapsed"] > 0.0)
+    model.step()
+    assert frame_people(session)[:, 1:3] == pytest.approx(
+        np.column_stack([model.crowd.x[:12], model.crowd.y[:12]]), abs=1e-5
+    )
+
+
+def test_what_cannot_be_made_leaves_the_run_alone(session):
+    session.step()
+    until(lambda: session.frame.value["elapsed"] > 0.0)
+    run, said = session.frame.value["run"], []
+    session.build(Recipe(Doorway, {"pedestrians": -1}), said.append)
+    until(lambda: said)
+    assert said == ["pedestrians: got -1, expected 1 or more"]
+    until(lambda: session.status.value.state == "ready")
+    assert session.frame.value["run"] == run
+    assert session.recipe.value.keywords["pedestrians"] == 12
+
+
+def test_a_term_that_fails_stops_the_run_and_is_told(caplog):
+    session = Session()
+    session.start()
+    session.build(Recipe(DoorwayWithAFault, {"rng": 1}))
+    session.play(True)
+    until(lambda: session.problem.value)
+    assert session.problem.value == "KeyError: 'no such thing'"
+    until(lambda: session.status.value.state == "failed")
+    session.set_behaviour("faulty", False, 1.0)
+    session.reset()
+    until(lambda: session.status.value.state == "ready")
+    session.step()
+    until(lambda: session.frame.value["elapsed"] > 0.0)
+    assert session.problem.value == ""
+    session.close()
+
+
+def test_a_run_to_its_end_counts_everybody(session):
+    answering(session)
+    session.set_speed(FULL_SPEED)
+    session.play(True)
+    until(lambda: session.status.value.state == "finished")
+    _, observer = session.series.value
+    columns = observer.columns()
+    assert columns["inside"][0] == 12
+    assert columns["inside"][-1] == 0
+    assert columns["passed first door"][-1] == 12
+    assert columns["passed second door"][-1] == 12
+    # What has flowed in windows side by side is what has passed.
+    seconds = len(columns["elapsed"]) - 2
+    flowed = 10.0 * sum(columns["flow first door"][k] for k in range(seconds, 0, -10))
+    assert flowed == pytest.approx(columns["passed first door"][seconds])
+    unit, inside = charts(observer)["People inside"]
+    assert unit == "people"
+    assert csv_text(inside).splitlines()[:2] == ["elapsed_s,inside", "0.0,12"]
+
+
+def test_a_page_that_no_longer_answers_holds_the_run(session, monkeypatch):
+    monkeypatch.setattr("mesa_mobility.dashboard.session.PATIENCE", 0.3)
+    session.set_speed(FULL_SPEED)
+    session.play(True)
+    until(lambda: session._sent > session._seen)
+    time.sleep(0.8)
+    held = session._model.elapsed
+    time.sleep(0.5)
+    assert session._model.elapsed == held
+    answering(session)
+    session.seen(session._sent)
+    until(lambda: session.status.value.state == "finished")
+
+
+def test_decisions_are_told_as_taken_and_as_they_would_be(session):
+    session.step()
+    session.select(4)
+    until(lambda: session.decision.value.get("pedestrian") == 4)
+    assert not session.decision.value["taken"]
+    session.play_to_decision()
+    until(lambda: session.decision.value.get("taken"))
+    until(lambda: session.status.value.state == "ready")
+    session.tell(IF_NOW)
+    until(lambda: not session.decision.value["taken"])
+    session.select(-1)
+    until(lambda: session.decision.value == {})
+
+
+def test_an_obstacle_goes_and_comes_back_unless_somebody_stands_there(session):
+    class Pillar(OpenSpace):
+        def __init__(self, rng=None):
+            super().__init__(pedestrians=1, rng=rng)
+            self.floor_plan.add_obstacle("POLYGON((24 24, 26 24, 26 26, 24 26, 24 24))")
+
+    session.build(Recipe(Pillar, {"rng": 1}))
+    until(lambda: session.floor.value["obstacles"])
+    assert [each["there"] for each in session.floor.value["obstacles"]] == [True]
+    session.toggle_obstacle(0)
+    until(lambda: not session.floor.value["obstacles"][0]["there"])
+    session.toggle_obstacle(0)
+    until(lambda: session.floor.value["obstacles"][0]["there"])
+    session.toggle_obstacle(0)
+    until(lambda: not session.floor.value["obstacles"][0]["there"])
+    session.post(lambda model: model.add_pedestrians([(25.0, 25.0)]))
+    session.toggle_obstacle(0)
+    until(lambda: session.problem.value)
+    assert session.problem.value == ("obstacle 0: pedestrian 1 stands there, expected free floor")
+
+
+def test_recipes_come_from_what_the_constructor_takes():
+    recipe = recipe_of(Doorway, {"pedestrians": "7", "door_width": "1.5", "rng": "4"})
+    assert recipe.keywords == {"pedestrians": 7, "door_width": 1.5, "rng": 4}
+    assert "record" not in settable(Doorway)
+    with pytest.raises(ModelError, match="preset=fast"):
+        recipe_of(Doorway, {"preset": "fast"})
