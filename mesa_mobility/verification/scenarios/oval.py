@@ -107,24 +107,23 @@ def oval_model(
     seed: int,
     *,
     speed: float | None = None,
-    clockwise: int = 0,
     spacing: float,
     clearance: float,
 ) -> PedestrianModel:
-    """People all over an oval, walking round it for ever, `clockwise` of them that way round.
-
-    Those who walk clockwise come first in the crowd's rows.
-    """
+    """People all over an oval, walking round it for ever, counter-clockwise."""
     plan = oval.plan()
     model = crowd_model(plan, seed)
     places = plan.random_points(people, model.rng, spacing=spacing, clearance=clearance)
     names = [gate.name for gate in plan.gates]
     lines = oval.unroll(np.array([gate.midpoint for gate in plan.gates]))[0]
     ahead = np.searchsorted(lines, oval.unroll(places)[0]) % len(names)
-    backwards = np.arange(people) < clockwise
-    groups = [(backwards & (ahead == k), (names[k:] + names[:k])[::-1]) for k in range(len(names))]
-    groups += [(~backwards & (ahead == k), names[k:] + names[:k]) for k in range(len(names))]
-    for group, route in groups:
+    for first in range(len(names)):
+        group = ahead == first
         if group.any():
-            model.add_pedestrians(places[group], preferred_speeds=speed, route=route, loop=True)
+            model.add_pedestrians(
+                places[group],
+                preferred_speeds=speed,
+                route=names[first:] + names[:first],
+                loop=True,
+            )
     return model
