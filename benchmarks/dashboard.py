@@ -14,6 +14,7 @@ import argparse
 import os
 import re
 import shutil
+import socket
 import statistics
 import subprocess
 import sys
@@ -63,8 +64,6 @@ def served(model: str) -> Iterator[tuple[str, int, float]]:
 
 def free_port() -> int:
     """A port that nobody listens on."""
-    import socket
-
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port: int = free.getsockname()[1]
@@ -104,40 +103,45 @@ def choose(page: Page, name: str, option: str) -> None:
     ).click()
 
 
-def drawn(page: Page, seconds: float) -> tuple[float, float, float]:
-    """Frames drawn, pictures received and simulated seconds, all in a second."""
-    state = (
-        f"() => {{const s = {CANVAS}.shown();"
-        "return [performance.now() / 1000, s.drawn, s.number, s.elapsed, s.inside];}"
-    )
-    before = page.evaluate(state)
-    time.sleep(seconds)
-    after = page.evaluate(state)
-    took = after[0] - before[0]
-    if after[4] == 0:
-        raise SystemExit("everybody has left while frames were counted: measure for less long")
-    return tuple((b - a) / took for a, b in zip(before[1:4], after[1:4], strict=True))  # type: ignore[return-value]
+COUNT = f"""async (seconds) => {{
+  const canvas = {CANVAS}, now = () => ({{time: performance.now() / 1000, ...canvas.shown()}});
+  const frame = () => new Promise(requestAnimationFrame);
+  while (!(canvas.shown().elapsed > 0)) await frame();
+  const first = now();
+  let last = first;
+  while (last.time < first.time + seconds && last.inside > 0) {{
+    await frame();
+    const next = now();
+    if (next.inside === 0) break;
+    last = next;
+  }}
+  return ["time", "drawn", "number", "elapsed"].map((name) => last[name] - first[name]);
+}}"""
+"""Counts in the page from the first movement until everybody has left, or so many seconds."""
 
 
-def frames(browser: Browser, repeats: int, seconds: float) -> None:
+def frames(browser: Browser, seconds: float) -> None:
     """Print how many frames are drawn in a second while models play at full speed."""
     for model, parameters in SCENES.items():
         with served(model) as (address, _, _):
             page = open_page(browser, address)
             set_parameters(page, parameters)
             choose(page, "speed", "full")
-            rates = []
-            for _ in range(repeats):
+            # At full speed some models are over in a moment: they play again and again.
+            took = drawn = pictures = simulated = 0.0
+            runs = 0
+            while took < seconds:
                 page.get_by_role("button", name="Play", exact=True).click()
-                page.wait_for_function(f"() => {CANVAS}.shown().elapsed > 0")
-                rates.append(drawn(page, seconds))
+                counted = page.evaluate(COUNT, seconds)
+                took, drawn = took + counted[0], drawn + counted[1]
+                pictures, simulated = pictures + counted[2], simulated + counted[3]
+                runs += 1
                 page.get_by_role("button", name="Reset", exact=True).click()
                 page.wait_for_function(f"() => {CANVAS}.shown().elapsed === 0")
-            middle = [statistics.median(column) for column in zip(*rates, strict=True)]
             print(
-                f"{model} {parameters['pedestrians']}: {middle[0]:.1f} frames/s drawn "
-                f"(least {min(rate[0] for rate in rates):.1f}), {middle[1]:.1f} pictures/s, "
-                f"{middle[2]:.1f} x real time",
+                f"{model} {parameters['pedestrians']}: {drawn / took:.1f} frames/s drawn, "
+                f"{pictures / took:.1f} pictures/s received, {simulated / took:.1f} x real time "
+                f"({took:.1f} s of play in {runs} runs)",
                 flush=True,
             )
             page.close()
@@ -234,14 +238,14 @@ def main() -> None:
     parser.add_argument("what", choices=("frames", "start", "memory", "screenshots"))
     parser.add_argument("folder", nargs="?", type=Path, help="for screenshots")
     parser.add_argument("--browser", default=shutil.which("chromium"))
-    parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--seconds", type=float, default=5.0, help="of counting frames")
+    parser.add_argument("--repeats", type=int, default=3, help="of starting")
+    parser.add_argument("--seconds", type=float, default=10.0, help="of play to count frames in")
     parser.add_argument("--minutes", type=float, default=10.0, help="of play for memory")
     chosen: Any = parser.parse_args()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chosen.browser, args=list(ARGUMENTS))
         if chosen.what == "frames":
-            frames(browser, chosen.repeats, chosen.seconds)
+            frames(browser, chosen.seconds)
         elif chosen.what == "start":
             start(browser, chosen.repeats)
         elif chosen.what == "memory":

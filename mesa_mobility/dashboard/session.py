@@ -39,8 +39,11 @@ SERIES_INTERVAL = 1.0
 AS_TAKEN, IF_NOW = "as taken", "if it decided now"
 """What is told of the selected person: its last decision, or the one it would take now."""
 
+UNDER_WAY = 2
+"""Frames sent that the page has not yet answered, at most: one that is slow gets fewer."""
+
 RESEND = 0.5
-"""Seconds after which the next frame is sent though the page has not said it got the last."""
+"""Seconds after which the next frame is sent all the same."""
 
 PATIENCE = 5.0
 """Seconds without an answer from the page after which a run waits for it: nobody is looking."""
@@ -379,7 +382,7 @@ class Session:
         model, now = self._model, time.perf_counter()
         if self._closed or model is None:
             return
-        heard = self._seen >= self._sent or now - self._frame_at > RESEND
+        heard = self._sent - self._seen < UNDER_WAY or now - self._frame_at > RESEND
         if always or (heard and now - self._frame_at >= FRAME_INTERVAL):
             self._sent, self._frame_at = self._sent + 1, now
             self.frame.set(

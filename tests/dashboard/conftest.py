@@ -64,9 +64,13 @@ class Server:
         self._up = threading.Event()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
-        assert self._up.wait(120), "".join(self.lines)
-        assert self.address, "".join(self.lines)
-        self._wait_for_answer()
+        try:
+            assert self._up.wait(120), "".join(self.lines)
+            assert self.address, "".join(self.lines)
+            self._wait_for_answer()
+        except BaseException:
+            self.stop()
+            raise
 
     def _wait_for_answer(self) -> None:
         # Solara says where it listens before it does.
