@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from itertools import count
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpaceAgent
@@ -19,12 +21,22 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
 
 
+class _Counters(WeakKeyDictionary[Any, Iterator[int]]):
+    """A counter for each model that goes when the model goes."""
+
+    def __getitem__(self, model: Any) -> Iterator[int]:
+        return self.setdefault(model, count(1))
+
+
 class Pedestrian(ContinuousSpaceAgent):
     """One person.
 
     Attributes:
         row: row of this person in the crowd's arrays, the same for ever.
     """
+
+    # Mesa 3.3 numbers agents from a dictionary that keeps every model there ever was.
+    _ids = _Counters()
 
     def __init__(self, model: PedestrianModel, row: int) -> None:
         super().__init__(model.space, model)

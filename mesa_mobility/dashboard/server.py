@@ -32,8 +32,8 @@ def serve(model: str, host: str, port: int, ready: Callable[[str], None]) -> Non
     Raises:
         MobilityError: the address cannot be listened on.
     """
-    os.environ.update(SETTINGS)
     listening = _listen(host, port)
+    os.environ.update(SETTINGS)
     # The page is not there before its model; both take a while to load, and do so side by side.
     threading.Thread(target=_warm_up, name="mesa-mobility warm-up", daemon=True).start()
     from mesa_mobility.dashboard import page

@@ -1,6 +1,8 @@
 """The model is a Mesa model, as Mesa 3.3 to 3.5 understand one."""
 
+import gc
 import inspect
+import weakref
 
 import mesa
 import numpy as np
@@ -10,7 +12,7 @@ from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceA
 
 from mesa_mobility import Pedestrian, PedestrianModel
 from tests.fixtures.maps import strider
-from tests.fixtures.scenes import corridor, model_of, put
+from tests.fixtures.scenes import advance, corridor, model_of, put
 
 
 @pytest.fixture
@@ -139,3 +141,13 @@ def test_seeds_as_mesa_takes_them():
 def test_without_a_seed_too():
     one, other = (model_of(corridor(), strider()) for _ in range(2))
     assert one.rng.random() != other.rng.random()
+
+
+def test_a_model_that_nobody_needs_any_more_is_forgotten():
+    model = model_of(corridor(), strider())
+    put(model, 2.0, 2.0)
+    advance(model, 3)
+    gone = weakref.ref(model)
+    del model
+    gc.collect()
+    assert gone() is None
