@@ -2,13 +2,16 @@
 
 from mesa_mobility.behaviors.exit_choice import Choosing, ExitChoice
 from mesa_mobility.behaviors.familiar_exit import FamiliarExit
+from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.nearest_exit import NearestExit
 from mesa_mobility.behaviors.quickest_exit import QuickestExit
 from mesa_mobility.behaviors.random_utility import RandomUtility
+from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.social_influence import SocialInfluence
 from mesa_mobility.behaviors.speed import Displacement, PreferredSpeed
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
+from mesa_mobility.behaviors.velocity import PreferredVelocity
 from mesa_mobility.behaviors.walk_together import WalkTogether
 
 __all__ = [
@@ -17,11 +20,14 @@ __all__ = [
     "ExitChoice",
     "FacingDeviation",
     "FamiliarExit",
+    "Headway",
     "Interference",
     "NearestExit",
     "PreferredSpeed",
+    "PreferredVelocity",
     "QuickestExit",
     "RandomUtility",
+    "RightOfWay",
     "SocialInfluence",
     "TargetDistance",
     "WalkTogether",

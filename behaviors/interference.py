@@ -7,7 +7,9 @@ from mesa_mobility.errors import ModelError
 
 
 @pair_kernel
-def _interference(x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p):  # type: ignore[no-untyped-def]
+def _interference(  # type: ignore[no-untyped-def]
+    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
+):
     dx = nx + nvx * duration - x
     dy = ny + nvy * duration - y
     # e to the -d as the 1024th power of a polynomial, to 1e-8 of itself: unlike a call of exp,

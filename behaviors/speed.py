@@ -4,25 +4,25 @@ from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 
 
 @option_kernel
-def _displacement(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _displacement(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
     return -speed * duration
 
 
 @option_kernel
-def _preferred_speed(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _preferred_speed(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
     return 1.5 * abs(speed - preferred)
 
 
 @bound_kernel
 def _displacement_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
 ):
     return -fastest * duration
 
 
 @bound_kernel
 def _preferred_speed_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
 ):
     return 1.5 * max(slowest - preferred, preferred - fastest, 0.0)
 

@@ -8,7 +8,7 @@ from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 
 
 @option_kernel
-def _distance(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _distance(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
     dx = tx - x
     dy = ty - y
     return math.sqrt(dx * dx + dy * dy)
@@ -16,7 +16,7 @@ def _distance(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ign
 
 @bound_kernel
 def _distance_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
 ):
     dx = tx - x
     dy = ty - y
@@ -45,7 +45,7 @@ def _angle(along, across):  # type: ignore[no-untyped-def]
 
 
 @option_kernel
-def _deviation(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _deviation(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
     dx = tx - x
     dy = ty - y
     return _angle(ux * dx + uy * dy, abs(ux * dy - uy * dx))
@@ -53,7 +53,7 @@ def _deviation(x, y, ux, uy, duration, speed, tx, ty, preferred, p):  # type: ig
 
 @bound_kernel
 def _deviation_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
 ):
     dx = tx - x
     dy = ty - y

@@ -1,7 +1,10 @@
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
+from mesa_mobility.crowd import PRESETS
 
 VARIABLE = "MESA_MOBILITY_CAPTURES"
 SHARED = Path(__file__).resolve().parents[2] / "shared"
@@ -13,6 +16,16 @@ def _captures(folder: Path) -> Path:
             f"no real recordings: {folder} has no manifest.tsv ({VARIABLE} can name a folder)"
         )
     return folder
+
+
+@pytest.fixture
+def whole(monkeypatch) -> str:
+    """A preset for one test: the default one with the options of the map and no part of them.
+
+    Where options come in parts, to stay where one is is one of them, and always free.
+    """
+    monkeypatch.setitem(PRESETS, "whole", replace(PRESETS["default"], name="whole", shares=()))
+    return "whole"
 
 
 @pytest.fixture(scope="session")

@@ -63,7 +63,24 @@ def make_candidates(
         neighbours=neighbours,
         neighbour_positions=np.column_stack([state.x[neighbours], state.y[neighbours]]),
         neighbour_velocities=np.column_stack([state.vx[neighbours], state.vy[neighbours]]),
+        neighbour_directions=_directions(neighbours, state),
+        leads=_leads(np.repeat(rows, np.diff(neighbour_offsets)), neighbours, state),
     )
+
+
+def _directions(rows: NDArray[np.int64], state: Crowd) -> NDArray[np.float64]:
+    to = np.column_stack(
+        [state.target_x[rows] - state.x[rows], state.target_y[rows] - state.y[rows]]
+    )
+    away = np.sqrt((to**2).sum(axis=1))[:, None]
+    return np.divide(to, away, out=np.zeros_like(to), where=away > 0.0)
+
+
+def _leads(
+    rows: NDArray[np.int64], neighbours: NDArray[np.int64], state: Crowd
+) -> NDArray[np.float64]:
+    with np.errstate(invalid="ignore"):  # neither has a way
+        return state.route[rows] - state.route[neighbours]
 
 
 @njit(cache=True)

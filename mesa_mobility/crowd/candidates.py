@@ -35,6 +35,9 @@ class Candidates:
         neighbours: (q,) rows of the neighbours in the crowd.
         neighbour_positions: (q, 2) where they are now, metres.
         neighbour_velocities: (q, 2) mean velocity of their movement under way, m/s.
+        neighbour_directions: (q, 2) unit vector from where they are to their target; 0, 0 there.
+        leads: (q,) by how many metres their way is shorter than that of the pedestrian;
+            not a number if neither has a way.
     """
 
     points: NDArray[np.float64]
@@ -55,6 +58,8 @@ class Candidates:
     neighbours: NDArray[np.int64]
     neighbour_positions: NDArray[np.float64]
     neighbour_velocities: NDArray[np.float64]
+    neighbour_directions: NDArray[np.float64]
+    leads: NDArray[np.float64]
 
     def __post_init__(self) -> None:
         for array in vars(self).values():

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.groups import alike, group
-from mesa_mobility.crowd.options import option_table, padded_paths
+from mesa_mobility.crowd.options import Parts, option_table, padded_paths
+from mesa_mobility.crowd.shortened import with_shortened
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 
@@ -23,12 +24,22 @@ class Capability:
     Args:
         mobility_map: the type's clustered mobility map.
         durations: option durations in frames to use; None for all that the map has.
+        shares: shortened copies of the shortest options to add, as shares of their ground.
+
+    Attributes:
+        table: the options.
+        parts: which of the map's options each is, and how much of it.
 
     Raises:
         ModelError: a cluster has no option of these durations.
     """
 
-    def __init__(self, mobility_map: MobilityMap, durations: Sequence[int] | None = None) -> None:
+    def __init__(
+        self,
+        mobility_map: MobilityMap,
+        durations: Sequence[int] | None = None,
+        shares: Sequence[float] = (),
+    ) -> None:
         self.map = mobility_map
         used = np.ones(mobility_map.n_options, dtype=bool)
         if durations is not None:
@@ -39,9 +50,13 @@ class Capability:
                 f"mobility map of {mobility_map.pedestrian_type!r}: cluster "
                 f"{int(np.argmin(counts))} has no option of {list(durations or ())} frames"
             )
+        parts = with_shortened(mobility_map, np.flatnonzero(used), shares)
+        cluster = np.searchsorted(mobility_map.offsets, parts.rows, side="right") - 1
+        counts = np.bincount(cluster, minlength=mobility_map.n_clusters)
         offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        self.rows, groups = _in_groups(mobility_map, np.flatnonzero(used))
-        self.table = option_table(mobility_map, self.rows, offsets, groups)
+        order, groups = _in_groups(mobility_map, parts, cluster)
+        self.parts = parts.taken(order)
+        self.table = option_table(mobility_map, self.parts, offsets, groups)
 
     @property
     def n_clusters(self) -> int:
@@ -71,17 +86,14 @@ class Capability:
 
 
 def _in_groups(
-    mobility_map: MobilityMap, rows: NDArray[np.int64]
+    mobility_map: MobilityMap, parts: Parts, cluster: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Rows of a map in groups of options alike, and where in them each group starts."""
-    cluster = np.searchsorted(mobility_map.offsets, rows, side="right")
-    frames = mobility_map.durations[rows]
-    order = np.lexsort((frames, cluster))
-    rows, cluster, frames = rows[order], cluster[order], frames[order]
+    """The order in which options are in groups of those alike, and where in it each starts."""
+    frames = mobility_map.durations[parts.rows]
+    sort = np.lexsort((frames, cluster))
+    parts, cluster, frames = parts.taken(sort), cluster[sort], frames[sort]
     changes = (np.diff(cluster) != 0) | (np.diff(frames) != 0)
-    bounds = np.concatenate([[0], np.flatnonzero(changes) + 1, [len(rows)]])
-    features = alike(
-        padded_paths(mobility_map, rows), mobility_map.end_headings[rows].astype(np.float64), frames
-    )
+    bounds = np.concatenate([[0], np.flatnonzero(changes) + 1, [len(sort)]])
+    features = alike(padded_paths(mobility_map, parts), frames)
     order, starts = group(features, bounds.astype(np.int64))
-    return rows[order], starts
+    return sort[order], starts

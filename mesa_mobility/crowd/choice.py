@@ -11,6 +11,9 @@ from mesa_mobility.crowd.clearing import free_groups
 from mesa_mobility.crowd.close import Stance, find_close
 from mesa_mobility.crowd.collision import Surroundings, exit_distance, near_walls
 from mesa_mobility.crowd.costs import (
+    LEAD,
+    OTHER_EX,
+    OTHER_EY,
     OTHER_VX,
     OTHER_VY,
     OTHER_X,
@@ -70,8 +73,8 @@ def decide(
             pedestrian in turn, or empty.
         extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
         rules: what holds for everybody.
-        moving: (2, people) velocities at the beginning of the frame, in the order of the grid:
-            terms see them as they were, also of those who have just decided.
+        moving: (5, people) velocities, directions and ways at the beginning of the frame, in the
+            order of the grid: terms see them as they were, also of those who have just decided.
         work: space to work in, of this thread alone.
 
     Returns:
@@ -129,6 +132,8 @@ def _decide_one(
         at = near[a]
         others[OTHER_X, a], others[OTHER_Y, a] = grid.x[at], grid.y[at]
         others[OTHER_VX, a], others[OTHER_VY, a] = moving[0, at], moving[1, at]
+        others[OTHER_EX, a], others[OTHER_EY, a] = moving[2, at], moving[3, at]
+        others[LEAD, a] = state.route[i] - moving[4, at]
         near[a] = grid.people[at]
         fetch(state, near[a], 128)
     farthest = table.farthest[cluster]

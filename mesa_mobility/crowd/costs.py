@@ -42,10 +42,11 @@ class Terms(NamedTuple):
 
 
 # Rows of what the terms are given. Ends (6, n): where options end, in the world: place, unit vector
-# of facing, seconds until then, m/s on the way. Others (5, n): neighbours of a pedestrian at the
-# moment of its decision: place, velocity, and space for what each costs.
+# of facing, seconds until then, m/s on the way. Others (8, n): neighbours of a pedestrian at the
+# moment of its decision: place, velocity, unit vector to their targets, metres by which their way
+# is the shorter one, and space for what each costs.
 END_X, END_Y, END_UX, END_UY, SECONDS, SPEED = range(6)
-OTHER_X, OTHER_Y, OTHER_VX, OTHER_VY, COST = range(5)
+OTHER_X, OTHER_Y, OTHER_VX, OTHER_VY, OTHER_EX, OTHER_EY, LEAD, COST = range(8)
 
 
 @lean()
@@ -102,43 +103,51 @@ def group_bounds(
         call_bound_loop(
             terms.bound_address[t], last - first, to_x, to_y, of[RADIUS, first:], to_ux, to_uy,
             of[TURN, first:], of[DURATION, first:], of[SLOWEST, first:], of[FASTEST, first:],
-            state.target_x[me.row], state.target_y[me.row], preferred,
+            px, py, state.target_x[me.row], state.target_y[me.row], preferred,
             terms.option_parameters[t], terms.option_weight[t], out,
         )  # fmt: skip
 
 
 @lean()
 def option_costs(
+    me: Stance,
     first: int,
     last: int,
     ends: NDArray[np.float64],
-    target_x: float,
-    target_y: float,
-    preferred: float,
+    state: CrowdState,
     terms: Terms,
     out: NDArray[np.float64],
 ) -> None:
     """Add the weighted sum of the option terms to ``out``, for rows ``first`` to ``last``."""
+    preferred = preferred_now(me.row, state)
     for t in range(len(terms.option_address)):
         call_option_loop(
             terms.option_address[t], last - first, ends[END_X, first:], ends[END_Y, first:],
             ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
-            target_x, target_y, preferred, terms.option_parameters[t], terms.option_weight[t],
-            out[first:],
+            me.x, me.y, state.target_x[me.row], state.target_y[me.row], preferred,
+            terms.option_parameters[t], terms.option_weight[t], out[first:],
         )  # fmt: skip
 
 
 @lean()
 def pair_cost(
-    k: int, ends: NDArray[np.float64], count: int, others: NDArray[np.float64], terms: Terms
+    me: Stance,
+    k: int,
+    ends: NDArray[np.float64],
+    count: int,
+    others: NDArray[np.float64],
+    state: CrowdState,
+    terms: Terms,
 ) -> float:
     """Weighted sum of the pair terms of option k over the first ``count`` neighbours."""
     total = 0.0
     for t in range(len(terms.pair_address)):
         call_pair_loop(
             terms.pair_address[t], count, ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
-            ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], others[OTHER_X], others[OTHER_Y],
-            others[OTHER_VX], others[OTHER_VY], terms.pair_parameters[t], others[COST],
+            ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
+            state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
+            others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY], others[LEAD],
+            terms.pair_parameters[t], others[COST],
         )  # fmt: skip
         summed = 0.0
         for a in range(count):

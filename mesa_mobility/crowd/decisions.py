@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.choice import decide
 from mesa_mobility.crowd.explain import Explanation, Watch, judge, weigh
-from mesa_mobility.crowd.neighbours import Grid, build_grid, velocities
+from mesa_mobility.crowd.neighbours import Grid, build_grid, headways
 from mesa_mobility.crowd.queue import new_queue
 from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.rules import Rules
@@ -68,7 +68,7 @@ class Decisions:
         grid = build_grid(rows, crowd.x, crowd.y)
         if others:
             extra, extra_offsets = extra_costs(others, order, table, crowd, grid, self._rules)
-        moving = velocities(grid, crowd.records)
+        moving = headways(grid, crowd.records)
         works = self._works_for(threads_for(len(order)), len(rows), around)
 
         def part(first: int, last: int) -> None:

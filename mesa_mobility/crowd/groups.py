@@ -62,12 +62,10 @@ class OptionGroups(NamedTuple):
     at: NDArray[np.float32]
 
 
-def alike(
-    path: NDArray[np.float32], heading: NDArray[np.float64], frames: NDArray[np.integer]
-) -> NDArray[np.float64]:
+def alike(path: NDArray[np.float32], frames: NDArray[np.integer]) -> NDArray[np.float64]:
     """(n, 8) where options are at 0.8 s, 1.2 s and their end, how they face there, their speed.
 
-    ``path`` (n, 3, 16), ``heading`` (n,) at the end, ``frames`` (n,); in metres all of them.
+    ``path`` (n, 3, 16), ``frames`` (n,); in metres all of them.
     """
     places = path[:, :2].astype(np.float64)
     speed = np.hypot(*places[:, :, -1].T) / (frames * FRAME_SECONDS)
@@ -76,7 +74,7 @@ def alike(
             places[:, :, -1],
             places[:, :, LEVELS[1]],
             places[:, :, LEVELS[2]],
-            _TURN_M * heading,
+            _TURN_M * path[:, 2, -1].astype(np.float64),
             _SPEED_S * speed,
         ]
     )

@@ -24,30 +24,37 @@ _A = types.CPointer(_F)
 _N = types.int64
 
 _OPTION_LOOP = """
-def {name}(n, x, y, facing_x, facing_y, duration, speed, tx, ty, preferred, p, weight, out):
+def {name}(
+    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, preferred, p, weight, out
+):
     for k in range(n):
         out[k] += weight * each(
-            x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], tx, ty, preferred, p
+            x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, preferred,
+            p
         )
 """
 
 _BOUND_LOOP = """
 def {name}(
-    n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, tx, ty, preferred, p,
-    weight, out
+    n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, sx, sy, tx, ty,
+    preferred, p, weight, out
 ):
     for k in range(n):
         out[k] += weight * each(
             x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
-            fastest[k], tx, ty, preferred, p
+            fastest[k], sx, sy, tx, ty, preferred, p
         )
 """
 
 _PAIR_LOOP = """
-def {name}(n, x, y, facing_x, facing_y, duration, speed, nx, ny, nvx, nvy, p, out):
+def {name}(
+    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
+    p, out
+):
     for k in range(n):
         out[k] = each(
-            x, y, facing_x, facing_y, duration, speed, nx[k], ny[k], nvx[k], nvy[k], p
+            x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx[k], ny[k], nvx[k], nvy[k],
+            nex[k], ney[k], lead[k], p
         )
 """
 
@@ -95,31 +102,32 @@ class OptionKernel(CostKernel):
     """Cost of one movement option."""
 
     loop = _OPTION_LOOP
-    signature = types.void(_N, _A, _A, _A, _A, _A, _A, _F, _F, _F, _A, _F, _A)
+    signature = types.void(_N, *[_A] * 6, *[_F] * 5, _A, _F, _A)
 
 
 class BoundKernel(CostKernel):
     """Lower bound of the cost of a group of movement options."""
 
     loop = _BOUND_LOOP
-    signature = types.void(_N, _A, _A, _A, _A, _A, _A, _A, _A, _A, _F, _F, _F, _A, _F, _A)
+    signature = types.void(_N, *[_A] * 9, *[_F] * 5, _A, _F, _A)
 
 
 class PairKernel(CostKernel):
     """Cost of one movement option with respect to one neighbour."""
 
     loop = _PAIR_LOOP
-    signature = types.void(_N, _F, _F, _F, _F, _F, _F, _A, _A, _A, _A, _A, _A)
+    signature = types.void(_N, *[_F] * 10, *[_A] * 9)
 
 
 def option_kernel(function: Callable[..., float]) -> OptionKernel:
     """Make a kernel of one movement option.
 
-    The function takes ``(x, y, facing_x, facing_y, duration, speed, target_x, target_y,
-    preferred_speed, parameters)`` - mobility point and target in metres, the unit vector of
-    facing there, duration in seconds, speeds in m/s; speed times duration is the
-    displacement - and returns a float.  ``parameters[i]`` are the numbers of the term's
-    ``parameters()``.  It must be compilable by Numba (``math``, no Python objects).
+    The function takes ``(x, y, facing_x, facing_y, duration, speed, start_x, start_y, target_x,
+    target_y, preferred_speed, parameters)`` - mobility point, where the pedestrian is now, and
+    target in metres, the unit vector of facing at the mobility point, duration in seconds, speeds
+    in m/s; speed times duration is the displacement - and returns a float.  ``parameters[i]`` are
+    the numbers of the term's ``parameters()``.  It must be compilable by Numba (``math``, no
+    Python objects).
     """
     return OptionKernel(function)
 
@@ -128,10 +136,10 @@ def bound_kernel(function: Callable[..., float]) -> BoundKernel:
     """Make a lower bound of an option kernel over a group of options that are alike.
 
     The function takes ``(x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest,
-    target_x, target_y, preferred_speed, parameters)`` and returns a number that the option
-    kernel does not fall below for any option that ends within ``radius`` metres of (x, y),
-    faces within ``turn`` radians of the unit vector there, takes ``duration`` seconds and has a
-    speed from ``slowest`` to ``fastest``.
+    start_x, start_y, target_x, target_y, preferred_speed, parameters)`` and returns a number that
+    the option kernel does not fall below for any option that ends within ``radius`` metres of
+    (x, y), faces within ``turn`` radians of the unit vector there, takes ``duration`` seconds and
+    has a speed from ``slowest`` to ``fastest``.
     """
     return BoundKernel(function)
 
@@ -139,9 +147,11 @@ def bound_kernel(function: Callable[..., float]) -> BoundKernel:
 def pair_kernel(function: Callable[..., float]) -> PairKernel:
     """Make a kernel of one movement option and one neighbour; the choice sums over neighbours.
 
-    The function takes ``(x, y, facing_x, facing_y, duration, speed, neighbour_x, neighbour_y,
-    neighbour_vx, neighbour_vy, parameters)``, the neighbour's position in metres and velocity in
-    m/s at the moment of the decision.
+    The function takes ``(x, y, facing_x, facing_y, duration, speed, start_x, start_y, target_x,
+    target_y, neighbour_x, neighbour_y, neighbour_vx, neighbour_vy, neighbour_ex, neighbour_ey,
+    lead, parameters)``: after what an option kernel takes, the neighbour's position in metres and
+    velocity in m/s at the moment of the decision, the unit vector from it to its target (0, 0 at
+    the target), and by how many metres its way is shorter than one's own.
     """
     return PairKernel(function)
 
@@ -174,31 +184,33 @@ def _caller(signature: Any) -> Any:
 
 @intrinsic
 def call_option_loop(  # type: ignore[no-untyped-def]
-    typingctx, address, n, x, y, ux, uy, duration, speed, tx, ty, preferred, p, weight, out
+    typingctx, address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p, weight, out
 ):
     """Add the weighted cost of n options to ``out``; arguments after the address as the loop's."""
     return _caller(OptionKernel.signature)(
-        address, n, x, y, ux, uy, duration, speed, tx, ty, preferred, p, weight, out
+        address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p, weight, out
     )
 
 
 @intrinsic
 def call_pair_loop(  # type: ignore[no-untyped-def]
-    typingctx, address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p, out
-):
+    typingctx, address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex,
+    ney, lead, p, out,
+):  # fmt: skip
     """Write the cost of one option for each of n neighbours; arguments as the loop's."""
     return _caller(PairKernel.signature)(
-        address, n, x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p, out
-    )
+        address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
+        p, out,
+    )  # fmt: skip
 
 
 @intrinsic
 def call_bound_loop(  # type: ignore[no-untyped-def]
-    typingctx, address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty,
+    typingctx, address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty,
     preferred, p, weight, out,
 ):  # fmt: skip
     """Add the weighted bounds of n groups to ``out``; arguments after the address as the loop's."""
     return _caller(BoundKernel.signature)(
-        address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, tx, ty, preferred, p,
-        weight, out,
+        address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty,
+        preferred, p, weight, out,
     )  # fmt: skip

@@ -105,10 +105,13 @@ class PedestrianModel(CrowdMeasures, People):
             raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
         rules = preset_named(preset)
         self.preset = rules.name
+        self._impatience = rules.impatience
         self.floor_plan = floor_plan
         self.pedestrian_types = types_of(mobility_map, pedestrian_types)
         self._repertoire = repertoire(
-            tuple(kind.mobility_map for kind in self.pedestrian_types), rules.durations
+            tuple(kind.mobility_map for kind in self.pedestrian_types),
+            rules.durations,
+            rules.shares,
         )
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
         self.paces: list[Pace] = []
@@ -281,7 +284,10 @@ class PedestrianModel(CrowdMeasures, People):
             rng=self.rng,
             site=self._site,
         )
-        return set_wishes(deciding, state, self.floor_plan, self.target_choice, self.paces, waiting)
+        return set_wishes(
+            deciding, state, self.floor_plan, self.target_choice, self.paces, waiting,
+            self._impatience,
+        )  # fmt: skip
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows``, were they to decide here and now."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -56,11 +57,18 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
 
 
 @njit(cache=True)
-def velocities(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
-    """(2, n) velocities of the people in a grid, in its order, m/s."""
-    found = np.empty((2, len(grid.people)))
+def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
+    """(5, n) where the people in a grid go, in its order.
+
+    Velocity in m/s, unit vector to the target (0, 0 at the target), metres of way left.
+    """
+    found = np.empty((5, len(grid.people)))
     for a, i in enumerate(grid.people):
         found[0, a], found[1, a] = state.vx[i], state.vy[i]
+        dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
+        away = math.sqrt(dx * dx + dy * dy)
+        found[2, a], found[3, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
+        found[4, a] = state.route[i]
     return found
 
 

@@ -70,45 +70,60 @@ class OptionTable(NamedTuple):
     path: NDArray[np.float32]
 
 
-def padded_paths(mobility_map: MobilityMap, rows: NDArray[np.int64]) -> NDArray[np.float32]:
-    """(n, 3, 16) x, y, heading of the options in ``rows`` at the samples, from the start on."""
-    first = mobility_map.path_offsets[rows]
-    last = mobility_map.path_offsets[rows + 1] - 1
-    path = np.zeros((len(rows), 3, SAMPLES), dtype=np.float32)
+class Parts(NamedTuple):
+    """A map's options, whole or shortened.
+
+    Fields: ``rows`` (n,) rows of the map; ``share`` (n,) of the ground that the option covers;
+    ``clusters`` (n,) in which it ends.
+    """
+
+    rows: NDArray[np.int64]
+    share: NDArray[np.float64]
+    clusters: NDArray[np.int64]
+
+    def taken(self, order: NDArray[np.int64]) -> Parts:
+        """The same in another order."""
+        return Parts(self.rows[order], self.share[order], self.clusters[order])
+
+
+def padded_paths(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float32]:
+    """(n, 3, 16) x, y, heading of options, whole or shortened, at the samples from the start."""
+    first = mobility_map.path_offsets[parts.rows]
+    last = mobility_map.path_offsets[parts.rows + 1] - 1
+    path = np.zeros((len(first), 3, SAMPLES), dtype=np.float32)
     for k in range(1, SAMPLES):
         path[:, :, k] = mobility_map.paths[np.minimum(first + k - 1, last)]
+    path[:, :2] *= parts.share.astype(np.float32)[:, None, None]
     return path
 
 
 def option_table(
     mobility_map: MobilityMap,
-    rows: NDArray[np.int64],
+    parts: Parts,
     offsets: NDArray[np.int64],
     groups: NDArray[np.int64],
 ) -> OptionTable:
-    """The table of the options in ``rows`` of a map; ``offsets`` and ``groups`` as its fields."""
-    path = padded_paths(mobility_map, rows)
-    x, y = mobility_map.end_points[rows].astype(np.float32).T
-    heading = mobility_map.end_headings[rows].astype(np.float32)
-    frames = mobility_map.durations[rows]
+    """The table of options, whole or shortened; ``offsets`` and ``groups`` are those fields."""
+    path = padded_paths(mobility_map, parts)
+    frames = mobility_map.durations[parts.rows]
+    x, y, heading = path[:, :, -1].T
     places = path[:, :2].astype(np.float64)
     reach = np.hypot(places[:, 0], places[:, 1]).max(axis=1)
     steps = np.hypot(*np.moveaxis(np.diff(places, axis=2), 1, 0)).max(axis=1)
     wide = heading.astype(np.float64)
-    speed = np.hypot(x.astype(np.float64), y) / (frames * FRAME_SECONDS)
-    options = np.empty(len(rows), OPTION).view(np.recarray)
+    options = np.empty(len(path), OPTION).view(np.recarray)
     options.x, options.y = x, y
     options.ux, options.uy = np.cos(wide), np.sin(wide)
-    options.speed, options.frames = speed, frames
+    options.speed = np.hypot(x.astype(np.float64), y) / (frames * FRAME_SECONDS)
+    options.frames, options.cluster = frames, parts.clusters
     options.stride, options.reach = rounded_up(steps), rounded_up(reach)
-    options.cluster = mobility_map.end_clusters[rows]
     options.at_x, options.at_y = path[:, 0, LEVELS], path[:, 1, LEVELS]
     return OptionTable(
         offsets=offsets,
         groups=groups,
         farthest=np.maximum.reduceat(reach, offsets[:-1]),
         options=options,
-        heading=heading,
+        heading=heading.copy(),
         path=path,
     )
 

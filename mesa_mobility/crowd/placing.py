@@ -104,6 +104,7 @@ def place(
     agenda["speed"][rows] = speeds
     agenda["journey"][rows], agenda["crossed"][rows] = new.journey, 0
     agenda["checked"][rows] = frame - 1
+    agenda["nearest"][rows] = np.inf
     agenda["group"][rows] = new.group
     agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 

@@ -21,7 +21,9 @@ class Preset:
         target_choice: registered behaviour that gives people their targets.
         group_pace: registered behaviour that keeps groups together, where there are any.
         durations: option durations in frames.
+        shares: shortened copies of the shortest options, as shares of the ground they cover.
         cores: whether bodies are hard.
+        impatience: whether people who get nowhere look for a way round.
     """
 
     name: str
@@ -29,7 +31,9 @@ class Preset:
     target_choice: str
     group_pace: str | None
     durations: tuple[int, ...]
+    shares: tuple[float, ...]
     cores: bool
+    impatience: bool
 
     def make_target_choice(self) -> TargetChoice:
         """The target choice, looked up among the installed behaviours."""
@@ -58,22 +62,28 @@ PRESETS = {
         target_choice="nearest_exit",
         group_pace=None,
         durations=(45,),
+        shares=(),
         cores=False,
+        impatience=False,
     ),
-    # The same terms and constants, but a speed of one's own in place of reward without
-    # limit, bodies that do not overlap, and options short enough for a queue to move.
+    # The same terms and constants, but a velocity of one's own in place of reward without
+    # limit, bodies that do not overlap and make way, and options short enough for a queue to move.
     "default": Preset(
         name="default",
         terms={
             "target_distance": 1.0,
             "facing_deviation": 0.5,
-            "preferred_speed": 2.0,
+            "preferred_velocity": 2.0,
             "interference": 1.0,
+            "headway": 2.0,
+            "right_of_way": 2.0,
         },
         target_choice="nearest_exit",
         group_pace="walk_together",
         durations=(12, 24, 45),
+        shares=(0.5, 0.25, 0.0),
         cores=True,
+        impatience=True,
     ),
 }
 

@@ -40,17 +40,20 @@ class Repertoire:
 
 
 @lru_cache(maxsize=4)
-def repertoire(maps: tuple[MobilityMap, ...], durations: tuple[int, ...]) -> Repertoire:
+def repertoire(
+    maps: tuple[MobilityMap, ...], durations: tuple[int, ...], shares: tuple[float, ...] = ()
+) -> Repertoire:
     """The repertoire of these maps; models with the same maps share it.
 
     Args:
         maps: one for each type.
         durations: option durations in frames.
+        shares: shortened copies of the shortest options, as shares of their ground.
 
     Raises:
         ModelError: a cluster has no option of these durations.
     """
-    own = {map_: Capability(map_, durations) for map_ in dict.fromkeys(maps)}
+    own = {map_: Capability(map_, durations, shares) for map_ in dict.fromkeys(maps)}
     capabilities = tuple(own[map_] for map_ in maps)
     table = stack_tables([each.table for each in capabilities])
     clusters = np.cumsum([0] + [each.n_clusters for each in capabilities])[:-1]

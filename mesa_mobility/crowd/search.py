@@ -20,7 +20,6 @@ from mesa_mobility.crowd.costs import (
     lay_ends,
     option_costs,
     pair_cost,
-    preferred_now,
 )
 from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import lay_path
@@ -82,13 +81,10 @@ def _open_groups(
         work.slot[work.rows[k] - base] = k
         work.costs[k] = 0.0 if len(extra) == 0 else extra[work.rows[k] - base]
         work.leaving[k] = _UNTRIED
-    option_costs(
-        count, n, work.ends, state.target_x[i], state.target_y[i], preferred_now(i, state), terms,
-        work.costs,
-    )  # fmt: skip
+    option_costs(me, count, n, work.ends, state, terms, work.costs)
     if now.eager:
         for k in range(count, n):
-            work.costs[k] += pair_cost(k, work.ends, now.neighbours, work.others, terms)
+            work.costs[k] += pair_cost(me, k, work.ends, now.neighbours, work.others, state, terms)
     return n if all_finite(work.costs[count:n]) else NOT_A_NUMBER
 
 
@@ -191,7 +187,7 @@ def cheapest_free(
         if gone >= -1:
             work.leaving[k] = gone
             if not now.eager:
-                key[0] += pair_cost(k, work.ends, now.neighbours, work.others, terms)
+                key[0] += pair_cost(me, k, work.ends, now.neighbours, work.others, state, terms)
                 if not abs(key[0]) < np.inf:
                     return NOT_A_NUMBER, -1
         else:

@@ -81,6 +81,8 @@ AGENDA = np.dtype(
         ("crossed", "i4"),
         ("group", "i4"),
         ("checked", "f8"),
+        ("nearest", "f8"),
+        ("since", "f8"),
     ],
     align=True,
 )

@@ -22,6 +22,9 @@ from mesa_mobility.crowd.costs import (
     END_UY,
     END_X,
     END_Y,
+    LEAD,
+    OTHER_EX,
+    OTHER_EY,
     OTHER_VX,
     OTHER_VY,
     OTHER_X,
@@ -111,14 +114,16 @@ class CompiledTerm(CostTerm):
         if isinstance(self.kernel, PairKernel):
             x, y = candidates.neighbour_positions.T
             vx, vy = candidates.neighbour_velocities.T
+            ex, ey = candidates.neighbour_directions.T
             return _each_pair(
-                self.kernel.address, candidates.owner, ends, candidates.neighbour_offsets,
-                np.array([x, y, vx, vy, np.empty_like(x)]),
+                self.kernel.address, candidates.owner, ends, candidates.positions,
+                candidates.targets, candidates.neighbour_offsets,
+                np.array([x, y, vx, vy, ex, ey, candidates.leads, np.empty_like(x)]),
                 numbers,
             )  # fmt: skip
         return _each_option(
-            self.kernel.address, candidates.offsets, ends, candidates.targets,
-            candidates.preferred_speeds, numbers,
+            self.kernel.address, candidates.offsets, ends, candidates.positions,
+            candidates.targets, candidates.preferred_speeds, numbers,
         )  # fmt: skip
 
 
@@ -127,6 +132,7 @@ def _each_option(
     address: int,
     offsets: NDArray[np.int64],
     ends: NDArray[np.float64],
+    starts: NDArray[np.float64],
     targets: NDArray[np.float64],
     preferred: NDArray[np.float64],
     numbers: NDArray[np.float64],
@@ -137,7 +143,8 @@ def _each_option(
         call_option_loop(
             address, offsets[b + 1] - offsets[b], ends[END_X, at], ends[END_Y, at],
             ends[END_UX, at], ends[END_UY, at], ends[SECONDS, at], ends[SPEED, at],
-            targets[b, 0], targets[b, 1], preferred[b], numbers, 1.0, out[at],
+            starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1], preferred[b], numbers, 1.0,
+            out[at],
         )  # fmt: skip
     return out
 
@@ -147,17 +154,22 @@ def _each_pair(
     address: int,
     owner: NDArray[np.int64],
     ends: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    targets: NDArray[np.float64],
     offsets: NDArray[np.int64],
     others: NDArray[np.float64],
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     out = np.empty(len(owner))
     for k in range(len(owner)):
-        at = slice(offsets[owner[k]], offsets[owner[k] + 1])
+        b = owner[k]
+        at = slice(offsets[b], offsets[b + 1])
         call_pair_loop(
-            address, offsets[owner[k] + 1] - offsets[owner[k]], ends[END_X, k], ends[END_Y, k],
+            address, offsets[b + 1] - offsets[b], ends[END_X, k], ends[END_Y, k],
             ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k],
+            starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1],
             others[OTHER_X, at], others[OTHER_Y, at], others[OTHER_VX, at], others[OTHER_VY, at],
+            others[OTHER_EX, at], others[OTHER_EY, at], others[LEAD, at],
             numbers, others[COST, at],
         )  # fmt: skip
         summed = 0.0

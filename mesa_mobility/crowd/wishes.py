@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.pace import Pace, ask_paces
+from mesa_mobility.crowd.patience import look_around
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
 from mesa_mobility.floorplan import FloorPlan, Targets
@@ -20,6 +21,7 @@ def set_wishes(
     choice: TargetChoice,
     paces: Sequence[Pace],
     waiting: NDArray[np.bool_] | None = None,
+    impatience: bool = False,
 ) -> Targets:
     """Give those who decide their targets and the speed that they prefer here and now.
 
@@ -30,6 +32,7 @@ def set_wishes(
         choice: where they go.
         paces: what slows them down.
         waiting: (n,) who stays where it is, if anybody.
+        impatience: whether those who get nowhere look for a way round.
 
     Raises:
         ModelError: a behaviour gives what it should not.
@@ -48,4 +51,6 @@ def set_wishes(
         stay = rows[waiting]
         crowd.target_x[stay], crowd.target_y[stay] = crowd.x[stay], crowd.y[stay]
     crowd.preferred[rows] = speeds
+    if impatience:
+        look_around(rows, crowd, deciding.elapsed, deciding.rng)
     return targets

@@ -36,6 +36,9 @@ gait, not to where the person is facing, and would otherwise turn whole paths.
 SPEED_SMOOTHING = 0.10
 """Standard deviation, in seconds, of the Gaussian used for root speed and turn rate."""
 
+STANDING_SPEED, STANDING_TURN_RATE = 0.10, 0.35
+"""Who stands is slower than both, m/s and rad/s."""
+
 POSE_JOINTS = (
     "pelvis",
     "left_hip",
@@ -88,7 +91,7 @@ class PoseTable:
         return len(self.clip)
 
     def is_standing(
-        self, max_speed: float = 0.10, max_turn_rate: float = 0.35
+        self, max_speed: float = STANDING_SPEED, max_turn_rate: float = STANDING_TURN_RATE
     ) -> NDArray[np.bool_]:
         """Poses of a person who stands: slower than both limits (m/s, rad/s)."""
         return (self.speed < max_speed) & (self.turn_rate < max_turn_rate)

@@ -5,9 +5,17 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mesa_mobility.behaviors import Displacement, FacingDeviation, PreferredSpeed, TargetDistance
+from mesa_mobility.behaviors import (
+    Displacement,
+    FacingDeviation,
+    PreferredSpeed,
+    PreferredVelocity,
+    TargetDistance,
+)
 
-TERMS = [Displacement, FacingDeviation, PreferredSpeed, TargetDistance]
+TERMS = [Displacement, FacingDeviation, PreferredSpeed, PreferredVelocity, TargetDistance]
+
+START = (0.25, 0.5)
 
 angles = st.floats(-math.pi, math.pi)
 shares = st.floats(0.0, 1.0)
@@ -15,14 +23,15 @@ shares = st.floats(0.0, 1.0)
 
 def cost(term, x, y, angle, duration, speed, target, preferred):
     return term.kernel.function(
-        x, y, math.cos(angle), math.sin(angle), duration, speed, *target, preferred, (0.0,)
-    )
+        x, y, math.cos(angle), math.sin(angle), duration, speed, *START, *target,
+        preferred, (0.0,),
+    )  # fmt: skip
 
 
 def bound(term, x, y, radius, angle, turn, duration, slowest, fastest, target, preferred):
     return term.bound.function(
-        x, y, radius, math.cos(angle), math.sin(angle), turn, duration, slowest, fastest, *target,
-        preferred, (0.0,),
+        x, y, radius, math.cos(angle), math.sin(angle), turn, duration, slowest, fastest, *START,
+        *target, preferred, (0.0,),
     )  # fmt: skip
 
 
@@ -75,4 +84,8 @@ def test_a_bound_is_worth_something():
     assert bound(PreferredSpeed, 0, 0, 0.5, 0, 0, 0.4, 0.2, 0.6, (3.0, 0.0), 1.0) == pytest.approx(
         1.5 * 0.4
     )
+    # From (0.25, 0.5) to (0.65, 0.5) in 0.4 s, which is 0.4 m short of 2 m/s, give or take 0.1 m.
+    assert bound(
+        PreferredVelocity, 0.65, 0.5, 0.1, 0, 0, 0.4, 0, 2, (3.25, 0.5), 2.0
+    ) == pytest.approx(1.5 * (0.4 - 0.1) / 0.4)
     assert bound(Displacement, 0, 0, 0.5, 0, 0, 0.4, 0.2, 0.5, (3.0, 0.0), 1.0) == -0.2

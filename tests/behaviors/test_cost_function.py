@@ -13,17 +13,23 @@ from hypothesis import strategies as st
 from mesa_mobility.behaviors import (
     Displacement,
     FacingDeviation,
+    Headway,
     Interference,
     PreferredSpeed,
+    PreferredVelocity,
+    RightOfWay,
     TargetDistance,
 )
 
 from mesa_mobility import CostTerm
 from mesa_mobility.errors import ModelError
 from mesa_mobility.registry import load_behavior
-from tests.fixtures.options import Ending, batches, one_option
+from tests.fixtures.options import Ending, crowded, one_option
 
-TERMS = [TargetDistance, FacingDeviation, Displacement, Interference, PreferredSpeed]
+TERMS = [
+    TargetDistance, FacingDeviation, Displacement, Interference, PreferredSpeed, PreferredVelocity,
+    Headway, RightOfWay,
+]  # fmt: skip
 
 
 def test_equation_one_by_hand():
@@ -71,7 +77,7 @@ def test_weights_that_are_not_numbers_are_refused(term, weight):
     assert math.isfinite(changed.weight)
 
 
-@given(batches, st.sampled_from(TERMS))
+@given(crowded, st.sampled_from(TERMS))
 @settings(deadline=None)
 def test_costs_of_a_batch_are_those_of_its_people_one_by_one(options, term):
     together = term().cost(options)
@@ -122,7 +128,13 @@ def _only(options, k: int):
     }
     fields |= {
         name: getattr(options, name)[near]
-        for name in ("neighbours", "neighbour_positions", "neighbour_velocities")
+        for name in (
+            "neighbours",
+            "neighbour_positions",
+            "neighbour_velocities",
+            "neighbour_directions",
+            "leads",
+        )
     }
     n, q = rows.stop - rows.start, near.stop - near.start
     return type(options)(

@@ -2,7 +2,15 @@
 
 import numpy as np
 import pytest
-from mesa_mobility.behaviors import FacingDeviation, Interference, PreferredSpeed, TargetDistance
+from mesa_mobility.behaviors import (
+    FacingDeviation,
+    Headway,
+    Interference,
+    PreferredSpeed,
+    PreferredVelocity,
+    RightOfWay,
+    TargetDistance,
+)
 from mesa_mobility.models import Doorway
 
 from mesa_mobility import CostTerm
@@ -20,6 +28,10 @@ class Speed(PreferredSpeed):
     bound = None
 
 
+class Velocity(PreferredVelocity):
+    bound = None
+
+
 class Nothing(CostTerm):
     name = "nothing"
 
@@ -29,7 +41,7 @@ class Nothing(CostTerm):
 
 def run(*terms):
     model = Doorway(rng=3, record=True)
-    model.terms = [*terms, Interference()]
+    model.terms = [*terms, Interference(), Headway(), RightOfWay()]
     model.run(max_seconds=3.0)
     return [column.tobytes() for column in model.recorder.arrays().values()]
 
@@ -50,6 +62,11 @@ def bounded():
 )
 def test_a_run_is_the_same_without_bounds(bounded, terms):
     assert run(*(term() for term in terms)) == bounded
+
+
+def test_a_run_is_the_same_without_the_bound_of_the_velocity():
+    usual = (TargetDistance(), FacingDeviation())
+    assert run(*usual, PreferredVelocity()) == run(*usual, Velocity())
 
 
 def test_a_weight_below_zero_takes_the_bound_away():

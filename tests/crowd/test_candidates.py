@@ -14,8 +14,8 @@ def turner():
     return make_map([[stand(), straight(1.0, 24, towards=math.pi / 2, turn=0.5, to=0)]])
 
 
-def test_options_are_laid_down_where_the_person_stands(turner):
-    person = put(model_of(corridor(), turner), 3.0, 2.0, math.pi)
+def test_options_are_laid_down_where_the_person_stands(turner, whole):
+    person = put(model_of(corridor(), turner, preset=whole), 3.0, 2.0, math.pi)
     options = person.movement_options()
     assert len(options) == 2
     # To the left of somebody who faces -x is -y.
@@ -33,17 +33,29 @@ def test_options_are_laid_down_where_the_person_stands(turner):
     assert options.types.tolist() == [0]
 
 
-def test_options_are_those_of_the_cluster_the_person_is_in():
-    model = model_of(corridor(), strider())
+def test_options_are_those_of_the_cluster_the_person_is_in(whole):
+    model = model_of(corridor(), strider(), preset=whole)
     person = put(model, 1.0, 2.0, preferred_speeds=[1.25])
     assert person.movement_options().displacements.tolist() == [0.0, 0.5, 1.0, 1.875]
     advance(model, 45)
     assert person.movement_options().displacements.tolist() == [0.5, 0.0, 1.0, 1.875]
 
 
-def test_options_name_rows_of_the_persons_own_capability():
+def test_the_shortest_options_come_in_parts_too():
+    person = put(model_of(corridor(), strider()), 1.0, 2.0)
+    options = person.movement_options()
+    # Of stand and half a metre in 12 frames: a half, a quarter, and nothing of either.
+    order = np.argsort(options.displacements, kind="stable")
+    expected = [0.0] * 4 + [0.125, 0.25, 0.5, 1.0, 1.875]
+    assert options.displacements[order] == pytest.approx(expected)
+    assert options.durations[order] == pytest.approx([0.4] * 7 + [0.8, 1.5])
+    assert options.speeds[order] == pytest.approx([0.0] * 4 + [0.3125, 0.625] + [1.25] * 3)
+    assert options.points[order, 0] == pytest.approx([1.0 + step for step in expected])
+
+
+def test_options_name_rows_of_the_persons_own_capability(whole):
     first, second = strider(), make_map([[stand(), straight(0.75, 12, to=0)]])
-    model = model_of(corridor(), [first, second])
+    model = model_of(corridor(), [first, second], preset=whole)
     for kind, reach in ((0, [0.0, 0.5, 1.0, 1.875]), (1, [0.0, 0.75])):
         person = put(model, 1.0, 1.0 + kind, kind=kind)
         options = person.movement_options()
@@ -55,8 +67,8 @@ def test_options_name_rows_of_the_persons_own_capability():
         assert ends.tolist() == reach
 
 
-def test_a_batch_of_several_people():
-    model = model_of(corridor(), [strider(), statues()])
+def test_a_batch_of_several_people(whole):
+    model = model_of(corridor(), [strider(), statues()], preset=whole)
     walker, statue = put(model, 2.0, 1.0), put(model, 4.0, 3.0, kind=1)
     batch = model.candidates(np.array([statue.row, walker.row]))
     assert batch.owner.tolist() == [0, 1, 1, 1, 1]
@@ -77,6 +89,19 @@ def test_neighbours_come_with_the_mean_velocity_of_their_movement():
     np.testing.assert_allclose(options.neighbour_positions, [walker.position])
     np.testing.assert_allclose(options.neighbour_velocities, [(1.25, 0.0)], atol=1e-6)
     np.testing.assert_allclose(walker.velocity, (1.25, 0.0), atol=1e-6)
+
+
+def test_neighbours_come_with_where_they_go_and_how_much_less_way_they_have():
+    # 16, 14 and 2.5 m from the exits in the east and, the last one, in the west.
+    model = model_of(corridor(both_ends=True), strider())
+    me = put(model, 4.0, 2.0, exits=["east"])
+    put(model, 6.0, 2.0, exits=["east"])
+    put(model, 2.5, 2.0, exits=["west"])
+    options = me.movement_options()
+    order = np.argsort(options.neighbours)
+    expected = np.array([(1.0, 0.0), (-1.0, 0.0)])
+    assert options.neighbour_directions[order] == pytest.approx(expected)
+    assert options.leads[order] == pytest.approx([2.0, 13.5])
 
 
 def test_everybody_within_reach_is_a_neighbour_however_many():

@@ -24,7 +24,7 @@ def test_options_of_some_durations():
     assert [list(capability.options(c)) for c in (STANDING, WALKING)] == [[0, 1], [2, 3]]
     assert capability.table.options.x.tolist() == [1.0, 1.875, 1.0, 1.875]
     assert capability.table.options.frames.tolist() == [24, 45, 24, 45]
-    assert capability.rows.tolist() == [2, 3, 5, 6]
+    assert capability.parts.rows.tolist() == [2, 3, 5, 6]
 
 
 def test_paths_stay_with_their_options():

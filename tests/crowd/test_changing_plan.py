@@ -22,8 +22,8 @@ def test_an_obstacle_is_seen_by_the_next_decision():
     advance(model, 25)
     assert person.position[0] == pytest.approx(2.875, abs=1e-6)
     advance(model, 12)
-    # 0.625 m of floor ahead: half a metre and no room for the core.
-    assert person.position[0] == pytest.approx(2.875, abs=1e-6)
+    # 0.625 m of floor ahead: half a metre and no room for the core, so half of it.
+    assert person.position[0] == pytest.approx(3.125, abs=1e-6)
 
 
 def test_an_obstacle_taken_away_is_not_in_the_way_any_more():

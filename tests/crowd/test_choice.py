@@ -9,7 +9,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from tests.fixtures.maps import make_map, stand, straight, strider, through, wanderer
-from tests.fixtures.oracle import DEFAULT_COST, FALLBACK, PAPER_COST, Oracle
+from tests.fixtures.oracle import PAPER_COST, Oracle, default_cost
 from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, statues
 
 
@@ -28,10 +28,22 @@ def commits_to(model, person) -> float:
 
 @pytest.mark.parametrize(
     ("wall", "metres"),
-    [(2.03, 1.875), (2.02, 1.0), (1.152, 1.0), (1.148, 0.5), (0.652, 0.5), (0.648, 0.0)],
+    [
+        (2.03, 1.875),
+        (2.02, 1.0),
+        (1.152, 1.0),
+        (1.148, 0.5),
+        (0.652, 0.5),
+        (0.648, 0.25),
+        (0.402, 0.25),
+        (0.398, 0.125),
+        (0.277, 0.125),
+        (0.273, 0.0),
+    ],
 )
 def test_walls_keep_clear_of_the_core(wall, metres):
-    # An option of length s needs s + 0.15 m of floor ahead.
+    # An option of length s needs s + 0.15 m of floor ahead; the shortest comes in a half and a
+    # quarter as well.
     model = farthest(dead_end(x=5.0), strider())
     assert commits_to(model, put(model, 5.0 - wall, 2.0)) == pytest.approx(metres, abs=1e-6)
 
@@ -43,10 +55,13 @@ def test_walls_keep_clear_of_the_core(wall, metres):
         (2.17, 0.0, 1.0),  # 1.875 + 0.30 > 2.17
         (1.302, 0.0, 1.0),
         (1.298, 0.0, 0.5),
-        (0.798, 0.0, 0.0),
+        (0.798, 0.0, 0.25),
+        (0.552, 0.0, 0.25),
+        (0.548, 0.0, 0.125),
+        (0.423, 0.0, 0.0),
         (1.5, 0.302, 1.875),  # clear of it by passing beside it
         (1.5, 0.298, 1.0),  # 0.58 m from it at 1 m
-        (0.5, -0.298, 0.0),
+        (0.5, -0.298, 0.25),  # 0.39 m from it
     ],
 )
 def test_bodies_keep_clear_of_each_other(ahead, aside, metres):
@@ -66,28 +81,30 @@ def test_cores_of_different_types_add_up():
 
 def test_bodies_are_kept_clear_between_the_samples_of_a_path():
     # 2 m in 12 frames: half a metre from sample to sample.  0.2 m beside the middle of one
-    # piece is 0.32 m from either end of it.
+    # piece is 0.32 m from either end of it, and a quarter of the path ends there.
     runner = make_map([[stand(), straight(2.0, 12, to=0)]])
-    for aside, metres in ((0.2, 0.0), (0.302, 2.0)):
+    for aside, metres in ((0.2, 0.5), (0.302, 2.0)):
         model = farthest(corridor(), [runner, statues()])
         put(model, 5.75, 2.0 + aside, kind=1)
         assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(metres, abs=1e-6)
 
 
 def test_walls_are_kept_clear_between_the_samples_of_a_path():
-    # The tip of a thin wall 0.1 m beside the middle of a piece, 0.26 m from its ends.
+    # The tip of a thin wall 0.1 m beside the middle of a piece, 0.26 m from its ends; a quarter of
+    # the path leads to the nearer one.
     runner = make_map([[stand(), straight(2.0, 12, to=0)]])
-    for tip, metres in ((2.1, 0.0), (2.16, 2.0)):
+    for tip, metres in ((2.1, 0.5), (2.16, 2.0)):
         model = farthest(corridor(obstacles=[box(5.74, tip, 5.76, 3.5)]), runner)
         assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(metres, abs=1e-6)
 
 
 def test_the_whole_path_counts_not_only_its_end():
-    # Out to the left by 0.8 m and back; its end is the same as that of the straight one.
+    # Out to the left by 0.8 m and back; its end is the same as that of the straight one.  Half of
+    # it, out by 0.4 m, keeps 0.47 m away from who stands at the turn of the whole.
     detour = through([(0.25, 0.4, 0.0), (0.5, 0.8, 0.0), (0.75, 0.4, 0.0), (1.0, 0.0, 0.0)], to=0)
     model = farthest(corridor(), [make_map([[stand(), detour]]), statues()])
     put(model, 5.5, 2.8, kind=1)
-    assert commits_to(model, put(model, 5.0, 2.0)) == 0.0
+    assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(0.5, abs=1e-6)
     assert commits_to(model, put(model, 10.0, 2.0)) == pytest.approx(1.0, abs=1e-6)
 
 
@@ -164,7 +181,7 @@ def test_every_decision_is_the_one_worked_out_by_brute_force(preset, seed):
     if preset == "default":
         oracle = Oracle(model)
     else:
-        oracle = Oracle(model, PAPER_COST, cores=False, durations=(45,))
+        oracle = Oracle(model, PAPER_COST, cores=False, durations=(45,), shares=())
     decisions = 0
     while model.running and model.frame < 240:
         for decision in oracle.step():
@@ -202,10 +219,12 @@ def test_brute_force_would_tell_another_choice():
         preset = "default" if terms else "paper"
         model = model_of(plan, wanderer(3), behaviors=terms, preset=preset, rng=3)
         model.add_pedestrians(plan.random_points(10, model.rng, spacing=0.5, clearance=0.3))
-        durations = (12, 24, 45) if terms else (45,)
-        oracle = Oracle(model, DEFAULT_COST if terms else PAPER_COST, durations=durations)
+        if terms:
+            oracle = Oracle(model, default_cost())
+        else:
+            oracle = Oracle(model, PAPER_COST, durations=(45,), shares=())
         found = []
         while model.running and model.frame < 150:
-            found += [d for d in oracle.step() if d.fault() and d.taken != FALLBACK]
+            found += [d for d in oracle.step() if d.fault() and not d.fell_back]
         faults.append(len(found))
     assert min(faults) > 0

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from mesa_mobility import MobilityMap
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.crowd.groups import (
     DURATION,
     FASTEST,
@@ -67,8 +68,9 @@ def two_small():
 
 
 @pytest.mark.parametrize("maps", [shipped, two_small])
-def test_groups_span_their_options(maps):
-    known = repertoire(maps(), (12, 24, 45))
+@pytest.mark.parametrize("shares", [(), PRESETS["default"].shares])
+def test_groups_span_their_options(maps, shares):
+    known = repertoire(maps(), (12, 24, 45), shares)
     table, groups = known.table, known.groups
     n = len(table.options)
     option, spanned = table.options, groups.clusters

@@ -7,8 +7,11 @@ import pytest
 from mesa_mobility.behaviors import (
     Displacement,
     FacingDeviation,
+    Headway,
     Interference,
     PreferredSpeed,
+    PreferredVelocity,
+    RightOfWay,
     TargetDistance,
 )
 
@@ -75,8 +78,62 @@ class Near(CostTerm):
         return np.bincount(rows, weights=cost, minlength=len(candidates))
 
 
+class Velocity(CostTerm):
+    """|S - v0 e t| 1.5 / t."""
+
+    name = "velocity_in_numpy"
+
+    def cost(self, candidates):
+        start = candidates.positions[candidates.owner]
+        aim = candidates.targets[candidates.owner] - start
+        away = np.linalg.norm(aim, axis=1)
+        wanted = candidates.preferred_speeds[candidates.owner] / away
+        velocity = (candidates.points - start) / candidates.durations[:, None]
+        return 1.5 * np.linalg.norm(velocity - wanted[:, None] * aim, axis=1)
+
+
+class Room(CostTerm):
+    """Too fast for the room ahead, summed over neighbours."""
+
+    name = "headway_in_numpy"
+
+    def cost(self, candidates):
+        term = Headway()
+        rows, neighbours = candidates.pairs()
+        gap = candidates.predicted(rows, neighbours) - candidates.points[rows]
+        c, s = np.cos(candidates.headings[rows]), np.sin(candidates.headings[rows])
+        ahead, aside = gap[:, 0] * c + gap[:, 1] * s, gap[:, 1] * c - gap[:, 0] * s
+        share = np.maximum(1.0 - np.abs(aside) / term.width, 0.0) * (ahead > 0.0)
+        excess = candidates.speeds[rows] - (ahead - term.distance) / term.time
+        cost = 1.5 * share * np.maximum(excess, 0.0)
+        return np.bincount(rows, weights=cost, minlength=len(candidates))
+
+
+class Way(CostTerm):
+    """On the way of those who come towards one or have less far to go, summed over neighbours."""
+
+    name = "right_of_way_in_numpy"
+
+    def cost(self, candidates):
+        term = RightOfWay()
+        rows, near = candidates.pairs()
+        me, e = candidates.owner[rows], candidates.neighbour_directions[near]
+        place = candidates.points[rows] - candidates.neighbour_positions[near]
+        aim = candidates.targets[me] - candidates.positions[me]
+        along = (place * e).sum(axis=1)
+        aside = place[:, 1] * e[:, 0] - place[:, 0] * e[:, 1]
+        oncoming = (aim * e).sum(axis=1) < 0.0
+        first = (candidates.leads[near] > 0.0) & (along < term.ahead)
+        counts = (along > 0.0) & (oncoming | first)
+        off = np.where(oncoming, np.abs(aside + term.bias) / (term.width + abs(term.bias)),
+                       np.abs(aside) / term.width)  # fmt: skip
+        cost = np.where(counts, np.maximum(1.0 - off, 0.0), 0.0)
+        cost = cost * np.where(oncoming, 1.0, term.beside)
+        return np.bincount(rows, weights=cost, minlength=len(candidates))
+
+
 @option_kernel
-def _left(x, y, ux, uy, duration, speed, tx, ty, preferred, p):
+def _left(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):
     return p[0] * max(y - p[1], 0.0)
 
 
@@ -95,7 +152,7 @@ class CompiledKeepRight(CompiledTerm):
 
 
 @pair_kernel
-def _alike(x, y, ux, uy, duration, speed, nx, ny, nvx, nvy, p):
+def _alike(x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p):
     return abs(speed - math.hypot(nvx, nvy))
 
 
@@ -134,9 +191,10 @@ def test_parameters_reach_the_kernel():
 
 def test_kernels_can_be_evaluated_as_any_term():
     options = put(model_of(corridor(), fork()), 5.0, 2.0).movement_options()
-    left = 1.5 * math.sin(0.5)
-    assert CompiledKeepRight().cost(options) == pytest.approx([0.0, left, 0.0], abs=1e-6)
-    assert KeepRight().cost(options) == pytest.approx([0.0, left, 0.0], abs=1e-6)
+    expected = np.zeros(len(options))
+    expected[np.argmax(options.points[:, 1])] = 1.5 * math.sin(0.5)  # all others stand or go right
+    assert CompiledKeepRight().cost(options) == pytest.approx(expected, abs=1e-6)
+    assert KeepRight().cost(options) == pytest.approx(expected, abs=1e-6)
 
 
 def test_pair_kernels_are_summed_over_neighbours():
@@ -144,9 +202,10 @@ def test_pair_kernels_are_summed_over_neighbours():
     person = put(model, 5.0, 2.0)
     put(model, 6.0, 1.0)
     put(model, 7.0, 3.0)
-    # Options at 0 and 1.25 m/s, two neighbours that stand.
-    expected = [0.0, 2.5, 2.5, 2.5]
-    assert SameSpeed().cost(person.movement_options()) == pytest.approx(expected, abs=1e-6)
+    # Options at 0 and 1.25 m/s, a half and a quarter of that; two neighbours that stand.
+    expected = [0.0] * 4 + [0.625, 1.25] + [2.5] * 3
+    costs = sorted(SameSpeed().cost(person.movement_options()))
+    assert costs == pytest.approx(expected, abs=1e-6)
 
 
 def test_weights_may_change_while_a_model_runs():
@@ -217,6 +276,20 @@ def test_all_terms_in_numpy_give_the_same_trajectories():
     assert walk(two_doors(), shipped_map(), plain) == compiled
 
 
+@pytest.mark.parametrize(("place", "twin"), [(2, Velocity(2.0)), (4, Room(2.0)), (5, Way(1.0))])
+def test_terms_of_the_default_give_the_same_trajectories_in_numpy(place, twin):
+    def terms():
+        return [TargetDistance(1.0), FacingDeviation(0.5), PreferredVelocity(2.0),
+                Interference(1.0), Headway(2.0), RightOfWay(1.0)]  # fmt: skip
+
+    compiled = walk(two_doors(), shipped_map(), terms())
+    others = terms()
+    others[place] = twin
+    assert walk(two_doors(), shipped_map(), others) == compiled
+    del others[place]
+    assert walk(two_doors(), shipped_map(), others) != compiled
+
+
 def test_costs_add_up():
     # A term twice at half its weight is the term once.
     terms = [TargetDistance(0.5), FacingDeviation(0.5), TargetDistance(0.5), PreferredSpeed(2.0),
@@ -262,7 +335,7 @@ def test_costs_that_are_not_one_finite_number_an_option_are_refused(wrong):
 
     model = model_of(corridor(), strider(), behaviors=[TargetDistance(), Broken()])
     put(model, 1.0, 2.0)
-    with pytest.raises(ModelError, match=r"broken_term.*4") as refused:
+    with pytest.raises(ModelError, match=r"broken_term.*9") as refused:
         model.step()
     assert "\n" not in str(refused.value)
 

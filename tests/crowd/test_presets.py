@@ -2,8 +2,10 @@ import pytest
 from mesa_mobility.behaviors import (
     Displacement,
     FacingDeviation,
+    Headway,
     Interference,
-    PreferredSpeed,
+    PreferredVelocity,
+    RightOfWay,
     TargetDistance,
 )
 
@@ -33,14 +35,35 @@ def test_the_papers_terms_and_its_options_of_45_frames():
     assert person.movement_options().durations == pytest.approx([1.5])
 
 
-def test_the_default_has_a_preferred_speed_in_place_of_displacement_and_shorter_options():
+def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_shorter_options():
     model = model_of(corridor(), strider())
     assert model.preset == "default"
     assert weights(model) == {
-        TargetDistance: 1.0, FacingDeviation: 0.5, Interference: 1.0, PreferredSpeed: 2.0,
+        TargetDistance: 1.0, FacingDeviation: 0.5, Interference: 1.0, PreferredVelocity: 2.0,
+        Headway: 2.0, RightOfWay: 2.0,
     }  # fmt: skip
+    (headway,) = (term for term in model.terms if isinstance(term, Headway))
+    assert (headway.distance, headway.time, headway.width) == (0.39, 0.1, 0.3)
+    (way,) = (term for term in model.terms if isinstance(term, RightOfWay))
+    assert (way.width, way.bias, way.ahead, way.beside) == (0.4, 0.1, 0.5, 0.5)
     person = put(model, 1.0, 2.0)
-    assert sorted(person.movement_options().durations) == pytest.approx([0.4, 0.4, 0.8, 1.5])
+    # Stand and half a metre in 12 frames, whole and in parts of a half, a quarter and nothing.
+    options = person.movement_options()
+    assert sorted(options.durations) == pytest.approx([0.4] * 7 + [0.8, 1.5])
+    assert sorted(options.displacements)[4:7] == pytest.approx([0.125, 0.25, 0.5])
+
+
+def test_only_in_the_default_do_people_look_for_a_way_round():
+    # Somebody who can but stand; its target stays where it is for 5 s, and turns then.
+    for preset, turns in (("paper", False), ("default", True)):
+        model = model_of(corridor(), make_map([[stand(), stand(45)]]), preset=preset, rng=1)
+        person = put(model, 2.0, 2.0)
+        advance(model, 1)
+        straight_on = person.target.tolist()
+        advance(model, 149)
+        assert person.target.tolist() == straight_on
+        advance(model, 300)
+        assert (person.target.tolist() != straight_on) == turns
 
 
 def test_the_same_constants_in_both():

@@ -96,7 +96,7 @@ def test_a_kernel_that_gives_no_number_is_refused():
     from mesa_mobility import CompiledTerm, option_kernel
 
     @option_kernel
-    def slowness(x, y, ux, uy, duration, speed, tx, ty, preferred, p):
+    def slowness(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):
         return 1.0 / speed
 
     class Slowness(CompiledTerm):

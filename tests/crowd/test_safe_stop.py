@@ -35,12 +35,12 @@ CROSSING = FloorPlan(
 @pytest.mark.parametrize(
     ("walker_y", "stays"), [(2.0, True), (1.72, True), (2.28, True), (2.31, False), (1.69, False)]
 )
-def test_mine_held_at_its_end_while_the_neighbours_goes_on(walker_y, stays):
+def test_mine_held_at_its_end_while_the_neighbours_goes_on(walker_y, stays, whole):
     # The walker passes x = 1 at frame 24.  I could be at (1, 2) by frame 12, when it is half
     # a metre off, but if I had to stand there it would come closer than 0.3 m.
     long_way = make_map([[straight(1.875, 45, to=0)]])
     dash = make_map([[stand(), straight(1.0, 12, to=0)]])
-    model = model_of(CROSSING, [long_way, dash], behaviors=[Displacement()])
+    model = model_of(CROSSING, [long_way, dash], behaviors=[Displacement()], preset=whole)
     walker = put(model, 0.0, walker_y, exits=["east"])
     me = put(model, 1.0, 1.0, math.pi / 2, kind=1, exits=["north"])
     advance(model, 12)
@@ -59,11 +59,11 @@ def test_somebody_who_leaves_is_not_in_the_way_after_that():
     assert behind.speed == pytest.approx(1.25)
 
 
-def test_closest_approach_between_samples_of_two_who_move():
+def test_closest_approach_between_samples_of_two_who_move(whole):
     # Both run 3 m in 12 frames, crossing at right angles; at the samples, each 0.75 m on,
     # they are 0.53 m apart at least, between two of them they meet.
     dash = make_map([[stand(), straight(3.0, 12, to=0)]])
-    model = model_of(CROSSING, dash, behaviors=[Displacement()])
+    model = model_of(CROSSING, dash, behaviors=[Displacement()], preset=whole)
     first = put(model, -1.125, 3.0, exits=["east"])
     second = put(model, 0.0, 3.0 - 1.125, math.pi / 2, exits=["north"])
     advance(model, 1)

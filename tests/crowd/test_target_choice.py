@@ -46,7 +46,7 @@ def test_people_head_for_the_targets_given():
     choice = ToPoint((5.0, 20.0))
     fork = make_map([[stand(), *(straight(1.5, 45, towards=t, to=0) for t in (0.5, -0.5))]])
     model = model_of(corridor(), fork, target_choice=choice)
-    person = put(model, 5.0, 2.0, 0.0)
+    person = put(model, 5.0, 2.0, 0.0, preferred_speeds=[1.34])
     assert person.target.tolist() == [5.0, 20.0]
     advance(model, 45)
     assert person.position[1] > 2.5

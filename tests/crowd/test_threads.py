@@ -15,7 +15,7 @@ from mesa_mobility.errors import ModelError
 
 
 @option_kernel
-def _lost(x, y, ux, uy, duration, speed, tx, ty, preferred, p):
+def _lost(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):
     return math.nan if preferred > 1.6 else 0.0
 
 

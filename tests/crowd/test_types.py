@@ -26,9 +26,9 @@ def test_each_walks_as_its_own_map_has_it():
     assert slower.pedestrian_type is model.pedestrian_types[1]
 
 
-def test_the_standing_cluster_is_that_of_the_type():
+def test_the_standing_cluster_is_that_of_the_type(whole):
     only_ahead = make_map([[straight(3.0, 45, to=1)], [straight(2.5, 45, to=1)]])
-    model = model_of(corridor(length=10.0), [wanderer(1), only_ahead])
+    model = model_of(corridor(length=10.0), [wanderer(1), only_ahead], preset=whole)
     model.floor_plan.add_obstacle(box(3.5, 0.5, 4.0, 3.5))
     person = put(model, 3.0, 2.0, kind=1)
     advance(model, 1)

@@ -1,0 +1,57 @@
+"""Shortened steps: whoever can take a step can take a shorter one of the same kind.
+
+Recorded people walk or stand, and few of them ever creep. In a jam everybody does, so there are
+copies of the shortest recorded options of each cluster that turn as these do over a share of the
+ground; a share of nothing is to stay where one is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options import FRAME_SECONDS, Parts
+from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility.paths import CELL
+from mesa_mobility.mobility.poses import STANDING_SPEED, STANDING_TURN_RATE
+
+
+def with_shortened(
+    mobility_map: MobilityMap, rows: NDArray[np.int64], shares: Sequence[float]
+) -> Parts:
+    """Options of a map, and shortened copies of the shortest of each cluster.
+
+    Whoever is no faster on one than somebody who stands, ends up standing.  Of the
+    copies from one cluster that end alike, as the map's own options are thinned, the one of
+    least cost stays.
+
+    Args:
+        mobility_map: the map.
+        rows: its options in use.
+        shares: of the ground that a step covers, each from 0 to 1.
+    """
+    durations = mobility_map.durations[rows]
+    cluster = np.searchsorted(mobility_map.offsets, rows, side="right") - 1
+    least = np.full(mobility_map.n_clusters, durations.max())
+    np.minimum.at(least, cluster, durations)
+    shortest = durations == least[cluster]
+    short, cluster = rows[shortest], cluster[shortest]
+    seconds = least[cluster] * FRAME_SECONDS
+    x, y = mobility_map.end_points[short].astype(np.float64).T
+    turn = mobility_map.end_headings[short].astype(np.float64)
+    parts = [Parts(rows, np.ones(len(rows)), mobility_map.end_clusters[rows].astype(np.int64))]
+    for share in shares:
+        # The cells shrink with the steps: those to the side and back would be lost among others.
+        cells = [x / CELL[0], y / CELL[1]] if share > 0.0 else []
+        cells = [np.floor(each + 0.5) for each in (*cells, turn / CELL[2])]
+        order = np.lexsort((short, mobility_map.costs[short], *cells, cluster))
+        key = np.column_stack([cluster, *cells])[order]
+        kept = np.sort(order[np.append(True, (np.diff(key, axis=0) != 0).any(axis=1))])
+        stands = (share * np.hypot(x, y) < STANDING_SPEED * seconds) & (
+            (abs(turn) < STANDING_TURN_RATE * seconds) | (share == 0.0)
+        )
+        ends_in = np.where(stands, mobility_map.standing, mobility_map.end_clusters[short])
+        parts.append(Parts(short[kept], np.full(len(kept), share), ends_in[kept].astype(np.int64)))
+    return Parts(*(np.concatenate(each) for each in zip(*parts, strict=True)))

@@ -1,0 +1,142 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from mesa_mobility.behaviors import Headway
+
+from mesa_mobility.errors import ModelError
+from tests.fixtures.options import (
+    Chooser,
+    Ending,
+    candidates,
+    crowded,
+    one_option,
+    shifts,
+    turned_and_moved,
+    turns,
+)
+
+STILL = (0.0, 0.0)
+A_METRE_A_SECOND = Ending(displacement=1.5, duration=1.5)
+STANDING = Ending(displacement=0.0, duration=0.4)
+EDGE = 1e-7
+
+# Figures below are for these: half a metre apart when standing, one second, 0.4 m wide.
+ROUND = {"distance": 0.5, "time": 1.0, "width": 0.4}
+
+
+def cost(ending: Ending, *neighbours, **numbers) -> float:
+    term = Headway(**(numbers or ROUND))
+    return float(term.cost(one_option(ending, neighbours=neighbours))[0])
+
+
+@pytest.mark.parametrize(
+    ("ending", "place", "expected"),
+    [
+        # Room for v = d - 0.5: at 1.5 m for 1 m/s, at 1 m for half of it, at 0.5 m for nothing.
+        (A_METRE_A_SECOND, (1.5, 0.0), 0.0),
+        (A_METRE_A_SECOND, (1.75, 0.0), 0.0),
+        (A_METRE_A_SECOND, (1.0, 0.0), 0.75),
+        (A_METRE_A_SECOND, (0.5, 0.0), 1.5),
+        (A_METRE_A_SECOND, (0.25, 0.0), 1.875),
+        # A metre over 1.5 s costs what it costs over 0.4 s.
+        (Ending(displacement=0.4, duration=0.4), (1.0, 0.0), 0.75),
+        # Who stands has room from half a metre on, but not nearer.
+        (STANDING, (0.5, 0.0), 0.0),
+        (STANDING, (0.25, 0.0), 0.375),
+        # Beside: half a width off counts half; a width off, nothing. Either side.
+        (A_METRE_A_SECOND, (1.0, 0.2), 0.375),
+        (A_METRE_A_SECOND, (1.0, -0.2), 0.375),
+        (A_METRE_A_SECOND, (1.0, 0.4), 0.0),
+        (A_METRE_A_SECOND, (1.0, 1.0), 0.0),
+        # Behind.
+        (A_METRE_A_SECOND, (-0.1, 0.0), 0.0),
+    ],
+)
+def test_numbers_worked_out_by_hand(ending, place, expected):
+    assert cost(ending, (place, STILL)) == pytest.approx(expected, abs=1e-12)
+
+
+def test_ahead_is_where_one_faces_at_the_mobility_point():
+    facing_up = Ending((2.0, 1.0), heading=math.pi / 2, displacement=1.5, duration=1.5)
+    assert cost(facing_up, ((2.0, 2.0), STILL)) == pytest.approx(0.75)
+    assert cost(facing_up, ((3.0, 1.0), STILL)) == pytest.approx(0.0, abs=1e-12)
+    assert cost(facing_up, ((2.0, 0.0), STILL)) == 0.0
+
+
+def test_ahead_is_where_the_neighbour_will_be():
+    # 1.5 s at 0.6 m/s: from 0.1 m ahead to 1 m; and from 2.5 m back to that.
+    assert cost(A_METRE_A_SECOND, ((0.1, 0.0), (0.6, 0.0))) == pytest.approx(0.75)
+    assert cost(A_METRE_A_SECOND, ((2.5, 0.0), (-1.0, 0.0))) == pytest.approx(0.75)
+    # Ahead now, but behind by then.
+    assert cost(A_METRE_A_SECOND, ((1.0, 0.0), (-1.0, 0.0))) == 0.0
+
+
+def test_neighbours_add_up_and_those_of_others_do_not_count():
+    two = [((1.0, 0.0), STILL), ((1.0, 0.2), STILL)]
+    alone = Chooser([A_METRE_A_SECOND])
+    beset = Chooser([A_METRE_A_SECOND] * 2, neighbours=two)
+    costs = Headway(**ROUND).cost(candidates(alone, beset, alone))
+    assert costs == pytest.approx([0.0, 1.125, 1.125, 0.0])
+
+
+def test_default_numbers_are_used():
+    # At two thirds of the standing distance a person who stands lacks a third of it.
+    term = Headway()
+    expected = 1.5 * (term.distance / 3.0) / term.time
+    options = one_option(STANDING, neighbours=[((2.0 * term.distance / 3.0, 0.0), STILL)])
+    assert term.cost(options) == pytest.approx([expected])
+    assert term.parameters() == (term.distance, term.time, term.width)
+
+
+@pytest.mark.parametrize("name", ["distance", "time", "width"])
+@pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])
+def test_numbers_out_of_range_are_refused_in_one_line(name, value):
+    with pytest.raises(ModelError, match=rf"^headway: {name} is .*expected more than 0$") as caught:
+        Headway(**{name: value})
+    assert "\n" not in str(caught.value)
+
+
+def pairs(options):
+    """Rows of options and of neighbours, and how far ahead and aside these will be."""
+    rows, others = options.pairs()
+    gap = options.predicted(rows, others) - options.points[rows]
+    c, s = np.cos(options.headings[rows]), np.sin(options.headings[rows])
+    return rows, gap[:, 0] * c + gap[:, 1] * s, gap[:, 1] * c - gap[:, 0] * s
+
+
+def decided(options):
+    """(n,) where no neighbour is exactly beside, so that rounding does not decide what counts."""
+    rows, ahead, _ = pairs(options)
+    return np.bincount(rows[np.abs(ahead) < EDGE], minlength=len(options)) == 0
+
+
+@given(crowded)
+@settings(deadline=None)
+def test_sum_over_the_neighbours_of_any_batch(options):
+    rows, ahead, aside = pairs(options)
+    allowed = (ahead - ROUND["distance"]) / ROUND["time"]
+    excess = np.maximum(options.speeds[rows] - allowed, 0.0) * 1.5
+    share = np.maximum(1.0 - np.abs(aside) / ROUND["width"], 0.0)
+    each = np.where(ahead > 0.0, excess * share, 0.0)
+    expected = np.bincount(rows, weights=each, minlength=len(options))
+    sure = decided(options)
+    costs = Headway(**ROUND).cost(options)
+    np.testing.assert_allclose(costs[sure], expected[sure], rtol=1e-9, atol=1e-9)
+
+
+@given(crowded)
+@settings(deadline=None)
+def test_costs_are_finite_and_never_negative(options):
+    costs = Headway().cost(options)
+    assert np.isfinite(costs).all()
+    assert (costs >= 0.0).all()
+
+
+@given(crowded, turns, shifts)
+@settings(deadline=None)
+def test_does_not_depend_on_where_north_is(options, angle, by):
+    sure = decided(options)
+    moved = Headway().cost(turned_and_moved(options, angle, by))
+    np.testing.assert_allclose(moved[sure], Headway().cost(options)[sure], atol=1e-9)

@@ -1,0 +1,155 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mesa_mobility.behaviors import PreferredVelocity
+
+from mesa_mobility import MobilityMap
+from mesa_mobility.crowd.groups import (
+    DURATION,
+    FASTEST,
+    RADIUS,
+    SLOWEST,
+    TURN,
+    UX,
+    UY,
+    X,
+    Y,
+)
+from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.crowd.repertoire import repertoire
+from tests.fixtures.options import (
+    Chooser,
+    Ending,
+    candidates,
+    crowded,
+    one_option,
+    shifts,
+    turned_and_moved,
+    turns,
+)
+
+angles = st.floats(-math.pi, math.pi)
+places = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
+
+
+def cost(x, y, target, preferred, duration, start=(0.0, 0.0)):
+    speed = math.dist((x, y), start) / duration
+    return PreferredVelocity.kernel.function(
+        x, y, 1.0, 0.0, duration, speed, *start, *target, preferred, ()
+    )
+
+
+def bound(x, y, radius, target, preferred, duration, start=(0.0, 0.0)):
+    return PreferredVelocity.bound.function(
+        x, y, radius, 1.0, 0.0, 0.3, duration, 0.0, 2.0, *start, *target, preferred, ()
+    )
+
+
+@pytest.mark.parametrize(
+    ("point", "start", "target", "preferred", "duration", "expected"),
+    [
+        ((1.5, 0.0), (0.0, 0.0), (5.0, 0.0), 1.0, 1.5, 0.0),  # just so
+        ((0.0, 0.0), (0.0, 0.0), (5.0, 0.0), 1.0, 1.5, 1.5),  # stood still: all of 1.5 m
+        ((0.0, 0.0), (0.0, 0.0), (5.0, 0.0), 1.0, 0.4, 1.5),  # for however long
+        ((-1.5, 0.0), (0.0, 0.0), (5.0, 0.0), 1.0, 1.5, 3.0),  # the other way
+        ((0.0, 1.5), (0.0, 0.0), (5.0, 0.0), 1.0, 1.5, 1.5 * math.sqrt(2.0)),  # across
+        ((0.6, 0.0), (0.0, 0.0), (5.0, 0.0), 1.0, 0.4, 0.75),  # half a metre a second too fast
+        ((2.0, 1.0), (2.0, 1.8), (2.0, 0.0), 1.25, 0.8, 0.375),  # 1 m/s down; 1.25 m/s wished
+        ((1.24, 0.32), (1.0, 0.0), (4.0, 4.0), 0.5, 0.4, 0.75),  # 1 m/s along 3-4-5; half wished
+        ((0.3, 0.4), (0.0, 0.0), (0.0, 0.0), 1.0, 1.5, 0.5),  # at the target one wants to stay
+        ((0.3, 0.4), (0.0, 0.0), (9.0, 0.0), 0.0, 0.4, 1.875),  # so with no way to go
+    ],
+)
+def test_numbers_worked_out_by_hand(point, start, target, preferred, duration, expected):
+    shown = Chooser(
+        [Ending(point, displacement=math.dist(point, start), duration=duration)],
+        target=target, preferred_speed=preferred, position=start,
+    )  # fmt: skip
+    assert PreferredVelocity().cost(candidates(shown)) == pytest.approx([expected], abs=1e-12)
+
+
+def test_a_near_target_does_not_slow_down():
+    # Half a metre away the wish is 1 m/s as well, not what would end at the target.
+    options = one_option(Ending((1.5, 0.0), displacement=1.5), target=(0.5, 0.0))
+    assert PreferredVelocity().cost(options) == pytest.approx([0.0], abs=1e-12)
+
+
+def test_each_one_walks_at_its_own_speed_to_its_own_target():
+    to_the_right = Ending((1.5, 0.0), displacement=1.5, duration=1.5)
+    first = Chooser([to_the_right], target=(9.0, 0.0), preferred_speed=1.0)
+    second = Chooser([to_the_right] * 2, target=(-9.0, 0.0), preferred_speed=0.5)
+    assert PreferredVelocity().cost(candidates(first, second)) == pytest.approx([0.0, 2.25, 2.25])
+
+
+@given(crowded)
+@settings(deadline=None)
+def test_distance_from_the_wish_of_any_batch(options):
+    displacement = options.points - options.positions[options.owner]
+    aim = (options.targets - options.positions)[options.owner]
+    away = np.linalg.norm(aim, axis=1, keepdims=True)
+    e = np.divide(aim, away, out=np.zeros_like(aim), where=away > 0.0)
+    seconds = options.durations[:, None]
+    wish = options.preferred_speeds[options.owner][:, None] * e * seconds
+    expected = np.linalg.norm(displacement - wish, axis=1) * 1.5 / options.durations
+    np.testing.assert_allclose(PreferredVelocity().cost(options), expected, rtol=1e-9, atol=1e-9)
+
+
+@given(crowded, turns, shifts)
+@settings(deadline=None)
+def test_does_not_depend_on_where_north_is(options, angle, by):
+    # At the target itself rounding makes a direction out of nothing.
+    here = (options.targets == options.positions).all(axis=1)[options.owner]
+    np.testing.assert_allclose(
+        PreferredVelocity().cost(turned_and_moved(options, angle, by))[~here],
+        PreferredVelocity().cost(options)[~here],
+        atol=1e-9,
+    )
+
+
+@settings(deadline=None)
+@given(
+    radius=st.floats(0.0, 0.6),
+    option=st.tuples(angles, st.floats(0.0, 1.0)),
+    start=places,
+    target=places,
+    preferred=st.floats(0.0, 2.0),
+    duration=st.sampled_from([0.4, 0.8, 1.5]),
+)
+def test_no_option_of_a_group_costs_less_than_its_bound(
+    radius, option, start, target, preferred, duration
+):
+    where, out = option
+    x, y = 1.0 + out * radius * math.cos(where), -0.5 + out * radius * math.sin(where)
+    least = bound(1.0, -0.5, radius, target, preferred, duration, start)
+    assert 0.0 <= least <= cost(x, y, target, preferred, duration, start) + 1e-9
+
+
+def test_a_bound_is_worth_something():
+    # Wished: 1.5 m ahead. A group 0.5 m around the start comes within 1 m of it, in 1.5 s.
+    assert bound(0.0, 0.0, 0.5, (9.0, 0.0), 1.0, 1.5) == pytest.approx(1.0)
+    assert bound(1.0, 0.0, 0.6, (9.0, 0.0), 1.0, 1.5) == 0.0
+    assert bound(0.7, 0.2, 0.0, (9.0, 0.0), 1.0, 0.8) == pytest.approx(
+        cost(0.7, 0.2, (9.0, 0.0), 1.0, 0.8)
+    )
+
+
+@pytest.mark.parametrize("preferred", [0.0, 0.7, 1.34])
+def test_bounds_hold_for_the_groups_of_the_map_that_ships(preferred):
+    rules = preset_named("default")
+    known = repertoire((MobilityMap.load(None),), rules.durations, rules.shares)
+    rng = np.random.default_rng(3)
+    bounds = np.append(known.table.groups, len(known.table.options))
+    for g in rng.choice(len(known.table.groups), 300, replace=False).tolist():
+        of, target = known.groups.ends[:, g], rng.uniform(-3.0, 3.0, 2)
+        least = PreferredVelocity.bound.function(
+            of[X], of[Y], of[RADIUS], of[UX], of[UY], of[TURN], of[DURATION], of[SLOWEST],
+            of[FASTEST], 0.0, 0.0, *target, preferred, (),
+        )  # fmt: skip
+        group = known.table.options[bounds[g] : bounds[g + 1]]
+        costs = [
+            cost(float(o.x), float(o.y), target, preferred, int(o.frames) / 30.0) for o in group
+        ]
+        assert least <= min(costs) + 1e-5
