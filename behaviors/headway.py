@@ -46,7 +46,7 @@ class Headway(CompiledTerm):
     def __init__(
         self,
         weight: float | None = None,
-        distance: float = 0.39,
+        distance: float = 0.37,
         time: float = 0.1,
         width: float = 0.3,
     ) -> None:
