@@ -46,11 +46,12 @@ def look_around(
     agenda["nearest"][rows] = np.where(on, route, nearest)
     agenda["since"][rows] = np.where(on, elapsed, agenda["since"][rows])
     free = agenda["waits_until"][rows] * FRAME_SECONDS
-    impatient = elapsed - np.maximum(agenda["since"][rows], free) - PATIENCE
-    who = rows[impatient > 0.0]
+    overdue = elapsed - np.maximum(agenda["since"][rows], free) - PATIENCE
+    impatient = overdue > 0.0
+    who = rows[impatient]
     if len(who) == 0:
         return
-    angle = rng.normal(0.0, np.minimum(RATE * impatient[impatient > 0.0], MOST))
+    angle = rng.normal(0.0, np.minimum(RATE * overdue[impatient], MOST))
     c, s = np.cos(angle), np.sin(angle)
     dx, dy = crowd.target_x[who] - crowd.x[who], crowd.target_y[who] - crowd.y[who]
     crowd.target_x[who] = crowd.x[who] + c * dx - s * dy

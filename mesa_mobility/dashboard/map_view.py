@@ -99,7 +99,10 @@ def clusters_option(mobility_map: MobilityMap, chosen: int) -> dict[str, Any]:
 def coverage_option(mobility_map: MobilityMap, rows: slice) -> dict[str, Any]:
     """A heat map for ECharts: options by speed and turning."""
     cells = map_data.coverage(mobility_map, rows)
-    speeds = [f"{k * map_data.SPEED_STEP:.1f}" for k in range(round(map_data.FASTEST / 0.1))]
+    speeds = [
+        f"{k * map_data.SPEED_STEP:.1f}"
+        for k in range(round(map_data.FASTEST / map_data.SPEED_STEP))
+    ]
     turns = [
         f"{t:.0f}" for t in np.arange(-map_data.MOST_TURN, map_data.MOST_TURN, map_data.TURN_STEP)
     ]
