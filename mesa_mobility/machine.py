@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 from llvmlite import ir
@@ -74,6 +75,19 @@ def tell(typingctx, array, place, value):
         return context.get_dummy_value()
 
     return types.void(array, place, value), codegen
+
+
+@intrinsic
+def give_way(typingctx):
+    """Let whoever else wants it have the processor: to wait for another thread takes two."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        name = "SwitchToThread" if sys.platform == "win32" else "sched_yield"
+        yields = ir.FunctionType(ir.IntType(32), [])
+        builder.call(cgutils.get_or_insert_function(builder.module, yields, name), [])
+        return context.get_dummy_value()
+
+    return types.void(), codegen
 
 
 @intrinsic

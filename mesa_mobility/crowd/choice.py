@@ -26,6 +26,7 @@ from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import commit, lay_path
 from mesa_mobility.crowd.neighbours import Grid, people_within
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.pairs import fill_lane, pick_foremost
 from mesa_mobility.crowd.queue import Queue, await_neighbours
 from mesa_mobility.crowd.ranking import all_finite, least
 from mesa_mobility.crowd.rules import Rules
@@ -136,6 +137,7 @@ def _decide_one(
         others[LEAD, a] = state.route[i] - moving[4, at]
         near[a] = grid.people[at]
         fetch(state, near[a], 128)
+    fill_lane(count, others)
     farthest = table.farthest[cluster]
     walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
     exits_from = exit_distance(around, x, y, destination)
@@ -162,7 +164,12 @@ def _decide_one(
                 bounds[a] = work.every[alive[a] - first]
             if not all_finite(bounds):
                 return False
-        setting = Setting(frame, found, touching, count, exits_from, eager)
+        foremost = 0
+        if not eager and len(terms.pair_address) > 0:
+            foremost = pick_foremost(
+                me, others, count, state, work.unsure, work.dropped, work.foremost
+            )
+        setting = Setting(frame, found, touching, count, foremost, exits_from, eager)
         option, gone = cheapest_free(
             me, setting, bounds, alive, walls, extra, rules.cores, table, groups, state, around,
             terms, work,

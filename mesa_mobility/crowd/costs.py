@@ -20,7 +20,7 @@ from mesa_mobility.crowd.groups import (
     X,
     Y,
 )
-from mesa_mobility.crowd.kernels import call_bound_loop, call_option_loop, call_pair_loop
+from mesa_mobility.crowd.kernels import call_bound_loop, call_option_loop
 from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import lean
@@ -127,30 +127,3 @@ def option_costs(
             me.x, me.y, state.target_x[me.row], state.target_y[me.row], preferred,
             terms.option_parameters[t], terms.option_weight[t], out[first:],
         )  # fmt: skip
-
-
-@lean()
-def pair_cost(
-    me: Stance,
-    k: int,
-    ends: NDArray[np.float64],
-    count: int,
-    others: NDArray[np.float64],
-    state: CrowdState,
-    terms: Terms,
-) -> float:
-    """Weighted sum of the pair terms of option k over the first ``count`` neighbours."""
-    total = 0.0
-    for t in range(len(terms.pair_address)):
-        call_pair_loop(
-            terms.pair_address[t], count, ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
-            ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
-            state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
-            others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY], others[LEAD],
-            terms.pair_parameters[t], others[COST],
-        )  # fmt: skip
-        summed = 0.0
-        for a in range(count):
-            summed += others[COST, a]
-        total += terms.pair_weight[t] * summed
-    return total

@@ -15,7 +15,11 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import lean
-from mesa_mobility.machine import told
+from mesa_mobility.machine import give_way, told
+
+_PATIENCE = 1000
+"""Looks at whether another thread is done before the processor is offered to others: a decision
+takes some 10 microseconds, but a thread that others have put off its processor, milliseconds."""
 
 
 class Queue(NamedTuple):
@@ -45,6 +49,9 @@ def await_neighbours(
     for e in range(before, d):
         dx, dy = state.x[rows[e]] - state.x[i], state.y[rows[e]] - state.y[i]
         if dx * dx + dy * dy <= radius * radius:
+            patience = _PATIENCE
             while told(queue.done, e) == 0:
-                pass
+                patience -= 1
+                if patience < 0:
+                    give_way()
     return before

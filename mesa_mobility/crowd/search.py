@@ -2,8 +2,9 @@
 
 Groups of options are opened in rising order of a lower bound of what their options
 cost. Terms over pairs (interference) are never negative, so the sum of the others is
-a lower bound of an option's cost: it is looked at in order of that, dropped if it
-hits something, and given its pair costs only if it may still win.  The result is that of
+a lower bound of an option's cost. In its order an option gets a better bound, its pair costs with
+the few neighbours who are likely to cost most; in the order of that it is dropped if it hits
+something, and given all its pair costs if it may still win.  The result is that of
 working everything out; most of it never is.
 """
 
@@ -19,11 +20,11 @@ from mesa_mobility.crowd.costs import (
     Terms,
     lay_ends,
     option_costs,
-    pair_cost,
 )
 from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import lay_path
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.pairs import pair_cost, pair_cost_at_least
 from mesa_mobility.crowd.ranking import (
     BANDS,
     DEAREST,
@@ -42,6 +43,7 @@ from mesa_mobility.machine import fetch
 NONE = -1
 NOT_A_NUMBER = -2
 _UNTRIED = -9
+_BOUNDED = -8
 
 FEW = 50
 """Groups that are all opened at once, without working in bands."""
@@ -157,8 +159,17 @@ def cheapest_free(
             fetch(table.path, item[1], 192)
             fetch(table.path, item[2], 192)
         k = work.slot[o - base]
-        if work.leaving[k] != _UNTRIED:
+        if work.leaving[k] > _BOUNDED:
             return o, work.leaving[k]
+        if work.leaving[k] == _UNTRIED and now.foremost > 0:
+            work.leaving[k] = _BOUNDED
+            least_more = pair_cost_at_least(
+                me, k, work.ends, now.foremost, work.foremost, state, terms
+            )
+            if least_more > 0.0:
+                key[0] += least_more
+                sift_down(key, item, size, np.int64(0))
+                continue
         who, doubtful = -1, 0
         # Whoever may be out before may not meet anybody of those ahead.
         reach = np.float64(table.options[o].reach)
@@ -187,7 +198,9 @@ def cheapest_free(
         if gone >= -1:
             work.leaving[k] = gone
             if not now.eager:
-                key[0] += pair_cost(me, k, work.ends, now.neighbours, work.others, state, terms)
+                key[0] = work.costs[k] + pair_cost(
+                    me, k, work.ends, now.neighbours, work.others, state, terms
+                )
                 if not abs(key[0]) < np.inf:
                     return NOT_A_NUMBER, -1
         else:

@@ -11,20 +11,23 @@ from mesa_mobility.crowd.clearing import Bodies, Circles
 from mesa_mobility.crowd.close import Close, make_close
 from mesa_mobility.crowd.costs import COST, SPEED
 from mesa_mobility.crowd.options import LEVELS, SAMPLES
+from mesa_mobility.crowd.pairs import LANES
 
 
 class Setting(NamedTuple):
     """What the search needs to know of a decision.
 
     Fields: ``frame`` now; people in ``close``: ``found`` from the start and those from
-    ``touching`` to the end; ``neighbours`` in ``others``; ``exits_from`` metres to the nearest
-    way out; ``eager``, whether costs over pairs may be negative and are needed of all options.
+    ``touching`` to the end; ``neighbours`` in ``others``, ``foremost`` in the array of this name;
+    ``exits_from`` metres to the nearest way out; ``eager``, whether costs over pairs may be
+    negative and are needed of all options.
     """
 
     frame: int
     found: int
     touching: int
     neighbours: int
+    foremost: int
     exits_from: float
     eager: bool
 
@@ -32,10 +35,11 @@ class Setting(NamedTuple):
 class Work(NamedTuple):
     """Space to work in, the same for one pedestrian after the other.
 
-    Fields: ``near`` rows of the neighbours, ``others`` the same as the terms see them; ``close``
-    those who may come in the way, ``unsure`` rows of those whom only the exact test can tell;
-    ``bodies`` who is where at the levels; ``walls`` those in reach; groups: ``alive`` those not
-    certainly blocked, their ``bounds``, and those of ``every`` group; ``circles`` for clearing;
+    Fields: ``near`` rows of the neighbours, ``others`` the same as the terms see them, ``foremost``
+    those of them who are likely to cost most, ``dropped`` by neighbour; ``close`` those who may
+    come in the way, ``unsure`` rows of those whom only the exact test can tell; ``bodies`` who is
+    where at the levels; ``walls`` those in reach; groups: ``alive`` those not certainly blocked,
+    their ``bounds``, and those of ``every`` group; ``circles`` for clearing;
     by option looked at, ``rows`` in the table, ``ends``, ``costs`` and ``leaving``, the frame of
     leaving by an exit or -1 once it is known that nothing is hit; heap of ``key`` and ``item``;
     ``slot`` by row of the cluster, which of those looked at it is; ``path`` one path.
@@ -44,6 +48,8 @@ class Work(NamedTuple):
     near: NDArray[np.int64]
     unsure: NDArray[np.int64]
     others: NDArray[np.float64]
+    foremost: NDArray[np.float64]
+    dropped: NDArray[np.int32]
     close: Close
     bodies: Bodies
     walls: NDArray[np.float64]
@@ -66,7 +72,9 @@ def make_work(people: int, walls: int, options: int) -> Work:
     return Work(
         near=np.empty(people, np.int64),
         unsure=np.empty(people, np.int64),
-        others=np.empty((COST + 1, people)),
+        others=np.empty((COST + 1, people + LANES)),
+        foremost=np.empty((COST + 1, people + LANES)),
+        dropped=np.empty(people, np.int32),
         close=make_close(people),
         bodies=Bodies(
             np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people), np.float32)

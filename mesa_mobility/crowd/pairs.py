@@ -1,0 +1,190 @@
+"""Cost of an option from the terms over neighbours, and a lower bound that takes few of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.close import Stance
+from mesa_mobility.crowd.costs import (
+    COST,
+    END_UX,
+    END_UY,
+    END_X,
+    END_Y,
+    LEAD,
+    OTHER_EX,
+    OTHER_EY,
+    OTHER_VX,
+    OTHER_VY,
+    OTHER_X,
+    OTHER_Y,
+    SECONDS,
+    SPEED,
+    Terms,
+    preferred_now,
+)
+from mesa_mobility.crowd.kernels import call_pair_loop
+from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.jit import lean
+
+LANES = 8
+"""Neighbours for whom a processor works out a term at once."""
+
+_ROUNDING = 1.0 - 1e-9
+"""Sums over some of the neighbours may exceed that over all by rounding, though not by so much."""
+
+AHEAD = 1.5
+"""Seconds for which it is looked ahead for those who come near: the longest option."""
+
+NEAR = 0.6
+"""Metres within which people count as near, and as on the way of somebody to its target."""
+
+
+@lean()
+def pair_cost(
+    me: Stance,
+    k: int,
+    ends: NDArray[np.float64],
+    count: int,
+    others: NDArray[np.float64],
+    state: CrowdState,
+    terms: Terms,
+) -> float:
+    """Weighted sum of the pair terms of option k over the first ``count`` neighbours.
+
+    ``others`` must be in full lanes (see ``fill_lane``).
+    """
+    total = 0.0
+    for t in range(len(terms.pair_address)):
+        _call_pair_loop(me, k, ends, in_lanes(count), others, state, terms, t)
+        summed = 0.0
+        for a in range(count):
+            summed += others[COST, a]
+        total += terms.pair_weight[t] * summed
+    return total
+
+
+@lean()
+def pair_cost_at_least(
+    me: Stance,
+    k: int,
+    ends: NDArray[np.float64],
+    count: int,
+    others: NDArray[np.float64],
+    state: CrowdState,
+    terms: Terms,
+) -> float:
+    """A lower bound of ``pair_cost`` over more neighbours, whatever the order of its sums."""
+    total = 0.0
+    n = in_lanes(count)
+    costs = others[COST]
+    for t in range(len(terms.pair_address)):
+        _call_pair_loop(me, k, ends, n, others, state, terms, t)
+        for a in range(count, n):
+            costs[a] = 0.0
+        # Four sums side by side: each addition waits for the one before.
+        one, two, three, four = 0.0, 0.0, 0.0, 0.0
+        for a in range(0, n, 4):
+            one += costs[a]
+            two += costs[a + 1]
+            three += costs[a + 2]
+            four += costs[a + 3]
+        total += terms.pair_weight[t] * ((one + two) + (three + four))
+    return total * _ROUNDING
+
+
+@lean()
+def _call_pair_loop(
+    me: Stance,
+    k: int,
+    ends: NDArray[np.float64],
+    n: int,
+    others: NDArray[np.float64],
+    state: CrowdState,
+    terms: Terms,
+    t: int,
+) -> None:
+    call_pair_loop(
+        terms.pair_address[t], n, ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
+        ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
+        state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
+        others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY], others[LEAD],
+        terms.pair_parameters[t], others[COST],
+    )  # fmt: skip
+
+
+@lean()
+def in_lanes(count: int) -> int:
+    """So many neighbours and those that fill up the last lane."""
+    return (count + LANES - 1) // LANES * LANES
+
+
+@lean()
+def fill_lane(count: int, others: NDArray[np.float64]) -> None:
+    """Repeat the last of the first ``count`` neighbours until the last lane is full.
+
+    What these cost is worked out and left: for those that do not fill a lane the processor would
+    take one after the other.
+    """
+    for row in range(COST):
+        for a in range(count, in_lanes(count)):
+            others[row, a] = others[row, count - 1]
+
+
+@lean()
+def pick_foremost(
+    me: Stance,
+    others: NDArray[np.float64],
+    count: int,
+    state: CrowdState,
+    picked: NDArray[np.int64],
+    dropped: NDArray[np.int32],
+    to: NDArray[np.float64],
+) -> int:
+    """Copy those of the first ``count`` neighbours who are likely to cost most.
+
+    They are those who come near to somebody that walks to its target at its own speed, and those
+    who come towards it. Their part of a sum of pair terms is a lower bound of it.
+
+    Args:
+        me: the pedestrian.
+        others: (8, n) its neighbours.
+        count: how many.
+        state: the crowd.
+        picked: space to work in.
+        dropped: space to work in.
+        to: (8, n) gets a copy.
+
+    Returns:
+        How many they are.
+    """
+    ex, ey = state.target_x[me.row] - me.x, state.target_y[me.row] - me.y
+    away = math.sqrt(ex * ex + ey * ey)
+    along = preferred_now(me.row, state) / away if away > 0.0 else 0.0
+    own_x, own_y, own_vx, own_vy = me.x, me.y, along * ex, along * ey
+    x, y, vx, vy = others[OTHER_X], others[OTHER_Y], others[OTHER_VX], others[OTHER_VY]
+    to_x, to_y = others[OTHER_EX], others[OTHER_EY]
+    for a in range(count):
+        dx, dy = x[a] - own_x, y[a] - own_y
+        wx, wy = vx[a] - own_vx, vy[a] - own_vy
+        t = -(dx * wx + dy * wy) / max(wx * wx + wy * wy, 1e-6)
+        t = min(max(t, 0.0), AHEAD)
+        qx, qy = dx + t * wx, dy + t * wy
+        near = qx * qx + qy * qy < NEAR * NEAR
+        towards = dx * to_x[a] + dy * to_y[a] < 0.0
+        facing = ex * to_x[a] + ey * to_y[a] < 0.0
+        beside = abs(dy * to_x[a] - dx * to_y[a]) < NEAR
+        dropped[a] = np.int32(not (near | (towards & facing & beside)))
+    n = 0
+    for a in range(count):
+        picked[n] = a
+        n += 1 - dropped[a]
+    for row in range(COST):
+        given, copied = others[row], to[row]
+        for k in range(n):
+            copied[k] = given[picked[k]]
+    fill_lane(n, to)
+    return n
