@@ -2,19 +2,21 @@
 
 python benchmarks/scaling.py [--most 100000] [--plot docs/images/scaling.png]
 
-Open walk, 10 s, compilation not counted; the last two parts are in processes of their own. A
-person-second costs more or less as its decisions do, so their number is printed as well.
+Open walk, 10 s, compilation not counted; the last three parts are in processes of their own. A
+person-second costs more or less as its decisions do, so their number is printed as well. Memory is
+what is resident after people have been added and have walked for a second, less what was before.
 """
 
 from __future__ import annotations
 
 import argparse
+import gc
 import json
 import multiprocessing
 import os
-import resource
 import time
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -56,21 +58,18 @@ def thinned(map_: MobilityMap, every: int) -> MobilityMap:
 
 
 def timed(scenario: Scenario, map_: MobilityMap | None = None) -> dict[str, Any]:
-    """One run: microseconds a person-second and a decision, memory a person."""
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    """One run: microseconds a person-second and a decision."""
     model = our_model(scenario, map_)
     cpu, wall = time.process_time(), time.perf_counter()
     model.run(max_seconds=scenario.seconds)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
     person_s = float(model.crowd.active_frames.sum()) / 30.0
-    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
     return {
         "people": len(scenario.places),
         "cpu_s": cpu,
         "wall_s": wall,
         "us_per_person_s": 1e6 * cpu / person_s,
         "us_per_decision": 1e6 * cpu / float(model.crowd.decisions.sum()),
-        "peak_grown_kb_per_person": grown / len(scenario.places),
     }
 
 
@@ -96,6 +95,26 @@ def in_processes(count: int, people: int, threads: int) -> dict[str, Any]:
     with multiprocessing.get_context("spawn").Pool(count) as pool:
         runs = pool.map(_one, [people] * count)
     return max(runs, key=lambda run: float(run["wall_s"]))
+
+
+def resident() -> int:
+    """Bytes of this process in memory, on Linux."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def memory(people: int) -> dict[str, Any]:
+    """Resident memory a person, once everything is compiled and the map is there."""
+    timed(open_walk(3_000, seconds=1.0))
+    scenario = open_walk(people)
+    gc.collect()
+    before = resident()
+    model = our_model(scenario)
+    model.run(max_seconds=1.0)
+    gc.collect()
+    each = (resident() - before) / people
+    print(f"memory     people {people:8d}: {each:6.0f} bytes a person", flush=True)
+    return {"people": people, "bytes_per_person": each}
 
 
 def main() -> None:
@@ -131,12 +150,15 @@ def main() -> None:
         show("processes", "at once", count, in_processes(count, 3_000, threads=1))
         for count in CORES
     ]
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        held = pool.map(memory, [given.most])
     parts = {
         "people": people,
         "density": densities,
         "options": options,
         "threads": threads,
         "processes": processes,
+        "memory": held,
     }
     print(json.dumps(parts))
     if given.plot:

@@ -150,8 +150,8 @@ def _decide_one(
         max(whole[2], aside), max(whole[3], aside), state, work.close,
     )  # fmt: skip
     n = free_groups(
-        me, frame, work.close, found, walls, exits_from, groups, state, work.bodies, work.circles,
-        work.alive,
+        me, frame, work.close, found, walls, exits_from, table, groups, state, work.bodies,
+        work.circles, work.alive,
     )  # fmt: skip
     option, gone = NONE, -1
     if n > 0:
@@ -178,7 +178,7 @@ def _decide_one(
             return False
     state.decisions[i] += 1
     if option >= 0:
-        pieces = lay_path(i, option, table, state, state[i].path)
+        pieces = lay_path(i, option, table, state, work.path)
         commit(
             i,
             option,
@@ -187,6 +187,7 @@ def _decide_one(
             np.int64(SAMPLE_FRAMES),
             gone,
             np.int32(table.options[option].cluster),
+            work.path,
             state,
         )
     else:
@@ -198,7 +199,7 @@ def _decide_one(
             near[found] = people[a].who
             found += 1
         fall_back(
-            i, frame, state, walls, around, near[:found], exits_from <= farthest,
+            i, frame, table, state, walls, around, near[:found], exits_from <= farthest,
             rules.cores, standing, work.path,
         )  # fmt: skip
     return True

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.close import SLACK, Close, Stance, off_box2
-from mesa_mobility.crowd.collision import MARGIN, position_at
+from mesa_mobility.crowd.collision import MARGIN
 from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.options import LEVELS, SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.under_way import position_at
 from mesa_mobility.floorplan.kernels import point_segment_distance2
 from mesa_mobility.jit import lean
 
@@ -81,6 +82,7 @@ def free_groups(
     count: int,
     walls: NDArray[np.float64],
     exits_from: float,
+    table: OptionTable,
     groups: OptionGroups,
     state: CrowdState,
     bodies: Bodies,
@@ -97,6 +99,7 @@ def free_groups(
         walls: (w, 5) walls within reach, with squared distances.
         exits_from: metres to the nearest way out: whoever may be out by then may not meet
             anybody.
+        table: options of all capabilities.
         groups: what the groups of options span.
         state: the crowd.
         bodies: is written; without people gone by then.
@@ -134,7 +137,7 @@ def free_groups(
             j = somebody.who
             if 0 <= state.gone[j] <= time:
                 continue
-            wx, wy = position_at(state, j, time)
+            wx, wy = position_at(state, table, j, time)
             dx, dy = wx - me.x, wy - me.y
             px, py = np.float32(me.c * dx + me.s * dy), np.float32(me.c * dy - me.s * dx)
             apart = np.float32(somebody.apart - SLACK)

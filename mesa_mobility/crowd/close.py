@@ -12,9 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.collision import MARGIN, box_of, position_at
-from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES
+from mesa_mobility.crowd.collision import MARGIN, box_of
+from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.under_way import position_at
 from mesa_mobility.jit import lean
 
 SLACK = 1e-5
@@ -117,7 +118,9 @@ def find_close(
 
 
 @lean()
-def lay_ahead(a: int, me: Stance, frame: int, state: CrowdState, close: Close) -> None:
+def lay_ahead(
+    a: int, me: Stance, frame: int, table: OptionTable, state: CrowdState, close: Close
+) -> None:
     """Write where number a of those who are close will be at the sample times, unless done."""
     somebody = close.people[a]
     if somebody.laid:
@@ -126,15 +129,17 @@ def lay_ahead(a: int, me: Stance, frame: int, state: CrowdState, close: Close) -
     j = somebody.who
     run_x, run_y, to_x, to_y = close.run[0], close.run[1], somebody.ahead[0], somebody.ahead[1]
     last = state.knots[j] - 1
-    path = state[j].path
-    path_x, path_y = path[0], path[1]
     past = frame - state.start[j]
     first = past // SAMPLE_FRAMES
-    if state.spacing[j] == SAMPLE_FRAMES:
+    if state.option[j] >= 0:
         # The knots to come, in one array with the end after them, so that all samples are alike.
+        own = table.path[state.option[j]]
+        own_x, own_y = own[0], own[1]
+        x, y, c, s = state.from_x[j], state.from_y[j], state.from_c[j], state.from_s[j]
         for k in range(SAMPLES):
-            run_x[k], run_y[k] = path_x[k], path_y[k]
-        end_x, end_y = path_x[last], path_y[last]
+            run_x[k] = x + c * own_x[k] - s * own_y[k]
+            run_y[k] = y + s * own_x[k] + c * own_y[k]
+        end_x, end_y = state.to_x[j], state.to_y[j]
         for k in range(SAMPLES + 1):
             run_x[last + k], run_y[last + k] = end_x, end_y
         first = min(first, last)
@@ -149,7 +154,7 @@ def lay_ahead(a: int, me: Stance, frame: int, state: CrowdState, close: Close) -
             to_y[k] = me.c * dy - me.s * dx
     else:
         for k in range(SAMPLES):
-            jx, jy = position_at(state, j, frame + SAMPLE_FRAMES * k)
+            jx, jy = position_at(state, table, j, frame + SAMPLE_FRAMES * k)
             to_x[k] = me.c * (jx - me.x) + me.s * (jy - me.y)
             to_y[k] = me.c * (jy - me.y) - me.s * (jx - me.x)
     if state.gone[j] >= 0:
@@ -166,6 +171,7 @@ def meets(
     stride: float,
     count: int,
     first: int,
+    table: OptionTable,
     state: CrowdState,
     close: Close,
     unsure: NDArray[np.int64],
@@ -180,6 +186,7 @@ def meets(
         count: how many people are close.
         first: number of the person to look at first: options next to one another in
             rank mostly meet the same.
+        table: options of all capabilities.
         state: the crowd.
         close: these people; where one will be is written when it is first needed.
         unsure: gets rows of those whom only the exact test can tell.
@@ -198,7 +205,7 @@ def meets(
         sweep = somebody.sweep
         if off_box2(somebody.x, somebody.y, x0, y0, x1, y1) >= sweep * sweep:
             continue
-        lay_ahead(a, me, frame, state, close)
+        lay_ahead(a, me, frame, table, state, close)
         x, y = somebody.ahead[0], somebody.ahead[1]
         j = somebody.who
         least = np.float32(somebody.apart - SLACK)

@@ -14,7 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.options import OptionTable
 from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.under_way import knot, position_at
 from mesa_mobility.floorplan.kernels import segment_segment_distance2
 from mesa_mobility.jit import lean
 
@@ -141,25 +143,13 @@ def crosses_exit(
 
 
 @lean()
-def position_at(state: CrowdState, j: int, time: float) -> tuple[float, float]:
-    """Where pedestrian j is at a time in frames, standing once its movement has ended."""
-    last = state.knots[j] - 1
-    u = (time - state.start[j]) / state.spacing[j]
-    k = int(u)
-    if k >= last:
-        return state[j].path[0, last], state[j].path[1, last]
-    u -= k
-    ax, ay = state[j].path[0, k], state[j].path[1, k]
-    return ax + u * (state[j].path[0, k + 1] - ax), ay + u * (state[j].path[1, k + 1] - ay)
-
-
-@lean()
 def hits_neighbour(
     path: NDArray[np.float64],
     segments: int,
     spacing: int,
     frame: int,
     gone: int,
+    table: OptionTable,
     state: CrowdState,
     j: int,
     clearance: float,
@@ -179,7 +169,7 @@ def hits_neighbour(
         stop = min(stop, state.gone[j])
     c = clearance + MARGIN
     limit = c * c
-    jx, jy = position_at(state, j, frame)
+    jx, jy = position_at(state, table, j, frame)
     rx, ry = path[0, 0] - jx, path[1, 0] - jy
     now = rx * rx + ry * ry
     if now < limit:  # closer than allowed to begin with: may stay, not come closer
@@ -205,14 +195,14 @@ def hits_neighbour(
             my = path[1, k] + u * (path[1, k + 1] - path[1, k])
         if following >= their_end:
             p = last
-            jx, jy = state[j].path[0, p], state[j].path[1, p]
+            jx, jy = state.to_x[j], state.to_y[j]
         else:
             if following == start + step * (p + 1):
                 p += 1
             u = (following - start - step * p) * their_share
-            ax, ay = state[j].path[0, p], state[j].path[1, p]
-            jx = ax + u * (state[j].path[0, p + 1] - ax)
-            jy = ay + u * (state[j].path[1, p + 1] - ay)
+            ax, ay = knot(state, table, j, p)
+            bx, by = knot(state, table, j, p + 1)
+            jx, jy = ax + u * (bx - ax), ay + u * (by - ay)
         qx, qy = mx - jx, my - jy
         dx, dy = qx - rx, qy - ry
         length2 = dx * dx + dy * dy
@@ -265,6 +255,7 @@ def path_gone_or_blocked(
     spacing: int,
     reach: float,
     frame: int,
+    table: OptionTable,
     state: CrowdState,
     walls: NDArray[np.float64],
     around: Surroundings,
@@ -295,7 +286,7 @@ def path_gone_or_blocked(
         ):
             continue
         if hits_neighbour(
-            path, pieces, spacing, frame, gone, state, j, state.core[i] + state.core[j]
+            path, pieces, spacing, frame, gone, table, state, j, state.core[i] + state.core[j]
         ):
             return -2
     return gone

@@ -150,7 +150,7 @@ def judge(
         weighed,
         verdicts=verdicts,
         blockers=blockers,
-        neighbour_ends=crowd.path[near, :2, crowd.knots[near] - 1],
+        neighbour_ends=np.column_stack([crowd.to_x[near], crowd.to_y[near]]),
         chosen=int(np.argmin(totals)) if (verdicts == FREE).any() else -1,
     )
 
@@ -183,7 +183,7 @@ def _judge(
         reach = np.float64(table.options[o].reach)
         exits_near = reach >= exits_from
         gone = path_gone_or_blocked(
-            i, paths[k], pieces, spacing, reach, frame, state, walls[:count], around, near,
+            i, paths[k], pieces, spacing, reach, frame, table, state, walls[:count], around, near,
             exits_near, cores,
         )  # fmt: skip
         if gone >= -1:
@@ -192,7 +192,7 @@ def _judge(
         if gone == -2:
             for a in range(len(near)):
                 alone = path_gone_or_blocked(
-                    i, paths[k], pieces, spacing, reach, frame, state, walls[:count], around,
+                    i, paths[k], pieces, spacing, reach, frame, table, state, walls[:count], around,
                     near[a : a + 1], exits_near, cores,
                 )  # fmt: skip
                 if alone == -2:

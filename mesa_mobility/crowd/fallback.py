@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.collision import Surroundings, path_gone_or_blocked
 from mesa_mobility.crowd.motion import commit
-from mesa_mobility.crowd.options import FRAME_SECONDS
+from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
 from mesa_mobility.jit import lean
 
@@ -29,6 +29,7 @@ FALLBACK_STEPS = (1.0, 0.5, 0.25, 0.0)
 def fall_back(
     i: int,
     frame: int,
+    table: OptionTable,
     state: CrowdState,
     walls: NDArray[np.float64],
     around: Surroundings,
@@ -51,7 +52,6 @@ def fall_back(
         turn = math.atan2(math.sin(turn), math.cos(turn))
         most = FALLBACK_TURN_RATE * FALLBACK_SECONDS
         turn = min(max(turn, -most), most)
-    path = state[i].path
     trial[0, 0], trial[1, 0], trial[2, 0] = state.x[i], state.y[i], state.heading[i]
     trial[2, 1] = state.heading[i] + turn
     gone = -1
@@ -61,13 +61,11 @@ def fall_back(
         if length == 0.0:
             break
         gone = path_gone_or_blocked(
-            i, trial, np.int64(1), np.int64(FALLBACK_FRAMES), length, frame, state, walls, around,
-            near, exits_near, cores,
+            i, trial, np.int64(1), np.int64(FALLBACK_FRAMES), length, frame, table, state, walls,
+            around, near, exits_near, cores,
         )  # fmt: skip
         if gone >= -1:
             break
-    for row in range(3):
-        path[row, 0], path[row, 1] = trial[row, 0], trial[row, 1]
     state.fallbacks[i] += 1
     commit(
         i,
@@ -77,5 +75,6 @@ def fall_back(
         np.int64(FALLBACK_FRAMES),
         max(gone, -1),
         standing,
+        trial,
         state,
     )

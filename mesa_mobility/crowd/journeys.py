@@ -13,8 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.options import OptionTable
 from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.crowd.surroundings import Site
+from mesa_mobility.crowd.under_way import knot
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.kernels import point_segment_distance2
@@ -119,7 +121,9 @@ class Journeys:
         legs: NDArray[np.int64] = self._firsts[journey] + crossed % self._counts[journey]
         return legs
 
-    def advance(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
+    def advance(
+        self, rows: NDArray[np.int64], frame: int, crowd: Crowd, table: OptionTable
+    ) -> None:
         """Send those in ``rows`` on who have crossed the gate that they went for."""
         if not self._known:
             return
@@ -128,7 +132,7 @@ class Journeys:
         while len(on):
             lines = self._lines[self._now(on, crowd)]
             when = np.full(len(on), np.inf)
-            _find_crossings(on, lines, frame, agenda["checked"][on], crowd.records, when)
+            _find_crossings(on, lines, frame, agenda["checked"][on], table, crowd.records, when)
             over = np.isfinite(when)
             agenda["checked"][on] = np.where(over, when, frame)
             on = on[over]
@@ -143,6 +147,7 @@ def _find_crossings(
     lines: NDArray[np.float64],
     frame: int,
     since: NDArray[np.float64],
+    table: OptionTable,
     state: CrowdState,
     when: NDArray[np.float64],
 ) -> None:
@@ -151,16 +156,18 @@ def _find_crossings(
         i = rows[a]
         cx, cy, dx, dy = lines[a]
         vx, vy = dx - cx, dy - cy
-        path = state[i].path
+        bx, by = state.from_x[i], state.from_y[i]
         for k in range(state.knots[i] - 1):
+            ax, ay = bx, by
+            bx, by = knot(state, table, i, k + 1)
             begin = state.start[i] + k * state.spacing[i]
             if begin + state.spacing[i] <= since[a] or begin >= frame:
                 continue
-            ux, uy = path[0, k + 1] - path[0, k], path[1, k + 1] - path[1, k]
+            ux, uy = bx - ax, by - ay
             det = ux * vy - uy * vx
             if det == 0.0:
                 continue
-            wx, wy = cx - path[0, k], cy - path[1, k]
+            wx, wy = cx - ax, cy - ay
             u = (wx * vy - wy * vx) / det
             v = (wx * uy - wy * ux) / det
             t = begin + u * state.spacing[i]

@@ -236,7 +236,7 @@ class PedestrianModel(CrowdMeasures, People):
         if self._plan_version != self.floor_plan.version:
             self._plan_version = self.floor_plan.version
             # The paths of those who stop are forgotten.
-            self.journeys.advance(rows, self.frame, self.crowd)
+            self.journeys.advance(rows, self.frame, self.crowd, self._repertoire.table)
             stop_where_blocked(
                 rows, self.frame, self._repertoire.table, self.crowd.records,
                 self._site.surroundings, self._rules,
@@ -246,7 +246,7 @@ class PedestrianModel(CrowdMeasures, People):
         if len(deciding):
             self._decide(deciding, rows)
         self.frame += 1
-        left, speeds = move(rows, self.frame, self.crowd.records)
+        left, speeds = move(rows, self.frame, self._repertoire.table, self.crowd.records)
         self._walked += speeds
         if self.recorder is not None:
             self.recorder.add(self.frame, rows, self.crowd)
@@ -258,7 +258,7 @@ class PedestrianModel(CrowdMeasures, People):
         return rows
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
-        self.journeys.advance(deciding, self.frame, self.crowd)
+        self.journeys.advance(deciding, self.frame, self.crowd, self._repertoire.table)
         waiting = self.waits.waiting(deciding, self.frame, self.crowd)
         targets = self._set_targets(deciding, rows, waiting)
         # Those nearest to where they go decide first: that frees space for those behind.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.collision import box_of
 from mesa_mobility.crowd.options import FRAME_SECONDS, SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
+from mesa_mobility.crowd.under_way import facing_at_knot, knot
 from mesa_mobility.jit import called, lean
 from mesa_mobility.threads import together
 
@@ -47,15 +48,19 @@ def commit(
     spacing: int,
     gone: int,
     cluster: int,
+    path: NDArray[np.float64],
     state: CrowdState,
 ) -> None:
-    """Commit pedestrian i to the path in its row of ``state.path``."""
-    path = state[i].path
+    """Commit pedestrian i to a path (3, n) of world knots: that of an option, or of one piece."""
     seconds = pieces * spacing * FRAME_SECONDS
     state.option[i] = option
     state.start[i], state.end[i], state.gone[i] = frame, frame + pieces * spacing, gone
     state.spacing[i], state.knots[i] = spacing, pieces + 1
     state.cluster[i] = cluster
+    state.from_x[i], state.from_y[i], state.from_heading[i] = path[0, 0], path[1, 0], path[2, 0]
+    state.from_c[i], state.from_s[i] = math.cos(path[2, 0]), math.sin(path[2, 0])
+    state.to_x[i], state.to_y[i] = path[0, pieces], path[1, pieces]
+    state.to_heading[i] = path[2, pieces]
     state.vx[i] = (path[0, pieces] - path[0, 0]) / seconds
     state.vy[i] = (path[1, pieces] - path[1, 0]) / seconds
     longest2 = 0.0
@@ -72,13 +77,17 @@ BLOCK = 8192
 floats must not depend on how many threads there are."""
 
 
-def move(active: NDArray[np.int64], frame: int, state: CrowdState) -> tuple[int, float]:
+def move(
+    active: NDArray[np.int64], frame: int, table: OptionTable, state: CrowdState
+) -> tuple[int, float]:
     """Put everybody in rows ``active`` where its movement has it at ``frame``.
 
     Returns how many have left, and the sum of everybody's mean speed, m/s.
     """
     blocks = [active[k : k + BLOCK] for k in range(0, max(len(active), 1), BLOCK)]
-    left, speeds = zip(*together(lambda rows: _move(rows, frame, state), blocks), strict=True)
+    left, speeds = zip(
+        *together(lambda rows: _move(rows, frame, table, state), blocks), strict=True
+    )
     return sum(left), sum(speeds)
 
 
@@ -93,20 +102,24 @@ def due(active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray
 
 
 @called()
-def _move(active: NDArray[np.int64], frame: int, state: CrowdState) -> tuple[int, float]:
+def _move(
+    active: NDArray[np.int64], frame: int, table: OptionTable, state: CrowdState
+) -> tuple[int, float]:
     left, speeds = 0, 0.0
     for i in active:
         last = state.knots[i] - 1
         u = (frame - state.start[i]) / state.spacing[i]
         k = int(u)
-        path = state[i].path
         if k >= last:
-            state.x[i], state.y[i], state.heading[i] = path[0, last], path[1, last], path[2, last]
+            state.x[i], state.y[i] = state.to_x[i], state.to_y[i]
+            state.heading[i] = state.to_heading[i]
         else:
             u -= k
-            state.x[i] = path[0, k] + u * (path[0, k + 1] - path[0, k])
-            state.y[i] = path[1, k] + u * (path[1, k + 1] - path[1, k])
-            state.heading[i] = path[2, k] + u * (path[2, k + 1] - path[2, k])
+            ax, ay = knot(state, table, i, k)
+            bx, by = knot(state, table, i, k + 1)
+            state.x[i], state.y[i] = ax + u * (bx - ax), ay + u * (by - ay)
+            a, b = facing_at_knot(state, table, i, k), facing_at_knot(state, table, i, k + 1)
+            state.heading[i] = a + u * (b - a)
         speeds += math.sqrt(state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i])
         state.active_frames[i] += 1
         if state.option[i] == FALLBACK:

@@ -22,6 +22,7 @@ from mesa_mobility.crowd.placing import (
     place,
 )
 from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.replan import first_free, too_close
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.source import PLACES_TRIED, Inflow, Source
@@ -47,6 +48,7 @@ class People(mesa.Model):
     crowd: Crowd
     count: int
     frame: int
+    _repertoire: Repertoire
     _rules: Rules
     _site: Site
     journeys: Journeys
@@ -188,8 +190,9 @@ class People(mesa.Model):
         if not rules.cores:
             return places[0] if len(places) else None
         free = first_free(
-            places, core, self.frame, self._present, self.crowd.records, rules.search_radius
-        )
+            places, core, self.frame, self._present, self._repertoire.table, self.crowd.records,
+            rules.search_radius,
+        )  # fmt: skip
         return places[free] if free >= 0 else None
 
     @property
@@ -254,8 +257,9 @@ class People(mesa.Model):
         if not self._rules.cores:
             return
         where, who = too_close(
-            points, core, self.frame, self._present, self.crowd.records, self._rules.search_radius
-        )
+            points, core, self.frame, self._present, self._repertoire.table, self.crowd.records,
+            self._rules.search_radius,
+        )  # fmt: skip
         if where >= 0:
             other = "another newcomer" if who < 0 else f"where pedestrian {who} is or will be"
             raise ModelError(

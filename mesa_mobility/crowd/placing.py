@@ -95,7 +95,7 @@ def place(
     waits = sets_off > frame
     state.spacing[rows] = np.where(waits, sets_off - frame, 1)
     state.knots[rows] = 1 + waits
-    state.path[rows, :2, 0] = state.path[rows, :2, 1] = points
+    state.from_x[rows], state.from_y[rows] = state.to_x[rows], state.to_y[rows] = points.T
     state.box[rows] = np.column_stack([points, points])
     state.sweep[rows, :2], state.sweep[rows, 2] = points, 0.0
     state.stride[rows] = 0.0
@@ -111,5 +111,4 @@ def place(
 
 def face(state: Crowd, rows: NDArray[np.int64], headings: NDArray[np.float64]) -> None:
     """Turn people who have just been placed."""
-    state.heading[rows] = headings
-    state.path[rows, 2, 0] = state.path[rows, 2, 1] = headings
+    state.heading[rows] = state.from_heading[rows] = state.to_heading[rows] = headings

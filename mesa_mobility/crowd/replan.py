@@ -18,6 +18,7 @@ from mesa_mobility.crowd.neighbours import Grid, build_grid, people_within
 from mesa_mobility.crowd.options import SAMPLES, OptionTable
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import NO_OPTION, CrowdState
+from mesa_mobility.crowd.under_way import knot
 
 
 @njit(cache=True)
@@ -37,13 +38,13 @@ def stop_where_blocked(
     stopped = np.zeros(len(rows), np.bool_)
     newly = np.empty(len(rows), np.int64)
     count = 0
-    path = np.empty((3, SAMPLES))
+    path = np.empty((2, SAMPLES))
     found = np.empty((len(around.segments) + len(around.exits), 5))
     for a in range(len(rows)):
         i = rows[a]
         if state.end[i] <= frame:
             continue
-        pieces = _remaining(i, frame, state, path)
+        pieces = _remaining(i, frame, table, state, path)
         walked = pieces
         if state.gone[i] >= 0:
             piece, _ = crosses_exit(path, pieces, around, state.destination[i])
@@ -63,19 +64,20 @@ def stop_where_blocked(
         # Standing where they are, they may be in the way of others: these stop as well.
         standing = newly[:count].copy()
         count = 0
-        still = np.empty((3, 2))
+        still = np.empty((2, 2))
         for a in range(len(rows)):
             j = rows[a]
             if stopped[a] or state.end[j] <= frame:
                 continue
             for i in standing:
-                still[0], still[1], still[2] = state.x[i], state.y[i], state.heading[i]
+                still[0], still[1] = state.x[i], state.y[i]
                 if hits_neighbour(
                     still,
                     np.int64(1),
                     np.int64(1),
                     frame,
                     np.int64(-1),
+                    table,
                     state,
                     j,
                     state.core[i] + state.core[j],
@@ -91,13 +93,15 @@ def stop_where_blocked(
 
 
 @njit(cache=True)
-def _remaining(i: int, frame: int, state: CrowdState, path: NDArray[np.float64]) -> int:
-    """Write where pedestrian i is and the knots to come into ``path``; return the pieces."""
-    path[0, 0], path[1, 0], path[2, 0] = state.x[i], state.y[i], state.heading[i]
+def _remaining(
+    i: int, frame: int, table: OptionTable, state: CrowdState, path: NDArray[np.float64]
+) -> int:
+    """Write where pedestrian i is and will be at the knots to come; return the pieces."""
+    path[0, 0], path[1, 0] = state.x[i], state.y[i]
     first = (frame - state.start[i]) // state.spacing[i] + 1
     pieces = state.knots[i] - first
     for k in range(pieces):
-        path[:, k + 1] = state.path[i, :, first + k]
+        path[0, k + 1], path[1, k + 1] = knot(state, table, i, first + k)
     return pieces
 
 
@@ -109,8 +113,9 @@ def _stop(i: int, frame: int, state: CrowdState, rules: Rules) -> None:
     state.cluster[i] = rules.standing[state.kind[i]]
     state.vx[i] = state.vy[i] = 0.0
     state.stride[i] = 0.0
-    state.path[i, 0, 0], state.path[i, 1, 0] = state.x[i], state.y[i]
-    state.path[i, 2, 0] = state.heading[i]
+    state.from_x[i] = state.to_x[i] = state.x[i]
+    state.from_y[i] = state.to_y[i] = state.y[i]
+    state.from_heading[i] = state.to_heading[i] = state.heading[i]
     cover(i, state.x[i], state.y[i], state.x[i], state.y[i], state)
 
 
@@ -120,6 +125,7 @@ def too_close(
     core: float,
     frame: int,
     rows: NDArray[np.int64],
+    table: OptionTable,
     state: CrowdState,
     search_radius: float,
 ) -> tuple[int, int]:
@@ -138,7 +144,7 @@ def too_close(
             dx, dy = x[k] - x[m], y[k] - y[m]
             if m < k and dx * dx + dy * dy < 4.0 * core * core:
                 return k, -1
-        j = _comes_near(x[k], y[k], core, frame, people, state, search_radius, found)
+        j = _comes_near(x[k], y[k], core, frame, people, table, state, search_radius, found)
         if j >= 0:
             return k, j
     return -1, -1
@@ -150,6 +156,7 @@ def first_free(
     core: float,
     frame: int,
     rows: NDArray[np.int64],
+    table: OptionTable,
     state: CrowdState,
     search_radius: float,
 ) -> int:
@@ -157,7 +164,7 @@ def first_free(
     people = build_grid(rows, state.x, state.y)
     found = np.empty(len(rows), np.int64)
     for k in range(len(points)):
-        if _comes_near(points[k, 0], points[k, 1], core, frame, people, state, search_radius,
+        if _comes_near(points[k, 0], points[k, 1], core, frame, people, table, state, search_radius,
                        found) < 0:  # fmt: skip
             return k
     return -1
@@ -170,12 +177,13 @@ def _comes_near(
     core: float,
     frame: int,
     people: Grid,
+    table: OptionTable,
     state: CrowdState,
     search_radius: float,
     found: NDArray[np.int64],
 ) -> int:
     """The lowest row of somebody who is or will be too near to a body at (x, y), or -1."""
-    still = np.zeros((3, 2))
+    still = np.empty((2, 2))
     still[0], still[1] = x, y
     count = people_within(people, x, y, np.int64(-1), search_radius, found)
     for j in np.sort(people.people[found[:count]]):
@@ -183,7 +191,9 @@ def _comes_near(
         dx, dy = x - state.x[j], y - state.y[j]
         if dx * dx + dy * dy < c * c or (
             state.end[j] > frame
-            and hits_neighbour(still, np.int64(1), np.int64(1), frame, np.int64(-1), state, j, c)
+            and hits_neighbour(
+                still, np.int64(1), np.int64(1), frame, np.int64(-1), table, state, j, c
+            )
         ):
             return int(j)
     return -1

@@ -176,7 +176,7 @@ def cheapest_free(
         exits_near = reach >= now.exits_from
         if cores and not exits_near:
             who, doubtful = meets(
-                me, now.frame, table.path[o], table.options[o].stride, now.found, met, state,
+                me, now.frame, table.path[o], table.options[o].stride, now.found, met, table, state,
                 work.close, work.unsure,
             )  # fmt: skip
         gone = NOT_A_NUMBER
@@ -193,7 +193,7 @@ def cheapest_free(
             pieces = lay_path(me.row, o, table, state, work.path)
             gone = path_gone_or_blocked(
                 me.row, work.path, pieces, np.int64(SAMPLE_FRAMES), reach, now.frame,
-                state, walls, around, work.unsure[:doubtful], exits_near, cores,
+                table, state, walls, around, work.unsure[:doubtful], exits_near, cores,
             )  # fmt: skip
         if gone >= -1:
             work.leaving[k] = gone

@@ -14,8 +14,6 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.options import SAMPLES
-
 PERSON = np.dtype(
     [
         # What those around read of somebody comes first.
@@ -31,7 +29,14 @@ PERSON = np.dtype(
         ("spacing", "i4"),
         ("knots", "i4"),
         ("box", "f8", (4,)),
-        ("path", "f8", (3, SAMPLES)),
+        ("from_x", "f8"),
+        ("from_y", "f8"),
+        ("from_c", "f8"),
+        ("from_s", "f8"),
+        ("from_heading", "f8"),
+        ("to_x", "f8"),
+        ("to_y", "f8"),
+        ("to_heading", "f8"),
         ("heading", "f8"),
         ("target_x", "f8"),
         ("target_y", "f8"),
@@ -57,10 +62,11 @@ under way, m/s), ``active`` (in the model).  Person: ``preferred`` speed (m/s), 
 (m), ``kind`` (index of the pedestrian type), ``destination`` (the router's number).  Movement
 under way: ``option`` (row of the option table; -1 none yet, -2 fallback), ``cluster`` (at its
 end), ``start`` and ``end`` frames, ``gone`` (frame at which the person has crossed an exit,
-or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``path`` (3, 16) world
-x, y, heading at the knots, ``box`` (4,) what the path covers: least x, least y, greatest x,
-greatest y, ``sweep`` (3,) x, y and radius of a circle around that, ``stride``
-most metres on the way in the time between two samples.  Where to: ``target_x``, ``target_y``,
+or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``from_x``, ``from_y``,
+``from_heading`` where it starts, with cosine and sine ``from_c`` and ``from_s`` of an option's,
+``to_x``, ``to_y``, ``to_heading`` where it ends, ``box`` (4,) what the path covers: least x, least
+y, greatest x, greatest y, ``sweep`` (3,) x, y and radius of a circle around that, ``stride`` most
+metres on the way in the time between two samples.  Where to: ``target_x``, ``target_y``,
 ``route`` (metres left).
 Counters: ``decisions``, ``fallbacks``, ``fallback_frames``, ``active_frames``.
 """
@@ -121,7 +127,14 @@ class Crowd:
     spacing: NDArray[np.int32]
     knots: NDArray[np.int32]
     box: NDArray[np.float64]
-    path: NDArray[np.float64]
+    from_x: NDArray[np.float64]
+    from_y: NDArray[np.float64]
+    from_c: NDArray[np.float64]
+    from_s: NDArray[np.float64]
+    from_heading: NDArray[np.float64]
+    to_x: NDArray[np.float64]
+    to_y: NDArray[np.float64]
+    to_heading: NDArray[np.float64]
     heading: NDArray[np.float64]
     target_x: NDArray[np.float64]
     target_y: NDArray[np.float64]

@@ -153,8 +153,7 @@ def test_the_decision_shown_is_the_one_the_engine_takes(tab):
     assert np.array_equal(shown["verdicts"], taken.verdicts)
     # It is under way there.
     x, y = taken.paths[taken.chosen, :2, taken.knots[taken.chosen] - 1]
-    knots = model.crowd.knots[11]
-    assert model.crowd.path[11, :2, knots - 1] == pytest.approx([x, y])
+    assert (model.crowd.to_x[11], model.crowd.to_y[11]) == pytest.approx((x, y))
 
 
 def test_weights_and_behaviours_change_while_it_runs(tab):
