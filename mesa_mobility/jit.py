@@ -15,5 +15,6 @@ from numba import njit
 called = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False)
 """For functions that Python calls, from several threads at a time if need be."""
 
-lean = partial(called, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-"""For functions that only compiled ones call: a call from Python would crash it."""
+lean = partial(called, cache=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""For functions that only compiled ones call: a call from Python would crash it. They are kept on
+disk with whatever calls them."""

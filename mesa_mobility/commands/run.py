@@ -54,7 +54,10 @@ def run(
     if seconds is not None and not (math.isfinite(seconds) and seconds > 0):
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
     seed = secrets.randbelow(2**31) if seed is None else seed
-    simulation = _create(model, settings or [], preset, map_file, seed)
+    from mesa_mobility.crowd.ahead import compiling_ahead
+
+    with compiling_ahead():
+        simulation = _create(model, settings or [], preset, map_file, seed)
 
     from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run
 

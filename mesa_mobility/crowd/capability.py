@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.groups import alike, group
-from mesa_mobility.crowd.options import Parts, option_table, padded_paths
+from mesa_mobility.crowd.options import option_table, padded_paths
 from mesa_mobility.crowd.shortened import with_shortened
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
@@ -54,9 +54,10 @@ class Capability:
         cluster = np.searchsorted(mobility_map.offsets, parts.rows, side="right") - 1
         counts = np.bincount(cluster, minlength=mobility_map.n_clusters)
         offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        order, groups = _in_groups(mobility_map, parts, cluster)
+        path = padded_paths(mobility_map, parts)
+        order, groups = _in_groups(mobility_map.durations[parts.rows], path, cluster)
         self.parts = parts.taken(order)
-        self.table = option_table(mobility_map, self.parts, offsets, groups)
+        self.table = option_table(mobility_map, self.parts, path[order], offsets, groups)
 
     @property
     def n_clusters(self) -> int:
@@ -86,14 +87,13 @@ class Capability:
 
 
 def _in_groups(
-    mobility_map: MobilityMap, parts: Parts, cluster: NDArray[np.int64]
+    frames: NDArray[np.integer], path: NDArray[np.float32], cluster: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The order in which options are in groups of those alike, and where in it each starts."""
-    frames = mobility_map.durations[parts.rows]
     sort = np.lexsort((frames, cluster))
-    parts, cluster, frames = parts.taken(sort), cluster[sort], frames[sort]
+    path, cluster, frames = path[sort], cluster[sort], frames[sort]
     changes = (np.diff(cluster) != 0) | (np.diff(frames) != 0)
     bounds = np.concatenate([[0], np.flatnonzero(changes) + 1, [len(sort)]])
-    features = alike(padded_paths(mobility_map, parts), frames)
+    features = alike(path, frames)
     order, starts = group(features, bounds.astype(np.int64))
     return sort[order], starts

@@ -100,11 +100,11 @@ def padded_paths(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float32]
 def option_table(
     mobility_map: MobilityMap,
     parts: Parts,
+    path: NDArray[np.float32],
     offsets: NDArray[np.int64],
     groups: NDArray[np.int64],
 ) -> OptionTable:
-    """The table of options, whole or shortened; ``offsets`` and ``groups`` are those fields."""
-    path = padded_paths(mobility_map, parts)
+    """The table of options, whole or shortened; the last three are those fields."""
     frames = mobility_map.durations[parts.rows]
     x, y, heading = path[:, :, -1].T
     places = path[:, :2].astype(np.float64)

@@ -186,7 +186,11 @@ def _comes_near(
     still = np.empty((2, 2))
     still[0], still[1] = x, y
     count = people_within(people, x, y, np.int64(-1), search_radius, found)
-    for j in np.sort(people.people[found[:count]]):
+    lowest = np.int64(-1)
+    for at in found[:count]:
+        j = people.people[at]
+        if 0 <= lowest < j:
+            continue
         c = core + state.core[j]
         dx, dy = x - state.x[j], y - state.y[j]
         if dx * dx + dy * dy < c * c or (
@@ -195,5 +199,5 @@ def _comes_near(
                 still, np.int64(1), np.int64(1), frame, np.int64(-1), table, state, j, c
             )
         ):
-            return int(j)
-    return -1
+            lowest = j
+    return int(lowest)

@@ -10,16 +10,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
-import networkx as nx
 import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.poses import PoseTable
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 NATURAL_COST = 1e-4
 """Cost of following the recording for one frame: least-cost paths then prefer fewer frames."""
@@ -80,6 +81,8 @@ class MotionGraph:
         Nodes carry ``clip`` and ``frame``; edges carry ``cost``, ``kind`` ("natural" or
         "transition") and ``via``.
         """
+        import networkx as nx
+
         graph = nx.DiGraph(threshold=self.threshold)
         first = self.poses.first
         for node in np.flatnonzero(self.kept).tolist():
@@ -154,6 +157,10 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
 def _strong_labels(
     n: int, source: NDArray[np.int64], successor: NDArray[np.int64]
 ) -> NDArray[np.int32]:
+    # Whoever only reads a map imports this module as well, and does without them.
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
     matrix = csr_array((np.ones(len(source), np.int8), (source, successor)), shape=(n, n))
     return connected_components(matrix, directed=True, connection="strong")[1]
 

@@ -12,13 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
-from mesa_mobility.capture import Recording, leg_joints
 from mesa_mobility.errors import MapError
+
+if TYPE_CHECKING:
+    from mesa_mobility.capture import Recording
 
 FRAME_RATE = 30.0
 """Frames a second of every pose table (45 frames = 1.5 s, as in the paper)."""
@@ -139,6 +141,11 @@ def pose_table(
 
 
 def _clip_poses(recording: Recording) -> tuple[NDArray[np.float64], ...]:
+    # Whoever only reads a map imports this module as well, and does without them.
+    from scipy.ndimage import gaussian_filter1d
+
+    from mesa_mobility.capture import leg_joints
+
     legs = leg_joints(recording.skeleton)
     world = recording.positions()
     chain = world[:, [*legs.left, *legs.right]]

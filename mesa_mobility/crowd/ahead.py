@@ -1,0 +1,95 @@
+"""Compiling the decisions ahead, in a process of its own.
+
+Numba compiles one function at a time, and decisions take it as long as everything else together:
+another process that compiles them meanwhile halves the wait at the first run after installation.
+It leaves them in the cache on disk, where Numba looks for them.
+"""
+
+from __future__ import annotations
+
+import gc
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from mesa_mobility.crowd.choice import decide
+from mesa_mobility.crowd.collision import Surroundings
+from mesa_mobility.crowd.decisions import Decisions
+from mesa_mobility.crowd.groups import make_groups
+from mesa_mobility.crowd.motion import due, move
+from mesa_mobility.crowd.options import OPTION, SAMPLES, OptionTable
+from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.crowd.repertoire import Repertoire
+from mesa_mobility.crowd.rules import Rules
+from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.threads import THREADS
+
+_COMMAND = "from mesa_mobility.crowd.ahead import compile_decisions; compile_decisions()"
+
+
+@contextmanager
+def compiling_ahead() -> Iterator[None]:
+    """Have decisions compiled, if they are not yet, while whatever is within makes a model."""
+    if THREADS < 2 or any(_cached_in().glob("choice.decide-*.nbi")):
+        yield
+        return
+    collects = gc.isenabled()
+    gc.disable()  # Compilers keep what they make: to look through it all takes a tenth of the time.
+    other = _start()
+    try:
+        yield
+        # If it comes to grief, this process compiles what is missing.
+        other.wait()
+    finally:
+        other.kill()
+        other.wait()
+        if collects:
+            gc.enable()
+
+
+def _cached_in() -> Path:
+    """Where Numba keeps compiled decisions."""
+    return Path(decide.stats.cache_path)
+
+
+def _start() -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        [sys.executable, "-c", _COMMAND], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+
+
+def compile_decisions() -> None:
+    """Compile what makes people decide and moves them, by the decisions of nobody."""
+    gc.disable()
+    table = OptionTable(
+        offsets=np.array([0, 1]),
+        groups=np.zeros(1, dtype=np.int64),
+        farthest=np.zeros(1),
+        options=np.ones(1, dtype=OPTION).view(np.recarray),
+        heading=np.zeros(1, dtype=np.float32),
+        path=np.zeros((1, 3, SAMPLES), dtype=np.float32),
+    )
+    around = Surroundings(
+        segments=np.empty((0, 4)),
+        x0=0.0,
+        y0=0.0,
+        nx=1,
+        ny=1,
+        size=1.0,
+        offsets=np.zeros(2, dtype=np.int64),
+        indices=np.empty(0, dtype=np.int32),
+        exits=np.empty((0, 4)),
+        leads_out=np.zeros((1, 0), dtype=np.bool_),
+    )
+    first = np.zeros(1, dtype=np.int64)
+    standing = np.zeros(1, dtype=np.int32)
+    repertoire = Repertoire((), table, make_groups(table), standing, first, standing, 1.0, 1.0)
+    decisions = Decisions(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
+    nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
+    decisions.take(nobody, 0, nobody, crowd, around, preset_named("default").make_terms())
+    due(nobody, 0, crowd.records, nobody)
+    move(nobody, 0, table, crowd.records)
