@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import Distribution, EntryPoint, entry_points
 
 from mesa_mobility.errors import ModelError
 
@@ -96,8 +96,13 @@ def load_behavior(name: str) -> type:
 def _installed(group: str) -> dict[str, Plugin]:
     plugins: dict[str, Plugin] = {}
     entries = sorted(entry_points(group=group), key=lambda each: (each.name, each.value))
+    # To ask a distribution for its name reads a file, and most bring several.
+    packages: dict[Distribution | None, str] = {}
     for entry in entries:
-        package = f"{entry.dist.name} {entry.dist.version}" if entry.dist else "an unknown package"
+        dist = entry.dist
+        if dist not in packages:
+            packages[dist] = f"{dist.name} {dist.version}" if dist else "an unknown package"
+        package = packages[dist]
         first = plugins.get(entry.name)
         if first is None:
             plugins[entry.name] = Plugin(entry.name, entry.value, package, rival="", _entry=entry)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import reacton.core
 import solara
 import solara.lab
 
@@ -33,6 +34,7 @@ def Dashboard(model: str | type[PedestrianModel] = DEFAULT_MODEL) -> None:
     names = [*own, *registry.models()]
     name, choose = solara.use_state(model if isinstance(model, str) else model.__name__)
     session = solara.use_memo(Session, [])
+    session.together = reacton.core.get_render_context()
 
     def run() -> Callable[[], None]:
         session.start()

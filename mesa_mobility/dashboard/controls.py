@@ -12,8 +12,10 @@ from mesa_mobility import PedestrianModel
 from mesa_mobility.commands.parameters import NOT_SETTABLE, Parameter, descriptions, parameters
 from mesa_mobility.crowd import PRESETS
 from mesa_mobility.dashboard.behaviours import TermState
+from mesa_mobility.dashboard.clock import FULL_SPEED
 from mesa_mobility.dashboard.colouring import COLOURINGS
-from mesa_mobility.dashboard.session import FULL_SPEED, Recipe, Session
+from mesa_mobility.dashboard.recipe import Recipe
+from mesa_mobility.dashboard.session import Session
 from mesa_mobility.errors import ModelError
 
 SPEEDS = {"0.25 x": 0.25, "1 x": 1.0, "2 x": 2.0, "5 x": 5.0, "20 x": 20.0, "full": FULL_SPEED}

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import socket
 import threading
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
+from typing import TYPE_CHECKING
 
 from mesa_mobility.errors import MobilityError
+
+if TYPE_CHECKING:
+    from mesa_mobility.dashboard.recipe import Recipe
 
 SETTINGS = {
     "SOLARA_APP": "mesa_mobility.dashboard.page",
@@ -16,8 +22,13 @@ SETTINGS = {
     "SOLARA_SESSION_SAME_SITE": "lax",
     "SOLARA_THEME_SHOW_BANNER": "false",
     "SOLARA_THEME_TITLE": "mesa-mobility",
+    "SOLARA_SERVER_HTTP_GZIP": "false",
 }
-"""What Solara reads when it is imported: the page is ours, and nobody is told of its use."""
+"""What Solara reads when it is imported: the page is ours, and nobody is told of its use.
+
+Nothing is compressed: to pack four megabytes takes longer than to hand them to a browser on this
+machine or in this house.
+"""
 
 
 def serve(model: str, host: str, port: int, ready: Callable[[str], None]) -> None:
@@ -34,23 +45,36 @@ def serve(model: str, host: str, port: int, ready: Callable[[str], None]) -> Non
     """
     listening = _listen(host, port)
     os.environ.update(SETTINGS)
-    # The page is not there before its model; both take a while to load, and do so side by side.
-    threading.Thread(target=_warm_up, name="mesa-mobility warm-up", daemon=True).start()
-    from mesa_mobility.dashboard import page
-
-    page.opening = model
+    # Some hundred thousand objects are made that all stay: to look for garbage among them takes a
+    # sixth of the time until the page is there.
+    gc.disable()
+    reading = threading.Thread(target=_read_map, name="mesa-mobility map", daemon=True)
+    reading.start()
     # Of a page in a page, which ours is not.
     warnings.filterwarnings("ignore", "Cookies with samesite=none", UserWarning)
     import uvicorn
     from solara.server.starlette import app
 
+    from mesa_mobility.dashboard import page
+    from mesa_mobility.dashboard.recipe import Recipe
+    from mesa_mobility.registry import load_model
+
+    page.opening = model
+    first = Recipe(load_model(model))
+
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
+            # While the browser gets what the page is made of.
+            reading.join()
+            threading.Thread(
+                target=_warm_up, args=(first,), name="mesa-mobility warm-up", daemon=True
+            ).start()
             name = f"[{host}]" if ":" in host else host
             ready(f"http://{name}:{listening.getsockname()[1]}/")
 
-    Server(uvicorn.Config(app, log_level="warning")).run(sockets=[listening])
+    config = uvicorn.Config(app, log_level="warning", ws_per_message_deflate=False)
+    Server(config).run(sockets=[listening])
 
 
 def _listen(host: str, port: int) -> socket.socket:
@@ -69,10 +93,19 @@ def _listen(host: str, port: int) -> socket.socket:
     return listening
 
 
-def _warm_up() -> None:
-    """Load the shipped map and what the choice is compiled to, before anybody asks for it."""
-    from mesa_mobility.crowd import PRESETS, PedestrianModel  # noqa: F401
-    from mesa_mobility.crowd.repertoire import repertoire
+def _read_map() -> None:
+    """Read the map that ships, which most models use; the rest of the start goes on meanwhile."""
     from mesa_mobility.mobility import MobilityMap
 
-    repertoire((MobilityMap.load(),), PRESETS["default"].durations)
+    # If it cannot be read, the model that needs it says so.
+    with suppress(MobilityError):
+        MobilityMap.load()
+
+
+def _warm_up(first: Recipe) -> None:
+    """Make the model once, before a page asks for it: its kernels and what they read."""
+    # What is wrong with it, the page says.
+    with suppress(Exception):
+        first.make()
+    gc.enable()
+    gc.freeze()

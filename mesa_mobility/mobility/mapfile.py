@@ -185,11 +185,12 @@ def _decode(arrays: dict[str, NDArray[Any]]) -> MobilityMap:
     if m < 1 or (samples < 1).any():
         raise MapError("array 'durations': expected at least one option, each of 3 frames or more")
     path_offsets = np.concatenate([[0], np.cumsum(samples)])
-    running = np.cumsum(steps, axis=1, dtype=np.int64)
-    before = np.concatenate(
-        [np.zeros((3, 1), np.int64), running[:, path_offsets[1:-1] - 1]], axis=1
-    )
-    whole = (running - np.repeat(before, samples, axis=1)).T
+    whole = np.empty((len(steps[0]), 3), dtype=np.int32)
+    for axis, each in enumerate(steps):
+        # A sum over all paths may wrap round; that over one, a difference of two, is right.
+        running = np.cumsum(each, dtype=np.int32)
+        before = np.concatenate([[0], running[path_offsets[1:-1] - 1]]).astype(np.int32)
+        np.subtract(running, np.repeat(before, samples), out=whole[:, axis])
     ends = np.column_stack([arrays["end_points"], arrays["end_headings"]])
     last = path_offsets[1:] - 1
     wrong = (whole[last] != ends).any(axis=1)
@@ -203,7 +204,7 @@ def _decode(arrays: dict[str, NDArray[Any]]) -> MobilityMap:
     return MobilityMap(
         costs=(arrays["costs"] * COST_STEP).astype(np.float32),
         path_offsets=path_offsets,
-        paths=(whole * _STEPS).astype(np.float32),
+        paths=np.multiply(whole, _STEPS, dtype=np.float64).astype(np.float32),
         metadata=metadata,
         **{name: arrays[name] for name in _PLAIN},
     )

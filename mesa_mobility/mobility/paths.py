@@ -18,13 +18,15 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mesa_mobility.mobility.clusters import Clusters
-from mesa_mobility.mobility.graph import MotionGraph
+if TYPE_CHECKING:
+    from mesa_mobility.mobility.clusters import Clusters
+    from mesa_mobility.mobility.graph import MotionGraph
 
 DURATIONS = (12, 24, 45)
 """Option durations in frames; 45 frames, 1.5 s, is the paper's time step."""

@@ -12,8 +12,10 @@ from mesa_mobility.models import Doorway, OpenSpace
 
 from mesa_mobility import CostTerm
 from mesa_mobility.dashboard.charts import charts, csv_text
+from mesa_mobility.dashboard.clock import FULL_SPEED
 from mesa_mobility.dashboard.controls import recipe_of, settable
-from mesa_mobility.dashboard.session import FULL_SPEED, IF_NOW, Recipe, Session
+from mesa_mobility.dashboard.recipe import Recipe
+from mesa_mobility.dashboard.session import IF_NOW, Session
 from mesa_mobility.errors import ModelError
 
 
@@ -144,7 +146,7 @@ def test_a_run_to_its_end_counts_everybody(session):
 
 
 def test_a_page_that_no_longer_answers_holds_the_run(session, monkeypatch):
-    monkeypatch.setattr("mesa_mobility.dashboard.session.PATIENCE", 0.3)
+    monkeypatch.setattr("mesa_mobility.dashboard.shown.PATIENCE", 0.3)
     session.set_speed(FULL_SPEED)
     session.play(True)
     until(lambda: session._sent > session._seen)
