@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan import Targets
 
 
-class People(mesa.Model):
+class People(mesa.Model, ABC):
     """A model's people, in rows of the crowd's arrays that they keep for ever."""
 
     floor_plan: FloorPlan
@@ -189,6 +190,11 @@ class People(mesa.Model):
         core, rules = self.pedestrian_types[kind].core_radius, self._rules
         if not rules.cores:
             return places[0] if len(places) else None
+        # Whoever crosses an exit in this very frame is not inside any more, but still there.
+        crowd = self.crowd
+        leaving = np.flatnonzero(crowd.gone[: self.count] == self.frame)
+        x, y = places[:, :1] - crowd.x[leaving], places[:, 1:] - crowd.y[leaving]
+        places = places[(np.hypot(x, y) >= core + crowd.core[leaving]).all(axis=1)]
         free = first_free(
             places, core, self.frame, self._present, self._repertoire.table, self.crowd.records,
             rules.search_radius,
@@ -267,6 +273,7 @@ class People(mesa.Model):
                 "expected room for both bodies"
             )
 
+    @abstractmethod
     def _set_targets(
         self,
         rows: NDArray[np.int64],
@@ -274,7 +281,6 @@ class People(mesa.Model):
         waiting: NDArray[np.bool_] | None = None,
     ) -> Targets:
         """Give the people in ``rows``, who are among those ``inside``, their targets."""
-        raise NotImplementedError
 
     def _write_space(self) -> None:
         if len(self._rows):
