@@ -225,6 +225,8 @@ def screenshots(browser: Browser, folder: Path) -> None:
         page.get_by_role("button", name="Pause", exact=True).click()
         page.wait_for_timeout(1500)
         page.locator(".mm-charts").screenshot(path=folder / "dashboard_charts.png")
+        # What is outside the window is not in a picture.
+        page.set_viewport_size({"width": 1440, "height": 1400})
         page.get_by_role("tab", name="Mobility map").click()
         page.get_by_label("cluster, 0 to").fill("3")
         page.get_by_label("cluster, 0 to").press("Enter")

@@ -89,7 +89,7 @@ def chart_option(
         "color": list(COLOURS),
         "title": {"text": f"{title} ({unit})", "textStyle": {"fontSize": 13}, "left": 4, "top": 2},
         "legend": {"show": len(drawn) > 1, "top": 22, "type": "scroll", "itemWidth": 14},
-        "grid": {"left": 44, "right": 14, "top": 48 if len(drawn) > 1 else 32, "bottom": 24},
+        "grid": {"left": 44, "right": 22, "top": 48 if len(drawn) > 1 else 32, "bottom": 24},
         "tooltip": {"trigger": "axis"},
         "xAxis": {"type": "value", "min": 0, "axisLabel": {"formatter": "{value} s"}},
         "yAxis": {"type": "value", "min": 0},

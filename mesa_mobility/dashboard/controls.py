@@ -150,6 +150,7 @@ def _Text(
         messages=[error or description] if error or description else [],
         hide_details="auto",
         dense=True,
+        class_="mb-1",
         attributes={"aria-label": says or label},
     )
 
@@ -218,7 +219,8 @@ def TimeControls(session: Session) -> None:
         set_colour(name)
         session.colour_by(name)
 
-    with solara.Row(gap="8px", style={"align-items": "center", "flex-wrap": "wrap"}):
+    row = {"align-items": "center", "flex-wrap": "wrap", "padding-top": "14px"}
+    with solara.Row(gap="8px", style=row):
         solara.Button(
             "Pause" if playing else "Play",
             icon_name="mdi-pause" if playing else "mdi-play",

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import solara
+from mesa_mobility.dashboard.canvases import canvas_component
 
 
-@solara.component_vue("crowd_view.vue")
+@canvas_component("crowd_view.vue")
 def CrowdCanvas(
     floor: dict[str, Any],
     frame: dict[str, Any] = {},  # noqa: B006

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import solara
+from mesa_mobility.dashboard.canvases import canvas_component
 
 
-@solara.component_vue("decision_view.vue")
+@canvas_component("decision_view.vue")
 def DecisionCanvas(
     floor: dict[str, Any],
     decision: dict[str, Any] = {},  # noqa: B006

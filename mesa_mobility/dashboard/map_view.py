@@ -10,9 +10,10 @@ import solara
 
 from mesa_mobility import MobilityMap
 from mesa_mobility.dashboard import map_data
+from mesa_mobility.dashboard.canvases import canvas_component
 
 
-@solara.component_vue("cluster_view.vue")
+@canvas_component("cluster_view.vue")
 def ClusterCanvas(cluster: dict[str, Any]) -> None:
     """One cluster's options and mean pose; ``cluster`` is what ``map_data.cluster`` makes."""
 
@@ -115,6 +116,7 @@ def coverage_option(mobility_map: MobilityMap, rows: slice) -> dict[str, Any]:
         ]
         for speed, turn, count in cells
     ]
+    most = max((count for *_, count in cells), default=1)
     return {
         "animation": False,
         "title": {
@@ -134,7 +136,7 @@ def coverage_option(mobility_map: MobilityMap, rows: slice) -> dict[str, Any]:
         },
         "visualMap": {
             "min": 0, "max": max((row[2] for row in data), default=1), "dimension": 2,
-            "right": 0, "top": "middle", "calculable": True, "text": ["many", "one"],
+            "right": 0, "top": "middle", "text": [f"{most} options", "1 option"],
             "inRange": {"color": ["#fde725", "#5ec962", "#21918c", "#3b528b", "#440154"]},
         },
         "series": [{"type": "heatmap", "data": data}],
