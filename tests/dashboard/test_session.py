@@ -200,3 +200,21 @@ def test_recipes_come_from_what_the_constructor_takes():
     assert "record" not in settable(Doorway)
     with pytest.raises(ModelError, match="preset=fast"):
         recipe_of(Doorway, {"preset": "fast"})
+
+
+def test_models_are_made_one_at_a_time():
+    class Slow:
+        under_way, most = 0, 0
+
+        def __init__(self):
+            Slow.under_way += 1
+            Slow.most = max(Slow.most, Slow.under_way)
+            time.sleep(0.05)
+            Slow.under_way -= 1
+
+    makers = [threading.Thread(target=Recipe(Slow).make) for _ in range(4)]
+    for each in makers:
+        each.start()
+    for each in makers:
+        each.join()
+    assert Slow.most == 1
