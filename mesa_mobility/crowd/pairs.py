@@ -58,11 +58,20 @@ def pair_cost(
     ``others`` must be in full lanes (see ``fill_lane``).
     """
     total = 0.0
+    costs = others[COST]
     for t in range(len(terms.pair_address)):
         _call_pair_loop(me, k, ends, in_lanes(count), others, state, terms, t)
         summed = 0.0
-        for a in range(count):
-            summed += others[COST, a]
+        for first in range(0, count, LANES):
+            # Most neighbours are too far away to cost anything, and each addition waits for the
+            # one before.
+            lane = costs[first : first + LANES]
+            some = 0
+            for a in range(LANES):
+                some |= int(lane[a] != 0.0)
+            if some != 0:
+                for a in range(min(LANES, count - first)):
+                    summed += lane[a]
         total += terms.pair_weight[t] * summed
     return total
 

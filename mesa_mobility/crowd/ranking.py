@@ -44,20 +44,24 @@ def least(values: NDArray[np.float64]) -> float:
 def sift_down(key: NDArray[np.float64], item: NDArray[np.int64], size: int, root: int) -> None:
     """Restore the heap order (least key first; lower item first among equals) below ``root``."""
     k, v = key[root], item[root]
-    while True:
-        child = 2 * root + 1
-        if child >= size:
-            break
-        right = child + 1
-        if right < size and (
-            key[right] < key[child] or (key[right] == key[child] and item[right] < item[child])
-        ):
-            child = right
+    # Unsigned: no test whether an index counts from the end. The lesser child is found without a
+    # branch, as which one it is cannot be foreseen.
+    one, two, end = np.uint64(1), np.uint64(2), np.uint64(size)
+    at = np.uint64(root)
+    child = two * at + one
+    while child < end:
+        if child + one < end:
+            left, right = key[child], key[child + one]
+            second = right < left
+            if right == left:
+                second = item[child + one] < item[child]
+            child += np.uint64(second)
         if k < key[child] or (k == key[child] and v < item[child]):
             break
-        key[root], item[root] = key[child], item[child]
-        root = child
-    key[root], item[root] = k, v
+        key[at], item[at] = key[child], item[child]
+        at = child
+        child = two * at + one
+    key[at], item[at] = k, v
 
 
 @lean()
