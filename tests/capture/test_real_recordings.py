@@ -30,10 +30,14 @@ def legs_of(recording):
 
 
 @pytest.fixture(scope="module")
-def able_bodied(captures_dir):
-    return load_clips(
-        read_manifest(captures_dir / "manifest.tsv"), pedestrian_type="able_bodied"
-    ).recordings
+def every_clip(captures_dir):
+    """All clips, each followed by its mirror image."""
+    return load_clips(read_manifest(captures_dir / "manifest.tsv"), minimum_frames=1)
+
+
+@pytest.fixture(scope="module")
+def able_bodied(every_clip):
+    return [each for each in every_clip.recordings if each.clip.type == "able_bodied"]
 
 
 @pytest.mark.parametrize("clip", TWINS)
@@ -63,14 +67,13 @@ def test_the_fifth_twin_has_the_leg_bones_of_its_subject_s_bvh(captures_dir):
     np.testing.assert_allclose(*lengths, atol=1e-5)
 
 
-def test_every_clip_loads(captures_dir):
+def test_every_clip_loads(captures_dir, every_clip):
     rows = rows_of(captures_dir)
-    loaded = load_clips(
-        read_manifest(captures_dir / "manifest.tsv"), mirrored=False, minimum_frames=1
-    )
-    assert len(loaded.recordings) == len(rows)
-    assert loaded.skipped == []
-    for recording in loaded.recordings:
+    recordings = every_clip.recordings[::2]
+    assert {recording.clip.file for recording in recordings} == set(rows)
+    assert len(recordings) == len(rows)
+    assert every_clip.skipped == []
+    for recording in recordings:
         # The manifest rounds the number of poses in its own way.
         poses = int(rows[recording.clip.file]["poses_30hz"])
         assert abs(recording.frames - poses) <= 1, recording.name
