@@ -26,6 +26,7 @@ from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.crowd.terms_table import compile_terms
 from mesa_mobility.threads import THREADS
 
 _COMMAND = "from mesa_mobility.crowd.ahead import compile_decisions; compile_decisions()"
@@ -42,6 +43,7 @@ def compiling_ahead() -> Iterator[None]:
     other = _start()
     try:
         yield
+        compile_the_rest()
         # If it comes to grief, this process compiles what is missing.
         other.wait()
     finally:
@@ -62,10 +64,17 @@ def _start() -> subprocess.Popen[bytes]:
     )
 
 
-def compile_decisions() -> None:
-    """Compile what makes people decide and moves them, by the decisions of nobody."""
-    gc.disable()
-    table = OptionTable(
+def compile_the_rest() -> None:
+    """Compile what a run needs beside decisions: cost terms, and what moves people."""
+    compile_terms(preset_named("default").make_terms())
+    nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
+    due(nobody, 0, crowd.records, nobody)
+    move(nobody, 0, _table(), crowd.records)
+
+
+def _table() -> OptionTable:
+    """A table of one option."""
+    return OptionTable(
         offsets=np.array([0, 1]),
         groups=np.zeros(1, dtype=np.int64),
         farthest=np.zeros(1),
@@ -73,6 +82,12 @@ def compile_decisions() -> None:
         heading=np.zeros(1, dtype=np.float32),
         path=np.zeros((1, 3, SAMPLES), dtype=np.float32),
     )
+
+
+def compile_decisions() -> None:
+    """Compile what makes people decide, by the decisions of nobody."""
+    gc.disable()
+    table = _table()
     around = Surroundings(
         segments=np.empty((0, 4)),
         x0=0.0,
@@ -90,6 +105,4 @@ def compile_decisions() -> None:
     repertoire = Repertoire((), table, make_groups(table), standing, first, standing, 1.0, 1.0)
     decisions = Decisions(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
     nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
-    decisions.take(nobody, 0, nobody, crowd, around, preset_named("default").make_terms())
-    due(nobody, 0, crowd.records, nobody)
-    move(nobody, 0, table, crowd.records)
+    decisions.take(nobody, 0, nobody, crowd, around, terms=[])
