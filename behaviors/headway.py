@@ -5,15 +5,26 @@ import math
 from mesa_mobility import CompiledTerm, pair_kernel
 from mesa_mobility.errors import ModelError
 
+# Whoever covers no more ground than this in a movement stands, metres.
+STANDS = 0.01
+
 
 @pair_kernel
 def _headway(  # type: ignore[no-untyped-def]
     x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
 ):
+    mx = ux
+    my = uy
+    if speed * duration <= STANDS:
+        mx = tx - sx
+        my = ty - sy
+        way = math.sqrt(mx * mx + my * my)
+        mx = mx / way if way > 0.0 else 0.0
+        my = my / way if way > 0.0 else 0.0
     dx = nx + nvx * duration - x
     dy = ny + nvy * duration - y
-    ahead = dx * ux + dy * uy
-    share = 1.0 - abs(dy * ux - dx * uy) / p[2]
+    ahead = dx * mx + dy * my
+    share = 1.0 - abs(dy * mx - dx * my) / p[2]
     excess = speed - (ahead - p[0]) / p[1]
     return 1.5 * share * excess if ahead > 0.0 and share > 0.0 and excess > 0.0 else 0.0
 
@@ -22,12 +33,14 @@ class Headway(CompiledTerm):
     """Sum over neighbours ahead of how much faster an option is than the room to them allows.
 
     (v - (d - l) / T) x 1.5 where it is positive: d is how far ahead of the mobility point the
-    neighbour will be by then at constant velocity, along the facing there, v the speed of the
-    option, l the distance that people keep when they stand, T the time gap when they walk.  In
-    metres over the paper's 1.5 s.  A neighbour straight ahead counts in full, one ``width`` to the
-    side not at all.  The speed that room ahead allows is that of Tordeux, Chraibi and Seyfried's
-    collision-free speed model (Traffic and Granular Flow '15); equation (2) alone lets
-    people stand as close as their bodies are wide.
+    neighbour will be by then at constant velocity, v the speed of the option, l the distance that
+    people keep when they stand, T the time gap when they walk.  In metres over the paper's 1.5 s.
+    Ahead is where one faces there or, for an option that covers no ground, where one's target is:
+    nobody makes room by looking elsewhere.
+    A neighbour straight ahead counts in full, one ``width`` to the side not at all.  The speed
+    that room ahead allows is that of Tordeux, Chraibi and Seyfried's collision-free speed model
+    (Traffic and Granular Flow '15); equation (2) alone lets people stand as close as their bodies
+    are wide.
 
     Args:
         weight: factor in the sum.
@@ -46,7 +59,7 @@ class Headway(CompiledTerm):
     def __init__(
         self,
         weight: float | None = None,
-        distance: float = 0.37,
+        distance: float = 0.39,
         time: float = 0.1,
         width: float = 0.3,
     ) -> None:

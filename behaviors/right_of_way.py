@@ -5,6 +5,10 @@ import math
 from mesa_mobility import CompiledTerm, pair_kernel
 from mesa_mobility.errors import ModelError
 
+# Cosine of the least angle between the ways of two people who come towards each other, 120 degrees:
+# those from either side of a door do not, though each is left of the other's way.
+OPPOSED = 0.5
+
 
 @pair_kernel
 def _right_of_way(  # type: ignore[no-untyped-def]
@@ -12,7 +16,10 @@ def _right_of_way(  # type: ignore[no-untyped-def]
 ):
     along = (x - nx) * nex + (y - ny) * ney
     aside = (y - ny) * nex - (x - nx) * ney
-    oncoming = (tx - sx) * nex + (ty - sy) * ney < 0.0
+    ahead_x = tx - sx
+    ahead_y = ty - sy
+    against = -(ahead_x * nex + ahead_y * ney)
+    oncoming = against > OPPOSED * math.hypot(ahead_x, ahead_y)
     counts = along > 0.0 and (oncoming or (lead > 0.0 and along < p[2]))
     middle = p[1] if oncoming else 0.0
     off = abs(aside + middle) / (p[0] + abs(middle))
@@ -22,10 +29,11 @@ def _right_of_way(  # type: ignore[no-untyped-def]
 class RightOfWay(CompiledTerm):
     """Sum over neighbours of how far a mobility point is in the way of somebody who has priority.
 
-    Oncoming people have it, so that both make way, and people who have less far to go have it
-    over those right beside them, so that two who want the same gap do not both block it.  The cost
-    is 1 on the line from an oncoming neighbour to its target, ``beside`` on that of one who goes
-    the same way, and falls to 0 at ``width`` from it.
+    Oncoming people, whose way is at more than 120 degrees to one's own, have it, so that both
+    make way, and people who have less far to go have it over those right beside them, so that two
+    who want the same gap do not both block it.  The cost is 1 on the line from an oncoming
+    neighbour to its target, ``beside`` on that of one who goes the same way, and falls to 0 at
+    ``width`` from it.
     Oncoming people are passed on the right: on the wrong side the cost reaches ``2 bias`` farther
     and its top lies ``bias`` from the line.  How far ahead of an oncoming person a point is does
     not count: it is a reason to step aside, not to stay back.

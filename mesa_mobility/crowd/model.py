@@ -105,7 +105,7 @@ class PedestrianModel(CrowdMeasures, People):
             raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
         rules = preset_named(preset)
         self.preset = rules.name
-        self._impatience = rules.impatience
+        self._abreast, self._impatience = rules.abreast, rules.impatience
         self.floor_plan = floor_plan
         self.pedestrian_types = types_of(mobility_map, pedestrian_types)
         self._repertoire = repertoire(
@@ -286,7 +286,7 @@ class PedestrianModel(CrowdMeasures, People):
         )
         return set_wishes(
             deciding, state, self.floor_plan, self.target_choice, self.paces, waiting,
-            self._impatience,
+            abreast=self._abreast, impatience=self._impatience,
         )  # fmt: skip
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.crowd.state import NO_OPTION, Crowd
+from mesa_mobility.crowd.state import NO_CORNER, NO_OPTION, Crowd
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
@@ -105,6 +105,7 @@ def place(
     agenda["journey"][rows], agenda["crossed"][rows] = new.journey, 0
     agenda["checked"][rows] = frame - 1
     agenda["nearest"][rows] = np.inf
+    agenda["corner"][rows] = NO_CORNER
     agenda["group"][rows] = new.group
     agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 

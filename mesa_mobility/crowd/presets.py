@@ -23,6 +23,7 @@ class Preset:
         durations: option durations in frames.
         shares: shortened copies of the shortest options, as shares of the ground they cover.
         cores: whether bodies are hard.
+        abreast: whether a crowd spreads out to pass a corner.
         impatience: whether people who get nowhere look for a way round.
     """
 
@@ -33,6 +34,7 @@ class Preset:
     durations: tuple[int, ...]
     shares: tuple[float, ...]
     cores: bool
+    abreast: bool
     impatience: bool
 
     def make_target_choice(self) -> TargetChoice:
@@ -64,6 +66,7 @@ PRESETS = {
         durations=(45,),
         shares=(),
         cores=False,
+        abreast=False,
         impatience=False,
     ),
     # The same terms and constants, but a velocity of one's own in place of reward without
@@ -83,6 +86,7 @@ PRESETS = {
         durations=(12, 24, 45),
         shares=(0.5, 0.25, 0.0),
         cores=True,
+        abreast=True,
         impatience=True,
     ),
 }

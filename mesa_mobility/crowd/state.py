@@ -75,6 +75,7 @@ CrowdState: TypeAlias = "np.recarray[Any, Any]"
 """(n,) records of ``PERSON``, as compiled functions take them."""
 
 NO_OPTION = -1
+NO_CORNER = -1
 FALLBACK = -2
 
 
@@ -86,6 +87,7 @@ AGENDA = np.dtype(
         ("journey", "i4"),
         ("crossed", "i4"),
         ("group", "i4"),
+        ("corner", "i4"),
         ("checked", "f8"),
         ("nearest", "f8"),
         ("since", "f8"),
@@ -98,7 +100,7 @@ Fields: ``speed``, its preferred speed where nothing slows it down, m/s (``prefe
 record is that of its last decision); ``sets_off``, frame of its first decision; ``waits_until``,
 frame before which it does not walk; ``journey``, the number of its itinerary, 0 for none;
 ``crossed``, gates of it that it has crossed, looked up until frame ``checked``; ``group``, the
-number of its group, 0 for none.
+number of its group, 0 for none; ``corner``, number of the corner that its way bends at next.
 """
 
 

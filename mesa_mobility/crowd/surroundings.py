@@ -63,6 +63,15 @@ class Site:
         """Where people at ``points`` (n, 2) should aim now."""
         return self._router.targets(points, destinations)
 
+    def abreast(
+        self, points: NDArray[np.float64], targets: Targets, areas: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """(n, 2) what people at ``points`` aim at who pass a corner abreast of others.
+
+        That is within ``areas`` (n,), m2, divided by their distance of it; see ``Router.abreast``.
+        """
+        return self._router.abreast(points, targets, areas)
+
     def check_way_out(self, points: NDArray[np.float64], destination: int) -> None:
         """Raise FloorPlanError for places without a way out, were everything open."""
         lost = points[_without_way(self._router, points, destination)]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.abreast import keep_abreast
 from mesa_mobility.crowd.pace import Pace, ask_paces
 from mesa_mobility.crowd.patience import look_around
 from mesa_mobility.crowd.state import Crowd
@@ -21,6 +22,8 @@ def set_wishes(
     choice: TargetChoice,
     paces: Sequence[Pace],
     waiting: NDArray[np.bool_] | None = None,
+    *,
+    abreast: bool = False,
     impatience: bool = False,
 ) -> Targets:
     """Give those who decide their targets and the speed that they prefer here and now.
@@ -32,6 +35,7 @@ def set_wishes(
         choice: where they go.
         paces: what slows them down.
         waiting: (n,) who stays where it is, if anybody.
+        abreast: whether a crowd spreads out to pass a corner.
         impatience: whether those who get nowhere look for a way round.
 
     Raises:
@@ -39,8 +43,9 @@ def set_wishes(
     """
     rows = deciding.pedestrians
     targets = ask(choice, deciding)
-    crowd.target_x[rows], crowd.target_y[rows] = targets.points.T
     crowd.route[rows] = targets.distances
+    points = keep_abreast(deciding, targets, crowd) if abreast else targets.points
+    crowd.target_x[rows], crowd.target_y[rows] = points.T
     speeds: NDArray[np.float64] = crowd.agenda["speed"][rows]
     if plan.zones:
         speeds = speeds * plan.speed_factors(deciding.positions)

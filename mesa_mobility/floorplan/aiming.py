@@ -48,8 +48,8 @@ def aim(
     distances: NDArray[np.float64],
     follow: NDArray[np.int64],
     learn: bool,
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
-    """Targets (n, 2), gates (n,) and route lengths (n,); see `Router.targets`.
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]:
+    """Targets (n, 2), gates (n,), route lengths (n,) and corners (n, 2); see `Router.targets`.
 
     For every destination and node, `distances` is the route length in metres and
     `follow` the next node of the route (-1 where it ends). Only one thread at a time may
@@ -60,6 +60,7 @@ def aim(
     points = np.empty((n, 2))
     gates = np.full(n, -1, dtype=np.int64)
     lengths = np.full(n, np.inf)
+    corners = np.full((n, 2), -1, dtype=np.int64)
     keys = np.empty(nodes)
     seen = np.empty(nodes, dtype=np.int64)
     everything = np.arange(nodes)
@@ -91,10 +92,14 @@ def aim(
             if node < 0:
                 node = _nearest_unwalled(sight, ways, x, y, to_go, maybe)
         if node >= 0:
-            lengths[person], gates[person], points[person, 0], points[person, 1] = _aim_at(
-                sight, ways, x, y, node, to_go, after, own
-            )
-    return points, gates, lengths
+            (
+                lengths[person], gates[person], points[person, 0], points[person, 1],
+                corner,
+            ) = _aim_at(sight, ways, x, y, node, to_go, after, own)  # fmt: skip
+            if corner >= 0:
+                corners[person, 0] = corner
+                corners[person, 1] = after[corner]
+    return points, gates, lengths, corners
 
 
 @lean()
@@ -180,21 +185,23 @@ def _aim_at(
     to_go: NDArray[np.float64],
     after: NDArray[np.int64],
     own: float,
-) -> tuple[float, int, float, float]:
-    """Route length, gate and target of a person whose route starts with `node`."""
+) -> tuple[float, int, float, float, int]:
+    """Route length, gate, target and corner of a person whose route starts with `node`."""
     nx, ny = ways.xy[node]
     length = np.hypot(nx - x, ny - y) + to_go[node]
+    corner = -1
     qx, qy, away = place(sight, ways, x, y, node, after[node], own)
     if ways.kind[node] == GATE and after[node] >= 0 and np.hypot(qx - x, qy - y) < _THROUGH:
         node = after[node]
         qx, qy, away = place(sight, ways, x, y, node, after[node], own)
     elif ways.kind[node] == CORNER:
+        corner = node
         door, sx, sy = opening_behind(sight, ways, x, y, node, to_go, after, own)
         if door >= 0:
             node, qx, qy, away = door, sx, sy, length
     opening = ways.opening[node]
     if ways.kind[node] == CORNER:
-        px, py = _past_corner(sight, ways, x, y, node, after[node])
+        px, py = past_corner(sight, ways, x, y, ways.xy[node, 0], ways.xy[node, 1], after[node])
     else:
         leaves = ways.kind[node] == EXIT
         if after[node] < 0:
@@ -206,20 +213,20 @@ def _aim_at(
     if gate >= 0 and gate != opening:
         opening = gate
         px, py = _through(sight, ways, x, y, px, py, gate, own)
-    return length, opening, px, py
+        corner = -1
+    return length, opening, px, py, corner
 
 
 @lean()
-def _past_corner(
-    sight: Sight, ways: Ways, x: float, y: float, node: int, after: int
+def past_corner(
+    sight: Sight, ways: Ways, x: float, y: float, nx: float, ny: float, after: int
 ) -> tuple[float, float]:
-    """The target at a corner: straight past it, as far as the next node stays in view.
+    """The target at corner (nx, ny): straight past it, as far as the next node stays in view.
 
     A corner is there to be passed. Whoever aims at the corner itself slows down to
     stop on it, since every step on leads away from it.
     """
     clearance = ways.view_clearance
-    nx, ny = ways.xy[node]
     away = np.hypot(nx - x, ny - y)
     if away < 1e-6:
         return nx, ny

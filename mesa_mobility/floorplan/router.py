@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.aiming import UNSEEN, aim
+from mesa_mobility.floorplan.bends import pass_abreast
 from mesa_mobility.floorplan.edges import opening_segments
 from mesa_mobility.floorplan.gaps import narrow_gaps
 from mesa_mobility.floorplan.nodes import EDGE_SHARE, NODE_SHARE, VIEW_SHARE, Nodes, find_nodes
@@ -22,7 +23,9 @@ from mesa_mobility.threads import threads_for, together
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
 
-Found: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
+Found: TypeAlias = tuple[
+    NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]
+]
 
 _KIND_NAMES = ("corner", "gate", "exit")
 
@@ -43,11 +46,15 @@ class Targets:
     distances
         (n,) length of the route to the line of the exit, or of the gate to cross, in metres; inf
         where there is none.
+    corners
+        (n, 2) the corner that the way bends at next and what follows it there, as their numbers in
+        `Router.graph`; -1 where the next is a gate or exit. None where nobody can tell.
     """
 
     points: NDArray[np.float64]
     gates: NDArray[np.int64]
     distances: NDArray[np.float64]
+    corners: NDArray[np.int64] | None = None
 
 
 class Router:
@@ -153,7 +160,7 @@ class Router:
                 f"targets need a destination for each position, found {len(numbers)} for {len(xy)}"
             )
         if len(xy) == 0:
-            return Targets(xy, numbers, np.empty(0))
+            return Targets(xy, numbers, np.empty(0), np.empty((0, 2), dtype=np.int64))
         lengths, follow = self._table(int(numbers.min()), int(numbers.max()))
 
         def aims(people: NDArray[np.intp], learn: bool) -> Found:
@@ -167,10 +174,29 @@ class Router:
         if threads == 1:
             return Targets(*aims(everybody, True))
         parts = together(lambda part: aims(part, False), np.array_split(everybody, threads))
-        points, gates, route = (np.concatenate(each) for each in zip(*parts, strict=True))
+        points, gates, route, corners = (np.concatenate(each) for each in zip(*parts, strict=True))
         unseen = np.flatnonzero(gates == UNSEEN)
-        points[unseen], gates[unseen], route[unseen] = aims(unseen, True)
-        return Targets(points, gates, route)
+        points[unseen], gates[unseen], route[unseen], corners[unseen] = aims(unseen, True)
+        return Targets(points, gates, route, corners)
+
+    def abreast(
+        self, positions: NDArray[np.float64], targets: Targets, areas: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """(n, 2) points to aim at for people who pass their corner abreast of others.
+
+        Each passes at the place nearest to it, from where the way on is in view, that lies no
+        farther from the corner than its one of (n,) `areas`, m2, divided by its own distance.
+        Those who have no corner to pass, and those behind whose corner it is too narrow to go
+        abreast, keep the points of `targets`, which must be of now.
+        """
+        points = targets.points.copy()
+        if targets.corners is not None:
+            who = np.flatnonzero((targets.corners[:, 0] >= 0) & (areas > 0.0))
+            points[who] = pass_abreast(
+                self._sight, self._ways, positions[who], targets.corners[who], areas[who],
+                points[who],
+            )  # fmt: skip
+        return points
 
     def _table(self, lowest: int, highest: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Route lengths and next nodes of all destinations, (destinations, nodes) each."""

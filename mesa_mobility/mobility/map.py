@@ -21,13 +21,10 @@ from mesa_mobility.errors import MapError
 SAMPLE_SECONDS = 0.1
 """Time between two samples of a stored path: three frames at 30 Hz."""
 
-CORE_RADIUS = 0.16
+CORE_RADIUS = 0.14
 """Radius in metres of the disc that no other body enters, where a map does not say.
 
-In real queues the closest twentieth of neighbours stand 0.27 to 0.30 m apart.  A little
-more than half of that lets as many people through a door as were measured: 1.38, 1.95 and
-2.51 a second at 0.7, 0.9 and 1.2 m, against 1.41, 1.85 and 2.52 by the pooled fit
-J = 2.233 b - 0.155 of bottleneck experiments; with 0.15 m it is 2.95 at 1.2 m.
+In real queues the closest twentieth of neighbours stand 0.27 to 0.30 m apart: half of that.
 """
 
 POSITION_STEP = 0.0005

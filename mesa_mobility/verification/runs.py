@@ -16,7 +16,7 @@ from mesa_mobility.results import check_safety, crossings, flow
 FloatArray = NDArray[np.float64]
 
 CLEARANCE = 0.2
-"""Metres that people are put away from walls: a body core of 0.16 m and a little."""
+"""Metres that people are put away from walls: a body core of 0.14 m and a little."""
 
 SPACING = 0.4
 """Metres that people are put apart where a crowd is not too dense for it."""

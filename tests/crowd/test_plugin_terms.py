@@ -102,6 +102,11 @@ class Room(CostTerm):
         rows, neighbours = candidates.pairs()
         gap = candidates.predicted(rows, neighbours) - candidates.points[rows]
         c, s = np.cos(candidates.headings[rows]), np.sin(candidates.headings[rows])
+        me = candidates.owner[rows]
+        aim = candidates.targets[me] - candidates.positions[me]
+        aim = aim / np.hypot(*aim.T)[:, None]
+        stands = candidates.speeds[rows] * candidates.durations[rows] <= 0.01
+        c, s = np.where(stands, aim[:, 0], c), np.where(stands, aim[:, 1], s)
         ahead, aside = gap[:, 0] * c + gap[:, 1] * s, gap[:, 1] * c - gap[:, 0] * s
         share = np.maximum(1.0 - np.abs(aside) / term.width, 0.0) * (ahead > 0.0)
         excess = candidates.speeds[rows] - (ahead - term.distance) / term.time
@@ -122,7 +127,7 @@ class Way(CostTerm):
         aim = candidates.targets[me] - candidates.positions[me]
         along = (place * e).sum(axis=1)
         aside = place[:, 1] * e[:, 0] - place[:, 0] * e[:, 1]
-        oncoming = (aim * e).sum(axis=1) < 0.0
+        oncoming = (aim * e).sum(axis=1) < -0.5 * np.hypot(*aim.T)
         first = (candidates.leads[near] > 0.0) & (along < term.ahead)
         counts = (along > 0.0) & (oncoming | first)
         off = np.where(oncoming, np.abs(aside + term.bias) / (term.width + abs(term.bias)),

@@ -43,7 +43,7 @@ def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_short
         Headway: 2.0, RightOfWay: 2.0,
     }  # fmt: skip
     (headway,) = (term for term in model.terms if isinstance(term, Headway))
-    assert (headway.distance, headway.time, headway.width) == (0.37, 0.1, 0.3)
+    assert (headway.distance, headway.time, headway.width) == (0.39, 0.1, 0.3)
     (way,) = (term for term in model.terms if isinstance(term, RightOfWay))
     assert (way.width, way.bias, way.ahead, way.beside) == (0.4, 0.1, 0.5, 0.5)
     person = put(model, 1.0, 2.0)

@@ -1,0 +1,87 @@
+"""Passing a corner side by side."""
+
+from math import hypot
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import LineString, Polygon, box
+
+from mesa_mobility.floorplan import Exit, FloorPlan, Router, line_of_sight
+
+# Two halls at a right angle, 20 m wide both. Round their corner, (20, 20), the way on leads to the
+# right: what is behind it is in view from below y = 19.8, where the route bends.
+HALLS = FloorPlan(
+    Polygon([(0, 0), (40, 0), (40, 20), (20, 20), (20, 50), (0, 50)]),
+    exits=[Exit("end", (40, 0), (40, 20))],
+)
+BEND = (19.8, 19.8)
+DOOR = FloorPlan(
+    box(0, 0, 20, 10).union(box(20, 4.5, 20.2, 5.5)).union(box(20.2, 0, 30, 10)),
+    exits=[Exit("far", (30, 0), (30, 10))],
+)
+
+
+def aims(plan: FloorPlan, place: tuple[float, float], area: float):
+    """The point aimed at alone, and with so much area taken by those before."""
+    router = Router(plan)
+    places = np.array([place])
+    targets = router.targets(places, [0])
+    return targets.points[0], router.abreast(places, targets, np.array([area]))[0]
+
+
+def passes_at(place, point) -> float:
+    """x where the way to a point crosses the height of the bend."""
+    share = (place[1] - BEND[1]) / (place[1] - point[1])
+    return place[0] + share * (point[0] - place[0])
+
+
+@pytest.mark.parametrize(
+    ("place", "area", "out"),
+    [
+        # 16 m2 over the 8 m to the corner are 2 m; over 4 m they are 4 m.
+        ((15.0, 19.8 + (8.0**2 - 4.8**2) ** 0.5), 16.0, 2.0),
+        ((17.6, 19.8 + (4.0**2 - 2.2**2) ** 0.5), 6.4, 1.6),
+        # Nobody goes farther out than it is: straight down from 2.2 m.
+        ((17.6, 19.8 + (4.0**2 - 2.2**2) ** 0.5), 16.0, 2.2),
+        # Nor into the wall on the other side, but for a body's breadth.
+        ((0.3, 30.0), 1e6, 19.5),
+    ],
+)
+def test_those_behind_pass_farther_out(place, area, out):
+    _, point = aims(HALLS, place, area)
+    assert point[1] < BEND[1]
+    assert passes_at(place, point) == pytest.approx(BEND[0] - out, abs=0.02)
+
+
+@pytest.mark.parametrize("place", [(15.0, 26.0), (3.0, 45.0), (19.0, 21.0)])
+def test_whoever_is_first_cuts_the_corner(place):
+    alone, point = aims(HALLS, place, 0.0)
+    assert point.tolist() == alone.tolist()
+    # By the corner, or straight for the exit that is in view past it.
+    assert LineString([place, alone]).distance(LineString([BEND, BEND])) < 0.3
+
+
+@pytest.mark.parametrize("place", [(10.0, 15.0), (25.0, 10.0), (35.0, 19.0)])
+def test_who_has_no_corner_to_pass_goes_on(place):
+    alone, point = aims(HALLS, place, 100.0)
+    assert point.tolist() == alone.tolist()
+
+
+@pytest.mark.parametrize("place", [(19.0, 8.0), (15.0, 1.0), (19.7, 6.5), (12.0, 9.0)])
+@pytest.mark.parametrize("area", [0.5, 5.0, 500.0])
+def test_a_door_is_waited_for_where_it_is(place, area):
+    alone, point = aims(DOOR, place, area)
+    assert point.tolist() == alone.tolist()
+
+
+@given(x=st.floats(0.5, 19.5), y=st.floats(20.5, 49.5), area=st.floats(0.0, 500.0, allow_nan=False))
+@settings(deadline=None, max_examples=60)
+def test_what_is_aimed_at_is_in_view_and_the_more_the_farther_out(x, y, area):
+    near, far = (aims(HALLS, (x, y), a)[1] for a in (area, 2.0 * area))
+    for point in (near, far):
+        assert line_of_sight(HALLS, (x, y), point)
+    if near[1] < BEND[1] and far[1] < BEND[1]:
+        assert passes_at((x, y), far) <= passes_at((x, y), near) + 1e-9
+    assert hypot(near[0] - x, near[1] - y) > 0.0
