@@ -102,7 +102,7 @@ def free_groups(
         table: options of all capabilities.
         groups: what the groups of options span.
         state: the crowd.
-        bodies: is written; without people gone by then.
+        bodies: is written.
         circles: space to work in.
         alive: gets the groups.
 
@@ -135,8 +135,6 @@ def free_groups(
             if off_box2(somebody.x, somebody.y, x0, y0, x1, y1) >= sweep * sweep:
                 continue
             j = somebody.who
-            if 0 <= state.gone[j] <= time:
-                continue
             wx, wy = position_at(state, table, j, time)
             dx, dy = wx - me.x, wy - me.y
             px, py = np.float32(me.c * dx + me.s * dy), np.float32(me.c * dy - me.s * dx)

@@ -21,8 +21,6 @@ from mesa_mobility.jit import lean
 SLACK = 1e-5
 """Metres for the rounding of single precision."""
 
-_NOWHERE = 1e6
-
 
 class Stance(NamedTuple):
     """A pedestrian at its decision: place (m), cosine and sine of its facing, core radius (m)."""
@@ -157,10 +155,6 @@ def lay_ahead(
             jx, jy = position_at(state, table, j, frame + SAMPLE_FRAMES * k)
             to_x[k] = me.c * (jx - me.x) + me.s * (jy - me.y)
             to_y[k] = me.c * (jy - me.y) - me.s * (jx - me.x)
-    if state.gone[j] >= 0:
-        first = max(-((frame - state.gone[j]) // SAMPLE_FRAMES), 0)
-        for k in range(first, SAMPLES):
-            to_x[k] = to_y[k] = _NOWHERE
 
 
 @lean()
@@ -209,9 +203,7 @@ def meets(
         x, y = somebody.ahead[0], somebody.ahead[1]
         j = somebody.who
         least = np.float32(somebody.apart - SLACK)
-        # Of whoever leaves the samples tell too little: gone between two of them.
-        theirs = 0.5 * state.stride[j] if state.gone[j] < 0 else _NOWHERE
-        far = np.float32(least + half + theirs)
+        far = np.float32(least + half + 0.5 * state.stride[j])
         least2, far2 = least * least, far * far
         hit, near = False, False
         for k in range(SAMPLES):

@@ -157,7 +157,8 @@ def hits_neighbour(
     """Whether a path from ``frame`` on comes closer than ``clearance`` to pedestrian j's.
 
     The path has ``segments`` pieces of ``spacing`` frames; ``gone`` is the frame at
-    which it has crossed an exit, or -1.
+    which it has crossed an exit, or -1: what comes then does not matter.  Whoever else crosses
+    one is there all the same.
     """
     my_end = frame + spacing * segments
     their_end, start, step = state.end[j], state.start[j], state.spacing[j]
@@ -165,8 +166,6 @@ def hits_neighbour(
     stop = max(my_end, their_end)
     if gone >= 0:
         stop = min(stop, gone)
-    if state.gone[j] >= 0:
-        stop = min(stop, state.gone[j])
     c = clearance + MARGIN
     limit = c * c
     jx, jy = position_at(state, table, j, frame)

@@ -11,6 +11,7 @@ from mesa.datacollection import DataCollector
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.batch import make_candidates
+from mesa_mobility.crowd.beyond import Beyond
 from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.decisions import Decisions
@@ -151,6 +152,7 @@ class PedestrianModel(CrowdMeasures, People):
             n_agents=64,
         )
         self._rows = np.empty(0, dtype=np.int64)
+        self._beyond = Beyond()
         self._agents_by_row: list[Pedestrian | None] = []
         self._stall_watch = StallWatch()
         self.stalled = False
@@ -224,6 +226,7 @@ class PedestrianModel(CrowdMeasures, People):
                 progress(self.elapsed, self.inside)
 
     def _advance(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        self._beyond.set_off(self.frame, self.crowd)
         if self.sources:
             newcomers = self._let_in()
             rows = np.concatenate([rows, newcomers])
@@ -246,12 +249,14 @@ class PedestrianModel(CrowdMeasures, People):
         if len(deciding):
             self._decide(deciding, rows)
         self.frame += 1
+        self._beyond.move(self.frame, self.crowd)
         left, speeds = move(rows, self.frame, self._repertoire.table, self.crowd.records)
         self._walked += speeds
         if self.recorder is not None:
             self.recorder.add(self.frame, rows, self.crowd)
         if left:
             self.last_left = self.elapsed
+            self._beyond.add(rows[~self.crowd.active[rows]])
             rows = rows[self.crowd.active[rows]]
         if self.frame % round(self.frame_rate) == 0:
             self.occupancy.append((self.elapsed, len(rows)))
@@ -264,7 +269,13 @@ class PedestrianModel(CrowdMeasures, People):
         # Those nearest to where they go decide first: that frees space for those behind.
         order = deciding[np.argsort(targets.distances, kind="stable")]
         self._decisions.take(
-            order, self.frame, rows, self.crowd, self._site.surroundings, self.terms, self.watch
+            order,
+            self.frame,
+            self._beyond.together_with(rows),
+            self.crowd,
+            self._site.surroundings,
+            self.terms,
+            self.watch,
         )
 
     def _set_targets(
@@ -307,4 +318,6 @@ class PedestrianModel(CrowdMeasures, People):
         return self._decisions.judge(weighed, self.crowd, self._site.surroundings)
 
     def _grid(self) -> Grid:
-        return build_grid(self._rows, self.crowd.x, self.crowd.y)
+        self._beyond.set_off(self.frame, self.crowd)
+        rows = self._beyond.together_with(self._rows)
+        return build_grid(rows, self.crowd.x, self.crowd.y)

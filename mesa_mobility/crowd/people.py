@@ -10,6 +10,7 @@ import mesa
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.crowd.beyond import Beyond
 from mesa_mobility.crowd.journeys import Journeys
 from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
@@ -59,6 +60,7 @@ class People(mesa.Model, ABC):
     _entrances: list[Entrance]
     preset: str
     _rows: NDArray[np.int64]
+    _beyond: Beyond
     _agents_by_row: list[Pedestrian | None]
 
     def add_pedestrians(
@@ -190,13 +192,10 @@ class People(mesa.Model, ABC):
         core, rules = self.pedestrian_types[kind].core_radius, self._rules
         if not rules.cores:
             return places[0] if len(places) else None
-        # Whoever crosses an exit in this very frame is not inside any more, but still there.
-        crowd = self.crowd
-        leaving = np.flatnonzero(crowd.gone[: self.count] == self.frame)
-        x, y = places[:, :1] - crowd.x[leaving], places[:, 1:] - crowd.y[leaving]
-        places = places[(np.hypot(x, y) >= core + crowd.core[leaving]).all(axis=1)]
+        # Whoever has just crossed an exit is not inside any more, but still there.
+        there = self._beyond.together_with(self._present)
         free = first_free(
-            places, core, self.frame, self._present, self._repertoire.table, self.crowd.records,
+            places, core, self.frame, there, self._repertoire.table, self.crowd.records,
             rules.search_radius,
         )  # fmt: skip
         return places[free] if free >= 0 else None

@@ -55,13 +55,14 @@ def plan(width: float) -> FloorPlan:
     )
 
 
-def bottleneck(seed: int, *, width: float, people: int = PEOPLE) -> dict[str, Any]:
+def bottleneck(seed: int, *, width: float, people: int = PEOPLE, **rules: Any) -> dict[str, Any]:
     """People leave a holding area, 3 persons/m2 at the start, through a neck.
 
     Args:
         seed: of the run.
         width: of the neck, metres.
         people: how many.
+        **rules: other than those of the default preset, as ``PedestrianModel`` takes them.
 
     Returns:
         With what every run tells: ``flow_per_s`` between the 30th and the 150th passage of the
@@ -69,7 +70,7 @@ def bottleneck(seed: int, *, width: float, people: int = PEOPLE) -> dict[str, An
         individual Voronoi density in a box 2 m x 1 m, half a metre in front of it.
     """
     floor = plan(width)
-    model = crowd_model(floor, seed)
+    model = crowd_model(floor, seed, **rules)
     places = floor.random_points(
         people, model.rng, within=START, spacing=SPACING, clearance=CLEARANCE
     )

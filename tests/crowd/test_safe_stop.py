@@ -9,8 +9,8 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from tests.fixtures.counting import overlaps
-from tests.fixtures.maps import make_map, stand, straight, wanderer
-from tests.fixtures.scenes import advance, corridor, model_of, put
+from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
+from tests.fixtures.scenes import advance, corridor, model_of, put, statues
 
 
 @pytest.mark.parametrize(("gap", "metres"), [(1.0, 0.5), (2.0, 1.875)])
@@ -48,15 +48,33 @@ def test_mine_held_at_its_end_while_the_neighbours_goes_on(walker_y, stays, whol
     assert (me.position[1] == pytest.approx(1.0)) == stays
 
 
-def test_somebody_who_leaves_is_not_in_the_way_after_that():
-    # The one in front leaves after 0.4 s; where its option would have ended does not matter.
+@pytest.mark.parametrize(("length", "follows"), [(6.0, False), (5.7, True)])
+def test_somebody_who_leaves_is_there_behind_the_exit_too(length, follows):
+    # The one in front leaves within 0.4 s, and its movement ends at 6.1 m: 0.125 m beyond where
+    # the other's would, unless that one has left by then as well.
     short = make_map([[straight(0.5, 12, to=0)]])
     either = make_map([[stand(), straight(1.875, 45, to=0)]])
-    model = model_of(corridor(length=6.0), [short, either], behaviors=[Displacement()])
+    model = model_of(corridor(length=length), [short, either], behaviors=[Displacement()])
     put(model, 5.6, 2.0)
     behind = put(model, 4.1, 2.0, kind=1)
     advance(model, 1)
-    assert behind.speed == pytest.approx(1.25)
+    assert behind.speed == pytest.approx(1.25 if follows else 0.0)
+
+
+def test_whoever_has_left_walks_on_for_a_while():
+    # It crosses the line at 6 m in frame 12 and walks on at the 1 m/s that it likes: for 1.5 s
+    # it is a neighbour of those behind, and no longer.
+    model = model_of(corridor(length=6.0), [strider(), statues()])
+    put(model, 5.52, 2.0, preferred_speeds=[1.25])
+    behind = put(model, 5.0, 1.0, kind=1)
+    seen = []
+    for _ in range(75):
+        advance(model, 1)
+        seen.append(behind.movement_options().neighbour_positions[:, 0].tolist())
+    assert seen[11] == pytest.approx([6.02])
+    assert seen[41] == pytest.approx([6.02 + 1.25])
+    assert seen[55] == pytest.approx([6.02 + 1.25 * 44 / 30])
+    assert seen[57] == []
 
 
 def test_closest_approach_between_samples_of_two_who_move(whole):

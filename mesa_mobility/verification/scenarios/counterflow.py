@@ -23,7 +23,7 @@ LIMIT_S = 300.0
 """FDS+Evac needs 136 s for 100 against 100; who has not come through in 300 s is stuck."""
 
 
-def counterflow(seed: int, *, opposing: int, people: int = 100) -> dict[str, Any]:
+def counterflow(seed: int, *, opposing: int, people: int = 100, **rules: Any) -> dict[str, Any]:
     """100 people cross from room 1 to room 2 while others come the other way.
 
     They leave by the far wall of the room that they go to, which is open over its whole width:
@@ -33,13 +33,14 @@ def counterflow(seed: int, *, opposing: int, people: int = 100) -> dict[str, Any
         seed: of the run.
         opposing: people who start in room 2.
         people: people who start in room 1.
+        **rules: other than those of the default preset, as ``PedestrianModel`` takes them.
     """
     plan = FloorPlan(
         ROOMS,
         exits=[Exit("room 2", (30.0, 0.0), (30.0, 10.0)), Exit("room 1", (0.0, 0.0), (0.0, 10.0))],
         gates=[Gate("entrance 1", (10.0, 4.0), (10.0, 6.0)), Gate("entrance 2", *ENTRANCE_2)],
     )
-    model = crowd_model(plan, seed)
+    model = crowd_model(plan, seed, **rules)
     for count, start, goal in ((people, START_1, "room 2"), (opposing, START_2, "room 1")):
         if count:
             places = plan.random_points(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,10 +110,11 @@ def oval_model(
     speed: float | None = None,
     spacing: float,
     clearance: float,
+    **rules: Any,
 ) -> PedestrianModel:
     """People all over an oval, walking round it for ever, counter-clockwise."""
     plan = oval.plan()
-    model = crowd_model(plan, seed)
+    model = crowd_model(plan, seed, **rules)
     places = plan.random_points(people, model.rng, spacing=spacing, clearance=clearance)
     names = [gate.name for gate in plan.gates]
     lines = oval.unroll(np.array([gate.midpoint for gate in plan.gates]))[0]

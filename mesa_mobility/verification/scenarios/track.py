@@ -32,6 +32,7 @@ def track(
     speed: float | None = None,
     settle_s: float = 30.0,
     measure_s: float = 60.0,
+    **rules: Any,
 ) -> dict[str, Any]:
     """People walk round an oval; who is in the middle of a straight is measured each second.
 
@@ -42,6 +43,7 @@ def track(
         speed: preferred by everybody, m/s; by default the type's own spread.
         settle_s: seconds before anything is measured.
         measure_s: seconds that count.
+        **rules: other than those of the default preset, as ``PedestrianModel`` takes them.
 
     Returns:
         With what every run tells: ``density`` (k,) individual Voronoi densities and ``along``
@@ -50,7 +52,7 @@ def track(
     """
     oval = Oval(STRAIGHT, RADIUS, width)
     people = round(density * oval.length * oval.width)
-    model = oval_model(oval, people, seed, speed=speed, spacing=DENSEST, clearance=0.18)
+    model = oval_model(oval, people, seed, speed=speed, spacing=DENSEST, clearance=0.18, **rules)
     while model.elapsed < settle_s + measure_s + WINDOW_S:
         model.step()
     run = Run(model, model.floor_plan.walls)

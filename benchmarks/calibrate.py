@@ -1,0 +1,191 @@
+"""How well do the numbers of the default preset fit what was measured, and what if not those?
+
+python benchmarks/calibrate.py calibration.jsonl [--seeds 2] [--jobs 2] [--minutes 9]
+
+Changes each number by itself to a smaller and a larger value (``GRID``), runs bottlenecks, a
+corridor and a counterflow with it, and appends one JSON line for each setting and seed; goes on
+where the file ends. Then it prints, in Markdown, each figure's deviation from what was measured and
+the objective: the mean square of (figure - middle) / half the width of what was measured.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mesa_mobility.behaviors import (
+    FacingDeviation,
+    Headway,
+    Interference,
+    PreferredVelocity,
+    RightOfWay,
+    TargetDistance,
+)
+
+from mesa_mobility import MobilityMap, PedestrianType
+from mesa_mobility.crowd.presets import PRESETS
+from mesa_mobility.mobility.map import CORE_RADIUS
+from mesa_mobility.results.files import json_text
+from mesa_mobility.validation.bottleneck import DENSITY_IN_FRONT, bottleneck
+from mesa_mobility.verification.references import (
+    BOTTLENECK_TOLERANCE,
+    bottleneck_fit,
+    corridor_band,
+)
+from mesa_mobility.verification.scenarios.counterflow import counterflow
+from mesa_mobility.verification.scenarios.track import track
+
+_TERMS = PRESETS["default"].terms
+_HEADWAY, _WAY = Headway(), RightOfWay()
+
+DEFAULT: dict[str, float] = {
+    **{f"weight of {name}": weight for name, weight in _TERMS.items() if name != "target_distance"},
+    "headway distance m": _HEADWAY.distance,
+    "headway time s": _HEADWAY.time,
+    "headway width m": _HEADWAY.width,
+    "right of way width m": _WAY.width,
+    "right of way bias m": _WAY.bias,
+    "right of way ahead m": _WAY.ahead,
+    "right of way beside": _WAY.beside,
+    "core radius m": CORE_RADIUS,
+}
+"""What was chosen. The weight of target_distance is the unit."""
+
+GRID: dict[str, tuple[float, float]] = {
+    **{name: (0.5 * value, 1.5 * value) for name, value in DEFAULT.items()},
+    "headway distance m": (0.36, 0.42),
+    "headway time s": (0.05, 0.3),
+    "core radius m": (0.12, 0.16),
+}
+"""The smaller and the larger value that each is changed to."""
+
+WIDTHS = (0.9, 1.2, 2.0)
+DENSITIES = (0.5, 2.1)
+IN_FRONT_OF = 1.0
+
+
+def settings() -> list[dict[str, float]]:
+    """The default first, then one change at a time."""
+    return [{}, *({name: value} for name, pair in GRID.items() for value in pair)]
+
+
+def rules(changes: dict[str, float]) -> dict[str, Any]:
+    """What a model gets for these numbers."""
+    of = DEFAULT | changes
+    weights = {name: of.get(f"weight of {name}", 1.0) for name in _TERMS}
+    return {
+        "behaviors": [
+            TargetDistance(weights["target_distance"]),
+            FacingDeviation(weights["facing_deviation"]),
+            PreferredVelocity(weights["preferred_velocity"]),
+            Interference(weights["interference"]),
+            Headway(
+                weights["headway"],
+                distance=of["headway distance m"],
+                time=of["headway time s"],
+                width=of["headway width m"],
+            ),
+            RightOfWay(
+                weights["right_of_way"],
+                width=of["right of way width m"],
+                bias=of["right of way bias m"],
+                ahead=of["right of way ahead m"],
+                beside=of["right of way beside"],
+            ),
+        ],
+        "pedestrian_types": [
+            PedestrianType(mobility_map=MobilityMap.load(), core_radius=of["core radius m"])
+        ],
+    }
+
+
+def measure(changes: dict[str, float], seed: int) -> dict[str, float]:
+    """The figures of one setting; nan where people got stuck."""
+    figures: dict[str, Any] = {}
+    for width in (*WIDTHS, IN_FRONT_OF):
+        run = bottleneck(seed, width=width, **rules(changes))
+        if width == IN_FRONT_OF:
+            figures[f"density before {width:g} m"] = run["density_in_front"]
+        else:
+            figures[f"flow {width:g} m"] = run["flow_per_s"]
+    for density in DENSITIES:
+        run = track(seed, density=density, width=1.8, **rules(changes))
+        here = np.abs(run["density"] - density) < 0.125
+        figures[f"speed at {density:g}/m2"] = float(np.median(run["along"][here]))
+    run = counterflow(seed, opposing=100, **rules(changes))
+    figures["through the counterflow"] = float(run["pedestrians"] - run["left_inside"])
+    return {
+        name: float("nan") if value is None else float(value) for name, value in figures.items()
+    }
+
+
+def wanted() -> dict[str, tuple[float, float]]:
+    """Middle and half the width of what was measured."""
+    middle, half = np.mean(DENSITY_IN_FRONT), np.ptp(DENSITY_IN_FRONT) / 2
+    bands = {f"flow {w:g} m": (bottleneck_fit(w), BOTTLENECK_TOLERANCE) for w in WIDTHS}
+    bands[f"density before {IN_FRONT_OF:g} m"] = (float(middle), float(half))
+    for density in DENSITIES:
+        low, _, high = corridor_band(density)
+        bands[f"speed at {density:g}/m2"] = (float(low + high) / 2, float(high - low) / 2)
+    return bands
+
+
+def main() -> None:
+    """Run what is missing, then print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path, help="one JSON line a setting and seed")
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--minutes", type=float, default=9.0, help="wait for no result after this")
+    given = parser.parse_args()
+    lines = given.file.read_text(encoding="utf-8").splitlines() if given.file.exists() else []
+    done = {
+        (json_text(row["changes"]), row["seed"]): row["figures"] for row in map(json.loads, lines)
+    }
+    asked = [(each, seed) for each in settings() for seed in range(1, given.seeds + 1)]
+    missing = [(each, seed) for each, seed in asked if (json_text(each), seed) not in done]
+    until = time.monotonic() + 60.0 * given.minutes
+    with given.file.open("a", encoding="utf-8") as file, ProcessPoolExecutor(given.jobs) as pool:
+        while missing and time.monotonic() < until:
+            batch, missing = missing[: given.jobs], missing[given.jobs :]
+            running = {pool.submit(measure, each, seed): (each, seed) for each, seed in batch}
+            for future in as_completed(running):
+                each, seed = running[future]
+                row = {"changes": each, "seed": seed, "figures": future.result()}
+                file.write(json_text(row) + "\n")
+                file.flush()
+                done[json_text(each), seed] = row["figures"]
+    report(done)
+
+
+def report(done: dict[tuple[str, int], dict[str, float]]) -> None:
+    """One line for each setting: medians over its seeds, and the objective."""
+    bands = wanted()
+    names = [*bands, "through the counterflow"]
+    print("| number | value | " + " | ".join(names) + " | objective |")
+    print("|---" * (len(names) + 3) + "|")
+    print("| measured | | "
+          + " | ".join(f"{m:.2f} ± {h:.2f}" for m, h in bands.values()) + " | 200 | |")  # fmt: skip
+    for each in settings():
+        rows = [figures for (key, _), figures in done.items() if key == json_text(each)]
+        if not rows:
+            continue
+        medians = {name: float(np.median([_number(row[name]) for row in rows])) for name in names}
+        off = [((medians[name] - middle) / half) ** 2 for name, (middle, half) in bands.items()]
+        ((name, value),) = each.items() or [("default", None)]
+        shown = "" if value is None else f"{value:.3g}"
+        cells = " | ".join(f"{medians[n]:.3g}" for n in names)
+        print(f"| {name} | {shown} | {cells} | {np.mean(off):.2f} |")
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else value
+
+
+if __name__ == "__main__":
+    main()

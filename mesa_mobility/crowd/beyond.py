@@ -1,0 +1,74 @@
+"""Whoever has crossed an exit walks on.
+
+People leave the model at the line of an exit, but not the world: those behind them still have them
+ahead.  Were they gone at once, an exit would let more people through than the same door
+with a floor behind it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.motion import commit
+from mesa_mobility.crowd.state import Crowd, CrowdState
+from mesa_mobility.jit import called
+
+WALKS_ON = 45
+"""Frames for which somebody is still there: 1.5 s, the longest that anybody looks ahead."""
+
+_SECONDS = 1.5
+
+
+class Beyond:
+    """Those who have left the model a moment ago.
+
+    Attributes:
+        rows: their rows in the crowd, in order.
+    """
+
+    def __init__(self) -> None:
+        self.rows = np.empty(0, dtype=np.int64)
+        self._new = self.rows
+
+    def add(self, rows: NDArray[np.int64]) -> None:
+        """People have crossed an exit in this frame."""
+        self.rows = np.sort(np.concatenate([self.rows, rows]))
+        self._new = np.concatenate([self._new, rows])
+
+    def set_off(self, frame: int, crowd: Crowd) -> None:
+        """Have those who are new set off at their preferred speed, the way they went."""
+        if len(self._new):
+            _walk_on(self._new, frame, np.empty((3, 2)), crowd.records)
+            self._new = self._new[:0]
+
+    def move(self, frame: int, crowd: Crowd) -> None:
+        """Put them where they are at ``frame``, and forget those who are far enough away."""
+        self.rows = rows = self.rows[crowd.end[self.rows] > frame]
+        u = (frame - crowd.start[rows]) / WALKS_ON
+        crowd.x[rows] = crowd.from_x[rows] + u * (crowd.to_x[rows] - crowd.from_x[rows])
+        crowd.y[rows] = crowd.from_y[rows] + u * (crowd.to_y[rows] - crowd.from_y[rows])
+
+    def together_with(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """These rows and those of the people beyond, in order."""
+        return np.sort(np.concatenate([rows, self.rows])) if len(self.rows) else rows
+
+
+@called()
+def _walk_on(
+    rows: NDArray[np.int64], frame: int, path: NDArray[np.float64], state: CrowdState
+) -> None:
+    for i in rows:
+        speed = math.sqrt(state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i])
+        length = state.preferred[i] * _SECONDS if speed > 0.0 else 0.0
+        path[0, 0], path[1, 0], path[2, :] = state.x[i], state.y[i], state.heading[i]
+        path[0, 1] = state.x[i] + length * state.vx[i] / max(speed, 1e-9)
+        path[1, 1] = state.y[i] + length * state.vy[i] / max(speed, 1e-9)
+        commit(
+            i, state.option[i], frame, np.int64(1), np.int64(WALKS_ON), np.int64(-1),
+            state.cluster[i], path, state,
+        )  # fmt: skip
+        state.target_x[i], state.target_y[i] = path[0, 1], path[1, 1]
+        state.route[i] = 0.0
