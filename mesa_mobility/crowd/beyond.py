@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.motion import commit
+from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.jit import called
 
 WALKS_ON = 45
 """Frames for which somebody is still there: 1.5 s, the longest that anybody looks ahead."""
 
-_SECONDS = 1.5
+_SECONDS = WALKS_ON * FRAME_SECONDS
 
 
 class Beyond:
@@ -35,7 +36,7 @@ class Beyond:
 
     def add(self, rows: NDArray[np.int64]) -> None:
         """People have crossed an exit in this frame."""
-        self.rows = np.sort(np.concatenate([self.rows, rows]))
+        self.rows = self.together_with(rows)
         self._new = np.concatenate([self._new, rows])
 
     def set_off(self, frame: int, crowd: Crowd) -> None:
@@ -46,6 +47,8 @@ class Beyond:
 
     def move(self, frame: int, crowd: Crowd) -> None:
         """Put them where they are at ``frame``, and forget those who are far enough away."""
+        if len(self.rows) == 0:
+            return
         self.rows = rows = self.rows[crowd.end[self.rows] > frame]
         u = (frame - crowd.start[rows]) / WALKS_ON
         crowd.x[rows] = crowd.from_x[rows] + u * (crowd.to_x[rows] - crowd.from_x[rows])
@@ -53,7 +56,10 @@ class Beyond:
 
     def together_with(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """These rows and those of the people beyond, in order."""
-        return np.sort(np.concatenate([rows, self.rows])) if len(self.rows) else rows
+        if len(self.rows) == 0:
+            return rows
+        # Both are in order: a stable sort merges them.
+        return np.sort(np.concatenate([rows, self.rows]), kind="stable")
 
 
 @called()

@@ -256,8 +256,9 @@ class PedestrianModel(CrowdMeasures, People):
             self.recorder.add(self.frame, rows, self.crowd)
         if left:
             self.last_left = self.elapsed
-            self._beyond.add(rows[~self.crowd.active[rows]])
-            rows = rows[self.crowd.active[rows]]
+            stay = self.crowd.active[rows]
+            self._beyond.add(rows[~stay])
+            rows = rows[stay]
         if self.frame % round(self.frame_rate) == 0:
             self.occupancy.append((self.elapsed, len(rows)))
         return rows

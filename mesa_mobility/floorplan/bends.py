@@ -21,13 +21,12 @@ def pass_abreast(
     corners: NDArray[np.int64],
     areas: NDArray[np.float64],
     points: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """(n, 2) targets of people who pass their corner abreast; see `Router.abreast`.
+) -> None:
+    """Move the targets, (n, 2) `points`, of people who pass abreast; see `Router.abreast`.
 
     What follows the corner is in view from all of the line that leads on from there through the
     corner, and beyond it: people pass at the place of that line nearest to them.
     """
-    targets = points.copy()
     clearance = ways.view_clearance
     for k in range(len(corners)):
         x, y = positions[k]
@@ -50,8 +49,7 @@ def pass_abreast(
         if np.hypot(qx - x, qy - y) > _THERE and clear_line(
             sight, x, y, qx, qy, clearance, own, NO_WALL
         ):
-            targets[k] = past_corner(sight, ways, x, y, qx, qy, corners[k, 1])
-    return targets
+            points[k] = past_corner(sight, ways, x, y, qx, qy, corners[k, 1])
 
 
 @lean()

@@ -192,10 +192,11 @@ class Router:
         points = targets.points.copy()
         if targets.corners is not None:
             who = np.flatnonzero((targets.corners[:, 0] >= 0) & (areas > 0.0))
-            points[who] = pass_abreast(
-                self._sight, self._ways, positions[who], targets.corners[who], areas[who],
-                points[who],
-            )  # fmt: skip
+            moved = points[who]
+            pass_abreast(
+                self._sight, self._ways, positions[who], targets.corners[who], areas[who], moved
+            )
+            points[who] = moved
         return points
 
     def _table(self, lowest: int, highest: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
