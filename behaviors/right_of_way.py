@@ -19,7 +19,7 @@ def _right_of_way(  # type: ignore[no-untyped-def]
     ahead_x = tx - sx
     ahead_y = ty - sy
     against = -(ahead_x * nex + ahead_y * ney)
-    oncoming = against > OPPOSED * math.hypot(ahead_x, ahead_y)
+    oncoming = against > OPPOSED * math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y)
     counts = along > 0.0 and (oncoming or (lead > 0.0 and along < p[2]))
     middle = p[1] if oncoming else 0.0
     off = abs(aside + middle) / (p[0] + abs(middle))
