@@ -14,10 +14,11 @@ def _interference(  # type: ignore[no-untyped-def]
     dy = ny + nvy * duration - y
     # e to the -d as the 1024th power of a polynomial, to 1e-8 of itself: unlike a call of exp,
     # arithmetic alone runs for several neighbours at once. Beyond 40 (4e-18) it is nothing.
-    d = math.sqrt(dx * dx + dy * dy) / (1024.0 * p[1] * speed)
+    # Factors and not divisions, of which a processor does few at a time.
+    d = math.sqrt(dx * dx + dy * dy) * (1.0 / (1024.0 * p[1] * speed))
     counts = d < 40.0 / 1024.0 and dx * ux + dy * uy >= 0.0
     d = d if counts else 0.0
-    e = 1.0 - d * (1.0 - d / 2.0 * (1.0 - d / 3.0 * (1.0 - d / 4.0 * (1.0 - d / 5.0))))
+    e = 1.0 - d * (1.0 - d * (1.0 / 2.0 - d * (1.0 / 6.0 - d * (1.0 / 24.0 - d * (1.0 / 120.0)))))
     e *= e
     e *= e
     e *= e
