@@ -29,7 +29,8 @@ from mesa_mobility.jit import lean
 class Terms(NamedTuple):
     """Compiled cost terms: addresses, weights and parameters (row per term).
 
-    ``bound_address`` belongs to the option terms, 0 for those that have no lower bound.
+    ``bound_address`` belongs to the option terms, 0 for those that have no lower bound;
+    ``pairs_address`` to the pair terms: the loop over some neighbours and many options.
     """
 
     bound_address: NDArray[np.int64]
@@ -39,6 +40,7 @@ class Terms(NamedTuple):
     pair_address: NDArray[np.int64]
     pair_weight: NDArray[np.float64]
     pair_parameters: NDArray[np.float64]
+    pairs_address: NDArray[np.int64]
 
 
 # Rows of what the terms are given. Ends (6, n): where options end, in the world: place, unit vector

@@ -58,6 +58,20 @@ def {name}(
         )
 """
 
+_PAIRS_LOOP = """
+def {name}(
+    m, n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney,
+    lead, p, weight, out
+):
+    for a in range(m):
+        ax, ay, avx, avy, aex, aey, alead = nx[a], ny[a], nvx[a], nvy[a], nex[a], ney[a], lead[a]
+        for k in range(n):
+            out[k] += weight * each(
+                x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, ax, ay,
+                avx, avy, aex, aey, alead, p
+            )
+"""
+
 
 class CostKernel:
     """A function compiled when it is first needed, known by the address of a loop around it."""
@@ -70,26 +84,30 @@ class CostKernel:
 
     @cached_property
     def _compiled(self) -> Any:
-        # As in NumPy, a division by zero gives inf or nan, which the choice refuses.
-        compile_ = partial(cfunc, self.signature, error_model="numpy")
-        try:
-            return compile_(cache=True)(self._loop())
-        except RuntimeError:  # written where there is no file to keep a cache beside
-            return compile_()(self._loop())
+        return self._compile(self.loop, self.signature, "loop")
 
-    def _loop(self) -> FunctionType:
-        """The loop, as if written where the function is: its cache is kept with that file's."""
+    def _compile(self, source: str, signature: Any, suffix: str) -> Any:
+        # As in NumPy, a division by zero gives inf or nan, which the choice refuses.
+        compile_ = partial(cfunc, signature, error_model="numpy")
+        loop = self._loop(source, suffix)
+        try:
+            return compile_(cache=True)(loop)
+        except RuntimeError:  # written where there is no file to keep a cache beside
+            return compile_()(loop)
+
+    def _loop(self, source: str, suffix: str) -> FunctionType:
+        """A loop, as if written where the function is: its cache is kept with that file's."""
         code = self.function.__code__
-        name = f"{self.function.__name__}_loop"
+        name = f"{self.function.__name__}_{suffix}"
         space = {
             "each": njit(error_model="numpy")(self.function),
             "__name__": self.function.__module__,
         }
-        source = "\n" * (code.co_firstlineno - 1) + self.loop.format(name=name).lstrip("\n")
+        source = "\n" * (code.co_firstlineno - 1) + source.format(name=name).lstrip("\n")
         exec(compile(source, code.co_filename, "exec"), space)
         loop = space[name]
         assert isinstance(loop, FunctionType)
-        loop.__qualname__ = f"{self.function.__qualname__}_loop"
+        loop.__qualname__ = f"{self.function.__qualname__}_{suffix}"
         return loop
 
     @property
@@ -113,10 +131,23 @@ class BoundKernel(CostKernel):
 
 
 class PairKernel(CostKernel):
-    """Cost of one movement option with respect to one neighbour."""
+    """Cost of one movement option with respect to one neighbour.
+
+    Compiled are two loops: one option and all neighbours, and a few neighbours and many options.
+    """
 
     loop = _PAIR_LOOP
     signature = types.void(_N, *[_F] * 10, *[_A] * 9)
+    all_pairs: ClassVar[Any] = types.void(_N, _N, *[_A] * 6, *[_F] * 4, *[_A] * 8, _F, _A)
+
+    @cached_property
+    def _compiled_pairs(self) -> Any:
+        return self._compile(_PAIRS_LOOP, self.all_pairs, "pairs")
+
+    @property
+    def pairs_address(self) -> int:
+        """Address of the machine code of the loop over some neighbours and many options."""
+        return int(self._compiled_pairs.address)
 
 
 def option_kernel(function: Callable[..., float]) -> OptionKernel:
@@ -201,6 +232,18 @@ def call_pair_loop(  # type: ignore[no-untyped-def]
     return _caller(PairKernel.signature)(
         address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
         p, out,
+    )  # fmt: skip
+
+
+@intrinsic
+def call_pairs_loop(  # type: ignore[no-untyped-def]
+    typingctx, address, m, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex,
+    ney, lead, p, weight, out,
+):  # fmt: skip
+    """Add the weighted costs of n options for each of m neighbours; arguments as the loop's."""
+    return _caller(PairKernel.all_pairs)(
+        address, m, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney,
+        lead, p, weight, out,
     )  # fmt: skip
 
 

@@ -26,12 +26,12 @@ from mesa_mobility.crowd.costs import (
     Terms,
     preferred_now,
 )
-from mesa_mobility.crowd.kernels import call_pair_loop
+from mesa_mobility.crowd.kernels import call_pair_loop, call_pairs_loop
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import lean
 
 LANES = 8
-"""Neighbours for whom a processor works out a term at once."""
+"""Neighbours or options for whom a processor works out a term at once."""
 
 _ROUNDING = 1.0 - 1e-9
 """Sums over some of the neighbours may exceed that over all by rounding, though not by so much."""
@@ -60,7 +60,13 @@ def pair_cost(
     total = 0.0
     costs = others[COST]
     for t in range(len(terms.pair_address)):
-        _call_pair_loop(me, k, ends, in_lanes(count), others, state, terms, t)
+        call_pair_loop(
+            terms.pair_address[t], in_lanes(count), ends[END_X, k], ends[END_Y, k],
+            ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
+            state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
+            others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY], others[LEAD],
+            terms.pair_parameters[t], costs,
+        )  # fmt: skip
         summed = 0.0
         for first in range(0, count, LANES):
             # Most neighbours are too far away to cost anything, and each addition waits for the
@@ -77,57 +83,50 @@ def pair_cost(
 
 
 @lean()
-def pair_cost_at_least(
+def pair_costs_at_least(
     me: Stance,
-    k: int,
+    first: int,
+    last: int,
     ends: NDArray[np.float64],
     count: int,
     others: NDArray[np.float64],
     state: CrowdState,
     terms: Terms,
-) -> float:
-    """A lower bound of ``pair_cost`` over more neighbours, whatever the order of its sums."""
-    total = 0.0
-    n = in_lanes(count)
-    costs = others[COST]
-    for t in range(len(terms.pair_address)):
-        _call_pair_loop(me, k, ends, n, others, state, terms, t)
-        for a in range(count, n):
-            costs[a] = 0.0
-        # Four sums side by side: each addition waits for the one before.
-        one, two, three, four = 0.0, 0.0, 0.0, 0.0
-        for a in range(0, n, 4):
-            one += costs[a]
-            two += costs[a + 1]
-            three += costs[a + 2]
-            four += costs[a + 3]
-        total += terms.pair_weight[t] * ((one + two) + (three + four))
-    return total * _ROUNDING
+    out: NDArray[np.float64],
+) -> None:
+    """Write lower bounds of ``pair_cost`` over more neighbours, whatever the order of its sums.
+
+    That is for options ``first`` to ``last``, in full lanes (see ``fill_ends``), over the first
+    ``count`` neighbours of ``others``.
+    """
+    n = in_lanes(last - first)
+    least = out[first : first + n]
+    least[:] = 0.0
+    for t in range(len(terms.pairs_address)):
+        call_pairs_loop(
+            terms.pairs_address[t], count, n, ends[END_X, first:], ends[END_Y, first:],
+            ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
+            me.x, me.y, state.target_x[me.row], state.target_y[me.row], others[OTHER_X],
+            others[OTHER_Y], others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY],
+            others[LEAD], terms.pair_parameters[t], terms.pair_weight[t], least,
+        )  # fmt: skip
+    for k in range(last - first):
+        # What is not a number is found when all neighbours are looked at.
+        least[k] = least[k] * _ROUNDING if least[k] < np.inf else 0.0
 
 
 @lean()
-def _call_pair_loop(
-    me: Stance,
-    k: int,
-    ends: NDArray[np.float64],
-    n: int,
-    others: NDArray[np.float64],
-    state: CrowdState,
-    terms: Terms,
-    t: int,
-) -> None:
-    call_pair_loop(
-        terms.pair_address[t], n, ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
-        ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
-        state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
-        others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY], others[LEAD],
-        terms.pair_parameters[t], others[COST],
-    )  # fmt: skip
+def fill_ends(first: int, last: int, ends: NDArray[np.float64]) -> None:
+    """Repeat the last of the options ``first`` to ``last`` until the last lane is full."""
+    if last > first:
+        for row in range(SPEED + 1):
+            for k in range(last, first + in_lanes(last - first)):
+                ends[row, k] = ends[row, last - 1]
 
 
 @lean()
 def in_lanes(count: int) -> int:
-    """So many neighbours and those that fill up the last lane."""
+    """So many neighbours or options and those that fill up the last lane."""
     return (count + LANES - 1) // LANES * LANES
 
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from mesa_mobility.jit import lean
 
-FIRST_BAND = 0.5
+FIRST_BAND = 0.15
 """Width of the first band above the least bound; the first options mostly decide."""
 
-WIDENING = 4.0
-BANDS = 6
+WIDENING = 2.0
+BANDS = 8
 """Bands after which all the rest joins."""
 
 DEAREST = 1e300

@@ -2,9 +2,9 @@
 
 Groups of options are opened in rising order of a lower bound of what their options
 cost. Terms over pairs (interference) are never negative, so the sum of the others is
-a lower bound of an option's cost. In its order an option gets a better bound, its pair costs with
-the few neighbours who are likely to cost most; in the order of that it is dropped if it hits
-something, and given all its pair costs if it may still win.  The result is that of
+a lower bound of an option's cost, and a better one with its pair costs with the few neighbours who
+are likely to cost most. In the order of that an option is dropped if it hits something, and given
+all its pair costs if it may still win.  The result is that of
 working everything out; most of it never is.
 """
 
@@ -24,7 +24,7 @@ from mesa_mobility.crowd.costs import (
 from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import lay_path
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
-from mesa_mobility.crowd.pairs import pair_cost, pair_cost_at_least
+from mesa_mobility.crowd.pairs import fill_ends, pair_cost, pair_costs_at_least
 from mesa_mobility.crowd.ranking import (
     BANDS,
     DEAREST,
@@ -43,9 +43,8 @@ from mesa_mobility.machine import fetch
 NONE = -1
 NOT_A_NUMBER = -2
 _UNTRIED = -9
-_BOUNDED = -8
 
-FEW = 50
+FEW = 16
 """Groups that are all opened at once, without working in bands."""
 
 
@@ -87,7 +86,15 @@ def _open_groups(
     if now.eager:
         for k in range(count, n):
             work.costs[k] += pair_cost(me, k, work.ends, now.neighbours, work.others, state, terms)
-    return n if all_finite(work.costs[count:n]) else NOT_A_NUMBER
+    if not all_finite(work.costs[count:n]):
+        return NOT_A_NUMBER
+    fill_ends(count, n, work.ends)
+    pair_costs_at_least(
+        me, count, n, work.ends, now.foremost, work.foremost, state, terms, work.least
+    )
+    for k in range(count, n):
+        work.least[k] += work.costs[k]
+    return n
 
 
 @lean()
@@ -150,7 +157,7 @@ def cheapest_free(
             )  # fmt: skip
             if count < 0:
                 return NOT_A_NUMBER, -1
-            size = join(work.costs[:count], work.rows, above, up_to, key, item, size)
+            size = join(work.least[:count], work.rows, above, up_to, key, item, size)
         if size == 0:
             return NONE, -1
         o = item[0]
@@ -159,17 +166,8 @@ def cheapest_free(
             fetch(table.path, item[1], 192)
             fetch(table.path, item[2], 192)
         k = work.slot[o - base]
-        if work.leaving[k] > _BOUNDED:
+        if work.leaving[k] > _UNTRIED:
             return o, work.leaving[k]
-        if work.leaving[k] == _UNTRIED and now.foremost > 0:
-            work.leaving[k] = _BOUNDED
-            least_more = pair_cost_at_least(
-                me, k, work.ends, now.foremost, work.foremost, state, terms
-            )
-            if least_more > 0.0:
-                key[0] += least_more
-                sift_down(key, item, size, np.int64(0))
-                continue
         who, doubtful = -1, 0
         # Whoever may be out before may not meet anybody of those ahead.
         reach = np.float64(table.options[o].reach)

@@ -39,7 +39,16 @@ def compile_terms(terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
     # A factor below 0 turns a lower bound into an upper one.
     bounds = [term.bound if term.weight >= 0.0 else None for term in option]
     bound_address = [0 if bound is None else bound.address for bound in bounds]
-    return Terms(np.array(bound_address, dtype=np.int64), *_table(option), *_table(pair)), others
+    pairs_address = [
+        term.kernel.pairs_address for term in pair if isinstance(term.kernel, PairKernel)
+    ]
+    compiled = Terms(
+        np.array(bound_address, dtype=np.int64),
+        *_table(option),
+        *_table(pair),
+        np.array(pairs_address, dtype=np.int64),
+    )
+    return compiled, others
 
 
 class CompiledTerms:

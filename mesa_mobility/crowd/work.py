@@ -39,10 +39,11 @@ class Work(NamedTuple):
     those of them who are likely to cost most, ``dropped`` by neighbour; ``close`` those who may
     come in the way, ``unsure`` rows of those whom only the exact test can tell; ``bodies`` who is
     where at the levels; ``walls`` those in reach; groups: ``alive`` those not certainly blocked,
-    their ``bounds``, and those of ``every`` group; ``circles`` for clearing;
-    by option looked at, ``rows`` in the table, ``ends``, ``costs`` and ``leaving``, the frame of
-    leaving by an exit or -1 once it is known that nothing is hit; heap of ``key`` and ``item``;
-    ``slot`` by row of the cluster, which of those looked at it is; ``path`` one path.
+    their ``bounds``, and those of ``every`` group; ``circles`` for clearing; by option looked at,
+    ``rows`` in the table, ``ends``, ``costs`` but for pairs, ``least`` that all costs may be, and
+    ``leaving``, the frame of leaving by an exit or -1 once it is known that nothing is hit;
+    heap of ``key`` and ``item``; ``slot`` by row of the cluster, which of those looked at it is;
+    ``path`` one path.
     """
 
     near: NDArray[np.int64]
@@ -60,6 +61,7 @@ class Work(NamedTuple):
     rows: NDArray[np.int64]
     ends: NDArray[np.float64]
     costs: NDArray[np.float64]
+    least: NDArray[np.float64]
     leaving: NDArray[np.int64]
     key: NDArray[np.float64]
     item: NDArray[np.int64]
@@ -85,8 +87,9 @@ def make_work(people: int, walls: int, options: int) -> Work:
         every=np.empty(options),
         circles=Circles(np.empty((3, options), np.float32), np.empty(options, np.int32)),
         rows=np.empty(options, np.int64),
-        ends=np.empty((SPEED + 1, options)),
+        ends=np.empty((SPEED + 1, options + LANES)),
         costs=np.empty(options),
+        least=np.empty(options + LANES),
         leaving=np.empty(options, np.int64),
         key=np.empty(options),
         item=np.empty(options, np.int64),

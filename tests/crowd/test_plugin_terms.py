@@ -345,6 +345,27 @@ def test_costs_that_are_not_one_finite_number_an_option_are_refused(wrong):
     assert "\n" not in str(refused.value)
 
 
+@pair_kernel
+def _broken_beside_others(
+    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
+):
+    return math.sqrt(-1.0 - lead * lead)
+
+
+@pytest.mark.parametrize("away", [0.8, 4.0])
+def test_a_kernel_over_neighbours_that_gives_no_number_is_refused(away):
+    # Near ones are looked at before, far ones once an option may win.
+    class Broken(CompiledTerm):
+        name = "broken_kernel"
+        kernel = _broken_beside_others
+
+    model = model_of(corridor(), strider(), behaviors=[TargetDistance(), Broken()])
+    put(model, 1.0, 2.0)
+    put(model, 1.0 + away, 2.0)
+    with pytest.raises(ModelError, match=r"not a number.*broken_kernel"):
+        model.step()
+
+
 def test_a_term_must_say_what_it_costs():
     class Vague(CostTerm):
         name = "vague"
