@@ -47,12 +47,10 @@ class Beyond:
 
     def move(self, frame: int, crowd: Crowd) -> None:
         """Put them where they are at ``frame``, and forget those who are far enough away."""
-        if len(self.rows) == 0:
-            return
-        self.rows = rows = self.rows[crowd.end[self.rows] > frame]
-        u = (frame - crowd.start[rows]) / WALKS_ON
-        crowd.x[rows] = crowd.from_x[rows] + u * (crowd.to_x[rows] - crowd.from_x[rows])
-        crowd.y[rows] = crowd.from_y[rows] + u * (crowd.to_y[rows] - crowd.from_y[rows])
+        if len(self.rows):
+            # In an array of their own: others may still have those of before.
+            rows = self.rows.copy()
+            self.rows = rows[: _move_on(rows, frame, crowd.records)]
 
     def together_with(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """These rows and those of the people beyond, in order."""
@@ -78,3 +76,17 @@ def _walk_on(
         )  # fmt: skip
         state.target_x[i], state.target_y[i] = path[0, 1], path[1, 1]
         state.route[i] = 0.0
+
+
+@called()
+def _move_on(rows: NDArray[np.int64], frame: int, state: CrowdState) -> int:
+    """Move those whose way has not ended by ``frame`` and bring them to the front; how many."""
+    count = 0
+    for i in rows:
+        if state[i].end > frame:
+            u = (frame - state[i].start) / WALKS_ON
+            state[i].x = state[i].from_x + u * (state[i].to_x - state[i].from_x)
+            state[i].y = state[i].from_y + u * (state[i].to_y - state[i].from_y)
+            rows[count] = i
+            count += 1
+    return count

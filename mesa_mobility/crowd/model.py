@@ -159,6 +159,7 @@ class PedestrianModel(CrowdMeasures, People):
         self.last_left: float | None = None
         self.occupancy: list[tuple[float, int]] = []
         self._walked = 0.0
+        self._person_frames = self._fallback_frames = 0
         self.datacollector = DataCollector(
             model_reporters={
                 "elapsed": "elapsed",
@@ -250,8 +251,10 @@ class PedestrianModel(CrowdMeasures, People):
             self._decide(deciding, rows)
         self.frame += 1
         self._beyond.move(self.frame, self.crowd)
-        left, speeds = move(rows, self.frame, self._repertoire.table, self.crowd.records)
+        left, speeds, fallen = move(rows, self.frame, self._repertoire.table, self.crowd.records)
         self._walked += speeds
+        self._person_frames += len(rows)
+        self._fallback_frames += fallen
         if self.recorder is not None:
             self.recorder.add(self.frame, rows, self.crowd)
         if left:

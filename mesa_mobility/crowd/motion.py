@@ -79,16 +79,16 @@ floats must not depend on how many threads there are."""
 
 def move(
     active: NDArray[np.int64], frame: int, table: OptionTable, state: CrowdState
-) -> tuple[int, float]:
+) -> tuple[int, float, int]:
     """Put everybody in rows ``active`` where its movement has it at ``frame``.
 
-    Returns how many have left, and the sum of everybody's mean speed, m/s.
+    Returns how many have left, the sum of everybody's mean speed, m/s, and how many fall back.
     """
     blocks = [active[k : k + BLOCK] for k in range(0, max(len(active), 1), BLOCK)]
-    left, speeds = zip(
+    left, speeds, fallen = zip(
         *together(lambda rows: _move(rows, frame, table, state), blocks), strict=True
     )
-    return sum(left), sum(speeds)
+    return sum(left), sum(speeds), sum(fallen)
 
 
 @called()
@@ -104,8 +104,8 @@ def due(active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray
 @called()
 def _move(
     active: NDArray[np.int64], frame: int, table: OptionTable, state: CrowdState
-) -> tuple[int, float]:
-    left, speeds = 0, 0.0
+) -> tuple[int, float, int]:
+    left, speeds, fallen = 0, 0.0, 0
     for i in active:
         last = state.knots[i] - 1
         u = (frame - state.start[i]) / state.spacing[i]
@@ -124,7 +124,8 @@ def _move(
         state.active_frames[i] += 1
         if state.option[i] == FALLBACK:
             state.fallback_frames[i] += 1
+            fallen += 1
         if state.gone[i] == frame:
             state.active[i] = False
             left += 1
-    return left, speeds
+    return left, speeds, fallen

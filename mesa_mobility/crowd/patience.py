@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options import FRAME_SECONDS
-from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.crowd.state import Crowd, CrowdState
+from mesa_mobility.jit import called
 
 GETTING_NEARER = 0.25
 """Metres that somebody must come nearer to count as getting on."""
@@ -40,19 +41,51 @@ def look_around(
         elapsed: seconds.
         rng: the model's generator.
     """
-    agenda, route = crowd.agenda, crowd.route[rows]
-    nearest = agenda["nearest"][rows]
-    on = (route < nearest - GETTING_NEARER) | (route > nearest + ANOTHER_WAY) | ~np.isfinite(route)
-    agenda["nearest"][rows] = np.where(on, route, nearest)
-    agenda["since"][rows] = np.where(on, elapsed, agenda["since"][rows])
-    free = agenda["waits_until"][rows] * FRAME_SECONDS
-    overdue = elapsed - np.maximum(agenda["since"][rows], free) - PATIENCE
-    impatient = overdue > 0.0
-    who = rows[impatient]
-    if len(who) == 0:
-        return
-    angle = rng.normal(0.0, np.minimum(RATE * overdue[impatient], MOST))
-    c, s = np.cos(angle), np.sin(angle)
-    dx, dy = crowd.target_x[who] - crowd.x[who], crowd.target_y[who] - crowd.y[who]
-    crowd.target_x[who] = crowd.x[who] + c * dx - s * dy
-    crowd.target_y[who] = crowd.y[who] + s * dx + c * dy
+    who, spread = np.empty(len(rows), dtype=np.int64), np.empty(len(rows))
+    count = _impatient(rows, elapsed, crowd.records, crowd.agenda, who, spread)
+    if count:
+        angle = rng.normal(0.0, spread[:count])
+        _turn(who[:count], np.cos(angle), np.sin(angle), crowd.records)
+
+
+@called()
+def _impatient(
+    rows: NDArray[np.int64],
+    elapsed: float,
+    state: CrowdState,
+    agenda: NDArray[np.void],
+    who: NDArray[np.int64],
+    spread: NDArray[np.float64],
+) -> int:
+    """Note who in ``rows`` gets on, and write who is impatient and how far it may turn, radians.
+
+    Returns the number of the impatient.
+    """
+    count = 0
+    for i in rows:
+        route = state[i].route
+        nearest = agenda[i]["nearest"]
+        if (
+            route < nearest - GETTING_NEARER
+            or route > nearest + ANOTHER_WAY
+            or not abs(route) < np.inf
+        ):
+            agenda[i]["nearest"], agenda[i]["since"] = route, elapsed
+        free = agenda[i]["waits_until"] * FRAME_SECONDS
+        overdue = elapsed - max(agenda[i]["since"], free) - PATIENCE
+        if overdue > 0.0:
+            who[count], spread[count] = i, min(RATE * overdue, MOST)
+            count += 1
+    return count
+
+
+@called()
+def _turn(
+    rows: NDArray[np.int64], c: NDArray[np.float64], s: NDArray[np.float64], state: CrowdState
+) -> None:
+    """Turn the targets of those in ``rows`` about them, by angles of these cosines and sines."""
+    for k in range(len(rows)):
+        i = rows[k]
+        dx, dy = state[i].target_x - state[i].x, state[i].target_y - state[i].y
+        state[i].target_x = state[i].x + c[k] * dx - s[k] * dy
+        state[i].target_y = state[i].y + s[k] * dx + c[k] * dy

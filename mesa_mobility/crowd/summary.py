@@ -24,6 +24,8 @@ class CrowdMeasures:
     expecting: bool
     _rows: NDArray[np.int64]
     _walked: float
+    _person_frames: int
+    _fallback_frames: int
 
     @property
     def frame_rate(self) -> float:
@@ -50,14 +52,12 @@ class CrowdMeasures:
     @property
     def mean_speed_so_far(self) -> float:
         """Mean speed over all pedestrian-time so far, m/s."""
-        total = int(self.crowd.active_frames.sum())
-        return self._walked / total if total else 0.0
+        return self._walked / self._person_frames if self._person_frames else 0.0
 
     @property
     def fallback_time_share(self) -> float:
         """Share of pedestrian-time spent in the fallback."""
-        total = int(self.crowd.active_frames.sum())
-        return float(self.crowd.fallback_frames.sum()) / total if total else 0.0
+        return self._fallback_frames / self._person_frames if self._person_frames else 0.0
 
     @property
     def fallback_decision_share(self) -> float:

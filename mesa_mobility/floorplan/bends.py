@@ -29,6 +29,8 @@ def pass_abreast(
     """
     clearance = ways.view_clearance
     for k in range(len(corners)):
+        if corners[k, 0] < 0 or areas[k] <= 0.0:
+            continue
         x, y = positions[k]
         cx, cy = ways.xy[corners[k, 0]]
         nx, ny = ways.xy[corners[k, 1]]

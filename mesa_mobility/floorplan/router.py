@@ -191,12 +191,7 @@ class Router:
         """
         points = targets.points.copy()
         if targets.corners is not None:
-            who = np.flatnonzero((targets.corners[:, 0] >= 0) & (areas > 0.0))
-            moved = points[who]
-            pass_abreast(
-                self._sight, self._ways, positions[who], targets.corners[who], areas[who], moved
-            )
-            points[who] = moved
+            pass_abreast(self._sight, self._ways, positions, targets.corners, areas, points)
         return points
 
     def _table(self, lowest: int, highest: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
