@@ -1,6 +1,6 @@
 """Compiling the decisions ahead, in a process of its own.
 
-Numba compiles one function at a time, and decisions take it as long as everything else together:
+Numba compiles one function at a time, and decisions and costs take it as long as all the rest:
 another process that compiles them meanwhile halves the wait at the first run after installation.
 It leaves them in the cache on disk, where Numba looks for them.
 """
@@ -16,12 +16,14 @@ from pathlib import Path
 
 import numpy as np
 
+from mesa_mobility.crowd.beyond import move_on, walk_on
 from mesa_mobility.crowd.choice import decide
 from mesa_mobility.crowd.collision import Surroundings
 from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.groups import make_groups
 from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.options import OPTION, SAMPLES, OptionTable
+from mesa_mobility.crowd.patience import turn
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.rules import Rules
@@ -65,11 +67,13 @@ def _start() -> subprocess.Popen[bytes]:
 
 
 def compile_the_rest() -> None:
-    """Compile what a run needs beside decisions: cost terms, and what moves people."""
-    compile_terms(preset_named("default").make_terms())
-    nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
+    """Compile what a run needs beside decisions and a model: what moves and turns people."""
+    nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
     due(nobody, 0, crowd.records, nobody)
     move(nobody, 0, _table(), crowd.records)
+    walk_on(nobody, 0, np.empty((3, 2)), crowd.records)
+    move_on(nobody, 0, crowd.records)
+    turn(nobody, nothing, nothing, crowd.records)
 
 
 def _table() -> OptionTable:
@@ -85,7 +89,7 @@ def _table() -> OptionTable:
 
 
 def compile_decisions() -> None:
-    """Compile what makes people decide, by the decisions of nobody."""
+    """Compile what makes people decide, by the decisions of nobody, and the cost terms."""
     gc.disable()
     table = _table()
     around = Surroundings(
@@ -106,3 +110,4 @@ def compile_decisions() -> None:
     decisions = Decisions(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
     nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
     decisions.take(nobody, 0, nobody, crowd, around, terms=[])
+    compile_terms(preset_named("default").make_terms())

@@ -42,7 +42,7 @@ class Beyond:
     def set_off(self, frame: int, crowd: Crowd) -> None:
         """Have those who are new set off at their preferred speed, the way they went."""
         if len(self._new):
-            _walk_on(self._new, frame, np.empty((3, 2)), crowd.records)
+            walk_on(self._new, frame, np.empty((3, 2)), crowd.records)
             self._new = self._new[:0]
 
     def move(self, frame: int, crowd: Crowd) -> None:
@@ -50,7 +50,7 @@ class Beyond:
         if len(self.rows):
             # In an array of their own: others may still have those of before.
             rows = self.rows.copy()
-            self.rows = rows[: _move_on(rows, frame, crowd.records)]
+            self.rows = rows[: move_on(rows, frame, crowd.records)]
 
     def together_with(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """These rows and those of the people beyond, in order."""
@@ -61,9 +61,10 @@ class Beyond:
 
 
 @called()
-def _walk_on(
+def walk_on(
     rows: NDArray[np.int64], frame: int, path: NDArray[np.float64], state: CrowdState
 ) -> None:
+    """Have those in ``rows`` set off the way they went; ``path`` (3, 2) is space to work in."""
     for i in rows:
         speed = math.sqrt(state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i])
         length = state.preferred[i] * _SECONDS if speed > 0.0 else 0.0
@@ -79,7 +80,7 @@ def _walk_on(
 
 
 @called()
-def _move_on(rows: NDArray[np.int64], frame: int, state: CrowdState) -> int:
+def move_on(rows: NDArray[np.int64], frame: int, state: CrowdState) -> int:
     """Move those whose way has not ended by ``frame`` and bring them to the front; how many."""
     count = 0
     for i in rows:

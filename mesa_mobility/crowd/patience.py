@@ -45,7 +45,7 @@ def look_around(
     count = _impatient(rows, elapsed, crowd.records, crowd.agenda, who, spread)
     if count:
         angle = rng.normal(0.0, spread[:count])
-        _turn(who[:count], np.cos(angle), np.sin(angle), crowd.records)
+        turn(who[:count], np.cos(angle), np.sin(angle), crowd.records)
 
 
 @called()
@@ -80,7 +80,7 @@ def _impatient(
 
 
 @called()
-def _turn(
+def turn(
     rows: NDArray[np.int64], c: NDArray[np.float64], s: NDArray[np.float64], state: CrowdState
 ) -> None:
     """Turn the targets of those in ``rows`` about them, by angles of these cosines and sines."""

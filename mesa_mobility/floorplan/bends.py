@@ -51,7 +51,8 @@ def pass_abreast(
         if np.hypot(qx - x, qy - y) > _THERE and clear_line(
             sight, x, y, qx, qy, clearance, own, NO_WALL
         ):
-            points[k] = past_corner(sight, ways, x, y, qx, qy, corners[k, 1])
+            # Not to a row: to check the shape of what it gets takes Numba 2 s to compile.
+            points[k, 0], points[k, 1] = past_corner(sight, ways, x, y, qx, qy, corners[k, 1])
 
 
 @lean()

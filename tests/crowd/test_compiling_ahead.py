@@ -3,7 +3,7 @@
 import pytest
 from mesa_mobility.models import Doorway
 
-from mesa_mobility.crowd import ahead, choice, motion, neighbours
+from mesa_mobility.crowd import ahead, beyond, choice, motion, neighbours, patience
 
 FUNCTIONS = [
     choice.decide,
@@ -11,11 +11,14 @@ FUNCTIONS = [
     motion._move,
     neighbours.build_grid,
     neighbours.headways,
+    beyond.walk_on,
+    beyond.move_on,
+    patience.turn,
 ]
 
 
 def test_what_is_compiled_ahead_is_what_a_run_calls():
-    Doorway(pedestrians=10, rng=1).run(max_seconds=1.0)
+    Doorway(pedestrians=60, rng=1).run(max_seconds=20.0)
     needed = [set(function.signatures) for function in FUNCTIONS]
     ahead.compile_decisions()
     ahead.compile_the_rest()
