@@ -157,8 +157,11 @@ def make_groups(table: OptionTable) -> OptionGroups:
     heading, speed = table.heading.astype(np.float64), table.options.speed.astype(np.float64)
     low, high = np.minimum.reduceat(heading, starts), np.maximum.reduceat(heading, starts)
     at = [table.path[:, :2, level] for level in LEVELS]
-    away = [np.hypot(*table.path[:, :2, k].astype(np.float64).T) for k in range(LEVELS[-1] + 1)]
-    reach = [np.maximum.reduceat(np.max(away[: level + 1], axis=0), clusters) for level in LEVELS]
+    away2 = np.square(table.path[:, 0], dtype=np.float64)
+    away2 += np.square(table.path[:, 1], dtype=np.float64)
+    # From one level to the next, as the farthest by then is at least that of before.
+    legs = np.maximum.reduceat(away2, [0, *(np.array(LEVELS[:-1]) + 1)], axis=1)
+    farthest2 = np.maximum.accumulate(np.maximum.reduceat(legs, clusters, axis=0), axis=1)
     circles = np.array([_circles(places, starts) for places in at]).astype(np.float32)
     of = np.searchsorted(starts, table.offsets).astype(np.int64)
     first = of[:-1]
@@ -170,7 +173,7 @@ def make_groups(table: OptionTable) -> OptionGroups:
     spanned["whole"] = _boxes(table.path[:, :2], clusters)
     spanned["around"] = np.stack([np.column_stack(_circles(each, clusters)) for each in at], axis=1)
     spanned["spans"] = np.stack([x0.T, y0.T, x1.T, y1.T], axis=2)
-    spanned["reach"] = np.column_stack(reach)
+    spanned["reach"] = np.sqrt(farthest2)
     alike_ends = [
         ends[0],
         ends[1],

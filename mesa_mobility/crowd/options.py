@@ -107,9 +107,8 @@ def option_table(
     """The table of options, whole or shortened; the last three are those fields."""
     frames = mobility_map.durations[parts.rows]
     x, y, heading = path[:, :, -1].T
-    places = path[:, :2].astype(np.float64)
-    reach = np.hypot(places[:, 0], places[:, 1]).max(axis=1)
-    steps = np.hypot(*np.moveaxis(np.diff(places, axis=2), 1, 0)).max(axis=1)
+    reach = np.sqrt(_squares(path[:, 0], path[:, 1]).max(axis=1))
+    steps = np.sqrt(_squares(_differences(path[:, 0]), _differences(path[:, 1])).max(axis=1))
     wide = heading.astype(np.float64)
     options = np.empty(len(path), OPTION).view(np.recarray)
     options.x, options.y = x, y
@@ -126,6 +125,18 @@ def option_table(
         heading=heading.copy(),
         path=path,
     )
+
+
+def _squares(x: NDArray[np.floating], y: NDArray[np.floating]) -> NDArray[np.float64]:
+    """x squared and y squared, summed in double precision."""
+    squares = np.square(x, dtype=np.float64)
+    squares += np.square(y, dtype=np.float64)
+    return squares
+
+
+def _differences(x: NDArray[np.float32]) -> NDArray[np.float64]:
+    """From each column to the next, in double precision."""
+    return np.subtract(x[:, 1:], x[:, :-1], dtype=np.float64)
 
 
 def rounded_up(values: NDArray[np.float64]) -> NDArray[np.float32]:
