@@ -14,6 +14,7 @@ import typer
 from mesa_mobility.commands.console import answer_json, answer_table, progress_bar, say
 from mesa_mobility.commands.interrupt import Stopped, gentle_interrupt
 from mesa_mobility.errors import ModelError
+from mesa_mobility.garbage import nothing_collected
 
 STALLED, INTERRUPTED = 1, 130
 
@@ -54,10 +55,11 @@ def run(
     if seconds is not None and not (math.isfinite(seconds) and seconds > 0):
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
     seed = secrets.randbelow(2**31) if seed is None else seed
-    from mesa_mobility.crowd.ahead import compiling_ahead
+    with nothing_collected():
+        from mesa_mobility.crowd.ahead import compiling_ahead
 
-    with compiling_ahead():
-        simulation = _create(model, settings or [], preset, map_file, seed)
+        with compiling_ahead():
+            simulation = _create(model, settings or [], preset, map_file, seed)
 
     from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run
 

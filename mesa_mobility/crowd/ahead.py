@@ -7,7 +7,6 @@ It leaves them in the cache on disk, where Numba looks for them.
 
 from __future__ import annotations
 
-import gc
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -31,7 +30,12 @@ from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.terms_table import compile_terms
 from mesa_mobility.threads import THREADS
 
-_COMMAND = "from mesa_mobility.crowd.ahead import compile_decisions; compile_decisions()"
+_COMMAND = """
+import gc
+gc.disable()
+from mesa_mobility.crowd.ahead import compile_decisions
+compile_decisions()
+"""
 
 
 @contextmanager
@@ -40,8 +44,6 @@ def compiling_ahead() -> Iterator[None]:
     if THREADS < 2 or any(_cached_in().glob("choice.decide-*.nbi")):
         yield
         return
-    collects = gc.isenabled()
-    gc.disable()  # Compilers keep what they make: to look through it all takes a tenth of the time.
     other = _start()
     try:
         yield
@@ -51,8 +53,6 @@ def compiling_ahead() -> Iterator[None]:
     finally:
         other.kill()
         other.wait()
-        if collects:
-            gc.enable()
 
 
 def _cached_in() -> Path:
@@ -90,7 +90,6 @@ def _table() -> OptionTable:
 
 def compile_decisions() -> None:
     """Compile what makes people decide, by the decisions of nobody, and the cost terms."""
-    gc.disable()
     table = _table()
     around = Surroundings(
         segments=np.empty((0, 4)),
