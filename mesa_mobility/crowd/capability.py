@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.groups import alike, group
-from mesa_mobility.crowd.options import option_table, padded_paths
+from mesa_mobility.crowd.options import in_lines, option_table, padded_paths
 from mesa_mobility.crowd.shortened import with_shortened
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
@@ -57,7 +57,8 @@ class Capability:
         path = padded_paths(mobility_map, parts)
         order, groups = _in_groups(mobility_map.durations[parts.rows], path, cluster)
         self.parts = parts.taken(order)
-        self.table = option_table(mobility_map, self.parts, path[order], offsets, groups)
+        ordered = np.take(path, order, axis=0, out=in_lines(path.shape, path.dtype), mode="clip")
+        self.table = option_table(mobility_map, self.parts, ordered, offsets, groups)
 
     @property
     def n_clusters(self) -> int:

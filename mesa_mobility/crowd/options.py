@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
@@ -21,6 +21,9 @@ SAMPLES = 16
 LEVELS = (4, 8, 12, 15)
 """Samples, at 0.4, 0.8, 1.2 and 1.5 s, at which all options of a cluster are looked at together."""
 
+
+_LINE = 64
+"""Bytes that come from memory together."""
 
 OptionRecords: TypeAlias = "np.recarray[Any, Any]"
 
@@ -110,7 +113,7 @@ def option_table(
     reach = np.sqrt(_squares(path[:, 0], path[:, 1]).max(axis=1))
     steps = np.sqrt(_squares(_differences(path[:, 0]), _differences(path[:, 1])).max(axis=1))
     wide = heading.astype(np.float64)
-    options = np.empty(len(path), OPTION).view(np.recarray)
+    options = in_lines(len(path), OPTION).view(np.recarray)
     options.x, options.y = x, y
     options.ux, options.uy = np.cos(wide), np.sin(wide)
     options.speed = np.hypot(x.astype(np.float64), y) / (frames * FRAME_SECONDS)
@@ -139,6 +142,17 @@ def _differences(x: NDArray[np.float32]) -> NDArray[np.float64]:
     return np.subtract(x[:, 1:], x[:, :-1], dtype=np.float64)
 
 
+def in_lines(shape: int | tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
+    """An empty array that starts where a line of the cache does.
+
+    Elsewhere each option would lie in two of them, and both would have to come from main memory.
+    """
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    memory = np.empty(size + _LINE, dtype=np.uint8)
+    start = -memory.ctypes.data % _LINE
+    return memory[start : start + size].view(dtype).reshape(shape)
+
+
 def rounded_up(values: NDArray[np.float64]) -> NDArray[np.float32]:
     """The same in single precision, or a little more."""
     return np.nextafter(values.astype(np.float32), np.float32(np.inf))
@@ -155,7 +169,10 @@ def stack_tables(tables: Sequence[OptionTable]) -> OptionTable:
             f"pedestrian types: their maps have {clusters[-1]} clusters together, "
             f"expected {np.iinfo(OPTION['cluster'].type).max} at most"
         )
-    records = np.concatenate([table.options for table in tables]).view(np.recarray)
+    records = in_lines(options[-1], OPTION).view(np.recarray)
+    np.concatenate([table.options for table in tables], out=records)
+    path = in_lines((options[-1], 3, SAMPLES), np.float32)
+    np.concatenate([table.path for table in tables], out=path)
     records.cluster += np.repeat(clusters[:-1], np.diff(options)).astype(records.cluster.dtype)
     firsts = [table.offsets[:-1] + by for table, by in zip(tables, options, strict=False)]
     return OptionTable(
@@ -166,5 +183,5 @@ def stack_tables(tables: Sequence[OptionTable]) -> OptionTable:
         farthest=np.concatenate([table.farthest for table in tables]),
         options=records,
         heading=np.concatenate([table.heading for table in tables]),
-        path=np.concatenate([table.path for table in tables]),
+        path=path,
     )

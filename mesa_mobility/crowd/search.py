@@ -75,6 +75,7 @@ def _open_groups(
         if above < bounds[a] <= up_to:
             for o in range(groups.first[alive[a]], groups.first[alive[a] + 1]):
                 work.rows[n] = o
+                fetch(table.options, o, 64)
                 n += 1
     n = count + free_options(work.bodies, work.rows[count:n], table, work.circles)
     lay_ends(me, work.rows[count:n], table, work.ends, count)

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from mesa_mobility import Capability, PedestrianType
+from mesa_mobility.crowd.options import stack_tables
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import STANDING, WALKING, make_map, stand, straight, strider, through
 from tests.fixtures.scenes import corridor, model_of, put, statues
@@ -31,6 +32,21 @@ def test_paths_stay_with_their_options():
     table = Capability(strider(), durations=(24,)).table
     steps = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875]
     assert table.path[1, 0].tolist() == [*steps, *[1.0] * 8]
+
+
+def test_options_start_where_a_line_of_the_cache_does():
+    one, other = Capability(strider()).table, Capability(strider(), durations=(24, 45)).table
+    for table in (one, other, stack_tables([one, other])):
+        assert table.options.ctypes.data % 64 == 0
+        assert table.path.ctypes.data % 64 == 0
+
+
+def test_stacked_tables_follow_one_another():
+    one, other = Capability(strider()).table, Capability(strider(), durations=(24, 45)).table
+    both = stack_tables([one, other])
+    assert both.options.x.tolist() == one.options.x.tolist() + other.options.x.tolist()
+    assert both.options.cluster.tolist()[8:] == [c + 2 for c in other.options.cluster.tolist()]
+    assert np.array_equal(both.path, np.concatenate([one.path, other.path]))
 
 
 def test_reach_is_the_farthest_of_the_path_not_its_end():
