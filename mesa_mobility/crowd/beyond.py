@@ -7,8 +7,6 @@ with a floor behind it.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,7 +38,7 @@ class Beyond:
         self._new = np.concatenate([self._new, rows])
 
     def set_off(self, frame: int, crowd: Crowd) -> None:
-        """Have those who are new set off at their preferred speed, the way they went."""
+        """Have those who are new walk on as they went."""
         if len(self._new):
             walk_on(self._new, frame, np.empty((3, 2)), crowd.records)
             self._new = self._new[:0]
@@ -64,13 +62,11 @@ class Beyond:
 def walk_on(
     rows: NDArray[np.int64], frame: int, path: NDArray[np.float64], state: CrowdState
 ) -> None:
-    """Have those in ``rows`` set off the way they went; ``path`` (3, 2) is space to work in."""
+    """Have those in ``rows`` keep their velocity; ``path`` (3, 2) is space to work in."""
     for i in rows:
-        speed = math.sqrt(state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i])
-        length = state.preferred[i] * _SECONDS if speed > 0.0 else 0.0
         path[0, 0], path[1, 0], path[2, :] = state.x[i], state.y[i], state.heading[i]
-        path[0, 1] = state.x[i] + length * state.vx[i] / max(speed, 1e-9)
-        path[1, 1] = state.y[i] + length * state.vy[i] / max(speed, 1e-9)
+        path[0, 1] = state.x[i] + _SECONDS * state.vx[i]
+        path[1, 1] = state.y[i] + _SECONDS * state.vy[i]
         commit(
             i, state.option[i], frame, np.int64(1), np.int64(WALKS_ON), np.int64(-1),
             state.cluster[i], path, state,

@@ -157,15 +157,15 @@ def hits_neighbour(
     """Whether a path from ``frame`` on comes closer than ``clearance`` to pedestrian j's.
 
     The path has ``segments`` pieces of ``spacing`` frames; ``gone`` is the frame at
-    which it has crossed an exit, or -1: what comes then does not matter.  Whoever else crosses
-    one is there all the same.
+    which it has crossed an exit, or -1.  Behind the exit people are there all the same. Two who
+    leave walk on: neither has to be able to stand where the other's movement ends.
     """
     my_end = frame + spacing * segments
     their_end, start, step = state.end[j], state.start[j], state.spacing[j]
     last = state.knots[j] - 1
     stop = max(my_end, their_end)
-    if gone >= 0:
-        stop = min(stop, gone)
+    if gone >= 0 and (state.gone[j] >= 0 or not state.active[j]):
+        stop = min(stop, max(gone, min(my_end, their_end)))
     c = clearance + MARGIN
     limit = c * c
     jx, jy = position_at(state, table, j, frame)
@@ -274,7 +274,7 @@ def path_gone_or_blocked(
         return -3
     if not cores:
         return gone
-    x0, y0, x1, y1 = box_of(path, walked)
+    x0, y0, x1, y1 = box_of(path, pieces)
     for j in near:
         c = state.core[i] + state.core[j] + 0.001
         if (

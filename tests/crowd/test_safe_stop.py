@@ -61,11 +61,25 @@ def test_somebody_who_leaves_is_there_behind_the_exit_too(length, follows):
     assert behind.speed == pytest.approx(1.25 if follows else 0.0)
 
 
+@pytest.mark.parametrize(("y", "leaves"), [(2.0, False), (1.85, True)])
+def test_whoever_leaves_runs_over_nobody_who_stays(y, leaves, whole):
+    # It crosses the line at (6, 2.42), 0.42 m from somebody who stands at (5.95, 2), and passes
+    # it behind the line, 0.25 m off; 0.33 m from somebody at (5.95, 1.85).
+    out = make_map([[stand(), straight(1.0, 12, towards=-math.pi / 3, to=0)]])
+    model = model_of(
+        corridor(length=6.0), [out, statues()], behaviors=[Displacement()], preset=whole
+    )
+    leaver = put(model, 5.75, 2.85, 0.0)
+    put(model, 5.95, y, kind=1)
+    advance(model, 1)
+    assert (leaver.speed > 0.0) == leaves
+
+
 def test_whoever_has_left_walks_on_for_a_while():
-    # It crosses the line at 6 m in frame 12 and walks on at the 1 m/s that it likes: for 1.5 s
-    # it is a neighbour of those behind, and no longer.
+    # It crosses the line at 6 m in frame 12 and walks on as it went, though it would like to be
+    # slower: for 1.5 s it is a neighbour of those behind, and no longer.
     model = model_of(corridor(length=6.0), [strider(), statues()])
-    put(model, 5.52, 2.0, preferred_speeds=[1.25])
+    put(model, 5.52, 2.0, preferred_speeds=[1.1])
     behind = put(model, 5.0, 1.0, kind=1)
     seen = []
     for _ in range(75):
