@@ -33,7 +33,8 @@ SEAT_DEPTH = 0.42
 SEAT_WIDTH = 0.55
 
 HALL_DOOR = 1.8
-EXIT_DOOR = 0.75
+EXIT_DOOR = 0.7
+OUTER_WALL = 0.4
 OFFICE_DOOR = 0.9
 
 FORECOURT = (3.0, 8.0)
@@ -44,8 +45,9 @@ class Auditorium(PedestrianModel):
     """A nearly full auditorium and six offices; everybody starts at once, nearest exit.
 
     The paper prints no plan.  This one has 19 rows of seats in three blocks, two double doors
-    at the back that open to a foyer, offices on the foyer's far side, and an exit door of 0.75
-    m at each end of the foyer; through both together pass the paper's three people a second.
+    at the back that open to a foyer, offices on the foyer's far side, and an exit door of 0.7 m
+    in an outer wall of 0.4 m at each end of the foyer; through both together pass the paper's
+    three people a second.
 
     Args:
         pedestrians: people; a twelfth of them, but no more than ten an office, are in the offices.
@@ -145,12 +147,12 @@ def auditorium_plan() -> FloorPlan:
     depth, width = FORECOURT
     exits = []
     for side, wall, out in (("left", 0.0, -1.0), ("right", WIDTH + WING, 1.0)):
-        outside, end = wall + out * WALL, wall + out * (WALL + depth)
+        outside, end = wall + out * OUTER_WALL, wall + out * (OUTER_WALL + depth)
         parts.append(box(min(wall, outside), low, max(wall, outside), high))
         parts.append(
             box(min(outside, end), middle - width / 2, max(outside, end), middle + width / 2)
         )
-        x = wall + out * WALL / 2
+        x = wall + out * OUTER_WALL / 2
         gates.append(Gate(f"{side} exit door", (x, low), (x, high)))
         exits.append(Exit(f"{side} exit", (end, middle - width / 2), (end, middle + width / 2)))
     return FloorPlan(
