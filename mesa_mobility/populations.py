@@ -3,39 +3,47 @@
 from __future__ import annotations
 
 import csv
+import math
 from functools import cache
 from importlib.resources import files
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.distributions import Normal
 from mesa_mobility.errors import ModelError
 
-_WITHIN = 3.0
+WITHIN = 3.0
 """Standard deviations from the mean beyond which nobody is drawn: 0.3 % of a normal curve."""
 
 
-def walking_speed(ages: ArrayLike, rng: np.random.Generator) -> NDArray[np.float64]:
+def walking_speed(
+    ages: ArrayLike, rng: np.random.Generator, fastest: float = math.inf
+) -> NDArray[np.float64]:
     """Free walking speed of people of these ages, m/s.
 
     Mean and standard deviation are those of Weidmann (1993), as RiMEA shows them in its test 7,
     linear between the ages given there; speeds are normal about the mean, cut off at three
-    deviations.
+    deviations and at what bodies can do.
 
     Args:
         ages: (n,) years, 3 to 80.
         rng: drawn from.
+        fastest: speed beyond which nobody is drawn, m/s.
 
     Raises:
-        ModelError: an age that the curve does not have.
+        ModelError: an age that the curve does not have, or ``fastest`` below a mean of the curve.
     """
     years = np.asarray(ages, dtype=np.float64)
     age, mean, sd = _weidmann()
     if years.ndim != 1 or not ((years >= age[0]) & (years <= age[-1])).all():
         raise ModelError(f"ages: expected a row of {age[0]:g} to {age[-1]:g} years")
-    standard = Normal(0.0, 1.0, -_WITHIN, _WITHIN).draw(len(years), rng)
-    return np.interp(years, age, mean) + standard * np.interp(years, age, sd)
+    from scipy.stats import truncnorm  # takes a second to load
+
+    means, deviations = np.interp(years, age, mean), np.interp(years, age, sd)
+    if not (fastest >= means).all():
+        raise ModelError(f"fastest: {fastest} m/s, expected at least the mean, {means.max():.2f}")
+    most = np.minimum((fastest - means) / deviations, WITHIN)
+    return means + deviations * truncnorm.rvs(-WITHIN, most, random_state=rng)
 
 
 @cache

@@ -26,6 +26,16 @@ def test_each_has_the_speed_of_its_own_age():
     assert speeds[500:].mean() == pytest.approx(1.58, abs=0.05)
 
 
+def test_nobody_is_drawn_faster_than_bodies_are():
+    speeds = walking_speed(np.full(4000, 20.0), np.random.default_rng(3), fastest=1.85)
+    # 1.61 and 0.31 m/s, cut 0.774 deviations above the mean and 3 below: that takes the mean down
+    # by (0.2957 - 0.0044) / (0.7806 - 0.0013) deviations.
+    assert speeds.max() <= 1.85
+    assert speeds.mean() == pytest.approx(1.61 - 0.31 * 0.3738, abs=0.015)
+    with pytest.raises(ModelError, match="fastest"):
+        walking_speed([20.0], np.random.default_rng(0), fastest=1.6)
+
+
 @pytest.mark.parametrize("ages", [[2.0], [81.0], [np.nan], 30.0])
 def test_ages_that_the_curve_does_not_have(ages):
     with pytest.raises(ModelError, match="3 to 80"):

@@ -150,6 +150,7 @@ def test_speeds_by_age():
                     "walked_mps": walked.tolist(),
                     "assigned_mps": (walked + error).tolist(),
                     "deviation": (deviation + shift).tolist(),
+                    "most": [3.0] * 50,
                 }
             ]
         ]

@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
-from mesa_mobility.populations import walking_speed
+from mesa_mobility.populations import WITHIN, walking_speed
 from mesa_mobility.verification.references import speed_by_age
 from mesa_mobility.verification.runs import CLEARANCE, Run, crowd_model, evacuate, passing_time
 
 WIDTH = 2.0
 LANE = 3.0
 LENGTH = 40.0
+FASTEST = 1.85
+"""Greatest speed that people of the map keep up, m/s: who likes to walk faster walks slower."""
 
 
 def corridor_plan(length: float, width: float = WIDTH) -> FloorPlan:
@@ -97,15 +99,19 @@ def speeds_by_age(seed: int, *, people: int, youngest: float, oldest: float) -> 
     """People of ages spread evenly, with speeds from the curve of ages.
 
     Returns:
-        As of the others, and ``deviation``: of the speed walked from the mean of the age, in
-        standard deviations of that age.
+        As of the others, and in standard deviations of each one's age ``deviation``, of the speed
+        walked from the mean of the age, and ``most``, beyond which nobody was drawn.
     """
     model = lanes_model(people, seed)
     ages = np.linspace(youngest, oldest, people)
-    figures = _walked(model, walking_speed(ages, model.rng))
+    figures = _walked(model, walking_speed(ages, model.rng, FASTEST))
     mean, sd = speed_by_age(ages)
     walked = np.array(figures["walked_mps"], dtype=np.float64)
-    return {**figures, "deviation": ((walked - mean) / sd).tolist()}
+    return {
+        **figures,
+        "deviation": ((walked - mean) / sd).tolist(),
+        "most": np.minimum((FASTEST - mean) / sd, WITHIN).tolist(),
+    }
 
 
 def _walked(model: PedestrianModel, speeds: NDArray[np.float64]) -> dict[str, Any]:
