@@ -10,6 +10,7 @@ from mesa_mobility.behaviors.random_utility import RandomUtility
 from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.social_influence import SocialInfluence
 from mesa_mobility.behaviors.speed import Displacement, PreferredSpeed
+from mesa_mobility.behaviors.stepping import Stepping
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
 from mesa_mobility.behaviors.velocity import PreferredVelocity
 from mesa_mobility.behaviors.walk_together import WalkTogether
@@ -29,6 +30,7 @@ __all__ = [
     "RandomUtility",
     "RightOfWay",
     "SocialInfluence",
+    "Stepping",
     "TargetDistance",
     "WalkTogether",
 ]

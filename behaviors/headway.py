@@ -2,11 +2,10 @@
 
 import math
 
+from mesa_mobility.behaviors.stepping import STANDS
+
 from mesa_mobility import CompiledTerm, pair_kernel
 from mesa_mobility.errors import ModelError
-
-# Whoever covers no more ground than this in a movement stands, metres.
-STANDS = 0.01
 
 
 @pair_kernel
@@ -54,15 +53,15 @@ class Headway(CompiledTerm):
     """
 
     name = "headway"
-    default_weight = 2.0
+    default_weight = 1.5
     kernel = _headway
 
     def __init__(
         self,
         weight: float | None = None,
-        distance: float = 0.39,
-        time: float = 0.1,
-        width: float = 0.3,
+        distance: float = 0.35,
+        time: float = 1.0,
+        width: float = 0.4,
     ) -> None:
         super().__init__(weight)
         for name, value in (("distance", distance), ("time", time), ("width", width)):

@@ -18,18 +18,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mesa_mobility.behaviors import (
-    FacingDeviation,
-    Headway,
-    Interference,
-    PreferredVelocity,
-    RightOfWay,
-    TargetDistance,
-)
 
 from mesa_mobility import MobilityMap, PedestrianType
 from mesa_mobility.crowd.presets import PRESETS
 from mesa_mobility.mobility.map import CORE_RADIUS
+from mesa_mobility.registry import load_behavior
 from mesa_mobility.results.files import json_text
 from mesa_mobility.validation.bottleneck import DENSITY_IN_FRONT, bottleneck
 from mesa_mobility.verification.references import (
@@ -41,26 +34,26 @@ from mesa_mobility.verification.scenarios.counterflow import counterflow
 from mesa_mobility.verification.scenarios.track import track
 
 _TERMS = PRESETS["default"].terms
-_HEADWAY, _WAY = Headway(), RightOfWay()
+_CONSTANTS = {
+    "headway": ("distance", "time", "width"),
+    "right_of_way": ("width", "bias", "ahead", "beside"),
+}
 
 DEFAULT: dict[str, float] = {
     **{f"weight of {name}": weight for name, weight in _TERMS.items() if name != "target_distance"},
-    "headway distance m": _HEADWAY.distance,
-    "headway time s": _HEADWAY.time,
-    "headway width m": _HEADWAY.width,
-    "right of way width m": _WAY.width,
-    "right of way bias m": _WAY.bias,
-    "right of way ahead m": _WAY.ahead,
-    "right of way beside": _WAY.beside,
-    "core radius m": CORE_RADIUS,
+    **{
+        f"{name}: {constant}": getattr(load_behavior(name)(), constant)
+        for name, constants in _CONSTANTS.items()
+        for constant in constants
+    },
+    "core radius": CORE_RADIUS,
 }
 """What was chosen. The weight of target_distance is the unit."""
 
 GRID: dict[str, tuple[float, float]] = {
     **{name: (0.5 * value, 1.5 * value) for name, value in DEFAULT.items()},
-    "headway distance m": (0.36, 0.42),
-    "headway time s": (0.05, 0.3),
-    "core radius m": (0.12, 0.16),
+    "headway: distance": (0.3, 0.4),
+    "core radius": (0.12, 0.16),
 }
 """The smaller and the larger value that each is changed to."""
 
@@ -77,31 +70,15 @@ def settings() -> list[dict[str, float]]:
 def rules(changes: dict[str, float]) -> dict[str, Any]:
     """What a model gets for these numbers."""
     of = DEFAULT | changes
-    weights = {name: of.get(f"weight of {name}", 1.0) for name in _TERMS}
-    return {
-        "behaviors": [
-            TargetDistance(weights["target_distance"]),
-            FacingDeviation(weights["facing_deviation"]),
-            PreferredVelocity(weights["preferred_velocity"]),
-            Interference(weights["interference"]),
-            Headway(
-                weights["headway"],
-                distance=of["headway distance m"],
-                time=of["headway time s"],
-                width=of["headway width m"],
-            ),
-            RightOfWay(
-                weights["right_of_way"],
-                width=of["right of way width m"],
-                bias=of["right of way bias m"],
-                ahead=of["right of way ahead m"],
-                beside=of["right of way beside"],
-            ),
-        ],
-        "pedestrian_types": [
-            PedestrianType(mobility_map=MobilityMap.load(), core_radius=of["core radius m"])
-        ],
-    }
+    terms = [
+        load_behavior(name)(
+            weight=of.get(f"weight of {name}", 1.0),
+            **{each: of[f"{name}: {each}"] for each in _CONSTANTS.get(name, ())},
+        )
+        for name in _TERMS
+    ]
+    adults = PedestrianType(mobility_map=MobilityMap.load(), core_radius=of["core radius"])
+    return {"behaviors": terms, "pedestrian_types": [adults]}
 
 
 def measure(changes: dict[str, float], seed: int) -> dict[str, float]:

@@ -107,6 +107,7 @@ class PedestrianModel(CrowdMeasures, People):
         rules = preset_named(preset)
         self.preset = rules.name
         self._abreast, self._impatience = rules.abreast, rules.impatience
+        self._even_pace = rules.even_pace
         self.floor_plan = floor_plan
         self.pedestrian_types = types_of(mobility_map, pedestrian_types)
         self._repertoire = repertoire(
@@ -301,7 +302,7 @@ class PedestrianModel(CrowdMeasures, People):
         )
         return set_wishes(
             deciding, state, self.floor_plan, self.target_choice, self.paces, waiting,
-            abreast=self._abreast, impatience=self._impatience,
+            abreast=self._abreast, impatience=self._impatience, even_pace=self._even_pace,
         )  # fmt: skip
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:

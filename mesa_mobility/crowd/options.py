@@ -90,13 +90,19 @@ class Parts(NamedTuple):
 
 
 def padded_paths(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float32]:
-    """(n, 3, 16) x, y, heading of options, whole or shortened, at the samples from the start."""
+    """(n, 3, 16) x, y, heading of options, whole or shortened, at the samples from the start.
+
+    A share of a step is that share of its ground and of its turn; a share of nothing, which covers
+    no ground, is to turn where one is.
+    """
     first = mobility_map.path_offsets[parts.rows]
     last = mobility_map.path_offsets[parts.rows + 1] - 1
     path = np.zeros((len(first), 3, SAMPLES), dtype=np.float32)
     for k in range(1, SAMPLES):
         path[:, :, k] = mobility_map.paths[np.minimum(first + k - 1, last)]
-    path[:, :2] *= parts.share.astype(np.float32)[:, None, None]
+    share = parts.share.astype(np.float32)
+    path[:, :2] *= share[:, None, None]
+    path[:, 2] *= np.where(share > 0.0, share, 1.0)[:, None]
     return path
 
 

@@ -4,8 +4,8 @@ Two people who want the same place and each stand in the other's way could do so
 each does what is best for it.  Real people do not: Helbing, Farkas and Vicsek (Nature 407, 2000)
 let the fluctuations of a person's direction grow with its nervousness, which is how far it
 falls short of its speed.  So here: the direction of whoever has come no nearer for some seconds
-is turned by a random angle, which is larger the longer it has waited.  Whoever stands because it
-was told to, or has not set off yet, is patient.
+is now and then turned by a random angle, which is larger the longer it has waited.  Whoever
+stands because it was told to, or has not set off yet, is patient.
 """
 
 from __future__ import annotations
@@ -29,6 +29,10 @@ PATIENCE = 5.0
 RATE, MOST = 0.1, 1.5
 """Standard deviation of the angle: radians a second of impatience, and at most."""
 
+LOOKS = 0.15
+"""Share of its decisions in which somebody impatient looks for a way round; in the others it
+waits, as people in a queue mostly do."""
+
 
 def look_around(
     rows: NDArray[np.int64], crowd: Crowd, elapsed: float, rng: np.random.Generator
@@ -44,8 +48,9 @@ def look_around(
     who, spread = np.empty(len(rows), dtype=np.int64), np.empty(len(rows))
     count = _impatient(rows, elapsed, crowd.records, crowd.agenda, who, spread)
     if count:
-        angle = rng.normal(0.0, spread[:count])
-        turn(who[:count], np.cos(angle), np.sin(angle), crowd.records)
+        looks = np.flatnonzero(rng.random(count) < LOOKS)
+        angle = rng.normal(0.0, spread[looks])
+        turn(who[looks], np.cos(angle), np.sin(angle), crowd.records)
 
 
 @called()

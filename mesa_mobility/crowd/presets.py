@@ -25,6 +25,7 @@ class Preset:
         cores: whether bodies are hard.
         abreast: whether a crowd spreads out to pass a corner.
         impatience: whether people who get nowhere look for a way round.
+        even_pace: whether whoever walks freely makes up for steps longer or shorter than it likes.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Preset:
     cores: bool
     abreast: bool
     impatience: bool
+    even_pace: bool
 
     def make_target_choice(self) -> TargetChoice:
         """The target choice, looked up among the installed behaviours."""
@@ -68,6 +70,7 @@ PRESETS = {
         cores=False,
         abreast=False,
         impatience=False,
+        even_pace=False,
     ),
     # The same terms and constants, but a velocity of one's own in place of reward without
     # limit, bodies that do not overlap and make way, and options short enough for a queue to move.
@@ -75,11 +78,12 @@ PRESETS = {
         name="default",
         terms={
             "target_distance": 1.0,
-            "facing_deviation": 0.5,
+            "facing_deviation": 1.0,
             "preferred_velocity": 2.0,
             "interference": 1.0,
-            "headway": 2.0,
+            "headway": 1.5,
             "right_of_way": 2.0,
+            "stepping": 0.35,
         },
         target_choice="nearest_exit",
         group_pace="walk_together",
@@ -88,6 +92,7 @@ PRESETS = {
         cores=True,
         abreast=True,
         impatience=True,
+        even_pace=True,
     ),
 }
 

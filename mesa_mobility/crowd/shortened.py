@@ -1,8 +1,8 @@
 """Shortened steps: whoever can take a step can take a shorter one of the same kind.
 
 Recorded people walk or stand, and few of them ever creep. In a jam everybody does, so there are
-copies of the shortest recorded options of each cluster that turn as these do over a share of the
-ground; a share of nothing is to stay where one is.
+copies of the shortest recorded options of each cluster that are a share of them, of the ground as
+of the turn; a share of nothing is to stay where one is and turn as in the whole step.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def with_shortened(
         key = np.column_stack([cluster, *cells])[order]
         kept = np.sort(order[np.append(True, (np.diff(key, axis=0) != 0).any(axis=1))])
         stands = (share * np.hypot(x, y) < STANDING_SPEED * seconds) & (
-            (abs(turn) < STANDING_TURN_RATE * seconds) | (share == 0.0)
+            (share * abs(turn) < STANDING_TURN_RATE * seconds) | (share == 0.0)
         )
         ends_in = np.where(stands, mobility_map.standing, mobility_map.end_clusters[short])
         parts.append(Parts(short[kept], np.full(len(kept), share), ends_in[kept].astype(np.int64)))

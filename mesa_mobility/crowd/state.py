@@ -91,6 +91,8 @@ AGENDA = np.dtype(
         ("checked", "f8"),
         ("nearest", "f8"),
         ("since", "f8"),
+        ("wished", "f8"),
+        ("behind", "f8"),
     ],
     align=True,
 )
@@ -100,7 +102,9 @@ Fields: ``speed``, its preferred speed where nothing slows it down, m/s (``prefe
 record is that of its last decision); ``sets_off``, frame of its first decision; ``waits_until``,
 frame before which it does not walk; ``journey``, the number of its itinerary, 0 for none;
 ``crossed``, gates of it that it has crossed, looked up until frame ``checked``; ``group``, the
-number of its group, 0 for none; ``corner``, number of the corner that its way bends at next.
+number of its group, 0 for none; ``corner``, number of the corner that its way bends at next;
+``wished``, the speed that it preferred at its last decision, m/s, and ``behind``, metres that it
+has fallen short of it.
 """
 
 

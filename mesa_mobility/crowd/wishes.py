@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.abreast import keep_abreast
+from mesa_mobility.crowd.even_pace import keep_pace
 from mesa_mobility.crowd.pace import Pace, ask_paces
 from mesa_mobility.crowd.patience import look_around
 from mesa_mobility.crowd.state import Crowd
@@ -25,6 +26,7 @@ def set_wishes(
     *,
     abreast: bool = False,
     impatience: bool = False,
+    even_pace: bool = False,
 ) -> Targets:
     """Give those who decide their targets and the speed that they prefer here and now.
 
@@ -37,6 +39,7 @@ def set_wishes(
         waiting: (n,) who stays where it is, if anybody.
         abreast: whether a crowd spreads out to pass a corner.
         impatience: whether those who get nowhere look for a way round.
+        even_pace: whether those who walk freely make up for steps that were too long or too short.
 
     Raises:
         ModelError: a behaviour gives what it should not.
@@ -55,7 +58,7 @@ def set_wishes(
         speeds = np.where(waiting, 0.0, speeds)
         stay = rows[waiting]
         crowd.target_x[stay], crowd.target_y[stay] = crowd.x[stay], crowd.y[stay]
-    crowd.preferred[rows] = speeds
+    crowd.preferred[rows] = keep_pace(rows, crowd, speeds) if even_pace else speeds
     if impatience:
         look_around(rows, crowd, deciding.elapsed, deciding.rng)
     return targets

@@ -6,7 +6,7 @@ from mesa_mobility.errors import ModelError
 SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium"}
 SHIPPED_BEHAVIORS = {
     "target_distance", "facing_deviation", "displacement", "interference", "preferred_speed",
-    "preferred_velocity", "headway", "right_of_way",
+    "preferred_velocity", "headway", "right_of_way", "stepping",
 }  # fmt: skip
 
 

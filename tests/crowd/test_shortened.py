@@ -59,7 +59,7 @@ def test_who_is_no_faster_than_somebody_who_stands_ends_up_standing():
         (0, STANDING),
         (2, WALKING),  # 0.27 m in 0.4 s
         (4, STANDING),  # 0.03 m in 0.4 s: 0.08 m/s
-        (5, WALKING),  # as slow, but turning by 0.6 rad/s
+        (5, STANDING),  # as slow, and turning by 0.31 rad/s
         (6, WALKING),
     ]
     # Who stays in place stands, turning or not.
@@ -75,6 +75,9 @@ def test_a_path_is_scaled_and_takes_as_long():
     assert table.options.frames[k] == 12
     assert table.options.speed[k] == pytest.approx(0.265625 / 0.4)
     assert table.options.reach[k] == pytest.approx(0.265625)
+    # Half a step turns by half as much, but who stays in place may turn as in the whole step.
+    [k] = np.flatnonzero((parts.rows == 5) & (parts.share == 0.5))
+    assert table.path[k, 2].tolist() == [0.0, 0.03125, 0.0625, 0.09375, *[0.125] * 12]
     [k] = np.flatnonzero((parts.rows == 5) & (parts.share == 0.0))
     assert not table.path[k, :2].any()
     assert table.path[k, 2].tolist() == [0.0, 0.0625, 0.125, 0.1875, *[0.25] * 12]
@@ -102,11 +105,12 @@ def check(capability, shares):
     turn, ends_in = map_.end_headings.astype(float), map_.end_clusters
     ends = np.stack([x, y, turn], axis=1)[parts.rows]
     ends[:, :2] *= parts.share[:, None]
+    ends[:, 2] *= np.where(parts.share > 0.0, parts.share, 1.0)
     np.testing.assert_allclose(table.path[:, :, -1], ends, atol=1e-6)
     for k in range(0, len(parts.rows), max(len(parts.rows) // 200, 1)):
         row, share = parts.rows[k], parts.share[k]
         path = map_.paths[map_.path_offsets[row] : map_.path_offsets[row + 1]]
-        scaled = path * np.array([share, share, 1.0])
+        scaled = path * np.array([share, share, share if share > 0.0 else 1.0])
         np.testing.assert_allclose(table.path[k, :, 1 : len(path) + 1].T, scaled, atol=1e-6)
 
     shortest = np.minimum.reduceat(map_.durations, map_.offsets[:-1])
@@ -123,7 +127,7 @@ def check(capability, shares):
         for k, row in zip(kept, parts.rows[kept].tolist(), strict=True):
             seconds = map_.durations[row] / 30.0
             slow = share * math.hypot(x[row], y[row]) / seconds < 0.10
-            stands = slow and (abs(turn[row]) / seconds < 0.35 or share == 0.0)
+            stands = slow and (share * abs(turn[row]) / seconds < 0.35 or share == 0.0)
             assert parts.clusters[k] == (map_.standing if stands else ends_in[row])
 
     if 0.0 in shares:
