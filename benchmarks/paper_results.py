@@ -62,8 +62,9 @@ def _line(name: str, preset: str, rows: list) -> str:
 
 
 def _inside(curve: dict[float, int], time: float) -> int:
-    earlier = [t for t in curve if t <= time]
-    return curve[max(earlier)] if curve[max(earlier)] or time - max(earlier) < 1.0 else 0
+    # Noted every second while anybody is inside.
+    last = max(t for t in curve if t <= time)
+    return curve[last] if time - last < 1.0 else 0
 
 
 if __name__ == "__main__":
