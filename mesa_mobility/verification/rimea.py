@@ -8,6 +8,7 @@ import numpy as np
 from scipy import stats
 
 from mesa_mobility.distributions import Uniform
+from mesa_mobility.populations import WITHIN
 from mesa_mobility.verification import judging
 from mesa_mobility.verification.cases import Figures, case
 from mesa_mobility.verification.checks import (
@@ -91,15 +92,15 @@ def starts_on_time(runs: Sequence[Figures]) -> Verdict:
 def speeds_by_age(seeds: Sequence[Sequence[Figures]]) -> Verdict:
     """Everybody walks at its own speed, and speeds scatter about the curve of ages as they should.
 
-    The deviation from the curve in units of its standard deviation is normal, cut off at -3 and
-    at the fastest that anybody was given.
+    The deviation from the curve in units of its standard deviation is normal, cut off where
+    ``walking_speed`` cuts it: three below, and at the fastest that anybody was given.
     """
     walked, assigned, deviation, most = (
         np.array([v for (run,) in seeds for v in run[name]], dtype=np.float64)
         for name in ("walked_mps", "assigned_mps", "deviation", "most")
     )
     arrived = np.isfinite(walked)
-    rank = stats.truncnorm.cdf(deviation[arrived], -3.0, most[arrived])
+    rank = stats.truncnorm.cdf(deviation[arrived], -WITHIN, most[arrived])
     p_value = float(stats.kstest(rank, stats.uniform.cdf).pvalue)
     return Verdict(
         (
