@@ -23,9 +23,6 @@ def dashboard(
 
     Needs the extra `viz`.
     """
-    from mesa_mobility.registry import load_model
-
-    load_model(model)
     if find_spec("solara") is None:
         raise MobilityError(
             "the dashboard needs Solara: pip install 'mesa-mobility[viz]' brings what it needs"

@@ -21,7 +21,7 @@ from mesa_mobility.crowd.collision import Surroundings
 from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.groups import make_groups
 from mesa_mobility.crowd.motion import due, move
-from mesa_mobility.crowd.options import OPTION, SAMPLES, OptionTable
+from mesa_mobility.crowd.options import OPTION, SAMPLES, OptionTable, boxes
 from mesa_mobility.crowd.patience import turn
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.repertoire import Repertoire
@@ -105,7 +105,9 @@ def compile_decisions() -> None:
     )
     first = np.zeros(1, dtype=np.int64)
     standing = np.zeros(1, dtype=np.int32)
-    repertoire = Repertoire((), table, make_groups(table), standing, first, standing, 1.0, 1.0)
+    repertoire = Repertoire(
+        (), table, make_groups(table, boxes(table.path)), standing, first, standing, 1.0, 1.0
+    )
     decisions = Decisions(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
     nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
     decisions.take(nobody, 0, nobody, crowd, around, terms=[])

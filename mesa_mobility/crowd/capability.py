@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.groups import alike, group
-from mesa_mobility.crowd.options import in_lines, option_table, padded_paths
+from mesa_mobility.crowd.options import option_table, padded_paths
 from mesa_mobility.crowd.shortened import with_shortened
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
@@ -54,11 +54,11 @@ class Capability:
         cluster = np.searchsorted(mobility_map.offsets, parts.rows, side="right") - 1
         counts = np.bincount(cluster, minlength=mobility_map.n_clusters)
         offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        path = padded_paths(mobility_map, parts)
-        order, groups = _in_groups(mobility_map.durations[parts.rows], path, cluster)
+        features = alike(mobility_map, parts)
+        order, groups = _in_groups(mobility_map.durations[parts.rows], features, cluster)
         self.parts = parts.taken(order)
-        ordered = np.take(path, order, axis=0, out=in_lines(path.shape, path.dtype), mode="clip")
-        self.table = option_table(mobility_map, self.parts, ordered, offsets, groups)
+        path = padded_paths(mobility_map, self.parts)
+        self.table = option_table(mobility_map, self.parts, path, offsets, groups)
 
     @property
     def n_clusters(self) -> int:
@@ -75,26 +75,18 @@ class Capability:
         """Farthest that any option leads from its start, metres."""
         return float(self.table.farthest.max())
 
-    @property
-    def longest_extent(self) -> float:
-        """Upper bound of the distance between any two places of one option's path, metres."""
-        places = self.table.path[:, :2]
-        spread = places.max(axis=2) - places.min(axis=2)
-        return float(np.hypot(spread[:, 0], spread[:, 1]).max())
-
     def options(self, cluster: int) -> range:
         """Rows in ``table`` of the options that a pose of this cluster has."""
         return range(int(self.table.offsets[cluster]), int(self.table.offsets[cluster + 1]))
 
 
 def _in_groups(
-    frames: NDArray[np.integer], path: NDArray[np.float32], cluster: NDArray[np.int64]
+    frames: NDArray[np.integer], features: NDArray[np.float64], cluster: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The order in which options are in groups of those alike, and where in it each starts."""
     sort = np.lexsort((frames, cluster))
-    path, cluster, frames = path[sort], cluster[sort], frames[sort]
+    cluster, frames = cluster[sort], frames[sort]
     changes = (np.diff(cluster) != 0) | (np.diff(frames) != 0)
     bounds = np.concatenate([[0], np.flatnonzero(changes) + 1, [len(sort)]])
-    features = alike(path, frames)
-    order, starts = group(features, bounds.astype(np.int64))
+    order, starts = group(features[sort], bounds.astype(np.int64))
     return sort[order], starts

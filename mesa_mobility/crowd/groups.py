@@ -13,7 +13,17 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.options import FRAME_SECONDS, LEVELS, OptionTable
+from mesa_mobility.crowd.options import (
+    FRAME_SECONDS,
+    LEVELS,
+    SAMPLES,
+    OptionTable,
+    Parts,
+    in_blocks,
+    sampled,
+    squared,
+)
+from mesa_mobility.mobility import MobilityMap
 
 GROUP_SIZE = 8
 """Most options in a group."""
@@ -62,22 +72,16 @@ class OptionGroups(NamedTuple):
     at: NDArray[np.float32]
 
 
-def alike(path: NDArray[np.float32], frames: NDArray[np.integer]) -> NDArray[np.float64]:
-    """(n, 8) where options are at 0.8 s, 1.2 s and their end, how they face there, their speed.
+def alike(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float64]:
+    """(n, 8) where options end and are at 0.8 s and 1.2 s, how they face at the end, their speed.
 
-    ``path`` (n, 3, 16), ``frames`` (n,); in metres all of them.
+    In metres all of them.
     """
-    places = path[:, :2].astype(np.float64)
-    speed = np.hypot(*places[:, :, -1].T) / (frames * FRAME_SECONDS)
-    return np.column_stack(
-        [
-            places[:, :, -1],
-            places[:, :, LEVELS[1]],
-            places[:, :, LEVELS[2]],
-            _TURN_M * path[:, 2, -1].astype(np.float64),
-            _SPEED_S * speed,
-        ]
-    )
+    places = sampled(mobility_map, parts, (SAMPLES - 1, LEVELS[1], LEVELS[2])).astype(np.float64)
+    end = places[:, 0]
+    speed = np.hypot(end[:, 0], end[:, 1]) / (mobility_map.durations[parts.rows] * FRAME_SECONDS)
+    where = places[:, :, :2].reshape(len(places), 6)
+    return np.column_stack([where, _TURN_M * end[:, 2], _SPEED_S * speed])
 
 
 @njit(cache=True)
@@ -107,7 +111,7 @@ def _before(a: int, b: int, value: NDArray[np.float64]) -> bool:
     return value[a] < value[b] or (value[a] == value[b] and a < b)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def group(
     features: NDArray[np.float64], bounds: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -150,17 +154,18 @@ def group(
     return order, starts[:count]
 
 
-def make_groups(table: OptionTable) -> OptionGroups:
-    """What the groups of a table span."""
+def make_groups(table: OptionTable, boxes: NDArray[np.float32]) -> OptionGroups:
+    """What the groups of a table span; ``boxes`` (n, 4) of its options, as ``options.boxes``."""
     starts, clusters = table.groups, table.offsets[:-1]
     ends = _circles(table.path[:, :2, -1], starts)
     heading, speed = table.heading.astype(np.float64), table.options.speed.astype(np.float64)
     low, high = np.minimum.reduceat(heading, starts), np.maximum.reduceat(heading, starts)
     at = [table.path[:, :2, level] for level in LEVELS]
-    away2 = np.square(table.path[:, 0], dtype=np.float64)
-    away2 += np.square(table.path[:, 1], dtype=np.float64)
-    # From one level to the next, as the farthest by then is at least that of before.
-    legs = np.maximum.reduceat(away2, [0, *(np.array(LEVELS[:-1]) + 1)], axis=1)
+    legs = np.empty((len(table.path), len(LEVELS)))
+    for block, x, y in in_blocks(table.path):
+        # From one level to the next, as the farthest by then is at least that of before.
+        firsts = [0, *(np.array(LEVELS[:-1]) + 1)]
+        legs[block] = np.maximum.reduceat(squared(x, y), firsts, axis=0).T
     farthest2 = np.maximum.accumulate(np.maximum.reduceat(legs, clusters, axis=0), axis=1)
     circles = np.array([_circles(places, starts) for places in at]).astype(np.float32)
     of = np.searchsorted(starts, table.offsets).astype(np.int64)
@@ -170,7 +175,9 @@ def make_groups(table: OptionTable) -> OptionGroups:
     x1, y1 = (np.maximum.reduceat(circles[:, k] + r, first, axis=1) for k in (0, 1))
     spanned = np.empty(len(clusters), CLUSTER)
     spanned["first"], spanned["last"] = of[:-1], of[1:]
-    spanned["whole"] = _boxes(table.path[:, :2], clusters)
+    spanned["whole"] = np.column_stack(
+        [np.minimum.reduceat(boxes[:, :2], clusters), np.maximum.reduceat(boxes[:, 2:], clusters)]
+    )
     spanned["around"] = np.stack([np.column_stack(_circles(each, clusters)) for each in at], axis=1)
     spanned["spans"] = np.stack([x0.T, y0.T, x1.T, y1.T], axis=2)
     spanned["reach"] = np.sqrt(farthest2)
@@ -202,10 +209,3 @@ def _circles(
     counts = np.diff(np.append(starts, len(places)))
     away = np.hypot(*(places - np.repeat(middle, counts, axis=0)).T)
     return middle[:, 0], middle[:, 1], np.maximum.reduceat(away, starts)
-
-
-def _boxes(places: NDArray[np.float32], starts: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(runs, 4) least x and y, greatest x and y of runs of paths (n, 2, 16)."""
-    low = np.minimum.reduceat(places.min(axis=2), starts)
-    high = np.maximum.reduceat(places.max(axis=2), starts)
-    return np.column_stack([low, high]).astype(np.float64)

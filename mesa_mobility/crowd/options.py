@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -24,6 +24,9 @@ LEVELS = (4, 8, 12, 15)
 
 _LINE = 64
 """Bytes that come from memory together."""
+
+_BLOCK = 4096
+"""Options that are laid out together."""
 
 OptionRecords: TypeAlias = "np.recarray[Any, Any]"
 
@@ -84,26 +87,51 @@ class Parts(NamedTuple):
     share: NDArray[np.float64]
     clusters: NDArray[np.int64]
 
-    def taken(self, order: NDArray[np.int64]) -> Parts:
-        """The same in another order."""
+    def taken(self, order: NDArray[np.int64] | slice) -> Parts:
+        """Some of them, or all in another order."""
         return Parts(self.rows[order], self.share[order], self.clusters[order])
 
 
-def padded_paths(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float32]:
-    """(n, 3, 16) x, y, heading of options, whole or shortened, at the samples from the start.
+def sampled(mobility_map: MobilityMap, parts: Parts, samples: Sequence[int]) -> NDArray[np.float32]:
+    """(n, samples, 3) x, y, heading of options, whole or shortened, at samples from 1 on.
 
     A share of a step is that share of its ground and of its turn; a share of nothing, which covers
     no ground, is to turn where one is.
     """
-    first = mobility_map.path_offsets[parts.rows]
-    last = mobility_map.path_offsets[parts.rows + 1] - 1
-    path = np.zeros((len(first), 3, SAMPLES), dtype=np.float32)
-    for k in range(1, SAMPLES):
-        path[:, :, k] = mobility_map.paths[np.minimum(first + k - 1, last)]
+    first = mobility_map.path_offsets[parts.rows, None]
+    last = mobility_map.path_offsets[parts.rows + 1, None] - 1
+    places = mobility_map.paths.take(np.minimum(first + np.array(samples) - 1, last), axis=0)
     share = parts.share.astype(np.float32)
-    path[:, :2] *= share[:, None, None]
-    path[:, 2] *= np.where(share > 0.0, share, 1.0)[:, None]
+    of_turn = np.where(share > 0.0, share, np.float32(1.0))
+    places *= np.stack([share, share, of_turn], axis=1)[:, None]
+    return places
+
+
+def padded_paths(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float32]:
+    """(n, 3, 16) x, y, heading of options, whole or shortened, at the samples from the start."""
+    path = in_lines((len(parts.rows), 3, SAMPLES), np.float32)
+    for block in _blocks(len(path)):
+        places = sampled(mobility_map, parts.taken(block), range(1, SAMPLES))
+        path[block, :, 0] = 0.0
+        path[block, :, 1:] = places.transpose(0, 2, 1)
     return path
+
+
+def in_blocks(
+    path: NDArray[np.float32],
+) -> Iterator[tuple[slice, NDArray[np.float32], NDArray[np.float32]]]:
+    """Some thousand options at a time: which they are, and (16, options) of their x and y.
+
+    So much stays in the cache of the processor, and there NumPy works along the options: along
+    the few samples of each, and with all options at once, it takes several times as long.
+    """
+    for block in _blocks(len(path)):
+        x, y = (np.ascontiguousarray(path[block, axis].T) for axis in (0, 1))
+        yield block, x, y
+
+
+def _blocks(n: int) -> list[slice]:
+    return [slice(k, min(k + _BLOCK, n)) for k in range(0, n, _BLOCK)]
 
 
 def option_table(
@@ -116,8 +144,10 @@ def option_table(
     """The table of options, whole or shortened; the last three are those fields."""
     frames = mobility_map.durations[parts.rows]
     x, y, heading = path[:, :, -1].T
-    reach = np.sqrt(_squares(path[:, 0], path[:, 1]).max(axis=1))
-    steps = np.sqrt(_squares(_differences(path[:, 0]), _differences(path[:, 1])).max(axis=1))
+    reach, steps = np.empty(len(path)), np.empty(len(path))
+    for block, xs, ys in in_blocks(path):
+        reach[block] = np.sqrt(squared(xs, ys).max(axis=0))
+        steps[block] = np.sqrt(squared(_differences(xs), _differences(ys)).max(axis=0))
     wide = heading.astype(np.float64)
     options = in_lines(len(path), OPTION).view(np.recarray)
     options.x, options.y = x, y
@@ -136,16 +166,24 @@ def option_table(
     )
 
 
-def _squares(x: NDArray[np.floating], y: NDArray[np.floating]) -> NDArray[np.float64]:
+def squared(x: NDArray[np.floating], y: NDArray[np.floating]) -> NDArray[np.float64]:
     """x squared and y squared, summed in double precision."""
     squares = np.square(x, dtype=np.float64)
     squares += np.square(y, dtype=np.float64)
     return squares
 
 
+def boxes(path: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(n, 4) least x and y, greatest x and y of options on the way; ``path`` (n, 3, 16)."""
+    spanned = np.empty((len(path), 4), dtype=np.float32)
+    for block, x, y in in_blocks(path):
+        spanned[block] = np.stack([x.min(0), y.min(0), x.max(0), y.max(0)], axis=1)
+    return spanned
+
+
 def _differences(x: NDArray[np.float32]) -> NDArray[np.float64]:
-    """From each column to the next, in double precision."""
-    return np.subtract(x[:, 1:], x[:, :-1], dtype=np.float64)
+    """From each row to the next, in double precision."""
+    return np.subtract(x[1:], x[:-1], dtype=np.float64)
 
 
 def in_lines(shape: int | tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:

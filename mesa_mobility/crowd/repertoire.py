@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.groups import OptionGroups, make_groups
-from mesa_mobility.crowd.options import OptionTable, stack_tables
+from mesa_mobility.crowd.options import OptionTable, boxes, stack_tables
 from mesa_mobility.mobility import MobilityMap
 
 
@@ -26,7 +26,7 @@ class Repertoire:
         first_option: (types,) row of each type's first option.
         standing: (types,) number of each type's standing cluster.
         reach: farthest that any option leads, metres.
-        extent: greatest distance between two places of one option, metres.
+        extent: upper bound of the distance between two places of one option, metres.
     """
 
     capabilities: tuple[Capability, ...]
@@ -56,16 +56,17 @@ def repertoire(
     own = {map_: Capability(map_, durations, shares) for map_ in dict.fromkeys(maps)}
     capabilities = tuple(own[map_] for map_ in maps)
     table = stack_tables([each.table for each in capabilities])
+    spanned = boxes(table.path)
     clusters = np.cumsum([0] + [each.n_clusters for each in capabilities])[:-1]
     options = np.cumsum([0] + [len(each.table.options) for each in capabilities])[:-1]
     standing = clusters + [each.standing for each in capabilities]
     return Repertoire(
         capabilities=capabilities,
         table=table,
-        groups=make_groups(table),
+        groups=make_groups(table, spanned),
         first_cluster=clusters.astype(np.int32),
         first_option=options.astype(np.int64),
         standing=standing.astype(np.int32),
         reach=max(each.longest_reach for each in capabilities),
-        extent=max(each.longest_extent for each in capabilities),
+        extent=float(np.hypot(*(spanned[:, 2:] - spanned[:, :2]).T).max()),
     )

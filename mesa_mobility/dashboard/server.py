@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import socket
 import threading
 import warnings
 from collections.abc import Callable
+from concurrent.futures import Future
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from mesa_mobility.errors import MobilityError
+from mesa_mobility.garbage import nothing_collected
+from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.registry import load_model
 
 if TYPE_CHECKING:
-    from mesa_mobility.dashboard.recipe import Recipe
+    from mesa_mobility import PedestrianModel
 
 SETTINGS = {
     "SOLARA_APP": "mesa_mobility.dashboard.page",
+    "SOLARA_GC_FREEZE": "false",
     "SOLARA_TELEMETRY_MIXPANEL_ENABLE": "false",
     "SOLARA_SESSION_SAME_SITE": "lax",
     "SOLARA_THEME_SHOW_BANNER": "false",
@@ -38,40 +42,38 @@ def serve(model: str, host: str, port: int, ready: Callable[[str], None]) -> Non
         model: name of the installed model to open on.
         host: address to listen on.
         port: to listen on.
-        ready: called with the page's address when it can be opened.
+        ready: called with the page's address when it can be opened; until all is imported, a
+            browser waits there for its answer.
 
     Raises:
-        MobilityError: the address cannot be listened on.
+        MobilityError: the address cannot be listened on, or there is no such model.
     """
     listening = _listen(host, port)
     os.environ.update(SETTINGS)
-    # Some hundred thousand objects are made that all stay: to look for garbage among them takes a
-    # sixth of the time until the page is there.
-    gc.disable()
-    reading = threading.Thread(target=_read_map, name="mesa-mobility map", daemon=True)
-    reading.start()
+    loaded: Future[type[PedestrianModel]] = Future()
+    serving = threading.Event()
+    threading.Thread(
+        target=_prepare, args=(loaded, serving), name="mesa-mobility start", daemon=True
+    ).start()
+    loaded.set_result(load_model(model))
+    name = f"[{host}]" if ":" in host else host
+    # A browser takes a while itself, which it may as well do while Solara is imported.
+    listening.listen()
+    ready(f"http://{name}:{listening.getsockname()[1]}/")
+
     # Of a page in a page, which ours is not.
     warnings.filterwarnings("ignore", "Cookies with samesite=none", UserWarning)
     import uvicorn
     from solara.server.starlette import app
 
     from mesa_mobility.dashboard import page
-    from mesa_mobility.dashboard.recipe import Recipe
-    from mesa_mobility.registry import load_model
 
     page.opening = model
-    first = Recipe(load_model(model))
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
-            # While the browser gets what the page is made of.
-            reading.join()
-            threading.Thread(
-                target=_warm_up, args=(first,), name="mesa-mobility warm-up", daemon=True
-            ).start()
-            name = f"[{host}]" if ":" in host else host
-            ready(f"http://{name}:{listening.getsockname()[1]}/")
+            serving.set()
 
     config = uvicorn.Config(app, log_level="warning", ws_per_message_deflate=False)
     Server(config).run(sockets=[listening])
@@ -93,19 +95,19 @@ def _listen(host: str, port: int) -> socket.socket:
     return listening
 
 
-def _read_map() -> None:
-    """Read the map that ships, which most models use; the rest of the start goes on meanwhile."""
-    from mesa_mobility.mobility import MobilityMap
+def _prepare(loaded: Future[type[PedestrianModel]], serving: threading.Event) -> None:
+    """Make the model once, before a page asks for it: what it reads, lays out and compiles stays.
 
-    # If it cannot be read, the model that needs it says so.
-    with suppress(MobilityError):
-        MobilityMap.load()
+    Most of that goes on beside Python, which imports meanwhile.
+    """
+    # Some hundred thousand objects are made until the page is served, and all stay.
+    with nothing_collected():
+        # What is wrong with map or model, whoever needs it says: the command, or the page.
+        with suppress(MobilityError):
+            MobilityMap.load()
+        kind = loaded.result()
+        from mesa_mobility.dashboard.recipe import Recipe
 
-
-def _warm_up(first: Recipe) -> None:
-    """Make the model once, before a page asks for it: its kernels and what they read."""
-    # What is wrong with it, the page says.
-    with suppress(Exception):
-        first.make()
-    gc.enable()
-    gc.freeze()
+        with suppress(Exception):
+            Recipe(kind).make()
+        serving.wait()
