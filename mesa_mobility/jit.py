@@ -12,9 +12,15 @@ from functools import partial
 
 from numba import njit
 
-called = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False)
+called = partial(
+    njit, cache=True, error_model="numpy", nogil=True, _nrt=False, no_cfunc_wrapper=True
+)
 """For functions that Python calls, from several threads at a time if need be."""
 
-lean = partial(called, cache=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+lean = partial(called, cache=False, no_cpython_wrapper=True)
 """For functions that only compiled ones call: a call from Python would crash it. They are kept on
 disk with whatever calls them."""
+
+woven = partial(lean, inline="always")
+"""For long functions that one place in compiled code calls: they are compiled as part of it, which
+takes a sixth less. More than one level of it, or several in one function, takes Numba longer."""

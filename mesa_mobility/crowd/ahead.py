@@ -1,6 +1,6 @@
 """Compiling the decisions ahead, in a process of its own.
 
-Numba compiles one function at a time, and decisions and costs take it as long as all the rest:
+Numba compiles one function at a time, and decisions take it as long as all the rest:
 another process that compiles them meanwhile halves the wait at the first run after installation.
 It leaves them in the cache on disk, where Numba looks for them.
 """
@@ -40,14 +40,17 @@ compile_decisions()
 
 @contextmanager
 def compiling_ahead() -> Iterator[None]:
-    """Have decisions compiled, if they are not yet, while whatever is within makes a model."""
+    """Have decisions compiled, if they are not yet, while whatever is within makes a model.
+
+    The costs are compiled here, when it is made.
+    """
     if THREADS < 2 or any(_cached_in().glob("choice.decide-*.nbi")):
         yield
         return
     other = _start()
     try:
         yield
-        compile_the_rest()
+        compile_costs()
         # If it comes to grief, this process compiles what is missing.
         other.wait()
     finally:
@@ -66,14 +69,9 @@ def _start() -> subprocess.Popen[bytes]:
     )
 
 
-def compile_the_rest() -> None:
-    """Compile what a run needs beside decisions and a model: what moves and turns people."""
-    nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
-    due(nobody, 0, crowd.records, nobody)
-    move(nobody, 0, _table(), crowd.records)
-    walk_on(nobody, 0, np.empty((3, 2)), crowd.records)
-    move_on(nobody, 0, crowd.records)
-    turn(nobody, nothing, nothing, crowd.records)
+def compile_costs() -> None:
+    """Compile the cost terms."""
+    compile_terms(preset_named("default").make_terms())
 
 
 def _table() -> OptionTable:
@@ -89,7 +87,7 @@ def _table() -> OptionTable:
 
 
 def compile_decisions() -> None:
-    """Compile what makes people decide, by the decisions of nobody, and the cost terms."""
+    """Compile what makes people decide and moves them, by the decisions of nobody."""
     table = _table()
     around = Surroundings(
         segments=np.empty((0, 4)),
@@ -109,6 +107,10 @@ def compile_decisions() -> None:
         (), table, make_groups(table, boxes(table.path)), standing, first, standing, 1.0, 1.0
     )
     decisions = Decisions(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
-    nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
+    nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
     decisions.take(nobody, 0, nobody, crowd, around, terms=[])
-    compile_terms(preset_named("default").make_terms())
+    due(nobody, 0, crowd.records, nobody)
+    move(nobody, 0, table, crowd.records)
+    walk_on(nobody, 0, np.empty((3, 2)), crowd.records)
+    move_on(nobody, 0, crowd.records)
+    turn(nobody, nothing, nothing, crowd.records)

@@ -33,7 +33,7 @@ from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.search import NONE, NOT_A_NUMBER, cheapest_free
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
-from mesa_mobility.jit import called, lean
+from mesa_mobility.jit import called, woven
 from mesa_mobility.machine import fetch, take_number, tell
 
 
@@ -106,7 +106,7 @@ def decide(
             return d
 
 
-@lean()
+@woven()
 def _decide_one(
     i: int,
     frame: int,

@@ -23,6 +23,7 @@ from mesa_mobility.crowd.options import (
     sampled,
     squared,
 )
+from mesa_mobility.jit import lean
 from mesa_mobility.mobility import MobilityMap
 
 GROUP_SIZE = 8
@@ -84,7 +85,7 @@ def alike(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float64]:
     return np.column_stack([where, _TURN_M * end[:, 2], _SPEED_S * speed])
 
 
-@njit(cache=True)
+@lean()
 def _sort(rows: NDArray[np.int64], value: NDArray[np.float64]) -> None:
     """Sort rows by their value, the lower row first among equals (heap sort).
 
@@ -106,7 +107,7 @@ def _sort(rows: NDArray[np.int64], value: NDArray[np.float64]) -> None:
         rows[0], rows[size - 1] = rows[size - 1], rows[0]
 
 
-@njit(cache=True)
+@lean()
 def _before(a: int, b: int, value: NDArray[np.float64]) -> bool:
     return value[a] < value[b] or (value[a] == value[b] and a < b)
 

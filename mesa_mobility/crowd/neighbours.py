@@ -45,7 +45,8 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
     for a, i in enumerate(active):
         cell[a] = int((y[i] - y0) / CELL_SIZE) * nx + int((x[i] - x0) / CELL_SIZE)
         offsets[cell[a] + 1] += 1
-    offsets = np.cumsum(offsets)
+    for c in range(nx * ny):
+        offsets[c + 1] += offsets[c]
     fill = offsets[:-1].copy()
     people = np.empty(len(active), np.int64)
     their_x, their_y = np.empty(len(active)), np.empty(len(active))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from mesa_mobility.crowd.collision import (
     Surroundings,
@@ -119,7 +120,6 @@ def _stop(i: int, frame: int, state: CrowdState, rules: Rules) -> None:
     cover(i, state.x[i], state.y[i], state.x[i], state.y[i], state)
 
 
-@njit(cache=True)
 def too_close(
     points: NDArray[np.float64],
     core: float,
@@ -134,17 +134,41 @@ def too_close(
     The latter is a row of the crowd, or -1 for one of the places before it; (-1, -1) if all
     of them are free.  Nobody farther than ``search_radius`` is on the way to a place.
     """
-    x, y = points[:, 0], points[:, 1]
-    others = build_grid(np.arange(len(points)), x, y)
+    beside = _first_beside(points, 2.0 * core)
+    before = points if beside < 0 else points[:beside]
+    # Mostly there is nobody yet: then nothing of this needs to be compiled.
+    if len(rows) > 0:
+        where, who = _first_taken(before, core, frame, rows, table, state, search_radius)
+        if where >= 0:
+            return where, who
+    return beside, -1
+
+
+def _first_beside(points: NDArray[np.float64], distance: float) -> int:
+    """First of some places that is nearer than ``distance`` to one before it, or -1."""
+    # A little farther, since the tree rounds in a way of its own.
+    pairs = cKDTree(points).query_pairs(1.001 * distance, output_type="ndarray")
+    dx, dy = (points[pairs[:, 0]] - points[pairs[:, 1]]).T
+    near = dx * dx + dy * dy < distance * distance
+    return int(pairs[near].max(axis=1).min()) if near.any() else -1
+
+
+@njit(cache=True)
+def _first_taken(
+    points: NDArray[np.float64],
+    core: float,
+    frame: int,
+    rows: NDArray[np.int64],
+    table: OptionTable,
+    state: CrowdState,
+    search_radius: float,
+) -> tuple[int, int]:
+    """First of some places that somebody is or will come too near to, and who; or -1, -1."""
     people = build_grid(rows, state.x, state.y)
-    found = np.empty(max(len(points), len(rows)), np.int64)
+    found = np.empty(len(rows), np.int64)
     for k in range(len(points)):
-        for at in found[: people_within(others, x[k], y[k], k, 2.0 * core, found)]:
-            m = others.people[at]
-            dx, dy = x[k] - x[m], y[k] - y[m]
-            if m < k and dx * dx + dy * dy < 4.0 * core * core:
-                return k, -1
-        j = _comes_near(x[k], y[k], core, frame, people, table, state, search_radius, found)
+        x, y = points[k]
+        j = _comes_near(x, y, core, frame, people, table, state, search_radius, found)
         if j >= 0:
             return k, j
     return -1, -1

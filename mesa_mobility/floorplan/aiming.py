@@ -17,7 +17,7 @@ from mesa_mobility.floorplan.sight import (
     wall_distance,
 )
 from mesa_mobility.floorplan.views import Views, is_known, nodes_maybe_in_view
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import lean, woven
 
 # A target behind a gate lies at least this far behind it, however near the next wall is (metres).
 _LEAST_BEYOND = 0.3
@@ -145,7 +145,7 @@ def _first_in_view(
     return -1
 
 
-@lean()
+@woven()
 def _nearest_unwalled(
     sight: Sight,
     ways: Ways,
@@ -273,7 +273,7 @@ def _beyond(
     return qx + length * ux, qy + length * uy
 
 
-@lean()
+@woven()
 def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float) -> int:
     """The first gate that the straight way to a target crosses just before it, -1 for none."""
     first = -1
@@ -295,7 +295,7 @@ def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float) -> in
     return first
 
 
-@lean()
+@woven()
 def _through(
     sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int, own: float
 ) -> tuple[float, float]:

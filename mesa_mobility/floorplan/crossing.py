@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from mesa_mobility.floorplan.nodes import CORNER
 from mesa_mobility.floorplan.routes import Ways, in_view
 from mesa_mobility.floorplan.sight import Sight
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import lean, woven
 
 # People aim this far inside the outermost places of an opening, or at its middle (metres).
 # A recorded step ends some centimetres from where it was meant to: beside the jamb is too late.
@@ -50,7 +50,7 @@ def _clear_of_jambs(ends: NDArray[np.float64]) -> tuple[float, float, float, flo
     return ax + dx, ay + dy, bx - dx, by - dy
 
 
-@lean()
+@woven()
 def opening_behind(
     sight: Sight,
     ways: Ways,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.floorplan.kernels import segments_cross
 from mesa_mobility.floorplan.sight import Sight, cells_in_row, rows_crossed
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import lean, woven
 
 _CELL = 0.5
 _MOST_WORDS = 1 << 22
@@ -63,7 +63,7 @@ def is_known(views: Views, x: float, y: float) -> bool:
     return square >= 0 and views.known[square]
 
 
-@lean()
+@woven()
 def nodes_maybe_in_view(
     sight: Sight,
     views: Views,

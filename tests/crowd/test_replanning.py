@@ -57,6 +57,22 @@ def test_newcomers_find_room_or_are_refused():
     assert model.inside == 2
 
 
+@pytest.mark.parametrize(
+    ("points", "refused"),
+    [
+        ([(8.0, 2.0), (5.0, 1.0), (5.2, 1.0), (8.2, 2.0)], "pedestrian 2 .* another newcomer"),
+        ([(8.0, 2.0), (2.2, 2.0), (8.2, 2.0)], "pedestrian 1 .* where pedestrian 0 is"),
+        ([(8.0, 2.0), (8.2, 2.0), (2.2, 2.0)], "pedestrian 1 .* another newcomer"),
+    ],
+)
+def test_of_newcomers_without_room_the_first_is_named(points, refused):
+    model = model_of(corridor(), strider())  # bodies keep 0.28 m from one another
+    put(model, 2.0, 2.0)
+    with pytest.raises(ModelError, match=refused):
+        model.add_pedestrians(points)
+    assert model.inside == 1
+
+
 def test_without_a_way_out_people_stay_about_where_they_are():
     plan = FloorPlan(box(0, 0, 30, 30), exits=[Exit("door", (30, 14), (30, 16))])
     plan.close_gate("door")
