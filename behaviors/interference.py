@@ -10,6 +10,8 @@ from mesa_mobility.errors import ModelError
 def _interference(  # type: ignore[no-untyped-def]
     x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
 ):
+    # Read before anything is asked, so that it is read once for all neighbours.
+    a = p[0]
     dx = nx + nvx * duration - x
     dy = ny + nvy * duration - y
     # e to the -d as the 1024th power of a polynomial, to 1e-8 of itself: unlike a call of exp,
@@ -29,7 +31,7 @@ def _interference(  # type: ignore[no-untyped-def]
     e *= e
     e *= e
     e *= e
-    return p[0] * e if counts else 0.0
+    return a * e if counts else 0.0
 
 
 class Interference(CompiledTerm):

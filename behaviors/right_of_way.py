@@ -14,19 +14,24 @@ OPPOSED = 0.5
 def _right_of_way(  # type: ignore[no-untyped-def]
     x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
 ):
+    # Read before anything is asked, so that they are read once for all neighbours.
+    width = p[0]
+    bias = p[1]
+    reach = p[2]
+    beside = p[3]
     along = (x - nx) * nex + (y - ny) * ney
     aside = (y - ny) * nex - (x - nx) * ney
     ahead_x = tx - sx
     ahead_y = ty - sy
     against = -(ahead_x * nex + ahead_y * ney)
     oncoming = against > OPPOSED * math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y)
-    counts = along > 0.0 and (oncoming or (lead > 0.0 and along < p[2]))
-    middle = p[1] if oncoming else 0.0
+    counts = along > 0.0 and (oncoming or (lead > 0.0 and along < reach))
+    middle = bias if oncoming else 0.0
     # By factors that all neighbours share: a processor does few divisions at a time.
-    narrow = 1.0 / p[0]
-    wide = 1.0 / (p[0] + abs(p[1]))
+    narrow = 1.0 / width
+    wide = 1.0 / (width + abs(bias))
     off = abs(aside + middle) * (wide if oncoming else narrow)
-    return (1.0 if oncoming else p[3]) * max(1.0 - off, 0.0) if counts else 0.0
+    return (1.0 if oncoming else beside) * max(1.0 - off, 0.0) if counts else 0.0
 
 
 class RightOfWay(CompiledTerm):

@@ -128,7 +128,7 @@ def measure(peer: str, name: str) -> dict[str, Any]:
 def in_own_process(peer: str, name: str) -> dict[str, Any]:
     """One run in a process of its own."""
     command = [sys.executable, __file__, "--child", peer, name]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
     return dict(json.loads(done.stdout.splitlines()[-1]))
 
 

@@ -24,3 +24,7 @@ disk with whatever calls them."""
 woven = partial(lean, inline="always")
 """For long functions that one place in compiled code calls: they are compiled as part of it, which
 takes a sixth less. More than one level of it, or several in one function, takes Numba longer."""
+
+part = partial(lean, forceinline=True)
+"""For parts of a larger function, called from one place: they get hundreds of numbers, as each
+array is some eight, and to hand them on takes longer than much of what is done with them."""

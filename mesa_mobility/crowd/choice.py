@@ -26,11 +26,10 @@ from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import commit, lay_path
 from mesa_mobility.crowd.neighbours import Grid, people_within
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
-from mesa_mobility.crowd.pairs import fill_lane, pick_foremost
+from mesa_mobility.crowd.pairs import fill_lane, least, mark_counting, pick_foremost
 from mesa_mobility.crowd.queue import Queue, await_neighbours
-from mesa_mobility.crowd.ranking import all_finite, least
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.search import NONE, NOT_A_NUMBER, cheapest_free
+from mesa_mobility.crowd.search import FEW, NONE, NOT_A_NUMBER, cheapest_free
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import called, woven
@@ -155,30 +154,37 @@ def _decide_one(
     )  # fmt: skip
     option, gone = NONE, -1
     if n > 0:
-        alive, bounds = work.alive[:n], work.bounds[:n]
-        bounds[:] = -np.inf
+        first, last = spanned.first, spanned.last
+        bounds, dropped = work.bounds[: last - first], work.circles.dropped
+        bounds[:] = 0.0
         if bounded:
-            first, last = spanned.first, spanned.last
-            group_bounds(me, first, last, groups, state, terms, work.ends, work.every)
-            for a in range(n):
-                bounds[a] = work.every[alive[a] - first]
-            if not all_finite(bounds):
-                return False
+            group_bounds(me, first, last, groups, state, terms, work.ends, bounds)
+        bad = 0
+        for a in range(len(bounds)):
+            bad |= int(dropped[a] == 0) & int(not abs(bounds[a]) < np.inf)
+            bounds[a] = np.inf if dropped[a] != 0 else bounds[a]
+        if bad != 0:
+            return False
         foremost = 0
         if not eager and len(terms.pair_address) > 0:
             foremost = pick_foremost(
                 me, others, count, state, work.unsure, work.dropped, work.foremost
             )
-        setting = Setting(frame, found, touching, count, foremost, exits_from, eager)
+        rough = bounded and mark_counting(
+            me, first, bounds, work.ends, groups, foremost, work.foremost, state, terms,
+            work.picked, work.marks,
+        )  # fmt: skip
+        ranked = bounded and n > FEW
+        setting = Setting(frame, found, touching, count, foremost, rough, exits_from, eager, ranked)
         option, gone = cheapest_free(
-            me, setting, bounds, alive, walls, extra, rules.cores, table, groups, state, around,
+            me, setting, first, bounds, walls, extra, rules.cores, table, groups, state, around,
             terms, work,
         )  # fmt: skip
         if option == NOT_A_NUMBER:
             return False
     state.decisions[i] += 1
     if option >= 0:
-        pieces = lay_path(i, option, table, state, work.path)
+        pieces = lay_path(i, option, me.c, me.s, table, state, work.path)
         commit(
             i,
             option,

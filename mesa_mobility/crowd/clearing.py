@@ -12,14 +12,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.close import SLACK, Close, Stance, off_box2
+from mesa_mobility.crowd.close import SLACK, Close, Stance, lay_ahead, off_box2
 from mesa_mobility.crowd.collision import MARGIN
-from mesa_mobility.crowd.groups import OptionGroups
-from mesa_mobility.crowd.options import LEVELS, SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.groups import AT_X, AT_Y, LANE_FIELDS, OptionGroups
+from mesa_mobility.crowd.lanewise import drop_within, places_within
+from mesa_mobility.crowd.options import LEVELS, OptionTable
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.crowd.under_way import position_at
 from mesa_mobility.floorplan.kernels import point_segment_distance2
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import lean, part
+from mesa_mobility.lanes import LANES, WIDE
+from mesa_mobility.machine import fetch
+
+ALL_LANES = 2**LANES - 1
+"""Bits of all options of a group."""
+
+_AHEAD = 4
+"""People whose paths are fetched before they are needed."""
 
 _STEPS = 2.0**16
 """Steps in a metre that extents are rounded to."""
@@ -64,17 +72,7 @@ def extent(
     return x0 * one - one, y0 * one - one, x1 * one + one, y1 * one + one
 
 
-@lean()
-def compact(rows: NDArray[np.int64], dropped: NDArray[np.int32]) -> int:
-    """Move the rows that are not dropped to the front; return their number."""
-    kept = 0
-    for k in range(len(rows)):
-        rows[kept] = rows[k]
-        kept += 1 - dropped[k]
-    return kept
-
-
-@lean()
+@part()
 def free_groups(
     me: Stance,
     frame: int,
@@ -103,77 +101,65 @@ def free_groups(
         groups: what the groups of options span.
         state: the crowd.
         bodies: is written.
-        circles: space to work in.
+        circles: space to work in; its ``dropped`` is written.
         alive: gets the groups.
 
     Returns:
-        The number of groups.
+        The number of groups; ``circles.dropped`` tells of each of the cluster which they are not.
     """
-    cluster = state.cluster[me.row]
-    spanned = groups.clusters[cluster]
+    spanned = groups.clusters[state.cluster[me.row]]
     first, last = spanned.first, spanned.last
     n = last - first
-    for a in range(n):
-        alive[a] = first + a
     bodies.known[:] = 0
     dropped = circles.dropped
-    for level in range(len(LEVELS)):
-        if n == 0 or spanned.reach[level] >= exits_from:
-            break
-        x, y, radius = _circles_of(groups, level, first, last, alive[:n], circles)
-        if n == last - first:
+    dropped[: n + WIDE] = 0
+    levels = 0
+    while levels < len(LEVELS) and spanned.reach[levels] < exits_from:
+        levels += 1
+    for a in range(count if levels > 0 else 0):
+        if a + _AHEAD < count:
+            fetch(table.path, max(state.option[close.people[a + _AHEAD].who], 0), 192)
+        lay_ahead(a, me, frame, table, state, close)
+        somebody = close.people[a]
+        apart = np.float32(somebody.apart - SLACK)
+        for level in range(levels):
+            px, py = close.ahead[a, 0, LEVELS[level]], close.ahead[a, 1, LEVELS[level]]
             span = spanned.spans[level]
-            x0, y0, x1, y1 = span[0], span[1], span[2], span[3]
-        else:
-            x0, y0, x1, y1 = extent(x, y, radius)
-        dropped[:n] = 0
-        time = frame + LEVELS[level] * SAMPLE_FRAMES
-        met = 0
-        for a in range(count):
-            somebody = close.people[a]
-            sweep = somebody.sweep
-            if off_box2(somebody.x, somebody.y, x0, y0, x1, y1) >= sweep * sweep:
-                continue
-            j = somebody.who
-            wx, wy = position_at(state, table, j, time)
-            dx, dy = wx - me.x, wy - me.y
-            px, py = np.float32(me.c * dx + me.s * dy), np.float32(me.c * dy - me.s * dx)
-            apart = np.float32(somebody.apart - SLACK)
-            if off_box2(px, py, x0, y0, x1, y1) < apart * apart:
+            if off_box2(px, py, span[0], span[1], span[2], span[3]) < apart * apart:
+                met = bodies.known[level]
                 bodies.at[level, 0, met], bodies.at[level, 1, met] = px, py
                 bodies.at[level, 2, met] = apart
-                met += 1
-                for b in range(len(x)):
-                    room = max(apart - radius[b], np.float32(0.0))
-                    away2 = (x[b] - px) * (x[b] - px) + (y[b] - py) * (y[b] - py)
-                    dropped[b] |= np.int32(away2 < room * room)
-        bodies.known[level] = met
+                bodies.known[level] = met + 1
+    for level in range(levels):
+        if bodies.known[level] > 0:
+            drop_within(
+                groups.at, 3 * level * groups.at.shape[2] + first, groups.at.shape[2], n,
+                bodies.at, 3 * level * bodies.at.shape[2], bodies.at.shape[2],
+                bodies.known[level], dropped,
+            )  # fmt: skip
+        x, y = groups.at[level, 0, first:last], groups.at[level, 1, first:last]
+        radius = groups.at[level, 2, first:last]
         _drop_in_walls(me, walls, spanned.around[level], x, y, radius, dropped)
-        if dropped[:n].any():
-            n = compact(alive[:n], dropped)
-    if n < last - first:
+    free = 0
+    for a in range(n):
+        alive[free] = first + a
+        free += 1 - dropped[a]
+    if 0 < free < n:
         for level in range(len(LEVELS)):
-            if n > 0 and bodies.known[level] > 0:
-                x, y, radius = _circles_of(groups, level, first, last, alive[:n], circles)
+            if bodies.known[level] > 0:
+                x, y, radius = _circles_of(groups, level, alive[:free], circles)
                 x0, y0, x1, y1 = extent(x, y, radius)
                 _keep_bodies(x0, y0, x1, y1, level, bodies)
-    return n
+    return free
 
 
 @lean()
 def _circles_of(
-    groups: OptionGroups,
-    level: int,
-    first: int,
-    last: int,
-    alive: NDArray[np.int64],
-    circles: Circles,
+    groups: OptionGroups, level: int, alive: NDArray[np.int64], circles: Circles
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-    """The circles at a level of the groups in ``alive``, from ``first`` to ``last`` if all are."""
+    """The circles at a level of the groups in ``alive``."""
     x, y, radius = groups.at[level, 0], groups.at[level, 1], groups.at[level, 2]
     n = len(alive)
-    if n == last - first:
-        return x[first:last], y[first:last], radius[first:last]
     for a in range(n):
         g = alive[a]
         circles.of[0, a], circles.of[1, a], circles.of[2, a] = x[g], y[g], radius[g]
@@ -228,27 +214,16 @@ def _drop_in_walls(
 
 
 @lean()
-def free_options(
-    bodies: Bodies, rows: NDArray[np.int64], table: OptionTable, circles: Circles
-) -> int:
-    """Move those of the options in ``rows`` to the front that are within nobody at any level.
-
-    ``circles`` is space to work in.  Returns their number.
-    """
-    n = len(rows)
+def free_lanes(group: int, bodies: Bodies, groups: OptionGroups) -> int:
+    """Bits of those of the 8 options of a group that are within nobody at any level."""
+    # Lanes that are no options do not count.
+    hit = ALL_LANES ^ ((1 << (groups.first[group + 1] - groups.first[group])) - 1)
+    start = group * LANE_FIELDS * LANES
+    size = bodies.at.shape[2]
     for level in range(len(LEVELS)):
-        if bodies.known[level] == 0:
-            continue
-        x, y, dropped = circles.of[0, :n], circles.of[1, :n], circles.dropped[:n]
-        for k in range(n):
-            option = table.options[rows[k]]
-            x[k], y[k] = option.at_x[level], option.at_y[level]
-            dropped[k] = 0
-        for m in range(bodies.known[level]):
-            px, py = bodies.at[level, 0, m], bodies.at[level, 1, m]
-            apart2 = bodies.at[level, 2, m] * bodies.at[level, 2, m]
-            for k in range(len(x)):
-                away2 = (x[k] - px) * (x[k] - px) + (y[k] - py) * (y[k] - py)
-                dropped[k] |= np.int32(away2 < apart2)
-        n = compact(rows[:n], dropped)
-    return n
+        if bodies.known[level] > 0 and hit != ALL_LANES:
+            hit |= places_within(
+                groups.lanes, start + (AT_X + level) * LANES, (AT_Y - AT_X) * LANES,
+                bodies.at, 3 * level * size, size, bodies.known[level],
+            )  # fmt: skip
+    return hit ^ ALL_LANES

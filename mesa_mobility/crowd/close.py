@@ -13,10 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.collision import MARGIN, box_of
-from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES, OptionTable
+from mesa_mobility.crowd.lanewise import lay_samples, near_box
+from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES, OptionTable, in_lines
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.under_way import position_at
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import lean, part
+from mesa_mobility.lanes import WIDE, lowest_bit
+from mesa_mobility.machine import fetch
 
 SLACK = 1e-5
 """Metres for the rounding of single precision."""
@@ -36,37 +39,40 @@ class Stance(NamedTuple):
 SOMEBODY = np.dtype(
     [
         ("who", "i8"),
-        ("x", "f8"),
-        ("y", "f8"),
-        ("sweep", "f8"),
         ("apart", "f8"),
         ("laid", "?"),
-        ("ahead", "f4", (2, SAMPLES)),
     ],
     align=True,
 )
 """What is known of somebody whose movement may come in the way, in the frame of the pedestrian
 that decides, metres.
 
-Fields: ``who`` row; ``x``, ``y``, ``sweep`` a circle around all that they still cover, the distance
-to keep included; ``apart`` that distance; ``ahead`` (2, 16) where they will be at the sample times,
-if ``laid``.
+Fields: ``who`` row; ``apart`` the distance to keep; ``laid``, whether it is known where they will
+be.
 """
 
 
 class Close(NamedTuple):
     """People whose movement may come in the way.
 
-    Fields: ``people`` (n,) records of ``SOMEBODY``; ``run`` (2, 32) space to work in.
+    Fields: ``people`` (n,) records of ``SOMEBODY``; in the frame of the pedestrian that decides,
+    metres: ``sweeps`` (3, n and a few more) x, y and radius of circles around all that they still
+    cover, the distance to keep included; ``ahead`` (n, 2, 16) where they will be at the sample
+    times.
     """
 
     people: NDArray[np.void]
-    run: NDArray[np.float64]
+    sweeps: NDArray[np.float32]
+    ahead: NDArray[np.float32]
 
 
 def make_close(people: int) -> Close:
     """Space for so many people."""
-    return Close(np.empty(people, SOMEBODY), np.empty((2, 2 * SAMPLES)))
+    return Close(
+        np.empty(people, SOMEBODY),
+        np.zeros((3, people + WIDE), np.float32),
+        in_lines((people, 2, SAMPLES), np.float32),
+    )
 
 
 @lean()
@@ -76,7 +82,7 @@ def off_box2(x: float, y: float, x0: float, y0: float, x1: float, y1: float) -> 
     return dx * dx + dy * dy
 
 
-@lean()
+@part()
 def find_close(
     me: Stance,
     near: NDArray[np.int64],
@@ -108,10 +114,12 @@ def find_close(
             continue
         somebody = to.people[count]
         somebody.who = j
-        somebody.x, somebody.y, somebody.sweep = x, y, sweep
+        to.sweeps[0, count], to.sweeps[1, count] = x, y
+        to.sweeps[2, count] = sweep + SLACK
         somebody.apart = apart
         somebody.laid = False
         count += 1
+        fetch(state, j, 256)
     return count, touching
 
 
@@ -125,36 +133,22 @@ def lay_ahead(
         return
     somebody.laid = True
     j = somebody.who
-    run_x, run_y, to_x, to_y = close.run[0], close.run[1], somebody.ahead[0], somebody.ahead[1]
-    last = state.knots[j] - 1
-    past = frame - state.start[j]
-    first = past // SAMPLE_FRAMES
-    if state.option[j] >= 0:
-        # The knots to come, in one array with the end after them, so that all samples are alike.
-        own = table.path[state.option[j]]
-        own_x, own_y = own[0], own[1]
-        x, y, c, s = state.from_x[j], state.from_y[j], state.from_c[j], state.from_s[j]
-        for k in range(SAMPLES):
-            run_x[k] = x + c * own_x[k] - s * own_y[k]
-            run_y[k] = y + s * own_x[k] + c * own_y[k]
-        end_x, end_y = state.to_x[j], state.to_y[j]
-        for k in range(SAMPLES + 1):
-            run_x[last + k], run_y[last + k] = end_x, end_y
-        first = min(first, last)
-        u = min((past - SAMPLE_FRAMES * first) / SAMPLE_FRAMES, 1.0)
-        from_x, from_y, next_x, next_y = (
-            run_x[first:], run_y[first:], run_x[first + 1 :], run_y[first + 1 :],
+    ahead = close.ahead
+    if state.option[j] >= 0 and state.spacing[j] == SAMPLE_FRAMES:
+        past = frame - state.start[j]
+        first = min(past // SAMPLE_FRAMES, SAMPLES - 1)
+        share = min((past - SAMPLE_FRAMES * first) / SAMPLE_FRAMES, 1.0)
+        dx, dy = state.from_x[j] - me.x, state.from_y[j] - me.y
+        c, s = state.from_c[j], state.from_s[j]
+        lay_samples(
+            table.path, state.option[j], first, share, me.c * c + me.s * s, me.c * s - me.s * c,
+            me.c * dx + me.s * dy, me.c * dy - me.s * dx, ahead, 2 * SAMPLES * a, SAMPLES,
         )  # fmt: skip
-        for k in range(SAMPLES):
-            dx = from_x[k] + u * (next_x[k] - from_x[k]) - me.x
-            dy = from_y[k] + u * (next_y[k] - from_y[k]) - me.y
-            to_x[k] = me.c * dx + me.s * dy
-            to_y[k] = me.c * dy - me.s * dx
-    else:
-        for k in range(SAMPLES):
-            jx, jy = position_at(state, table, j, frame + SAMPLE_FRAMES * k)
-            to_x[k] = me.c * (jx - me.x) + me.s * (jy - me.y)
-            to_y[k] = me.c * (jy - me.y) - me.s * (jx - me.x)
+        return
+    for k in range(SAMPLES):
+        jx, jy = position_at(state, table, j, frame + SAMPLE_FRAMES * k)
+        ahead[a, 0, k] = me.c * (jx - me.x) + me.s * (jy - me.y)
+        ahead[a, 1, k] = me.c * (jy - me.y) - me.s * (jx - me.x)
 
 
 @lean()
@@ -192,28 +186,32 @@ def meets(
     half = np.float32(0.5 * stride + 3.0 * SLACK)
     x0, y0, x1, y1 = box_of(own, SAMPLES - 1)
     own_x, own_y = own[0], own[1]
-    for b in range(count):
-        # The first changes places with number 0.
-        a = first if b == 0 else (0 if b == first else b)
-        somebody = close.people[a]
-        sweep = somebody.sweep
-        if off_box2(somebody.x, somebody.y, x0, y0, x1, y1) >= sweep * sweep:
-            continue
-        lay_ahead(a, me, frame, table, state, close)
-        x, y = somebody.ahead[0], somebody.ahead[1]
-        j = somebody.who
-        least = np.float32(somebody.apart - SLACK)
-        far = np.float32(least + half + 0.5 * state.stride[j])
-        least2, far2 = least * least, far * far
-        hit, near = False, False
-        for k in range(SAMPLES):
-            dx, dy = own_x[k] - x[k], own_y[k] - y[k]
-            d2 = dx * dx + dy * dy
-            hit |= d2 < least2
-            near |= d2 < far2
-        if hit:
-            return a, doubtful
-        if near:
-            unsure[doubtful] = j
-            doubtful += 1
+    for block in range(-WIDE, count, WIDE):
+        # Before all others the first is looked at.
+        at, bits = first, int(count > 0)
+        if block >= 0:
+            at, bits = block, near_box(close.sweeps, block, close.sweeps.shape[1], x0, y0, x1, y1)
+            bits &= (1 << min(count - block, WIDE)) - 1
+        while bits != 0:
+            a = at + lowest_bit(bits)
+            bits &= bits - 1
+            if block >= 0 and a == first:
+                continue
+            lay_ahead(a, me, frame, table, state, close)
+            x, y = close.ahead[a, 0], close.ahead[a, 1]
+            j = close.people[a].who
+            least = np.float32(close.people[a].apart - SLACK)
+            far = np.float32(least + half + 0.5 * state.stride[j])
+            least2, far2 = least * least, far * far
+            hit, near = False, False
+            for k in range(SAMPLES):
+                dx, dy = own_x[k] - x[k], own_y[k] - y[k]
+                d2 = dx * dx + dy * dy
+                hit |= d2 < least2
+                near |= d2 < far2
+            if hit:
+                return a, doubtful
+            if near:
+                unsure[doubtful] = j
+                doubtful += 1
     return -1, doubtful

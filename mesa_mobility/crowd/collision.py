@@ -94,6 +94,7 @@ def hits_wall(
     stay as close as it is but not come closer.
     """
     r = radius + MARGIN
+    least_x, least_y, most_x, most_y = box_of(path, segments)
     for w in range(len(walls)):
         d2 = walls[w, 4]
         if d2 > (reach + r) * (reach + r):
@@ -102,6 +103,8 @@ def hits_wall(
         ax, ay, bx, by = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
         x0, x1 = min(ax, bx) - r, max(ax, bx) + r
         y0, y1 = min(ay, by) - r, max(ay, by) + r
+        if most_x < x0 or least_x > x1 or most_y < y0 or least_y > y1:
+            continue
         for k in range(segments):
             px, py, qx, qy = path[0, k], path[1, k], path[0, k + 1], path[1, k + 1]
             if (px < x0 and qx < x0) or (px > x1 and qx > x1):
@@ -244,51 +247,6 @@ def exit_distance(around: Surroundings, x: float, y: float, destination: int) ->
             ax, ay, bx, by = around.exits[e]
             nearest = min(nearest, segment_segment_distance2(x, y, x, y, ax, ay, bx, by))
     return math.sqrt(nearest)
-
-
-@lean()
-def path_gone_or_blocked(
-    i: int,
-    path: NDArray[np.float64],
-    pieces: int,
-    spacing: int,
-    reach: float,
-    frame: int,
-    table: OptionTable,
-    state: CrowdState,
-    walls: NDArray[np.float64],
-    around: Surroundings,
-    near: NDArray[np.int64],
-    exits_near: bool,
-    cores: bool,
-) -> int:
-    """-3 if the path hits a wall, -2 if it hits a person, else the frame of leaving or -1."""
-    gone = -1
-    walked = pieces
-    if exits_near:
-        piece, where = crosses_exit(path, pieces, around, state.destination[i])
-        if piece >= 0:
-            gone = gone_frame(frame, spacing, piece, where)
-            walked = piece + 1
-    if hits_wall(path, walked, walls, state.core[i], reach):
-        return -3
-    if not cores:
-        return gone
-    x0, y0, x1, y1 = box_of(path, pieces)
-    for j in near:
-        c = state.core[i] + state.core[j] + 0.001
-        if (
-            x0 > state[j].box[2] + c
-            or x1 < state[j].box[0] - c
-            or y0 > state[j].box[3] + c
-            or y1 < state[j].box[1] - c
-        ):
-            continue
-        if hits_neighbour(
-            path, pieces, spacing, frame, gone, table, state, j, state.core[i] + state.core[j]
-        ):
-            return -2
-    return gone
 
 
 @lean()

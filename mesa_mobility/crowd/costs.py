@@ -23,7 +23,7 @@ from mesa_mobility.crowd.groups import (
 from mesa_mobility.crowd.kernels import call_bound_loop, call_option_loop
 from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import lean, part
 
 
 class Terms(NamedTuple):
@@ -75,7 +75,7 @@ def lay_ends(
         to_speed[k] = o.speed
 
 
-@lean()
+@part()
 def group_bounds(
     me: Stance,
     first: int,
@@ -110,7 +110,7 @@ def group_bounds(
         )  # fmt: skip
 
 
-@lean()
+@part()
 def option_costs(
     me: Stance,
     first: int,

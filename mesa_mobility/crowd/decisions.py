@@ -128,5 +128,7 @@ class Decisions:
             if works:
                 people, walls = len(works[0].near), len(works[0].walls)
             options = int(np.diff(self._repertoire.table.offsets).max())
-            works.append(make_work(people, walls, options))
+            clusters = self._repertoire.groups.clusters
+            most = int((clusters["last"] - clusters["first"]).max())
+            works.append(make_work(people, walls, options, most))
         return works[:threads]

@@ -6,6 +6,7 @@ that what is told here is what the choice sees.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -18,11 +19,11 @@ from mesa_mobility.crowd.collision import (
     Surroundings,
     exit_distance,
     near_walls,
-    path_gone_or_blocked,
 )
 from mesa_mobility.crowd.motion import lay_path
 from mesa_mobility.crowd.neighbours import Grid
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES, OptionTable
+from mesa_mobility.crowd.passage import path_gone_or_blocked
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.crowd.terms import CostTerm
@@ -176,9 +177,10 @@ def _judge(
     count = near_walls(around, x, y, destination, farthest + state.core[i] + 0.01, walls)
     exits_from = exit_distance(around, x, y, destination)
     spacing = np.int64(SAMPLE_FRAMES)
+    c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
     for k in range(len(options)):
         o = options[k]
-        pieces = lay_path(i, o, table, state, paths[k])
+        pieces = lay_path(i, o, c, s, table, state, paths[k])
         knots[k] = pieces + 1
         reach = np.float64(table.options[o].reach)
         exits_near = reach >= exits_from

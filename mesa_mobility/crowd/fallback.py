@@ -7,9 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.collision import Surroundings, path_gone_or_blocked
+from mesa_mobility.crowd.collision import Surroundings
 from mesa_mobility.crowd.motion import commit
 from mesa_mobility.crowd.options import FRAME_SECONDS, OptionTable
+from mesa_mobility.crowd.passage import path_gone_or_blocked
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
 from mesa_mobility.jit import lean
 

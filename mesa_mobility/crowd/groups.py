@@ -20,13 +20,15 @@ from mesa_mobility.crowd.options import (
     OptionTable,
     Parts,
     in_blocks,
+    in_lines,
     sampled,
     squared,
 )
 from mesa_mobility.jit import lean
+from mesa_mobility.lanes import LANES, WIDE
 from mesa_mobility.mobility import MobilityMap
 
-GROUP_SIZE = 8
+GROUP_SIZE = LANES
 """Most options in a group."""
 
 _TURN_M = 0.5
@@ -58,19 +60,29 @@ X, Y, RADIUS, UX, UY, TURN, DURATION, SLOWEST, FASTEST = range(9)
 """Rows of ``OptionGroups.ends``; of ``OptionGroups.at`` the first three."""
 
 
+LANE_FIELDS = 5 + 2 * len(LEVELS)
+"""Fields of ``OptionGroups.lanes``: x, y, ux, uy and speed at the end, x at the levels, y then."""
+
+AT_X, AT_Y = 5, 5 + len(LEVELS)
+"""Of these the first for the levels."""
+
+
 class OptionGroups(NamedTuple):
     """What the groups of a table span.
 
     ``clusters``: records of ``CLUSTER``.  By group: ``first`` (groups + 1,) its first option;
     ``ends`` (9, groups) x, y and radius of a circle around the ends, metres; unit vector that all
     face at the end within so many radians; duration, seconds; least and greatest speed, m/s; ``at``
-    (levels, 3, groups) x, y and radius of circles around the places at the levels.
+    (levels, 3, groups and a few more) x, y and radius of circles around the places at the levels;
+    ``lanes`` (groups, 13, 8) what the choice reads of its options, field by field, the last option
+    again where there are fewer than 8.
     """
 
     clusters: NDArray[np.void]
     first: NDArray[np.int64]
     ends: NDArray[np.float64]
     at: NDArray[np.float32]
+    lanes: NDArray[np.float32]
 
 
 def alike(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float64]:
@@ -118,6 +130,8 @@ def group(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Halve runs of rows where they are widest until no more than ``GROUP_SIZE`` are together.
 
+    As far as there are enough, whole groups: what is done for 8 options takes as long for fewer.
+
     Args:
         features: (n, f) rows.
         bounds: first row of each run that is never joined to the next, and n.
@@ -148,7 +162,8 @@ def group(
                 if high - low > widest:
                     widest, column = high - low, f
             _sort(order[first:last], features[:, column])
-            middle = first + (last - first) // 2
+            halves = ((last - first) // 2 + GROUP_SIZE - 1) // GROUP_SIZE
+            middle = first + halves * GROUP_SIZE
             stack[waiting, 0], stack[waiting, 1] = middle, last
             stack[waiting + 1, 0], stack[waiting + 1, 1] = first, middle
             waiting += 2
@@ -197,8 +212,23 @@ def make_groups(table: OptionTable, boxes: NDArray[np.float32]) -> OptionGroups:
         clusters=spanned,
         first=np.append(starts, len(speed)),
         ends=np.array(alike_ends),
-        at=np.ascontiguousarray(circles),
+        at=np.pad(circles, ((0, 0), (0, 0), (0, WIDE))),
+        lanes=_lanes(table),
     )
+
+
+def _lanes(table: OptionTable) -> NDArray[np.float32]:
+    """(groups, 13, 8) the options of each group, field by field."""
+    starts, options = table.groups, table.options
+    last = np.append(starts[1:], len(options)) - 1
+    rows = np.minimum(starts[:, None] + np.arange(GROUP_SIZE), last[:, None])
+    lanes = in_lines((len(starts), LANE_FIELDS, GROUP_SIZE), np.float32)
+    for k, field in enumerate(("x", "y", "ux", "uy", "speed")):
+        lanes[:, k] = options[field][rows]
+    for k, level in enumerate(LEVELS):
+        lanes[:, AT_X + k] = table.path[:, 0, level][rows]
+        lanes[:, AT_Y + k] = table.path[:, 1, level][rows]
+    return lanes
 
 
 def _circles(

@@ -17,10 +17,18 @@ from mesa_mobility.threads import together
 
 @lean()
 def lay_path(
-    i: int, o: int, table: OptionTable, state: CrowdState, path: NDArray[np.float64]
+    i: int,
+    o: int,
+    c: float,
+    s: float,
+    table: OptionTable,
+    state: CrowdState,
+    path: NDArray[np.float64],
 ) -> int:
-    """Write option o of pedestrian i into ``path`` (3, 16) as world knots; return its pieces."""
-    c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+    """Write option o of pedestrian i into ``path`` (3, 16) as world knots; return its pieces.
+
+    ``c`` and ``s`` are cosine and sine of how the pedestrian faces.
+    """
     x, y, heading = state.x[i], state.y[i], state.heading[i]
     own = table.path[o]
     for k in range(SAMPLES):

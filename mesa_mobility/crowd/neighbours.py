@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import part
 
 CELL_SIZE = 1.5
 
@@ -73,7 +73,7 @@ def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
     return found
 
 
-@lean()
+@part()
 def people_within(
     grid: Grid, px: float, py: float, but: int, radius: float, found: NDArray[np.int64]
 ) -> int:

@@ -41,17 +41,15 @@ OPTION = np.dtype(
         ("reach", "f4"),
         ("frames", "i2"),
         ("cluster", "u2"),
-        ("at_x", "f4", (len(LEVELS),)),
-        ("at_y", "f4", (len(LEVELS),)),
     ],
     align=True,
 )
-"""What the choice reads of an option, the path aside: 64 bytes, a line of the cache.
+"""What the choice reads of an option, the path and its group aside: 32 bytes.
 
 Fields: ``x``, ``y`` of the end, metres, and ``ux``, ``uy`` the unit vector of facing there;
 ``speed`` (displacement over duration, m/s); ``stride`` (longest way between two samples, metres,
 rounded up); ``reach`` (largest distance of the path from its start, metres, rounded up);
-``frames``; ``cluster`` at the end; ``at_x``, ``at_y`` (levels,) where it has led at the ``LEVELS``.
+``frames``; ``cluster`` at the end.
 """
 
 
@@ -155,7 +153,6 @@ def option_table(
     options.speed = np.hypot(x.astype(np.float64), y) / (frames * FRAME_SECONDS)
     options.frames, options.cluster = frames, parts.clusters
     options.stride, options.reach = rounded_up(steps), rounded_up(reach)
-    options.at_x, options.at_y = path[:, 0, LEVELS], path[:, 1, LEVELS]
     return OptionTable(
         offsets=offsets,
         groups=groups,

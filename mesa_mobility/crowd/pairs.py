@@ -26,18 +26,29 @@ from mesa_mobility.crowd.costs import (
     Terms,
     preferred_now,
 )
+from mesa_mobility.crowd.groups import DURATION, FASTEST, SLOWEST, OptionGroups
 from mesa_mobility.crowd.kernels import call_pair_loop, call_pairs_loop
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.jit import lean
+from mesa_mobility.jit import lean, part
+from mesa_mobility.lanes import LANES, any_of
 
-LANES = 8
-"""Neighbours or options for whom a processor works out a term at once."""
-
-_ROUNDING = 1.0 - 1e-9
+LITTLE_LESS = 1.0 - 1e-9
 """Sums over some of the neighbours may exceed that over all by rounding, though not by so much."""
 
 AHEAD = 1.5
 """Seconds for which it is looked ahead for those who come near: the longest option."""
+
+FEW_NEIGHBOURS = 4
+"""So many are all taken."""
+
+MOST_TERMS = 60
+"""Bits of a mark."""
+
+ASKED, LIKELY = 6, 1.5
+"""Groups that are asked who counts, and by how much the bounds of those may exceed the least."""
+
+WORTH_MENTION = 0.02
+"""What a neighbour must cost for one of them to count."""
 
 NEAR = 0.6
 """Metres within which people count as near, and as on the way of somebody to its target."""
@@ -71,25 +82,24 @@ def pair_cost(
         for first in range(0, count, LANES):
             # Most neighbours are too far away to cost anything, and each addition waits for the
             # one before.
-            lane = costs[first : first + LANES]
-            some = 0
-            for a in range(LANES):
-                some |= int(lane[a] != 0.0)
-            if some != 0:
-                for a in range(min(LANES, count - first)):
-                    summed += lane[a]
+            if any_of(costs, first):
+                for a in range(first, min(first + LANES, count)):
+                    summed += costs[a]
         total += terms.pair_weight[t] * summed
     return total
 
 
-@lean()
+@part()
 def pair_costs_at_least(
     me: Stance,
     first: int,
     last: int,
     ends: NDArray[np.float64],
     count: int,
+    rough: bool,
     others: NDArray[np.float64],
+    marks: NDArray[np.int64],
+    some: NDArray[np.float64],
     state: CrowdState,
     terms: Terms,
     out: NDArray[np.float64],
@@ -97,22 +107,78 @@ def pair_costs_at_least(
     """Write lower bounds of ``pair_cost`` over more neighbours, whatever the order of its sums.
 
     That is for options ``first`` to ``last``, in full lanes (see ``fill_ends``), over the first
-    ``count`` neighbours of ``others``.
+    ``count`` neighbours of ``others``, if ``rough`` over those alone who are marked; ``some``
+    (8, n) is space to work in.
     """
     n = in_lanes(last - first)
     least = out[first : first + n]
     least[:] = 0.0
     for t in range(len(terms.pairs_address)):
+        counting, given = count, others
+        if rough:
+            counting, given = 0, some
+            for a in range(count):
+                if marks[a] >> t & 1:
+                    for row in range(COST):
+                        some[row, counting] = others[row, a]
+                    counting += 1
         call_pairs_loop(
-            terms.pairs_address[t], count, n, ends[END_X, first:], ends[END_Y, first:],
+            terms.pairs_address[t], counting, n, ends[END_X, first:], ends[END_Y, first:],
             ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
-            me.x, me.y, state.target_x[me.row], state.target_y[me.row], others[OTHER_X],
-            others[OTHER_Y], others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY],
-            others[LEAD], terms.pair_parameters[t], terms.pair_weight[t], least,
+            me.x, me.y, state.target_x[me.row], state.target_y[me.row], given[OTHER_X],
+            given[OTHER_Y], given[OTHER_VX], given[OTHER_VY], given[OTHER_EX], given[OTHER_EY],
+            given[LEAD], terms.pair_parameters[t], terms.pair_weight[t], least,
         )  # fmt: skip
     for k in range(last - first):
         # What is not a number is found when all neighbours are looked at.
-        least[k] = least[k] * _ROUNDING if least[k] < np.inf else 0.0
+        least[k] = least[k] * LITTLE_LESS if least[k] < np.inf else 0.0
+
+
+@part()
+def mark_counting(
+    me: Stance,
+    first: int,
+    bounds: NDArray[np.float64],
+    ends: NDArray[np.float64],
+    groups: OptionGroups,
+    count: int,
+    others: NDArray[np.float64],
+    state: CrowdState,
+    terms: Terms,
+    likely: NDArray[np.int64],
+    marks: NDArray[np.int64],
+) -> bool:
+    """Mark to whom of the first ``count`` neighbours each pair term gives a cost worth mention.
+
+    A few of the groups from ``first`` on are asked that are likely to be opened, as if each
+    were one option. ``ends`` tells where they end, ``likely`` is space to work in.
+
+    Returns:
+        False if there are too few neighbours to leave any out.
+    """
+    if count <= FEW_NEIGHBOURS or len(terms.pair_address) > MOST_TERMS:
+        return False
+    lowest, n = least(bounds), 0
+    for a in range(len(bounds)):
+        likely[n] = a
+        n += int(bounds[a] <= lowest + LIKELY)
+    marks[:count] = 0
+    costs = others[COST]
+    for asked in range(ASKED):
+        a = likely[(2 * asked + 1) * n // (2 * ASKED)]
+        seconds = groups.ends[DURATION, first + a]
+        speed = 0.5 * (groups.ends[SLOWEST, first + a] + groups.ends[FASTEST, first + a])
+        for t in range(len(terms.pair_address)):
+            call_pair_loop(
+                terms.pair_address[t], in_lanes(count), ends[END_X, a], ends[END_Y, a],
+                ends[END_UX, a], ends[END_UY, a], seconds, speed, me.x, me.y,
+                state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
+                others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY],
+                others[LEAD], terms.pair_parameters[t], costs,
+            )  # fmt: skip
+            for b in range(count):
+                marks[b] |= int(costs[b] * terms.pair_weight[t] > WORTH_MENTION) << t
+    return True
 
 
 @lean()
@@ -122,6 +188,15 @@ def fill_ends(first: int, last: int, ends: NDArray[np.float64]) -> None:
         for row in range(SPEED + 1):
             for k in range(last, first + in_lanes(last - first)):
                 ends[row, k] = ends[row, last - 1]
+
+
+@lean()
+def least(values: NDArray[np.float64]) -> float:
+    """The least of some values, none of which is nan; inf if there are none."""
+    lowest = np.inf
+    for value in values:
+        lowest = value if value < lowest else lowest
+    return lowest
 
 
 @lean()

@@ -11,16 +11,17 @@ from mesa_mobility.crowd.clearing import Bodies, Circles
 from mesa_mobility.crowd.close import Close, make_close
 from mesa_mobility.crowd.costs import COST, SPEED
 from mesa_mobility.crowd.options import LEVELS, SAMPLES
-from mesa_mobility.crowd.pairs import LANES
+from mesa_mobility.lanes import AT_ONCE, LANES, WIDE
 
 
 class Setting(NamedTuple):
     """What the search needs to know of a decision.
 
     Fields: ``frame`` now; people in ``close``: ``found`` from the start and those from
-    ``touching`` to the end; ``neighbours`` in ``others``, ``foremost`` in the array of this name;
-    ``exits_from`` metres to the nearest way out; ``eager``, whether costs over pairs may be
-    negative and are needed of all options.
+    ``touching`` to the end; ``neighbours`` in ``others``, ``foremost`` in the array of this name,
+    of whom some are marked if bounds are ``rough``; ``exits_from`` metres to the nearest way out;
+    ``eager``, whether costs over pairs may be negative and are needed of all options; ``ranked``,
+    whether groups are opened by and by.
     """
 
     frame: int
@@ -28,8 +29,10 @@ class Setting(NamedTuple):
     touching: int
     neighbours: int
     foremost: int
+    rough: bool
     exits_from: float
     eager: bool
+    ranked: bool
 
 
 class Work(NamedTuple):
@@ -39,10 +42,10 @@ class Work(NamedTuple):
     those of them who are likely to cost most, ``dropped`` by neighbour; ``close`` those who may
     come in the way, ``unsure`` rows of those whom only the exact test can tell; ``bodies`` who is
     where at the levels; ``walls`` those in reach; groups: ``alive`` those not certainly blocked,
-    their ``bounds``, and those of ``every`` group; ``circles`` for clearing; by option looked at,
-    ``rows`` in the table, ``ends``, ``costs`` but for pairs, ``least`` that all costs may be, and
-    ``leaving``, the frame of leaving by an exit or -1 once it is known that nothing is hit;
-    heap of ``key`` and ``item``; ``slot`` by row of the cluster, which of those looked at it is;
+    the ``bounds`` of all; ``circles`` for clearing; of those just opened, which are ``picked``,
+    bits of their options that are ``free``, and of 8 options each, ``lanes`` where they end and
+    ``lane_costs``; by option looked at, ``rows`` in the table, ``ends``, ``costs`` but for pairs,
+    ``least`` that all costs may be, and ``rough``, whether little more work tells more of that;
     ``path`` one path.
     """
 
@@ -50,49 +53,54 @@ class Work(NamedTuple):
     unsure: NDArray[np.int64]
     others: NDArray[np.float64]
     foremost: NDArray[np.float64]
+    marks: NDArray[np.int64]
+    some: NDArray[np.float64]
     dropped: NDArray[np.int32]
     close: Close
     bodies: Bodies
     walls: NDArray[np.float64]
     bounds: NDArray[np.float64]
     alive: NDArray[np.int64]
-    every: NDArray[np.float64]
     circles: Circles
+    picked: NDArray[np.int64]
+    free: NDArray[np.int64]
+    lanes: NDArray[np.float64]
+    lane_costs: NDArray[np.float64]
     rows: NDArray[np.int64]
     ends: NDArray[np.float64]
     costs: NDArray[np.float64]
     least: NDArray[np.float64]
-    leaving: NDArray[np.int64]
-    key: NDArray[np.float64]
-    item: NDArray[np.int64]
-    slot: NDArray[np.int64]
+    rough: NDArray[np.bool_]
     path: NDArray[np.float64]
 
 
-def make_work(people: int, walls: int, options: int) -> Work:
-    """Space for so many people, walls near one place, and options of one cluster."""
+def make_work(people: int, walls: int, options: int, groups: int) -> Work:
+    """Space for so many people, walls near one place, options and groups of one cluster."""
+    lanes = LANES * groups
     return Work(
         near=np.empty(people, np.int64),
         unsure=np.empty(people, np.int64),
         others=np.empty((COST + 1, people + LANES)),
         foremost=np.empty((COST + 1, people + LANES)),
+        marks=np.empty(people, np.int64),
+        some=np.empty((COST + 1, people + LANES)),
         dropped=np.empty(people, np.int32),
         close=make_close(people),
         bodies=Bodies(
             np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people), np.float32)
         ),
         walls=np.empty((walls, 5)),
-        bounds=np.empty(options),
-        alive=np.empty(options, np.int64),
-        every=np.empty(options),
-        circles=Circles(np.empty((3, options), np.float32), np.empty(options, np.int32)),
-        rows=np.empty(options, np.int64),
+        bounds=np.empty(groups),
+        alive=np.empty(groups + 1, np.int64),
+        circles=Circles(np.empty((3, groups), np.float32), np.empty(groups + WIDE, np.int32)),
+        picked=np.empty(groups + 1, np.int64),
+        free=np.empty(groups, np.int64),
+        lanes=np.empty((SPEED + 1, lanes)),
+        lane_costs=np.empty(lanes),
+        rows=np.empty(options + 1, np.int64),
         ends=np.empty((SPEED + 1, options + LANES)),
-        costs=np.empty(options),
-        least=np.empty(options + LANES),
-        leaving=np.empty(options, np.int64),
-        key=np.empty(options),
-        item=np.empty(options, np.int64),
-        slot=np.empty(options, np.int64),
+        costs=np.empty(options + 1),
+        least=np.empty(options + AT_ONCE),
+        rough=np.empty(options, np.bool_),
         path=np.empty((3, SAMPLES)),
     )

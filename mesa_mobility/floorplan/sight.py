@@ -28,6 +28,9 @@ NO_WALL = np.int64(-1)
 # Somebody close to a wall that bulges cannot but come a little nearer to it.
 _OWN_SHARE = 0.5
 
+# So many walls are looked at one after the other, without the grid.
+_FEW_WALLS = 64
+
 
 class Sight(NamedTuple):
     """Wall segments and their grid, as the compiled functions take them.
@@ -96,8 +99,12 @@ def clear_line(
     view at all, and keeps it on the straight way there (inf: no such person). The wall
     with number `ignored` does not count (`NO_WALL`: all count).
     """
-    walls, solid, table = sight
-    x0, x1, y0, y1 = min(px, qx), max(px, qx), min(py, qy), max(py, qy)
+    walls, _, table = sight
+    if len(walls) <= _FEW_WALLS:
+        for wall in range(len(walls)):
+            if wall != ignored and _bars(sight, wall, px, py, qx, qy, clearance, own):
+                return False
+        return True
     first_row, last_row = rows_crossed(table, py, qy)
     for step in range(last_row - first_row + 1):
         # From p outwards: most views are blocked by something near.
@@ -108,25 +115,38 @@ def clear_line(
             at = row * table.nx + column
             for j in range(table.offsets[at], table.offsets[at + 1]):
                 wall = table.indices[j]
-                if wall == ignored:
-                    continue
-                ax, ay, bx, by = walls[wall]
-                limit = TOUCH
-                if wall < solid and clearance > TOUCH:
-                    limit = clearance
-                # Of boxes around the two the distance is soon known, and never more.
-                off_x = max(min(ax, bx) - x1, x0 - max(ax, bx), 0.0)
-                off_y = max(min(ay, by) - y1, y0 - max(ay, by), 0.0)
-                if off_x * off_x + off_y * off_y >= limit * limit:
-                    continue
-                distance2 = segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by)
-                if distance2 >= limit * limit:
-                    continue
-                if own < clearance and distance2 > TOUCH * TOUCH:
-                    near = point_segment_distance2(px, py, ax, ay, bx, by) < 4 * clearance**2
-                    if near and distance2 >= (_OWN_SHARE * own) ** 2:
-                        continue
-                return False
+                if wall != ignored and _bars(sight, wall, px, py, qx, qy, clearance, own):
+                    return False
+    return True
+
+
+@lean()
+def _bars(
+    sight: Sight,
+    wall: int,
+    px: float,
+    py: float,
+    qx: float,
+    qy: float,
+    clearance: float,
+    own: float,
+) -> bool:
+    """Whether the segment pq comes too near to a wall; see `clear_line`."""
+    walls, solid, _ = sight
+    ax, ay, bx, by = walls[wall, 0], walls[wall, 1], walls[wall, 2], walls[wall, 3]
+    limit = clearance if wall < solid and clearance > TOUCH else TOUCH
+    # Of boxes around the two the distance is soon known, and never more.
+    off_x = max(min(ax, bx) - max(px, qx), min(px, qx) - max(ax, bx), 0.0)
+    off_y = max(min(ay, by) - max(py, qy), min(py, qy) - max(ay, by), 0.0)
+    if off_x * off_x + off_y * off_y >= limit * limit:
+        return False
+    distance2 = segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by)
+    if distance2 >= limit * limit:
+        return False
+    if own < clearance and distance2 > TOUCH * TOUCH:
+        near = point_segment_distance2(px, py, ax, ay, bx, by) < 4 * clearance**2
+        if near and distance2 >= (_OWN_SHARE * own) ** 2:
+            return False
     return True
 
 

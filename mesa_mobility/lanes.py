@@ -1,0 +1,163 @@
+"""Several numbers at once, where a compiler does not see by itself that it could.
+
+Short loops over parts of arrays mostly spend their time on finding out that the arrays do not
+overlap. What is here is written for whole vectors; whatever the processor is, it is compiled
+to as many of its registers as they take.
+"""
+
+# Intrinsics take their arguments by name and give Numba types.
+# mypy: disable-error-code="no-untyped-def"
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+LANES = 8
+"""Options of a group, and numbers looked at at once."""
+
+WIDE = 16
+"""Groups looked at at once."""
+
+SAMPLES = 16
+"""Samples of a path."""
+
+AT_ONCE = 32
+"""Numbers of which the least is found at once."""
+
+BIT, INT, LONG = ir.IntType(1), ir.IntType(32), ir.IntType(64)
+FLOAT, DOUBLE = ir.FloatType(), ir.DoubleType()
+
+
+def start_of(context: Any, builder: Any, kind: Any, array: Any) -> Any:
+    """Pointer to the first element of a C-contiguous array of the Numba type ``kind``."""
+    return cgutils.create_struct_proxy(kind)(context, builder, array).data
+
+
+def whole(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """A number of the Numba type ``kind`` as one of 64 bits."""
+    return context.cast(builder, value, kind, types.int64)
+
+
+def load(builder: Any, start: Any, at: Any, width: int) -> Any:
+    """``width`` elements from place ``at`` on."""
+    place = builder.gep(start, [at])
+    vector = ir.VectorType(start.type.pointee, width)
+    return builder.load(builder.bitcast(place, vector.as_pointer()), align=4)
+
+
+def store(builder: Any, value: Any, start: Any, at: Any) -> None:
+    """Write a vector from place ``at`` on."""
+    place = builder.gep(start, [at])
+    builder.store(value, builder.bitcast(place, value.type.as_pointer()), align=4)
+
+
+def spread(builder: Any, value: Any, width: int) -> Any:
+    """A vector of a number ``width`` times."""
+    vector = ir.VectorType(value.type, width)
+    one = builder.insert_element(ir.Constant(vector, ir.Undefined), value, ir.Constant(INT, 0))
+    none = ir.Constant(ir.VectorType(INT, width), [0] * width)
+    return builder.shuffle_vector(one, ir.Constant(vector, ir.Undefined), none)
+
+
+def same(kind: Any, width: int, number: float) -> Any:
+    """A vector of a constant ``width`` times."""
+    return ir.Constant(ir.VectorType(kind, width), [number] * width)
+
+
+def numbers(width: int) -> Any:
+    """The whole numbers from 0 on."""
+    return ir.Constant(ir.VectorType(LONG, width), list(range(width)))
+
+
+@intrinsic
+def place_of_least(typingctx, values, n):
+    """Place of the least of n floats, the first of several.
+
+    n is at least 1. Read are whole vectors, ``AT_ONCE`` at a time: what fills up the last ones must
+    not be less.
+    """
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        begin = start_of(context, builder, sig.args[0], args[0])
+        n = whole(context, builder, sig.args[1], args[1])
+        parts = range(AT_ONCE // LANES)
+        kinds = ir.VectorType(DOUBLE, LANES), ir.VectorType(LONG, LANES)
+        least = [cgutils.alloca_once(builder, kinds[0]) for _ in parts]
+        where = [cgutils.alloca_once(builder, kinds[1]) for _ in parts]
+        for part in parts:
+            first = ir.Constant(LONG, LANES * part)
+            builder.store(load(builder, begin, first, LANES), least[part])
+            places = ir.Constant(kinds[1], [LANES * part + lane for lane in range(LANES)])
+            builder.store(places, where[part])
+        lanes = numbers(LANES)
+        step = ir.Constant(LONG, AT_ONCE)
+        with cgutils.for_range_slice(builder, step, n, step) as (block, _):
+            for part in parts:
+                place = builder.add(block, ir.Constant(LONG, LANES * part))
+                value = load(builder, begin, place, LANES)
+                less = builder.fcmp_ordered("<", value, builder.load(least[part]))
+                places = builder.add(spread(builder, place, LANES), lanes)
+                for new, kept in ((value, least[part]), (places, where[part])):
+                    builder.store(builder.select(less, new, builder.load(kept)), kept)
+        found = [(builder.load(least[part]), builder.load(where[part])) for part in parts]
+        while len(found) > 1:
+            found = [
+                _lesser(builder, *one, *other)
+                for one, other in zip(found[::2], found[1::2], strict=True)
+            ]
+        value, place = found[0]
+        width = LANES
+        while width > 1:
+            width //= 2
+            halves = [
+                _part(builder, vector, range(start, start + width))
+                for start in (0, width)
+                for vector in (value, place)
+            ]
+            value, place = _lesser(builder, *halves)
+        return builder.extract_element(place, ir.Constant(INT, 0))
+
+    return types.int64(values, n), codegen
+
+
+def _lesser(builder: Any, value: Any, place: Any, other: Any, elsewhere: Any) -> tuple[Any, Any]:
+    """Lane by lane, the lesser value and its place, the first one among equals."""
+    first = builder.and_(
+        builder.fcmp_ordered("==", other, value), builder.icmp_signed("<", elsewhere, place)
+    )
+    less = builder.or_(builder.fcmp_ordered("<", other, value), first)
+    return builder.select(less, other, value), builder.select(less, elsewhere, place)
+
+
+def _part(builder: Any, vector: Any, lanes: range) -> Any:
+    mask = ir.Constant(ir.VectorType(INT, len(lanes)), list(lanes))
+    return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined), mask)
+
+
+@intrinsic
+def any_of(typingctx, values, at):
+    """Whether any of 8 floats from place ``at`` on is not 0."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        begin = start_of(context, builder, sig.args[0], args[0])
+        value = load(builder, begin, whole(context, builder, sig.args[1], args[1]), LANES)
+        some = builder.fcmp_unordered("!=", value, same(DOUBLE, LANES, 0.0))
+        bits = builder.bitcast(some, ir.IntType(LANES))
+        return builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
+
+    return types.boolean(values, at), codegen
+
+
+@intrinsic
+def lowest_bit(typingctx, bits):
+    """Number of the lowest bit that is set; there must be one."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.cttz(args[0], ir.Constant(BIT, 1))
+
+    return types.int64(types.int64), codegen

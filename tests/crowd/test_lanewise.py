@@ -1,0 +1,145 @@
+"""What is done for several at once is what NumPy finds one by one."""
+
+import numpy as np
+import pytest
+from numba import njit
+
+from mesa_mobility.crowd.lanewise import (
+    drop_within,
+    lay_lanes,
+    lay_samples,
+    near_box,
+    places_within,
+)
+from mesa_mobility.lanes import AT_ONCE, LANES, SAMPLES, WIDE, any_of, lowest_bit, place_of_least
+
+
+@njit
+def _drop(circles, at, row, n, bodies, first, size, known, dropped):
+    drop_within(circles, at, row, n, bodies, first, size, known, dropped)
+
+
+@njit
+def _within(places, at, row, bodies, first, size, known):
+    return places_within(places, at, row, bodies, first, size, known)
+
+
+@njit
+def _near(circles, at, row, x0, y0, x1, y1):
+    return near_box(circles, at, row, x0, y0, x1, y1)
+
+
+@njit
+def _least(values, n):
+    return place_of_least(values, n)
+
+
+@njit
+def _any(values, at):
+    return any_of(values, at)
+
+
+@njit
+def _lowest(bits):
+    return lowest_bit(bits)
+
+
+@njit
+def _lay(lanes, group, ends, at, c, s, x, y, seconds):
+    lay_lanes(lanes, group, ends, at, c, s, x, y, seconds)
+
+
+@njit
+def _sample(paths, path, first, share, c, s, x, y, to, at, row):
+    lay_samples(paths, path, first, share, c, s, x, y, to, at, row)
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(5)
+
+
+@pytest.mark.parametrize("n", [1, 15, 16, 17, 40])
+@pytest.mark.parametrize("known", [0, 1, 7])
+def test_circles_within_a_body_are_dropped(rng, n, known):
+    first, size = 3, 11
+    row = first + n + WIDE
+    circles = rng.uniform(-1.0, 1.0, (3, row)).astype(np.float32)
+    circles[2] = rng.uniform(0.0, 0.6, row)
+    bodies = rng.uniform(-1.0, 1.0, (2, 3, size)).astype(np.float32)
+    bodies[:, 2] = rng.uniform(0.0, 1.5, (2, size))
+    dropped = np.zeros(n + WIDE, dtype=np.int32)
+    dropped[:n:5] = 1
+    _drop(circles, first, row, n, bodies, 3 * size, size, known, dropped)
+    x, y, radius = circles[:, first : first + n, None]
+    body_x, body_y, apart = bodies[1, :, :known]
+    away = np.hypot(x - body_x, y - body_y)
+    expected = (away + radius < apart).any(axis=1)
+    expected[::5] = True
+    assert dropped[:n].astype(bool).tolist() == expected.tolist()
+
+
+@pytest.mark.parametrize("known", [0, 1, 6])
+def test_places_within_a_body_are_told_by_their_bits(rng, known):
+    places = rng.uniform(-1.0, 1.0, (4, 5, LANES)).astype(np.float32)
+    bodies = rng.uniform(-1.0, 1.0, (3, 9)).astype(np.float32)
+    bodies[2] = rng.uniform(0.1, 0.6, 9)
+    bits = _within(places, (2 * 5 + 1) * LANES, 2 * LANES, bodies, 0, 9, known)
+    away = np.hypot(places[2, 1, :, None] - bodies[0], places[2, 3, :, None] - bodies[1])
+    within = (away < bodies[2])[:, :known].any(axis=1)
+    assert [bool(bits >> lane & 1) for lane in range(LANES)] == within.tolist()
+
+
+def test_circles_that_reach_into_a_box_are_told_by_their_bits(rng):
+    circles = rng.uniform(-2.0, 2.0, (3, 50)).astype(np.float32)
+    circles[2] = rng.uniform(0.0, 1.0, 50)
+    bits = _near(circles, 20, 50, -0.5, -1.0, 0.75, 0.25)
+    x, y, radius = circles[:, 20 : 20 + WIDE]
+    off_x = np.maximum.reduce([-0.5 - x, x - 0.75, np.zeros(WIDE)])
+    off_y = np.maximum.reduce([-1.0 - y, y - 0.25, np.zeros(WIDE)])
+    assert [bool(bits >> k & 1) for k in range(WIDE)] == (np.hypot(off_x, off_y) < radius).tolist()
+
+
+@pytest.mark.parametrize("n", [1, 8, 31, 32, 33, 100])
+def test_the_first_of_the_least_is_found(rng, n):
+    values = np.full(n + AT_ONCE, np.inf)
+    for _ in range(50):
+        values[:n] = rng.integers(0, 6, n)
+        assert _least(values, n) == np.argmin(values)
+
+
+def test_whether_any_is_not_0():
+    values = np.zeros(3 * LANES)
+    values[9] = -1.0
+    values[23] = np.nan
+    assert [_any(values, at) for at in (0, 2, 10, 15, 16)] == [False, True, False, False, True]
+
+
+def test_the_lowest_bit_is_found():
+    assert [_lowest(bits) for bits in (1, 2, 12, 1 << 15)] == [0, 1, 2, 15]
+
+
+def test_options_of_a_group_are_turned_and_moved(rng):
+    lanes = rng.uniform(-1.0, 1.0, (3, 13, LANES)).astype(np.float32)
+    ends = np.zeros((6, 20))
+    c, s = np.cos(0.7), np.sin(0.7)
+    _lay(lanes, 1, ends, 4, c, s, 2.0, -3.0, 0.8)
+    x, y, ux, uy, speed = lanes[1, :5].astype(float)
+    expected = [2.0 + c * x - s * y, -3.0 + s * x + c * y, c * ux - s * uy, s * ux + c * uy]
+    expected += [np.full(LANES, 0.8), speed]
+    assert ends[:, 4 : 4 + LANES] == pytest.approx(np.array(expected))
+    assert not ends[:, :4].any()
+    assert not ends[:, 4 + LANES :].any()
+
+
+@pytest.mark.parametrize(("first", "share"), [(0, 0.0), (4, 1 / 3), (14, 2 / 3), (15, 0.0)])
+def test_samples_to_come_lie_between_those_of_the_path(rng, first, share):
+    paths = rng.uniform(-1.0, 1.0, (3, 3, SAMPLES)).astype(np.float32)
+    to = np.zeros((2, 2, SAMPLES), dtype=np.float32)
+    c, s = np.cos(-2.0), np.sin(-2.0)
+    _sample(paths, 1, first, share, c, s, 0.5, 1.5, to, 2 * SAMPLES, SAMPLES)
+    when = np.minimum(first + share + np.arange(SAMPLES), SAMPLES - 1.0)
+    x, y = (np.interp(when, np.arange(SAMPLES), paths[1, axis]) for axis in (0, 1))
+    expected = [0.5 + c * x - s * y, 1.5 + s * x + c * y]
+    assert to[1] == pytest.approx(np.array(expected), abs=1e-6)
+    assert not to[0].any()
