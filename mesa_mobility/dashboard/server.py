@@ -98,16 +98,17 @@ def _listen(host: str, port: int) -> socket.socket:
 def _prepare(loaded: Future[type[PedestrianModel]], serving: threading.Event) -> None:
     """Make the model once, before a page asks for it: what it reads, lays out and compiles stays.
 
-    Most of that goes on beside Python, which imports meanwhile.
+    The map is read while Mesa is imported, the rest is done while the browser gets what the page is
+    made of: both would only hold up the imports before.
     """
-    # Some hundred thousand objects are made until the page is served, and all stay.
+    # Some hundred thousand objects are made until the model is there, and all stay.
     with nothing_collected():
         # What is wrong with map or model, whoever needs it says: the command, or the page.
         with suppress(MobilityError):
             MobilityMap.load()
         kind = loaded.result()
+        serving.wait()
         from mesa_mobility.dashboard.recipe import Recipe
 
         with suppress(Exception):
             Recipe(kind).make()
-        serving.wait()
