@@ -42,7 +42,7 @@ compile_decisions()
 def compiling_ahead() -> Iterator[None]:
     """Have decisions compiled, if they are not yet, while whatever is within makes a model.
 
-    The costs are compiled here, when it is made.
+    When it is made, what is left is compiled here.
     """
     if THREADS < 2 or any(_cached_in().glob("choice.decide-*.nbi")):
         yield
@@ -50,7 +50,7 @@ def compiling_ahead() -> Iterator[None]:
     other = _start()
     try:
         yield
-        compile_costs()
+        compile_the_rest()
         # If it comes to grief, this process compiles what is missing.
         other.wait()
     finally:
@@ -69,8 +69,14 @@ def _start() -> subprocess.Popen[bytes]:
     )
 
 
-def compile_costs() -> None:
-    """Compile the cost terms."""
+def compile_the_rest() -> None:
+    """Compile what a run needs beside decisions and a model: what moves people, and cost terms."""
+    nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
+    due(nobody, 0, crowd.records, nobody)
+    move(nobody, 0, _table(), crowd.records)
+    walk_on(nobody, 0, np.empty((3, 2)), crowd.records)
+    move_on(nobody, 0, crowd.records)
+    turn(nobody, nothing, nothing, crowd.records)
     compile_terms(preset_named("default").make_terms())
 
 
@@ -87,7 +93,7 @@ def _table() -> OptionTable:
 
 
 def compile_decisions() -> None:
-    """Compile what makes people decide and moves them, by the decisions of nobody."""
+    """Compile what makes people decide, by the decisions of nobody."""
     table = _table()
     around = Surroundings(
         segments=np.empty((0, 4)),
@@ -107,10 +113,5 @@ def compile_decisions() -> None:
         (), table, make_groups(table, boxes(table.path)), standing, first, standing, 1.0, 1.0
     )
     decisions = Decisions(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
-    nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
+    nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
     decisions.take(nobody, 0, nobody, crowd, around, terms=[])
-    due(nobody, 0, crowd.records, nobody)
-    move(nobody, 0, table, crowd.records)
-    walk_on(nobody, 0, np.empty((3, 2)), crowd.records)
-    move_on(nobody, 0, crowd.records)
-    turn(nobody, nothing, nothing, crowd.records)

@@ -21,7 +21,7 @@ def test_what_is_compiled_ahead_is_what_a_run_calls():
     Doorway(pedestrians=60, rng=1).run(max_seconds=20.0)
     needed = [set(function.signatures) for function in FUNCTIONS]
     ahead.compile_decisions()
-    ahead.compile_costs()
+    ahead.compile_the_rest()
     assert [set(function.signatures) for function in FUNCTIONS] == needed
     assert all(needed)
 
