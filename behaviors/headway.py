@@ -53,14 +53,14 @@ class Headway(CompiledTerm):
     """
 
     name = "headway"
-    default_weight = 1.5
+    default_weight = 1.3
     kernel = _headway
 
     def __init__(
         self,
         weight: float | None = None,
-        distance: float = 0.35,
-        time: float = 1.0,
+        distance: float = 0.33,
+        time: float = 1.2,
         width: float = 0.4,
     ) -> None:
         super().__init__(weight)

@@ -1,6 +1,9 @@
-"""Standing still rather than shuffling."""
+"""Waiting for room for a step, rather than shuffling."""
+
+import math
 
 from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
+from mesa_mobility.errors import ModelError
 
 STANDS = 0.01
 """Whoever covers no more ground than this in a movement stands, metres."""
@@ -8,24 +11,44 @@ STANDS = 0.01
 
 @option_kernel
 def _stepping(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
-    return 1.0 if speed * duration > STANDS else 0.0
+    ground = speed * duration
+    return max(1.0 - ground * (1.0 / p[0]), 0.0) if ground > STANDS else 0.0
 
 
 @bound_kernel
 def _stepping_bound(  # type: ignore[no-untyped-def]
     x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
 ):
-    return 1.0 if slowest * duration > STANDS else 0.0
+    farthest = fastest * duration
+    return max(1.0 - farthest * (1.0 / p[0]), 0.0) if slowest * duration > STANDS else 0.0
 
 
 class Stepping(CompiledTerm):
-    """1 where an option covers ground, 0 where one stays where one is.
+    """1 - s / l for an option that covers s metres, 0 from l on and where one stays where one is.
 
-    A step is an effort, however short: people in a queue wait until there is room for one that is
-    worth it and stand quietly until then. Of those who walk anyway it favours no option.
+    The effort of a step is mostly that of making one, so a short one is hardly worth it: people in
+    a queue wait until there is room for one that is, and stand quietly until then. Of those who
+    walk anyway it favours no option.
+
+    Args:
+        weight: factor in the sum.
+        length: l, metres from which on a step is worth its effort.
+
+    Raises:
+        ModelError: a length that is not finite and positive.
     """
 
     name = "stepping"
-    default_weight = 0.35
+    default_weight = 1.2
     kernel = _stepping
     bound = _stepping_bound
+
+    def __init__(self, weight: float | None = None, length: float = 0.4) -> None:
+        super().__init__(weight)
+        if not (math.isfinite(length) and length > 0.0):
+            raise ModelError(f"stepping: length is {length}, expected more than 0")
+        self.length = length
+
+    def parameters(self) -> tuple[float, ...]:
+        """``(length,)``."""
+        return (self.length,)

@@ -37,6 +37,7 @@ _TERMS = PRESETS["default"].terms
 _CONSTANTS = {
     "headway": ("distance", "time", "width"),
     "right_of_way": ("width", "bias", "ahead", "beside"),
+    "stepping": ("length",),
 }
 
 DEFAULT: dict[str, float] = {
@@ -52,7 +53,7 @@ DEFAULT: dict[str, float] = {
 
 GRID: dict[str, tuple[float, float]] = {
     **{name: (0.5 * value, 1.5 * value) for name, value in DEFAULT.items()},
-    "headway: distance": (0.3, 0.4),
+    "headway: distance": (0.28, 0.38),
     "core radius": (0.12, 0.16),
 }
 """The smaller and the larger value that each is changed to."""

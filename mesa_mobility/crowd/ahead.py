@@ -74,7 +74,7 @@ def compile_the_rest() -> None:
     nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
     due(nobody, 0, crowd.records, nobody)
     move(nobody, 0, _table(), crowd.records)
-    walk_on(nobody, 0, np.empty((3, 2)), crowd.records)
+    walk_on(nobody, 0, np.empty((0, 4)), np.empty((3, 2)), crowd.records)
     move_on(nobody, 0, crowd.records)
     turn(nobody, nothing, nothing, crowd.records)
     compile_terms(preset_named("default").make_terms())

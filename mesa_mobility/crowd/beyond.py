@@ -7,12 +7,15 @@ with a floor behind it.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.motion import commit
 from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.state import Crowd, CrowdState
+from mesa_mobility.floorplan.kernels import point_segment_distance2
 from mesa_mobility.jit import called
 
 WALKS_ON = 45
@@ -37,10 +40,10 @@ class Beyond:
         self.rows = self.together_with(rows)
         self._new = np.concatenate([self._new, rows])
 
-    def set_off(self, frame: int, crowd: Crowd) -> None:
-        """Have those who are new walk on as they went."""
+    def set_off(self, frame: int, crowd: Crowd, exits: NDArray[np.float64]) -> None:
+        """Have those who are new walk on, away from the (e, 4) exits."""
         if len(self._new):
-            walk_on(self._new, frame, np.empty((3, 2)), crowd.records)
+            walk_on(self._new, frame, exits, np.empty((3, 2)), crowd.records)
             self._new = self._new[:0]
 
     def move(self, frame: int, crowd: Crowd) -> None:
@@ -60,13 +63,33 @@ class Beyond:
 
 @called()
 def walk_on(
-    rows: NDArray[np.int64], frame: int, path: NDArray[np.float64], state: CrowdState
+    rows: NDArray[np.int64],
+    frame: int,
+    exits: NDArray[np.float64],
+    path: NDArray[np.float64],
+    state: CrowdState,
 ) -> None:
-    """Have those in ``rows`` keep their velocity; ``path`` (3, 2) is space to work in."""
+    """Have those in ``rows`` keep their speed and walk straight away from the exit next to them.
+
+    So they come no nearer to anybody who stands on the other side of it: whoever left at a slant
+    would walk along the line, and into people at its end.  ``path`` (3, 2) is space to work in.
+    """
     for i in rows:
-        path[0, 0], path[1, 0], path[2, :] = state.x[i], state.y[i], state.heading[i]
-        path[0, 1] = state.x[i] + _SECONDS * state.vx[i]
-        path[1, 1] = state.y[i] + _SECONDS * state.vy[i]
+        x, y, vx, vy = state.x[i], state.y[i], state.vx[i], state.vy[i]
+        nearest, ex, ey, inside = np.inf, 0.0, 0.0, 0.0
+        for e in range(len(exits)):
+            ax, ay, bx, by = exits[e]
+            away = point_segment_distance2(x, y, ax, ay, bx, by)
+            if away < nearest:
+                nearest, ex, ey = away, bx - ax, by - ay
+                inside = (state.from_x[i] - ax) * ey - (state.from_y[i] - ay) * ex
+        length = math.hypot(ex, ey)
+        if length > 0.0:  # not all have been closed
+            # To the side on which its movement did not begin: who sways may come back just now.
+            speed = math.copysign(math.hypot(vx, vy), -inside) / length
+            vx, vy = speed * ey, -speed * ex
+        path[0, 0], path[1, 0], path[2, :] = x, y, state.heading[i]
+        path[0, 1], path[1, 1] = x + _SECONDS * vx, y + _SECONDS * vy
         commit(
             i, state.option[i], frame, np.int64(1), np.int64(WALKS_ON), np.int64(-1),
             state.cluster[i], path, state,

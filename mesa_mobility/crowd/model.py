@@ -228,7 +228,7 @@ class PedestrianModel(CrowdMeasures, People):
                 progress(self.elapsed, self.inside)
 
     def _advance(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
-        self._beyond.set_off(self.frame, self.crowd)
+        self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         if self.sources:
             newcomers = self._let_in()
             rows = np.concatenate([rows, newcomers])
@@ -323,6 +323,6 @@ class PedestrianModel(CrowdMeasures, People):
         return self._decisions.judge(weighed, self.crowd, self._site.surroundings)
 
     def _grid(self) -> Grid:
-        self._beyond.set_off(self.frame, self.crowd)
+        self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         rows = self._beyond.together_with(self._rows)
         return build_grid(rows, self.crowd.x, self.crowd.y)

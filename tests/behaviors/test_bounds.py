@@ -10,10 +10,13 @@ from mesa_mobility.behaviors import (
     FacingDeviation,
     PreferredSpeed,
     PreferredVelocity,
+    Stepping,
     TargetDistance,
 )
 
-TERMS = [Displacement, FacingDeviation, PreferredSpeed, PreferredVelocity, TargetDistance]
+TERMS = [
+    Displacement, FacingDeviation, PreferredSpeed, PreferredVelocity, Stepping, TargetDistance,
+]  # fmt: skip
 
 START = (0.25, 0.5)
 
@@ -24,14 +27,14 @@ shares = st.floats(0.0, 1.0)
 def cost(term, x, y, angle, duration, speed, target, preferred):
     return term.kernel.function(
         x, y, math.cos(angle), math.sin(angle), duration, speed, *START, *target,
-        preferred, (0.0,),
+        preferred, term().parameters() or (0.0,),
     )  # fmt: skip
 
 
 def bound(term, x, y, radius, angle, turn, duration, slowest, fastest, target, preferred):
     return term.bound.function(
         x, y, radius, math.cos(angle), math.sin(angle), turn, duration, slowest, fastest, *START,
-        *target, preferred, (0.0,),
+        *target, preferred, term().parameters() or (0.0,),
     )  # fmt: skip
 
 

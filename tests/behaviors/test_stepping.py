@@ -1,14 +1,25 @@
+import math
+
 import pytest
 from mesa_mobility.behaviors import Stepping
 
+from mesa_mobility.errors import ModelError
 from tests.fixtures.options import Ending, one_option
 
 
 @pytest.mark.parametrize(
     ("metres", "seconds", "expected"),
-    [(0.0, 0.4, 0.0), (0.009, 0.4, 0.0), (0.009, 1.5, 0.0), (0.011, 0.4, 1.0), (0.011, 1.5, 1.0),
-     (1.9, 1.5, 1.0)],
+    # Of a length of 0.4 m: nothing for who stands, nearly all for the least step, half at half.
+    [(0.0, 0.4, 0.0), (0.009, 0.4, 0.0), (0.009, 1.5, 0.0), (0.02, 0.4, 0.95), (0.1, 0.4, 0.75),
+     (0.2, 0.4, 0.5), (0.2, 1.5, 0.5), (0.4, 0.4, 0.0), (0.5, 0.8, 0.0), (1.9, 1.5, 0.0)],
 )  # fmt: skip
-def test_a_step_costs_the_same_however_long(metres, seconds, expected):
+def test_a_step_costs_what_it_is_short_of_one_that_is_worth_it(metres, seconds, expected):
     option = one_option(Ending(displacement=metres, duration=seconds), target=(20.0, 0.0))
-    assert Stepping().cost(option).tolist() == [expected]
+    assert Stepping(length=0.4).cost(option) == pytest.approx([expected], abs=1e-6)
+
+
+@pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])
+def test_lengths_out_of_range_are_refused_in_one_line(value):
+    with pytest.raises(ModelError, match=r"^stepping: length is .*expected more than 0$") as caught:
+        Stepping(length=value)
+    assert "\n" not in str(caught.value)

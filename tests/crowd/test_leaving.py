@@ -6,6 +6,8 @@ from mesa_mobility.behaviors import Displacement
 from shapely import LineString, box
 
 from mesa_mobility import Exit, FloorPlan, Gate
+from mesa_mobility.crowd.beyond import Beyond
+from mesa_mobility.crowd.state import Crowd
 from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put, same_rows, two_doors
@@ -150,3 +152,31 @@ def test_occupancy_counts_people_inside_each_second():
     assert seconds[:4] == pytest.approx((0.0, 1.0, 2.0, 3.0))
     assert inside[:4] == (4, 3, 2, 1)
     assert model.last_left == pytest.approx(3.8, abs=0.04)
+
+
+@pytest.mark.parametrize(
+    ("line", "begun", "velocity", "then"),
+    [
+        # 0.5 m/s at a slant over x = 8, both ways round; half a second later it is 0.25 m on.
+        ((8.0, 0.0, 8.0, 1.2), 7.5, (0.3, 0.4), (8.25, 1.0)),
+        ((8.0, 1.2, 8.0, 0.0), 7.5, (0.3, -0.4), (8.25, 1.0)),
+        ((8.0, 0.0, 8.0, 1.2), 8.5, (-0.3, 0.4), (7.75, 1.0)),
+        # It sways back over the line just then.
+        ((8.0, 0.0, 8.0, 1.2), 7.5, (-0.3, 0.4), (8.25, 1.0)),
+        # The exit has been closed in that very frame: it walks on as it went.
+        (None, 7.5, (0.3, 0.4), (8.15, 1.2)),
+    ],
+)
+def test_whoever_has_left_walks_straight_away_from_the_exit(line, begun, velocity, then):
+    crowd, beyond = Crowd(2), Beyond()
+    crowd.x[1], crowd.y[1] = 8.0, 1.0
+    crowd.from_x[1], crowd.from_y[1] = begun, 0.6
+    crowd.vx[1], crowd.vy[1] = velocity
+    far = (50.0, 0.0, 50.0, 9.0)
+    exits = np.empty((0, 4)) if line is None else np.array([far, line])
+    beyond.add(np.array([1]))
+    beyond.set_off(30, crowd, exits)
+    beyond.move(45, crowd)
+    assert (crowd.x[1], crowd.y[1]) == pytest.approx(then)
+    beyond.move(75, crowd)
+    assert len(beyond.rows) == 0
