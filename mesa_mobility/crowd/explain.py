@@ -147,12 +147,14 @@ def judge(
         walls, weighed.paths, weighed.knots, verdicts, blockers,
     )  # fmt: skip
     totals = np.where(verdicts == FREE, weighed.totals, np.inf)
+    # The cheapest; of several the one that turns least.
+    order = np.lexsort((np.abs(table.heading[options]), totals))
     return replace(
         weighed,
         verdicts=verdicts,
         blockers=blockers,
         neighbour_ends=np.column_stack([crowd.to_x[near], crowd.to_y[near]]),
-        chosen=int(np.argmin(totals)) if (verdicts == FREE).any() else -1,
+        chosen=int(order[0]) if (verdicts == FREE).any() else -1,
     )
 
 

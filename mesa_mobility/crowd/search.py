@@ -25,7 +25,7 @@ from mesa_mobility.crowd.pairs import LITTLE_LESS, fill_ends, least, pair_cost, 
 from mesa_mobility.crowd.passage import hits_anybody, path_gone_or_walled
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
-from mesa_mobility.jit import part
+from mesa_mobility.jit import lean, part
 from mesa_mobility.lanes import AT_ONCE, LANES, lowest_bit, place_of_least
 from mesa_mobility.machine import fetch
 
@@ -133,6 +133,16 @@ def _open_groups(
     return kept
 
 
+@lean()
+def turns_less(o: int, than: int, table: OptionTable) -> bool:
+    """Whether an option turns less than another, or no more and comes before it.
+
+    Whoever has nowhere to go faces no way rather than another, and would turn round and round.
+    """
+    turn, other = abs(table.heading[o]), abs(table.heading[than])
+    return bool(turn < other or (turn == other and o < than))
+
+
 @part()
 def cheapest_free(
     me: Stance,
@@ -168,8 +178,8 @@ def cheapest_free(
         work: space to work in, with the people around.
 
     Returns:
-        The option's row in the table, the lowest of several that cost the same, -1 if all hit
-        something, -2 if a cost is not a number; the frame of leaving by an exit, or -1.
+        The option's row in the table, that of the least turn if several cost the same, -1 if all
+        hit something, -2 if a cost is not a number; the frame of leaving by an exit, or -1.
     """
     lowest = least(bounds)
     # Typed, as functions are compiled once more for literal numbers.
@@ -249,5 +259,5 @@ def cheapest_free(
             cost += pair_cost(me, this, work.ends, now.neighbours, work.others, state, terms)
             if not abs(cost) < np.inf:
                 return NOT_A_NUMBER, -1
-        if cost < most or (cost == most and o < best):
+        if cost < most or (cost == most and turns_less(o, best, table)):
             best, leaving, most = o, gone, cost

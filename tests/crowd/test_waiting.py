@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mesa_mobility.crowd.explain import Watch
 from mesa_mobility.errors import ModelError
 from tests.fixtures.counting import overlaps, track
 from tests.fixtures.maps import shipped_map, strider
@@ -88,3 +89,29 @@ def test_waits_that_cannot_be(keywords):
     with pytest.raises(ModelError, match="wait"):
         person.wait(**keywords)
     assert not person.waiting
+
+
+def test_whoever_waits_does_not_turn_round_and_round():
+    # To go nowhere, all ways to face cost the same, and the map has turns on the spot.
+    model = model_of(corridor(), shipped_map(), rng=1)
+    person = put(model, 2.0, 2.0)
+    person.wait(60.0)
+    advance(model, 600)
+    headings = track(model.recorder.arrays(), person.row)[:, 3]
+    assert np.ptp(headings) < np.radians(1.0)
+    assert model.explain(person.row).chosen >= 0
+
+
+def test_what_is_told_of_somebody_who_waits_is_what_it_does():
+    model = model_of(corridor(), shipped_map(), rng=1)
+    person = put(model, 2.0, 2.0)
+    person.wait(60.0)
+    advance(model, 30)
+    model.watch = Watch(person.row)
+    advance(model, 60)
+    taken = model.watch.decision
+    assert taken.taken
+    free = np.flatnonzero(taken.totals == taken.totals.min())
+    turns = np.abs(taken.paths[free, 2, -1] - taken.candidates.facings[0])
+    assert len(free) > 1
+    assert taken.chosen in free[turns < turns.min() + 1e-6]
