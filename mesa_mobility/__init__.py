@@ -6,12 +6,12 @@ and the command line start at once.
 
 from __future__ import annotations
 
-from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mesa_mobility.kernel_cache import drop_stale_kernels
+from mesa_mobility.lazily import names_of
 
 if TYPE_CHECKING:
     from mesa_mobility.batch import batch_run
@@ -94,12 +94,4 @@ __all__ = [
     "pair_kernel",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _ROOMS:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_ROOMS[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *__all__])
+__getattr__, __dir__ = names_of(__name__, _ROOMS)

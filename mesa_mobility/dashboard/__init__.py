@@ -5,8 +5,9 @@ Needs the extra ``viz``. Names are imported when they are first used.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from mesa_mobility.lazily import names_of
 
 if TYPE_CHECKING:
     from mesa_mobility.dashboard.app import Dashboard
@@ -16,9 +17,5 @@ _MODULES = {"Dashboard": "app", "make_crowd_view": "solara_viz"}
 
 __all__ = ["Dashboard", "make_crowd_view"]
 
-
-def __getattr__(name: str) -> Any:
-    # Mesa's visualization takes a second to load; the dashboard does without.
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+# Mesa's visualization takes a second to load; the dashboard does without.
+__getattr__, __dir__ = names_of(__name__, _MODULES)
