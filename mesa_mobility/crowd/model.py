@@ -272,7 +272,7 @@ class PedestrianModel(CrowdMeasures, People):
         waiting = self.waits.waiting(deciding, self.frame, self.crowd)
         targets = self._set_targets(deciding, rows, waiting)
         # Those nearest to where they go decide first: that frees space for those behind.
-        order = deciding[np.argsort(targets.distances, kind="stable")]
+        order = deciding[targets.nearest_first]
         self._decisions.take(
             order,
             self.frame,

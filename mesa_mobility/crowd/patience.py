@@ -47,9 +47,11 @@ def look_around(
     """
     who, spread = np.empty(len(rows), dtype=np.int64), np.empty(len(rows))
     count = _impatient(rows, elapsed, crowd.records, crowd.agenda, who, spread)
-    if count:
-        looks = np.flatnonzero(rng.random(count) < LOOKS)
-        angle = rng.normal(0.0, spread[looks])
+    if count == 0:
+        return
+    looks = (rng.random(count) < LOOKS).nonzero()[0]
+    if len(looks):
+        angle = spread[looks] * rng.standard_normal(len(looks))
         turn(who[looks], np.cos(angle), np.sin(angle), crowd.records)
 
 

@@ -35,7 +35,7 @@ _PAST_CORNER = (0.5, 0.25, 0.125)
 
 
 UNSEEN = -2
-"""Gate of somebody whose target could not be found without working out a new view."""
+"""Gate of somebody whose target is not known yet."""
 
 
 @njit(cache=True, nogil=True)
@@ -48,28 +48,27 @@ def aim(
     distances: NDArray[np.float64],
     follow: NDArray[np.int64],
     learn: bool,
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]:
-    """Targets (n, 2), gates (n,), route lengths (n,) and corners (n, 2); see `Router.targets`.
+    points: NDArray[np.float64],
+    gates: NDArray[np.int64],
+    lengths: NDArray[np.float64],
+    corners: NDArray[np.int64],
+) -> None:
+    """Write targets (n, 2), gates (n,), route lengths (n,) and corners (n, 2) of the `UNSEEN`.
 
-    For every destination and node, `distances` is the route length in metres and
-    `follow` the next node of the route (-1 where it ends). Only one thread at a time may
+    See `Router.targets`. For every destination and node, `distances` is the route length in metres
+    and `follow` the next node of the route (-1 where it ends). Only one thread at a time may
     `learn`, that is, work out new views; the others leave those who need one `UNSEEN`.
     """
-    n = len(positions)
     nodes = len(ways.kind)
-    points = np.empty((n, 2))
-    gates = np.full(n, -1, dtype=np.int64)
-    lengths = np.full(n, np.inf)
-    corners = np.full((n, 2), -1, dtype=np.int64)
     keys = np.empty(nodes)
     seen = np.empty(nodes, dtype=np.int64)
     everything = np.arange(nodes)
-    for person in range(n):
+    for person in range(len(positions)):
+        if gates[person] != UNSEEN:
+            continue
         x, y = positions[person]
         to_go = distances[destinations[person]]
         after = follow[destinations[person]]
-        points[person, 0] = x
-        points[person, 1] = y
         own = wall_distance(sight, x, y, ways.view_clearance)
         view = ways.view_clearance
         node = -1
@@ -80,7 +79,6 @@ def aim(
                 sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES
             )
         if node < 0 and not (hidden_known or learn):
-            gates[person] = UNSEEN
             continue
         if node < 0:
             maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
@@ -91,6 +89,9 @@ def aim(
                     )
             if node < 0:
                 node = _nearest_unwalled(sight, ways, x, y, to_go, maybe)
+        points[person, 0], points[person, 1] = x, y
+        gates[person], lengths[person] = -1, np.inf
+        corners[person, 0] = corners[person, 1] = -1
         if node >= 0:
             (
                 lengths[person], gates[person], points[person, 0], points[person, 1],
@@ -99,7 +100,6 @@ def aim(
             if corner >= 0:
                 corners[person, 0] = corner
                 corners[person, 1] = after[corner]
-    return points, gates, lengths, corners
 
 
 @lean()

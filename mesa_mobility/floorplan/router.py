@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
@@ -22,10 +24,6 @@ from mesa_mobility.threads import threads_for, together
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
-
-Found: TypeAlias = tuple[
-    NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]
-]
 
 _KIND_NAMES = ("corner", "gate", "exit")
 
@@ -55,6 +53,11 @@ class Targets:
     gates: NDArray[np.int64]
     distances: NDArray[np.float64]
     corners: NDArray[np.int64] | None = None
+
+    @cached_property
+    def nearest_first(self) -> NDArray[np.intp]:
+        """(n,) the people in rising order of distance; those with equal ones as they come."""
+        return np.argsort(self.distances, kind="stable")
 
 
 class Router:
@@ -159,25 +162,27 @@ class Router:
             raise FloorPlanError(
                 f"targets need a destination for each position, found {len(numbers)} for {len(xy)}"
             )
-        if len(xy) == 0:
-            return Targets(xy, numbers, np.empty(0), np.empty((0, 2), dtype=np.int64))
+        n = len(xy)
+        points, gates = np.empty((n, 2)), np.full(n, UNSEEN)
+        distances, corners = np.empty(n), np.empty((n, 2), dtype=np.int64)
+        found = Targets(points, gates, distances, corners)
+        if n == 0:
+            return found
         lengths, follow = self._table(int(numbers.min()), int(numbers.max()))
 
-        def aims(people: NDArray[np.intp], learn: bool) -> Found:
-            return aim(
-                self._sight, self._ways, self._views, xy[people], numbers[people], lengths, follow,
-                learn,
+        def aims(first: int, last: int, learn: bool) -> None:
+            aim(
+                self._sight, self._ways, self._views, xy[first:last], numbers[first:last],
+                lengths, follow, learn, points[first:last], gates[first:last],
+                distances[first:last], corners[first:last],
             )  # fmt: skip
 
-        everybody = np.arange(len(xy))
-        threads = threads_for(len(xy))
-        if threads == 1:
-            return Targets(*aims(everybody, True))
-        parts = together(lambda part: aims(part, False), np.array_split(everybody, threads))
-        points, gates, route, corners = (np.concatenate(each) for each in zip(*parts, strict=True))
-        unseen = np.flatnonzero(gates == UNSEEN)
-        points[unseen], gates[unseen], route[unseen], corners[unseen] = aims(unseen, True)
-        return Targets(points, gates, route, corners)
+        threads = threads_for(n)
+        if threads > 1:
+            ends = [n * k // threads for k in range(threads + 1)]
+            together(lambda part: aims(*part, False), list(pairwise(ends)))
+        aims(0, n, True)
+        return found
 
     def abreast(
         self, positions: NDArray[np.float64], targets: Targets, areas: NDArray[np.float64]

@@ -5,6 +5,8 @@ import pytest
 from shapely import Polygon
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
+from mesa_mobility.crowd.abreast import _areas
+from mesa_mobility.crowd.state import Crowd
 
 SPEED = 1.5
 CAPACITY = 1.22  # Weidmann's capacity of a level way, persons/(m s)
@@ -44,6 +46,29 @@ def test_who_is_behind_does_not_count():
     model = PedestrianModel(halls(), rng=1)
     (alone,) = model.add_pedestrians(PLACES[:1], preferred_speeds=SPEED)
     assert alone.target == pytest.approx(people[-1].target)
+
+
+def test_those_count_whose_way_round_the_same_corner_is_shorter():
+    # At a corner each, of which the last is nobody's; ways of whole metres, so that many are equal.
+    rng = np.random.default_rng(3)
+    n, deciding = 60, np.arange(0, 60, 3)
+    crowd = Crowd(n)
+    crowd.agenda["corner"], crowd.agenda["speed"] = rng.integers(-1, 4, n), rng.uniform(1.0, 2.0, n)
+    crowd.route[:n] = rng.integers(0, 9, n)
+    corners = np.column_stack([crowd.agenda["corner"][deciding], np.zeros(len(deciding), int)])
+    crowd.agenda["corner"][deciding] = 3  # of before
+    crowd.agenda["corner"][59] = 4
+    areas = np.zeros(len(deciding))
+    nearest_first = np.argsort(crowd.route[deciding], kind="stable")
+    inside = np.arange(n)
+    assert _areas(deciding, nearest_first, corners, inside, crowd.records, crowd.agenda, areas)
+    corner, route, speed = crowd.agenda["corner"], crowd.route, crowd.agenda["speed"]
+    for k, i in enumerate(deciding):
+        assert corner[i] == corners[k, 0]
+        before = sum(
+            corner[j] == corner[i] and (route[j], j) < (route[i], i) for j in range(n) if j != i
+        )
+        assert areas[k] == (before * speed[i] / CAPACITY if corner[i] >= 0 else 0.0)
 
 
 def test_the_printed_rules_send_everybody_the_shortest_way():
