@@ -10,6 +10,7 @@ to as many of its registers as they take.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from llvmlite import ir
@@ -151,6 +152,22 @@ def any_of(typingctx, values, at):
         return builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
 
     return types.boolean(values, at), codegen
+
+
+@intrinsic
+def no_more_than(typingctx, values, at, most):
+    """Bits of those of 8 floats from place ``at`` on that are at most so much, or not finite."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        begin = start_of(context, builder, sig.args[0], args[0])
+        value = load(builder, begin, whole(context, builder, sig.args[1], args[1]), LANES)
+        most = spread(builder, args[2], LANES)
+        little = builder.fcmp_unordered("<=", value, most)
+        endless = builder.fcmp_ordered("==", value, same(DOUBLE, LANES, math.inf))
+        bits = builder.bitcast(builder.or_(little, endless), ir.IntType(LANES))
+        return builder.zext(bits, LONG)
+
+    return types.int64(values, at, types.float64), codegen
 
 
 @intrinsic

@@ -7,9 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.barriers import lay_barriers
 from mesa_mobility.crowd.clearing import free_groups
 from mesa_mobility.crowd.close import Stance, find_close
-from mesa_mobility.crowd.collision import Surroundings, exit_distance, near_walls
+from mesa_mobility.crowd.collision import MARGIN, Surroundings, exit_distance, near_walls
 from mesa_mobility.crowd.costs import (
     LEAD,
     OTHER_EX,
@@ -29,7 +30,7 @@ from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.pairs import fill_lane, least, mark_counting, pick_foremost
 from mesa_mobility.crowd.queue import Queue, await_neighbours
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.search import FEW, NONE, NOT_A_NUMBER, cheapest_free
+from mesa_mobility.crowd.search import CROWD, FEW, NONE, NOT_A_NUMBER, cheapest_free
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import called, woven
@@ -139,6 +140,7 @@ def _decide_one(
     fill_lane(count, others)
     farthest = table.farthest[cluster]
     walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
+    firm = lay_barriers(me, walls, farthest, core + MARGIN, work.barriers)
     exits_from = exit_distance(around, x, y, destination)
     # What the options cover, and what the fallback may.
     aside = state.preferred[i] * FALLBACK_SECONDS
@@ -149,8 +151,8 @@ def _decide_one(
         max(whole[2], aside), max(whole[3], aside), state, work.close,
     )  # fmt: skip
     n = free_groups(
-        me, frame, work.close, found, walls, exits_from, table, groups, state, work.bodies,
-        work.circles, work.alive,
+        me, frame, work.close, found, work.barriers, firm, exits_from, table, groups, state,
+        work.bodies, work.circles, work.alive,
     )  # fmt: skip
     option, gone = NONE, -1
     if n > 0:
@@ -175,7 +177,11 @@ def _decide_one(
             work.picked, work.marks,
         )  # fmt: skip
         ranked = bounded and n > FEW
-        setting = Setting(frame, found, touching, count, foremost, rough, exits_from, eager, ranked)
+        # In a jam most stay where they are, or hardly go on.
+        stay = spanned.stay if foremost >= CROWD else -1
+        setting = Setting(
+            frame, firm, stay, found, touching, count, foremost, rough, exits_from, eager, ranked
+        )
         option, gone = cheapest_free(
             me, setting, first, bounds, walls, extra, rules.cores, table, groups, state, around,
             terms, work,

@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.barriers import drop_beside, places_beside
 from mesa_mobility.crowd.close import SLACK, Close, Stance, lay_ahead, off_box2
 from mesa_mobility.crowd.collision import MARGIN
 from mesa_mobility.crowd.groups import AT_X, AT_Y, LANE_FIELDS, OptionGroups
 from mesa_mobility.crowd.lanewise import drop_within, places_within
 from mesa_mobility.crowd.options import LEVELS, OptionTable
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.floorplan.kernels import point_segment_distance2
 from mesa_mobility.jit import lean, part
 from mesa_mobility.lanes import LANES, WIDE
 from mesa_mobility.machine import fetch
@@ -78,7 +78,8 @@ def free_groups(
     frame: int,
     close: Close,
     count: int,
-    walls: NDArray[np.float64],
+    barriers: NDArray[np.float32],
+    firm: int,
     exits_from: float,
     table: OptionTable,
     groups: OptionGroups,
@@ -94,7 +95,8 @@ def free_groups(
         frame: now.
         close: people who may come in the way.
         count: how many.
-        walls: (w, 5) walls within reach, with squared distances.
+        barriers: (5, n) walls within reach, in the pedestrian's frame.
+        firm: how many.
         exits_from: metres to the nearest way out: whoever may be out by then may not meet
             anybody.
         table: options of all capabilities.
@@ -137,9 +139,11 @@ def free_groups(
                 bodies.at, 3 * level * bodies.at.shape[2], bodies.at.shape[2],
                 bodies.known[level], dropped,
             )  # fmt: skip
-        x, y = groups.at[level, 0, first:last], groups.at[level, 1, first:last]
-        radius = groups.at[level, 2, first:last]
-        _drop_in_walls(me, walls, spanned.around[level], x, y, radius, dropped)
+        if firm > 0:
+            drop_beside(
+                groups.at, 3 * level * groups.at.shape[2] + first, groups.at.shape[2], n, barriers,
+                firm, me.core + MARGIN - SLACK, dropped,
+            )  # fmt: skip
     free = 0
     for a in range(n):
         alive[free] = first + a
@@ -179,51 +183,30 @@ def _keep_bodies(x0: float, y0: float, x1: float, y1: float, level: int, bodies:
 
 
 @lean()
-def _drop_in_walls(
-    me: Stance,
-    walls: NDArray[np.float64],
-    circle: NDArray[np.float64],
-    x: NDArray[np.float32],
-    y: NDArray[np.float32],
-    radius: NDArray[np.float32],
-    dropped: NDArray[np.int32],
-) -> None:
-    """Mark the groups too near to a wall, but for walls that the person touches already."""
-    r = me.core + MARGIN
-    least = np.float32(r - SLACK)
-    for w in range(len(walls)):
-        if walls[w, 4] <= r * r:
-            continue
-        dx, dy = walls[w, 0] - me.x, walls[w, 1] - me.y
-        ax, ay = me.c * dx + me.s * dy, me.c * dy - me.s * dx
-        dx, dy = walls[w, 2] - me.x, walls[w, 3] - me.y
-        bx, by = me.c * dx + me.s * dy, me.c * dy - me.s * dx
-        d2 = point_segment_distance2(circle[0], circle[1], ax, ay, bx, by)
-        if d2 >= (circle[2] + r) ** 2:
-            continue
-        length2 = (bx - ax) ** 2 + (by - ay) ** 2
-        scale = np.float32(1.0 / length2 if length2 > 0.0 else 0.0)
-        px, py = np.float32(ax), np.float32(ay)
-        ex, ey = np.float32(bx - ax), np.float32(by - ay)
-        for b in range(len(x)):
-            qx, qy = x[b] - px, y[b] - py
-            t = min(max((qx * ex + qy * ey) * scale, np.float32(0.0)), np.float32(1.0))
-            qx, qy = qx - t * ex, qy - t * ey
-            room = max(least - radius[b], np.float32(0.0))
-            dropped[b] |= np.int32(qx * qx + qy * qy < room * room)
+def free_lanes(
+    group: int,
+    wanted: int,
+    bodies: Bodies,
+    barriers: NDArray[np.float32],
+    firm: int,
+    apart: float,
+    groups: OptionGroups,
+) -> int:
+    """Bits of the ``wanted`` of a group's 8 options that are within nobody and no wall.
 
-
-@lean()
-def free_lanes(group: int, bodies: Bodies, groups: OptionGroups) -> int:
-    """Bits of those of the 8 options of a group that are within nobody at any level."""
+    That is at the levels, closer than ``apart`` to the first ``firm`` barriers.
+    """
     # Lanes that are no options do not count.
-    hit = ALL_LANES ^ ((1 << (groups.first[group + 1] - groups.first[group])) - 1)
+    free = wanted & ((1 << (groups.first[group + 1] - groups.first[group])) - 1)
     start = group * LANE_FIELDS * LANES
     size = bodies.at.shape[2]
+    row = (AT_Y - AT_X) * LANES
     for level in range(len(LEVELS)):
-        if bodies.known[level] > 0 and hit != ALL_LANES:
-            hit |= places_within(
-                groups.lanes, start + (AT_X + level) * LANES, (AT_Y - AT_X) * LANES,
-                bodies.at, 3 * level * size, size, bodies.known[level],
-            )  # fmt: skip
-    return hit ^ ALL_LANES
+        at = start + (AT_X + level) * LANES
+        if firm > 0 and free != 0:
+            free &= ~places_beside(groups.lanes, at, row, barriers, firm, apart)
+        if bodies.known[level] > 0 and free != 0:
+            free &= ~places_within(
+                groups.lanes, at, row, bodies.at, 3 * level * size, size, bodies.known[level]
+            )
+    return free

@@ -43,17 +43,18 @@ CLUSTER = np.dtype(
     [
         ("first", "i8"),
         ("last", "i8"),
+        ("stay", "i8"),
         ("whole", "f8", (4,)),
         ("reach", "f8", (len(LEVELS),)),
-        ("around", "f8", (len(LEVELS), 3)),
         ("spans", "f8", (len(LEVELS), 4)),
     ],
     align=True,
 )
 """What the options of a cluster span: ``first`` of its groups and the one after its ``last``;
-``whole`` least x and y, greatest x and y of all options on the way; ``around`` (levels, 3) x, y and
-radius of a circle around all of them at a level, ``spans`` (levels, 4) a box around the circles of
-its groups then, ``reach`` (levels,) the farthest that they have led by then.
+``stay`` the one with the option that turns least of those that cover no ground, or -1;
+``whole`` least x and y, greatest x and y of all options on the way; ``spans`` (levels, 4) a box
+around the circles of its groups at a level, ``reach`` (levels,) the farthest that they have led by
+then.
 """
 
 X, Y, RADIUS, UX, UY, TURN, DURATION, SLOWEST, FASTEST = range(9)
@@ -191,10 +192,10 @@ def make_groups(table: OptionTable, boxes: NDArray[np.float32]) -> OptionGroups:
     x1, y1 = (np.maximum.reduceat(circles[:, k] + r, first, axis=1) for k in (0, 1))
     spanned = np.empty(len(clusters), CLUSTER)
     spanned["first"], spanned["last"] = of[:-1], of[1:]
+    spanned["stay"] = _stays(table)
     spanned["whole"] = np.column_stack(
         [np.minimum.reduceat(boxes[:, :2], clusters), np.maximum.reduceat(boxes[:, 2:], clusters)]
     )
-    spanned["around"] = np.stack([np.column_stack(_circles(each, clusters)) for each in at], axis=1)
     spanned["spans"] = np.stack([x0.T, y0.T, x1.T, y1.T], axis=2)
     spanned["reach"] = np.sqrt(farthest2)
     alike_ends = [
@@ -215,6 +216,17 @@ def make_groups(table: OptionTable, boxes: NDArray[np.float32]) -> OptionGroups:
         at=np.pad(circles, ((0, 0), (0, 0), (0, WIDE))),
         lanes=_lanes(table),
     )
+
+
+def _stays(table: OptionTable) -> NDArray[np.int64]:
+    """(clusters,) the group with the option that turns least of those that stay, or -1."""
+    stay = np.flatnonzero(table.options.speed == 0.0)
+    cluster = np.searchsorted(table.offsets, stay, side="right") - 1
+    order = np.lexsort((abs(table.heading[stay]), cluster))
+    of, at = np.unique(cluster[order], return_index=True)
+    found = np.full(len(table.farthest), -1)
+    found[of] = np.searchsorted(table.groups, stay[order[at]], side="right") - 1
+    return found
 
 
 def _lanes(table: OptionTable) -> NDArray[np.float32]:

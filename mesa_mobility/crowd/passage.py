@@ -8,7 +8,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.barriers import path_off2
+from mesa_mobility.crowd.close import SLACK, Stance, meets
 from mesa_mobility.crowd.collision import (
+    MARGIN,
     Surroundings,
     box_of,
     crosses_exit,
@@ -16,8 +19,10 @@ from mesa_mobility.crowd.collision import (
     hits_neighbour,
     hits_wall,
 )
-from mesa_mobility.crowd.options import OptionTable
+from mesa_mobility.crowd.motion import lay_path
+from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import lean
 
 
@@ -99,3 +104,78 @@ def path_gone_or_blocked(
         return gone
     blocked = hits_anybody(i, path, pieces, spacing, frame, gone, table, state, near)
     return -2 if blocked else gone
+
+
+@lean()
+def option_gone_or_blocked(
+    me: Stance,
+    now: Setting,
+    o: int,
+    met: int,
+    walls: NDArray[np.float64],
+    cores: bool,
+    table: OptionTable,
+    state: CrowdState,
+    around: Surroundings,
+    work: Work,
+) -> tuple[int, int]:
+    """Whether a pedestrian that decides can walk an option, laid out only if need be.
+
+    Args:
+        me: the pedestrian.
+        now: what is to know of its decision.
+        o: the option's row.
+        met: number of the close person to look at first.
+        walls: walls within reach, with squared distances.
+        cores: whether bodies are hard.
+        table: options of all capabilities.
+        state: the crowd.
+        around: walls and exits.
+        work: space to work in, with the people and barriers around.
+
+    Returns:
+        -2 or -3 if it hits something, else the frame of leaving or -1; the number of the close
+        person to look at first at the next option.
+    """
+    reach, stride = np.float64(table.options[o].reach), np.float64(table.options[o].stride)
+    exits_near = reach >= now.exits_from
+    # What only the exact tests can tell: whether it hits a wall, and whom.
+    walled, doubtful, gone = True, 0, -1
+    if not exits_near:
+        off2 = path_off2(table.path, o, work.barriers, now.firm)
+        least = me.core + MARGIN - SLACK
+        if off2 < least * least:
+            return -3, met
+        most = me.core + MARGIN + 0.5 * stride + 3.0 * SLACK
+        walled = now.firm < len(walls) or off2 < most * most
+        if cores:
+            who, doubtful = meets(
+                me, now.frame, table.path[o], stride, now.found, met, table, state, work.close,
+                work.unsure,
+            )  # fmt: skip
+            if who >= 0:
+                return -2, who
+    elif cores:
+        # Whoever may be out before may not meet anybody of those ahead.
+        doubtful = now.found
+        for a in range(now.found):
+            work.unsure[a] = work.close.people[a].who
+    if cores:
+        for a in range(now.touching, len(work.close.people)):
+            work.unsure[doubtful] = work.close.people[a].who
+            doubtful += 1
+    if not walled and doubtful == 0:
+        return gone, met
+    pieces, spacing = lay_path(me.row, o, me.c, me.s, table, state, work.path), SAMPLE_FRAMES
+    if walled:
+        gone = path_gone_or_walled(
+            me.row, work.path, pieces, np.int64(spacing), reach, now.frame, state, walls, around,
+            exits_near,
+        )  # fmt: skip
+    if gone < -1 or doubtful == 0:
+        return gone, met
+    blocked = hits_anybody(
+        me.row, work.path, pieces, np.int64(spacing), now.frame, gone, table, state,
+        work.unsure[:doubtful],
+    )  # fmt: skip
+    return -2 if blocked else gone, met

@@ -5,7 +5,8 @@ cost. Terms over pairs (interference) are never negative, so the sum of the othe
 a lower bound of an option's cost, and a better one with its pair costs with the few neighbours who
 are likely to cost most. In the order of that an option is dropped if it hits something, and given
 all its pair costs otherwise. As soon as one hits nothing, whatever certainly costs more is left
-alone. The result is that of working everything out; most of it never is.
+alone; in a jam it is looked first at what it costs to stay where one is. The result is that of
+working everything out; most of it never is.
 """
 
 from __future__ import annotations
@@ -13,20 +14,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.clearing import free_lanes
-from mesa_mobility.crowd.close import Stance, meets
-from mesa_mobility.crowd.collision import Surroundings
+from mesa_mobility.crowd.clearing import ALL_LANES, free_lanes
+from mesa_mobility.crowd.close import SLACK, Stance
+from mesa_mobility.crowd.collision import MARGIN, Surroundings
 from mesa_mobility.crowd.costs import SPEED, Terms, option_costs
 from mesa_mobility.crowd.groups import DURATION, OptionGroups
 from mesa_mobility.crowd.lanewise import lay_lanes
-from mesa_mobility.crowd.motion import lay_path
-from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.options import OptionTable
 from mesa_mobility.crowd.pairs import LITTLE_LESS, fill_ends, least, pair_cost, pair_costs_at_least
-from mesa_mobility.crowd.passage import hits_anybody, path_gone_or_walled
+from mesa_mobility.crowd.passage import option_gone_or_blocked
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import lean, part
-from mesa_mobility.lanes import AT_ONCE, LANES, lowest_bit, place_of_least
+from mesa_mobility.lanes import AT_ONCE, LANES, lowest_bit, no_more_than, place_of_least
 from mesa_mobility.machine import fetch
 
 NONE = -1
@@ -42,6 +42,9 @@ WIDENING = 2.0
 BANDS = 8
 """Bands after which all the rest is opened."""
 
+CROWD = 10
+"""Likely neighbours from whom on it is looked first at what it costs to stay where one is."""
+
 DEAREST = 1e300
 """What costs more is blocked."""
 
@@ -54,11 +57,8 @@ def _open_groups(
     me: Stance,
     now: Setting,
     count: int,
-    above: float,
-    up_to: float,
+    opened: int,
     most: float,
-    first: int,
-    bounds: NDArray[np.float64],
     extra: NDArray[np.float64],
     table: OptionTable,
     groups: OptionGroups,
@@ -66,25 +66,28 @@ def _open_groups(
     terms: Terms,
     work: Work,
 ) -> int:
-    """Work out what options may cost in groups with bounds from ``above`` to ``up_to``.
+    """Work out what options may cost in the first ``opened`` groups that are picked.
 
-    Left out are those within somebody, and those that cost more than ``most``.
+    Left out are those within somebody or a wall, and those that cost more than ``most``.
+    Picked are numbers of groups in ``work.picked``.
 
     Returns the number of options looked at so far, ``count`` before; -2 if a cost is not a number.
     """
     picked, free = work.picked, work.free
-    opened = 0
-    for a in range(len(bounds)):
-        picked[opened] = first + a
-        opened += int((above < bounds[a]) & (bounds[a] <= up_to))
+    apart = me.core + MARGIN - SLACK
+    # Whoever may be out before may not meet the walls of those ahead.
+    firm = now.firm if now.exits_from > table.farthest[state.cluster[me.row]] else 0
+    # What costs too much is told sooner than what is blocked.
+    dear = most < np.inf
     for q in range(min(opened, _AHEAD)):
         fetch(groups.lanes, picked[q], 416)
     n = 0
     for q in range(opened):
         if q + _AHEAD < opened:
             fetch(groups.lanes, picked[q + _AHEAD], 416)
-        g = picked[q]
-        bits = free_lanes(g, work.bodies, groups)
+        g, bits = picked[q], ALL_LANES
+        if not dear:
+            bits = free_lanes(g, bits, work.bodies, work.barriers, firm, apart, groups)
         lay_lanes(
             groups.lanes, g, work.lanes, LANES * n, me.c, me.s, me.x, me.y, groups.ends[DURATION, g]
         )
@@ -103,17 +106,19 @@ def _open_groups(
     option_costs(me, 0, LANES * n, work.lanes, state, terms, costs)
     bad, kept = 0, count
     for q in range(n):
-        row, bits = groups.first[picked[q]], free[q]
+        g, bits = picked[q], free[q] & no_more_than(costs, LANES * q, most)
+        if dear and bits != 0:
+            bits = free_lanes(g, bits, work.bodies, work.barriers, firm, apart, groups)
+        row = groups.first[g]
         while bits != 0:
             lane = lowest_bit(bits)
             bits &= bits - 1
             k = LANES * q + lane
-            cost = costs[k]
-            bad |= int(not abs(cost) < np.inf)
-            work.rows[kept], work.costs[kept] = row + lane, cost
+            bad |= int(not abs(costs[k]) < np.inf)
+            work.rows[kept], work.costs[kept] = row + lane, costs[k]
             for field in range(SPEED + 1):
                 work.ends[field, kept] = work.lanes[field, k]
-            kept += int(cost <= most)
+            kept += 1
     if now.eager:
         for k in range(count, kept):
             work.costs[k] += pair_cost(me, k, work.ends, now.neighbours, work.others, state, terms)
@@ -141,6 +146,16 @@ def turns_less(o: int, than: int, table: OptionTable) -> bool:
     """
     turn, other = abs(table.heading[o]), abs(table.heading[than])
     return bool(turn < other or (turn == other and o < than))
+
+
+@lean()
+def standing(count: int, work: Work) -> int:
+    """Number of the cheapest of ``count`` options that covers no ground; ``count`` if none does."""
+    found = count
+    for k in range(count):
+        if work.ends[SPEED, k] == 0.0 and (found == count or work.least[k] < work.least[found]):
+            found = k
+    return found
 
 
 @part()
@@ -186,22 +201,39 @@ def cheapest_free(
     best, leaving, most = NONE, -1, np.inf
     band, count, met, k = np.int64(0), np.int64(0), np.int64(0), np.int64(0)
     up_to, dearest = -np.inf, np.inf
+    stays = now.stay >= first and bounds[now.stay - first] < np.inf
     while True:
-        while up_to < DEAREST and dearest > up_to and up_to < most:
-            above = up_to
-            if best >= 0:
-                up_to = min(most, DEAREST)
-            elif band < BANDS and now.ranked:
-                up_to = lowest + FIRST_BAND * WIDENING**band
+        while stays or (up_to < DEAREST and dearest > up_to and up_to < most):
+            opened = 0
+            if stays:
+                work.picked[0] = now.stay
+                bounds[now.stay - first] = np.inf
+                opened = 1
             else:
-                up_to = DEAREST
-            band += 1
-            count = _open_groups(
-                me, now, count, above, up_to, most, first, bounds, extra, table, groups, state,
-                terms, work,
-            )  # fmt: skip
+                above = up_to
+                if best >= 0:
+                    up_to = min(most, DEAREST)
+                elif band < BANDS and now.ranked:
+                    up_to = lowest + FIRST_BAND * WIDENING**band
+                else:
+                    up_to = DEAREST
+                band += 1
+                for a in range(len(bounds)):
+                    work.picked[opened] = first + a
+                    opened += int((above < bounds[a]) & (bounds[a] <= up_to))
+            if opened > 0:
+                count = _open_groups(
+                    me, now, count, opened, most, extra, table, groups, state, terms, work
+                )
             if count < 0:
                 return NOT_A_NUMBER, -1
+            if stays:
+                stays = False
+                k = standing(count, work)
+                if k < count:
+                    dearest = work.least[k]
+                    work.rough[k] = False
+                    break
             if count > 0:
                 k = place_of_least(work.least, count)
                 dearest = work.least[k]
@@ -223,37 +255,12 @@ def cheapest_free(
             if min(dearest, most) < bound < np.inf:
                 work.least[this] = bound
                 continue
-        reach = np.float64(table.options[o].reach)
-        exits_near = reach >= now.exits_from
-        pieces = lay_path(me.row, o, me.c, me.s, table, state, work.path)
-        gone = path_gone_or_walled(
-            me.row, work.path, pieces, np.int64(SAMPLE_FRAMES), reach, now.frame, state, walls,
-            around, exits_near,
-        )  # fmt: skip
+        gone, who = option_gone_or_blocked(
+            me, now, o, met, walls, cores, table, state, around, work
+        )
+        met = np.int64(who)
         if gone < -1:
             continue
-        if cores:
-            # Whoever may be out before may not meet anybody of those ahead.
-            if exits_near:
-                doubtful = now.found
-                for a in range(now.found):
-                    work.unsure[a] = work.close.people[a].who
-            else:
-                who, doubtful = meets(
-                    me, now.frame, table.path[o], table.options[o].stride, now.found, met, table,
-                    state, work.close, work.unsure,
-                )  # fmt: skip
-                if who >= 0:
-                    met = np.int64(who)
-                    continue
-            for a in range(now.touching, len(work.close.people)):
-                work.unsure[doubtful] = work.close.people[a].who
-                doubtful += 1
-            if hits_anybody(
-                me.row, work.path, pieces, np.int64(SAMPLE_FRAMES), now.frame, gone, table, state,
-                work.unsure[:doubtful],
-            ):  # fmt: skip
-                continue
         cost = work.costs[this]
         if not now.eager:
             cost += pair_cost(me, this, work.ends, now.neighbours, work.others, state, terms)

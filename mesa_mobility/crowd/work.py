@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.barriers import BARRIER_FIELDS
 from mesa_mobility.crowd.clearing import Bodies, Circles
 from mesa_mobility.crowd.close import Close, make_close
 from mesa_mobility.crowd.costs import COST, SPEED
@@ -17,14 +18,17 @@ from mesa_mobility.lanes import AT_ONCE, LANES, WIDE
 class Setting(NamedTuple):
     """What the search needs to know of a decision.
 
-    Fields: ``frame`` now; people in ``close``: ``found`` from the start and those from
-    ``touching`` to the end; ``neighbours`` in ``others``, ``foremost`` in the array of this name,
-    of whom some are marked if bounds are ``rough``; ``exits_from`` metres to the nearest way out;
-    ``eager``, whether costs over pairs may be negative and are needed of all options; ``ranked``,
-    whether groups are opened by and by.
+    Fields: ``frame`` now; ``firm`` walls among ``barriers``; ``stay`` the group to look at first,
+    or -1; people in ``close``: ``found`` from the start and those from ``touching`` to the end;
+    ``neighbours`` in ``others``, ``foremost`` in the array of this name, of whom some are marked if
+    bounds are ``rough``; ``exits_from`` metres to the nearest way out; ``eager``, whether costs
+    over pairs may be negative and are needed of all options; ``ranked``, whether groups are opened
+    by and by.
     """
 
     frame: int
+    firm: int
+    stay: int
     found: int
     touching: int
     neighbours: int
@@ -41,12 +45,12 @@ class Work(NamedTuple):
     Fields: ``near`` rows of the neighbours, ``others`` the same as the terms see them, ``foremost``
     those of them who are likely to cost most, ``dropped`` by neighbour; ``close`` those who may
     come in the way, ``unsure`` rows of those whom only the exact test can tell; ``bodies`` who is
-    where at the levels; ``walls`` those in reach; groups: ``alive`` those not certainly blocked,
-    the ``bounds`` of all; ``circles`` for clearing; of those just opened, which are ``picked``,
-    bits of their options that are ``free``, and of 8 options each, ``lanes`` where they end and
-    ``lane_costs``; by option looked at, ``rows`` in the table, ``ends``, ``costs`` but for pairs,
-    ``least`` that all costs may be, and ``rough``, whether little more work tells more of that;
-    ``path`` one path.
+    where at the levels; ``walls`` those in reach, ``barriers`` the same seen from the pedestrian;
+    groups: ``alive`` those not certainly blocked, the ``bounds`` of all; ``circles`` for clearing;
+    of those just opened, which are ``picked``, bits of their options that are ``free``, and of 8
+    options each, ``lanes`` where they end and ``lane_costs``; by option looked at, ``rows`` in the
+    table, ``ends``, ``costs`` but for pairs, ``least`` that all costs may be, and ``rough``,
+    whether little more work tells more of that; ``path`` one path.
     """
 
     near: NDArray[np.int64]
@@ -59,6 +63,7 @@ class Work(NamedTuple):
     close: Close
     bodies: Bodies
     walls: NDArray[np.float64]
+    barriers: NDArray[np.float32]
     bounds: NDArray[np.float64]
     alive: NDArray[np.int64]
     circles: Circles
@@ -90,6 +95,7 @@ def make_work(people: int, walls: int, options: int, groups: int) -> Work:
             np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people), np.float32)
         ),
         walls=np.empty((walls, 5)),
+        barriers=np.empty((BARRIER_FIELDS, walls), np.float32),
         bounds=np.empty(groups),
         alive=np.empty(groups + 1, np.int64),
         circles=Circles(np.empty((3, groups), np.float32), np.empty(groups + WIDE, np.int32)),

@@ -80,6 +80,10 @@ def test_groups_span_their_options(maps, shares):
     group_cluster = np.repeat(np.arange(len(spanned)), spanned["last"] - spanned["first"])
     assert (group_cluster[of_group] == cluster).all()
     assert groups.ends[DURATION][of_group] == pytest.approx(option.frames / 30.0)
+    for k in range(len(spanned)):
+        turns = np.where((cluster == k) & (option.speed == 0.0), np.abs(table.heading), np.inf)
+        expected = of_group[turns.argmin()] if np.isfinite(turns.min()) else -1
+        assert spanned["stay"][k] == expected
     slack = 1e-5
     path = table.path.astype(float)
     away = np.hypot(option.x - groups.ends[X][of_group], option.y - groups.ends[Y][of_group])
@@ -96,8 +100,6 @@ def test_groups_span_their_options(maps, shares):
         x, y = path[:, 0, sample], path[:, 1, sample]
         dx, dy = x - groups.at[level, X][of_group], y - groups.at[level, Y][of_group]
         assert (np.hypot(dx, dy) <= groups.at[level, RADIUS][of_group] + slack).all()
-        around = spanned["around"][cluster, level]
-        assert (np.hypot(x - around[:, 0], y - around[:, 1]) <= around[:, 2] + slack).all()
         span = spanned["spans"][cluster, level]
         assert (np.minimum(x - span[:, 0], span[:, 2] - x) >= -slack).all()
         assert (np.minimum(y - span[:, 1], span[:, 3] - y) >= -slack).all()
