@@ -190,13 +190,10 @@ class PedestrianModel(CrowdMeasures, People):
             if len(rows) == 0 and not self.expecting:
                 break  # the last has left: this step ends with it
         if len(rows) < len(self._rows):
-            stay = self.crowd.active[self._rows]
-            leaving = [self._agents_by_row[row] for row in self._rows[~stay].tolist()]
-            self.remove_pedestrians([person for person in leaving if person is not None])
+            self._take_out_inactive()
         self._write_space()
-        waiting = self.crowd.agenda["waits_until"][self._rows] > self.frame
         self.stalled = self._stall_watch.stalled(
-            self.elapsed, self.crowd.route[self._rows], self.journeys.crossed, bool(waiting.any())
+            self.frame, self._rows, self.crowd, self.journeys.crossed
         )
         self.datacollector.collect(self)
         self.running = (self.inside > 0 or self.expecting) and not self.stalled
@@ -252,17 +249,18 @@ class PedestrianModel(CrowdMeasures, People):
             self._decide(deciding, rows)
         self.frame += 1
         self._beyond.move(self.frame, self.crowd)
-        left, speeds, fallen = move(rows, self.frame, self._repertoire.table, self.crowd.records)
+        stay, gone, speeds, fallen = move(
+            rows, self.frame, self._repertoire.table, self.crowd.records
+        )
         self._walked += speeds
         self._person_frames += len(rows)
         self._fallback_frames += fallen
         if self.recorder is not None:
             self.recorder.add(self.frame, rows, self.crowd)
-        if left:
+        rows = stay
+        if len(gone):
             self.last_left = self.elapsed
-            stay = self.crowd.active[rows]
-            self._beyond.add(rows[~stay])
-            rows = rows[stay]
+            self._beyond.add(gone)
         if self.frame % round(self.frame_rate) == 0:
             self.occupancy.append((self.elapsed, len(rows)))
         return rows

@@ -87,16 +87,30 @@ floats must not depend on how many threads there are."""
 
 def move(
     active: NDArray[np.int64], frame: int, table: OptionTable, state: CrowdState
-) -> tuple[int, float, int]:
+) -> tuple[NDArray[np.int64], NDArray[np.int64], float, int]:
     """Put everybody in rows ``active`` where its movement has it at ``frame``.
 
-    Returns how many have left, the sum of everybody's mean speed, m/s, and how many fall back.
+    Returns who stays and who has left, both in order, the sum of everybody's mean speed, m/s, and
+    how many fall back.
     """
-    blocks = [active[k : k + BLOCK] for k in range(0, max(len(active), 1), BLOCK)]
-    left, speeds, fallen = zip(
-        *together(lambda rows: _move(rows, frame, table, state), blocks), strict=True
-    )
-    return sum(left), sum(speeds), sum(fallen)
+    sorted_out = np.empty_like(active)
+
+    def part(first: int) -> tuple[int, int, float, int]:
+        some = slice(first, first + BLOCK)
+        return _move(active[some], frame, table, state, sorted_out[some])
+
+    starts = range(0, len(active), BLOCK) or range(1)
+    counts = together(part, starts)
+    speeds = sum(count[2] for count in counts)
+    fallen = sum(count[3] for count in counts)
+    if sum(count[0] for count in counts) == len(active):
+        return active, active[:0], speeds, fallen
+    stay, gone = [], []
+    for first, (staying, left, _, _) in zip(starts, counts, strict=True):
+        block = sorted_out[first : first + BLOCK]
+        stay.append(block[:staying])
+        gone.append(block[::-1][:left])
+    return np.concatenate(stay), np.concatenate(gone), speeds, fallen
 
 
 @called()
@@ -111,10 +125,20 @@ def due(active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray
 
 @called()
 def _move(
-    active: NDArray[np.int64], frame: int, table: OptionTable, state: CrowdState
-) -> tuple[int, float, int]:
-    left, speeds, fallen = 0, 0.0, 0
+    active: NDArray[np.int64],
+    frame: int,
+    table: OptionTable,
+    state: CrowdState,
+    sorted_out: NDArray[np.int64],
+) -> tuple[int, int, float, int]:
+    """Write to ``sorted_out`` those who stay, and backwards from its end those who have left.
+
+    Returns how many they are, the sum of mean speeds and how many fall back.
+    """
+    staying, left, speeds, fallen = 0, 0, 0.0, 0
     for i in active:
+        if not state.active[i]:  # taken out of the model in this very frame
+            continue
         last = state.knots[i] - 1
         u = (frame - state.start[i]) / state.spacing[i]
         k = int(u)
@@ -136,4 +160,8 @@ def _move(
         if state.gone[i] == frame:
             state.active[i] = False
             left += 1
-    return left, speeds, fallen
+            sorted_out[-left] = i
+        else:
+            sorted_out[staying] = i
+            staying += 1
+    return staying, left, speeds, fallen

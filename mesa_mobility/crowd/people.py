@@ -28,7 +28,7 @@ from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.replan import first_free, too_close
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.source import PLACES_TRIED, Inflow, Source
-from mesa_mobility.crowd.space import CrowdSpace
+from mesa_mobility.crowd.space import CrowdSpace, write_places
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.crowd.waits import frames_of
@@ -207,12 +207,22 @@ class People(mesa.Model, ABC):
 
     def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
         """Take people out of the model."""
-        leaving = list(people)
-        for person in leaving:
+        for person in people:
             self.crowd.active[person.row] = False
-            self.deregister_agent(person)
-            self._agents_by_row[person.row] = None
+        self._take_out_inactive()
+        self._write_space()
+
+    def _take_out_inactive(self) -> None:
+        """Take those out of Mesa's registers who are not in the model any more.
+
+        Their places in its space are taken by those behind them, whose positions must be written.
+        """
         stay = self.crowd.active[self._rows]
+        for row in self._rows[~stay].tolist():
+            person = self._agents_by_row[row]
+            if person is not None:
+                self.deregister_agent(person)
+                self._agents_by_row[row] = None
         self.space.keep(stay)
         self._rows = self._rows[stay]
 
@@ -283,6 +293,4 @@ class People(mesa.Model, ABC):
 
     def _write_space(self) -> None:
         if len(self._rows):
-            positions = self.space.agent_positions
-            positions[:, 0] = self.crowd.x[self._rows]
-            positions[:, 1] = self.crowd.y[self._rows]
+            write_places(self._rows, self.crowd.records, self.space.agent_positions)

@@ -9,6 +9,9 @@ import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.state import CrowdState
+from mesa_mobility.jit import called
+
 _FEW = 50
 
 
@@ -26,8 +29,10 @@ class CrowdSpace(ContinuousSpace):
         super().__init__(*args, **kwargs)
 
     def keep(self, stay: NDArray[np.bool_]) -> None:
-        """Remove the agents that do not stay, ``stay`` in the order of ``active_agents``."""
-        kept = self._agent_positions[: len(stay)][stay]
+        """Remove the agents that do not stay, ``stay`` in the order of ``active_agents``.
+
+        Positions are not moved up: they must be written anew.
+        """
         agents: list[ContinuousSpaceAgent] = self.active_agents  # type: ignore[has-type]
         leaving = np.flatnonzero(~stay).tolist()
         if len(leaving) < _FEW:
@@ -38,7 +43,6 @@ class CrowdSpace(ContinuousSpace):
             agents = list(compress(agents, stay.tolist()))
         self.active_agents = agents
         self._n_agents = len(self.active_agents)
-        self._agent_positions[: self._n_agents] = kept
         self.agent_positions = self._agent_positions[: self._n_agents]
         self.forget_tables()
 
@@ -65,3 +69,12 @@ class CrowdSpace(ContinuousSpace):
     @_index_to_agent.setter
     def _index_to_agent(self, table: dict[int, ContinuousSpaceAgent]) -> None:
         self._agents_by_index = table
+
+
+@called()
+def write_places(
+    rows: NDArray[np.int64], state: CrowdState, positions: NDArray[np.float64]
+) -> None:
+    """Write to ``positions`` (n, 2) where those in ``rows`` are, metres."""
+    for k in range(len(rows)):
+        positions[k, 0], positions[k, 1] = state[rows[k]].x, state[rows[k]].y

@@ -55,14 +55,19 @@ class CompiledTerms:
     """``compile_terms``, done again only when a term, a weight or a parameter has changed."""
 
     def __init__(self) -> None:
-        self._key: list[tuple[CostTerm, float, tuple[float, ...]]] | None = None
+        self._terms: list[CostTerm] = []
+        self._compiled: list[CompiledTerm] = []
+        self._key: object = None
 
     def __call__(self, terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
         """The table of the compiled terms, and the others."""
-        key = [
-            (term, term.weight, term.parameters() if isinstance(term, CompiledTerm) else ())
-            for term in terms
-        ]
+        if self._terms != terms:
+            self._terms, self._key = list(terms), None
+            self._compiled = [term for term in terms if isinstance(term, CompiledTerm)]
+        key = (
+            [term.weight for term in self._terms],
+            [term.parameters() for term in self._compiled],
+        )
         if key != self._key:
             self._key = key
             self._now = compile_terms(terms)
