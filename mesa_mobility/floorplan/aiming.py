@@ -131,11 +131,14 @@ def _first_in_view(
         # Of nodes in one line the farther goes first, whatever rounding says.
         keys[k] = np.sqrt(dx * dx + dy * dy) + to_go[i] * (1.0 + 1e-6)
     for _ in range(min(tries, count)):
-        k = int(np.argmin(keys[:count]))
-        if not np.isfinite(keys[k]):
+        least, at = np.inf, 0
+        for k in range(count):
+            if keys[k] < least:
+                least, at = keys[k], k
+        if least == np.inf:
             break
-        keys[k] = np.inf
-        i = maybe[k]
+        keys[at] = np.inf
+        i = maybe[at]
         if in_view(sight, ways, x, y, i, ways.xy[i, 0], ways.xy[i, 1], clearance, own):
             return i
         if ways.kind[i] != CORNER and nearest_serves(

@@ -28,6 +28,12 @@ NO_WALL = np.int64(-1)
 # Somebody close to a wall that bulges cannot but come a little nearer to it.
 _OWN_SHARE = 0.5
 
+# Side of a cell of the grid at least (metres).
+_CELL = 1.0
+
+# More than rounding makes of the distance between a wall and a line (metres).
+_ROUNDING = 1e-6
+
 # So many walls are looked at one after the other, without the grid.
 _FEW_WALLS = 64
 
@@ -50,7 +56,7 @@ def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
     rows = np.concatenate([solid, as_segments(curtains)])
     extent = float(np.ptp(rows.reshape(-1, 2), axis=0).max()) if len(rows) else 1.0
     # The extra millimetre keeps walls that rounding would put just out of reach of a cell.
-    return Sight(rows, len(solid), cell_table(rows, max(0.5, extent / 400), reach + 1e-3))
+    return Sight(rows, len(solid), cell_table(rows, max(_CELL, extent / 400), reach + 1e-3))
 
 
 @lean()
@@ -62,22 +68,32 @@ def rows_crossed(table: CellTable, py: float, qy: float) -> tuple[int, int]:
 
 
 @lean()
+def per_metre_up(py: float, qy: float) -> float:
+    """Share of a segment from height py to qy that lies within a metre of height; 0 if level."""
+    return 1.0 / (qy - py) if py != qy else 0.0
+
+
+@lean()
 def cells_in_row(
-    table: CellTable, row: int, px: float, py: float, qx: float, qy: float
+    table: CellTable, row: int, px: float, py: float, qx: float, share: float
 ) -> tuple[int, int]:
-    """First and last column of the cells of one row that the segment pq meets."""
+    """First and last column of the cells of one row that a segment pq meets.
+
+    `share` is `per_metre_up` of its ends. What rounding gets wrong is within the extra millimetre.
+    """
     cell = table.cell_size
     t0 = 0.0
     t1 = 1.0
-    if py != qy:
-        ta = (table.y0 + row * cell - py) / (qy - py)
-        tb = (table.y0 + (row + 1) * cell - py) / (qy - py)
+    if share != 0.0:
+        ta = (table.y0 + row * cell - py) * share
+        tb = (table.y0 + (row + 1) * cell - py) * share
         t0 = min(1.0, max(0.0, min(ta, tb)))
         t1 = max(0.0, min(1.0, max(ta, tb)))
     xa = px + t0 * (qx - px)
     xb = px + t1 * (qx - px)
-    first = int(np.floor((min(xa, xb) - table.x0) / cell))
-    last = int(np.floor((max(xa, xb) - table.x0) / cell))
+    per_cell = 1.0 / cell
+    first = int(np.floor((min(xa, xb) - table.x0) * per_cell))
+    last = int(np.floor((max(xa, xb) - table.x0) * per_cell))
     return max(0, first), min(table.nx - 1, last)
 
 
@@ -106,10 +122,11 @@ def clear_line(
                 return False
         return True
     first_row, last_row = rows_crossed(table, py, qy)
+    share = per_metre_up(py, qy)
     for step in range(last_row - first_row + 1):
         # From p outwards: most views are blocked by something near.
         row = first_row + step if py <= qy else last_row - step
-        first, last = cells_in_row(table, row, px, py, qx, qy)
+        first, last = cells_in_row(table, row, px, py, qx, share)
         for k in range(last - first + 1):
             column = first + k if px <= qx else last - k
             at = row * table.nx + column
@@ -140,6 +157,15 @@ def _bars(
     off_y = max(min(ay, by) - max(py, qy), min(py, qy) - max(ay, by), 0.0)
     if off_x * off_x + off_y * off_y >= limit * limit:
         return False
+    # So is that of the wall from the line through p and q, where all of it lies to one side.
+    dx = qx - px
+    dy = qy - py
+    a_side = dx * (ay - py) - dy * (ax - px)
+    b_side = dx * (by - py) - dy * (bx - px)
+    if a_side * b_side > 0.0:
+        far = limit + _ROUNDING
+        if min(a_side * a_side, b_side * b_side) >= far * far * (dx * dx + dy * dy):
+            return False
     distance2 = segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by)
     if distance2 >= limit * limit:
         return False
@@ -186,8 +212,9 @@ def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
     """Whether no wall lies across the segment pq, except one that p stands on."""
     walls, solid, table = sight
     first_row, last_row = rows_crossed(table, py, qy)
+    share = per_metre_up(py, qy)
     for row in range(first_row, last_row + 1):
-        first, last = cells_in_row(table, row, px, py, qx, qy)
+        first, last = cells_in_row(table, row, px, py, qx, share)
         for column in range(first, last + 1):
             at = row * table.nx + column
             for j in range(table.offsets[at], table.offsets[at + 1]):
@@ -210,8 +237,9 @@ def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> flo
     dy = qy - py
     nearest = 1.0
     first_row, last_row = rows_crossed(table, py, qy)
+    share = per_metre_up(py, qy)
     for row in range(first_row, last_row + 1):
-        first, last = cells_in_row(table, row, px, py, qx, qy)
+        first, last = cells_in_row(table, row, px, py, qx, share)
         for column in range(first, last + 1):
             at = row * table.nx + column
             for j in range(table.offsets[at], table.offsets[at + 1]):

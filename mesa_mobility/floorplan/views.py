@@ -8,10 +8,17 @@ four corners of the square: then it crosses the line to every point in between.
 from typing import NamedTuple
 
 import numpy as np
+from numba.cpython.unsafe.numbers import trailing_zeros
 from numpy.typing import NDArray
 
 from mesa_mobility.floorplan.kernels import segments_cross
-from mesa_mobility.floorplan.sight import Sight, cells_in_row, rows_crossed
+from mesa_mobility.floorplan.sight import (
+    NO_WALL,
+    Sight,
+    cells_in_row,
+    per_metre_up,
+    rows_crossed,
+)
 from mesa_mobility.jit import lean, woven
 
 _CELL = 0.5
@@ -86,46 +93,65 @@ def nodes_maybe_in_view(
         row, column = divmod(cell, views.nx)
         left = views.x0 + column * views.cell_size
         low = views.y0 + row * views.cell_size
+        wall = NO_WALL
         for i in range(nodes):
-            if not _hidden(sight, left, low, views.cell_size, places[i, 0], places[i, 1]):
+            wall = _hiding(sight, left, low, views.cell_size, places[i, 0], places[i, 1], wall)
+            if wall == NO_WALL:
                 views.bits[cell, i // 64] |= np.uint64(1) << np.uint64(i % 64)
         views.known[cell] = True
     count = 0
     for word in range(views.bits.shape[1]):
         bits = views.bits[cell, word]
-        i = 64 * word
         while bits != np.uint64(0):
-            if bits & np.uint64(1):
-                found[count] = i
-                count += 1
-            bits >>= np.uint64(1)
-            i += 1
+            found[count] = 64 * word + np.int64(trailing_zeros(bits))
+            count += 1
+            bits &= bits - np.uint64(1)
     return count
 
 
 @lean()
-def _hidden(sight: Sight, left: float, low: float, side: float, qx: float, qy: float) -> bool:
-    """Whether one wall hides the whole square from q."""
+def _hiding(
+    sight: Sight, left: float, low: float, side: float, qx: float, qy: float, first: np.int64
+) -> np.int64:
+    """A wall that hides the whole square from q, `NO_WALL` if there is none.
+
+    `first` is one to look at before the others: what hides one place mostly hides the next as well.
+    """
     walls, solid, table = sight
     px = left + side / 2
     py = low + side / 2
+    if first != NO_WALL and _hides(walls, first, left, low, side, qx, qy):
+        return first
     first_row, last_row = rows_crossed(table, py, qy)
+    share = per_metre_up(py, qy)
     for row in range(first_row, last_row + 1):
-        first, last = cells_in_row(table, row, px, py, qx, qy)
-        for column in range(first, last + 1):
+        first_column, last_column = cells_in_row(table, row, px, py, qx, share)
+        for column in range(first_column, last_column + 1):
             at = row * table.nx + column
             for j in range(table.offsets[at], table.offsets[at + 1]):
-                wall = table.indices[j]
+                wall = np.int64(table.indices[j])
                 # An exit lies in its own curtain, which must not hide it.
-                if wall >= solid:
-                    continue
-                ax, ay, bx, by = walls[wall]
-                if (
-                    segments_cross(px, py, qx, qy, ax, ay, bx, by)
-                    and segments_cross(left, low, qx, qy, ax, ay, bx, by)
-                    and segments_cross(left + side, low, qx, qy, ax, ay, bx, by)
-                    and segments_cross(left, low + side, qx, qy, ax, ay, bx, by)
-                    and segments_cross(left + side, low + side, qx, qy, ax, ay, bx, by)
-                ):
-                    return True
-    return False
+                if wall < solid and _hides(walls, wall, left, low, side, qx, qy):
+                    return wall
+    return NO_WALL
+
+
+@lean()
+def _hides(
+    walls: NDArray[np.float64],
+    wall: int,
+    left: float,
+    low: float,
+    side: float,
+    qx: float,
+    qy: float,
+) -> bool:
+    """Whether a wall crosses the lines to q from the middle and all corners of a square."""
+    ax, ay, bx, by = walls[wall, 0], walls[wall, 1], walls[wall, 2], walls[wall, 3]
+    return (
+        segments_cross(left + side / 2, low + side / 2, qx, qy, ax, ay, bx, by)
+        and segments_cross(left, low, qx, qy, ax, ay, bx, by)
+        and segments_cross(left + side, low, qx, qy, ax, ay, bx, by)
+        and segments_cross(left, low + side, qx, qy, ax, ay, bx, by)
+        and segments_cross(left + side, low + side, qx, qy, ax, ay, bx, by)
+    )
