@@ -26,6 +26,10 @@ class Inside:
         """(n,) where in the arrays of this class people with these rows are."""
         return np.searchsorted(self.pedestrians, pedestrians)
 
+    def types_of(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,) index of the pedestrian type of people with these rows."""
+        return self._crowd.kind[pedestrians].astype(np.int64)
+
     @property
     def positions(self) -> NDArray[np.float64]:
         """(m, 2) where they are, metres."""

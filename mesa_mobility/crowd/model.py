@@ -30,7 +30,7 @@ from mesa_mobility.crowd.repertoire import repertoire
 from mesa_mobility.crowd.replan import stop_where_blocked
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.source import Inflow
-from mesa_mobility.crowd.space import CrowdSpace
+from mesa_mobility.crowd.space import CrowdSpace, write_places
 from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.summary import CrowdMeasures
@@ -288,11 +288,12 @@ class PedestrianModel(CrowdMeasures, People):
         waiting: NDArray[np.bool_] | None = None,
     ) -> Targets:
         state = self.crowd
+        positions = np.empty((len(rows), 2))
+        write_places(rows, state.records, positions)
         deciding = Deciding(
             pedestrians=rows,
-            positions=np.column_stack([state.x[rows], state.y[rows]]),
+            positions=positions,
             destinations=state.destination[rows],
-            types=state.kind[rows].astype(np.int64),
             elapsed=self.elapsed,
             inside=Inside(inside, state),
             rng=self.rng,

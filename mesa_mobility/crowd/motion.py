@@ -12,7 +12,7 @@ from mesa_mobility.crowd.options import FRAME_SECONDS, SAMPLE_FRAMES, SAMPLES, O
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
 from mesa_mobility.crowd.under_way import facing_at_knot, knot
 from mesa_mobility.jit import called, lean
-from mesa_mobility.threads import together
+from mesa_mobility.threads import threads_for, together
 
 
 @lean()
@@ -95,21 +95,24 @@ def move(
     """
     sorted_out = np.empty_like(active)
 
-    def part(first: int) -> tuple[int, int, float, int]:
-        some = slice(first, first + BLOCK)
-        return _move(active[some], frame, table, state, sorted_out[some])
+    def part(starts: range) -> list[tuple[int, int, float, int]]:
+        blocks = [slice(first, first + BLOCK) for first in starts]
+        return [_move(active[own], frame, table, state, sorted_out[own]) for own in blocks]
 
-    starts = range(0, len(active), BLOCK) or range(1)
-    counts = together(part, starts)
-    speeds = sum(count[2] for count in counts)
-    fallen = sum(count[3] for count in counts)
-    if sum(count[0] for count in counts) == len(active):
-        return active, active[:0], speeds, fallen
+    # One part for each thread: to hand a block to a thread takes longer than to move half of it.
+    starts = range(0, max(len(active), 1), BLOCK)
+    share = -(-len(starts) // threads_for(len(active)))
+    shares = [starts[k : k + share] for k in range(0, len(starts), share)]
+    counts = [count for counts in together(part, shares) for count in counts]
+    if len(counts) == 1:
+        staying, left, speeds, fallen = counts[0]
+        return sorted_out[:staying], sorted_out[::-1][:left], speeds, fallen
     stay, gone = [], []
     for first, (staying, left, _, _) in zip(starts, counts, strict=True):
         block = sorted_out[first : first + BLOCK]
         stay.append(block[:staying])
         gone.append(block[::-1][:left])
+    speeds, fallen = sum(count[2] for count in counts), sum(count[3] for count in counts)
     return np.concatenate(stay), np.concatenate(gone), speeds, fallen
 
 

@@ -23,7 +23,6 @@ class Deciding:
         pedestrians: (n,) their rows in the crowd (``Pedestrian.row``).
         positions: (n, 2) where they are, metres.
         destinations: (n,) number of the set of exits that each may leave by.
-        types: (n,) index of the pedestrian type.
         elapsed: simulated seconds.
         inside: everybody inside, themselves included.
         rng: the model's generator.
@@ -35,11 +34,15 @@ class Deciding:
     pedestrians: NDArray[np.int64]
     positions: NDArray[np.float64]
     destinations: NDArray[np.int32]
-    types: NDArray[np.int64]
     elapsed: float
     inside: Inside
     rng: np.random.Generator
     site: Site
+
+    @property
+    def types(self) -> NDArray[np.int64]:
+        """(n,) index of the pedestrian type."""
+        return self.inside.types_of(self.pedestrians)
 
 
 class TargetChoice(ABC):

@@ -11,9 +11,10 @@ from mesa_mobility.crowd.abreast import keep_abreast
 from mesa_mobility.crowd.even_pace import keep_pace
 from mesa_mobility.crowd.pace import Pace, ask_paces
 from mesa_mobility.crowd.patience import look_around
-from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.crowd.target_choice import Deciding, TargetChoice, ask
 from mesa_mobility.floorplan import FloorPlan, Targets
+from mesa_mobility.jit import called
 
 
 def set_wishes(
@@ -48,7 +49,6 @@ def set_wishes(
     targets = ask(choice, deciding)
     crowd.route[rows] = targets.distances
     points = keep_abreast(deciding, targets, crowd) if abreast else targets.points
-    crowd.target_x[rows], crowd.target_y[rows] = points.T
     speeds: NDArray[np.float64] = crowd.agenda["speed"][rows]
     if plan.zones:
         speeds = speeds * plan.speed_factors(deciding.positions)
@@ -56,9 +56,24 @@ def set_wishes(
     if waiting is not None and waiting.any():
         # Like those who have no way to go: they come to a stand, and stay.
         speeds = np.where(waiting, 0.0, speeds)
-        stay = rows[waiting]
-        crowd.target_x[stay], crowd.target_y[stay] = crowd.x[stay], crowd.y[stay]
-    crowd.preferred[rows] = keep_pace(rows, crowd, speeds) if even_pace else speeds
+        points = np.where(waiting[:, None], deciding.positions, points)
+    if even_pace:
+        speeds = keep_pace(rows, crowd, speeds)
+    _settle(rows, np.ascontiguousarray(points, dtype=np.float64), speeds, crowd.records)
     if impatience:
         look_around(rows, crowd, deciding.elapsed, deciding.rng)
     return targets
+
+
+@called()
+def _settle(
+    rows: NDArray[np.int64],
+    points: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    state: CrowdState,
+) -> None:
+    """Note where those in ``rows`` go, (n, 2) metres, and how fast they would like to, (n,) m/s."""
+    for k in range(len(rows)):
+        i = rows[k]
+        state[i].target_x, state[i].target_y = points[k, 0], points[k, 1]
+        state[i].preferred = speeds[k]

@@ -168,12 +168,14 @@ class Router:
         found = Targets(points, gates, distances, corners)
         if n == 0:
             return found
-        lengths, follow = self._table(int(numbers.min()), int(numbers.max()))
+        # Seen without a sign, numbers below 0 are above all others.
+        if numbers.view(np.uint64).max() >= len(self._lengths):
+            self._tabulate(numbers)
 
         def aims(first: int, last: int, learn: bool) -> None:
             aim(
                 self._sight, self._ways, self._views, xy[first:last], numbers[first:last],
-                lengths, follow, learn, points[first:last], gates[first:last],
+                self._lengths, self._nexts, learn, points[first:last], gates[first:last],
                 distances[first:last], corners[first:last],
             )  # fmt: skip
 
@@ -199,15 +201,13 @@ class Router:
             pass_abreast(self._sight, self._ways, positions, targets.corners, areas, points)
         return points
 
-    def _table(self, lowest: int, highest: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Route lengths and next nodes of all destinations, (destinations, nodes) each."""
-        if lowest < 0:
-            self.distances(lowest)  # says which there are
-        if highest >= len(self._lengths):
-            every = range(max(highest + 1, len(self._destinations)))
-            self._lengths = np.stack([self.distances(i) for i in every])
-            self._nexts = np.stack([self._follow[i] for i in every])
-        return self._lengths, self._nexts
+    def _tabulate(self, numbers: NDArray[np.int64]) -> None:
+        """Make tables of all destinations: route lengths and next nodes, (destinations, nodes)."""
+        for number in (numbers.min(), numbers.max()):
+            self.distances(int(number))  # says which there are
+        every = range(len(self._destinations))
+        self._lengths = np.stack([self.distances(i) for i in every])
+        self._nexts = np.stack([self._follow[i] for i in every])
 
     def way_from(self, gate_name: str, destination: int) -> float:
         """Metres from the places of a gate to a destination at least; inf where there is no way."""
