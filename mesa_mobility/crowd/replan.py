@@ -138,7 +138,7 @@ def too_close(
     before = points if beside < 0 else points[:beside]
     # Mostly there is nobody yet: then nothing of this needs to be compiled.
     if len(rows) > 0:
-        where, who = _first_taken(before, core, frame, rows, table, state, search_radius)
+        where, who = _first(True, before, core, frame, rows, table, state, search_radius)
         if where >= 0:
             return where, who
     return beside, -1
@@ -153,28 +153,6 @@ def _first_beside(points: NDArray[np.float64], distance: float) -> int:
     return int(pairs[near].max(axis=1).min()) if near.any() else -1
 
 
-@njit(cache=True)
-def _first_taken(
-    points: NDArray[np.float64],
-    core: float,
-    frame: int,
-    rows: NDArray[np.int64],
-    table: OptionTable,
-    state: CrowdState,
-    search_radius: float,
-) -> tuple[int, int]:
-    """First of some places that somebody is or will come too near to, and who; or -1, -1."""
-    people = build_grid(rows, state.x, state.y)
-    found = np.empty(len(rows), np.int64)
-    for k in range(len(points)):
-        x, y = points[k]
-        j = _comes_near(x, y, core, frame, people, table, state, search_radius, found)
-        if j >= 0:
-            return k, j
-    return -1, -1
-
-
-@njit(cache=True)
 def first_free(
     points: NDArray[np.float64],
     core: float,
@@ -185,13 +163,32 @@ def first_free(
     search_radius: float,
 ) -> int:
     """First of some places that nobody is or will come too near to, or -1; as ``too_close``."""
+    return _first(False, points, core, frame, rows, table, state, search_radius)[0]
+
+
+@njit(cache=True)
+def _first(
+    taken: bool,
+    points: NDArray[np.float64],
+    core: float,
+    frame: int,
+    rows: NDArray[np.int64],
+    table: OptionTable,
+    state: CrowdState,
+    search_radius: float,
+) -> tuple[int, int]:
+    """First of some places that is taken, or that is not, and who is or will come too near to it.
+
+    -1 for nobody, and where there is no such place.
+    """
     people = build_grid(rows, state.x, state.y)
     found = np.empty(len(rows), np.int64)
     for k in range(len(points)):
-        if _comes_near(points[k, 0], points[k, 1], core, frame, people, table, state, search_radius,
-                       found) < 0:  # fmt: skip
-            return k
-    return -1
+        x, y = points[k]
+        j = _comes_near(x, y, core, frame, people, table, state, search_radius, found)
+        if (j >= 0) == taken:
+            return k, j
+    return -1, -1
 
 
 @njit(cache=True)
