@@ -26,7 +26,9 @@ from mesa_mobility.crowd.patience import turn
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.rules import Rules
+from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.crowd.summary import speeds_of
 from mesa_mobility.crowd.terms_table import compile_terms
 from mesa_mobility.threads import THREADS
 
@@ -70,13 +72,16 @@ def _start() -> subprocess.Popen[bytes]:
 
 
 def compile_the_rest() -> None:
-    """Compile what a run needs beside decisions and a model: what moves people, and cost terms."""
+    """Compile what a run needs beside decisions and a model: what moves people and looks at them
+    once a step, and cost terms."""
     nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
     due(nobody, 0, crowd.records, nobody)
     move(nobody, 0, _table(), crowd.records)
     walk_on(nobody, 0, np.empty((0, 4)), np.empty((3, 2)), crowd.records)
     move_on(nobody, 0, crowd.records)
     turn(nobody, nothing, nothing, crowd.records)
+    speeds_of(nobody, crowd)
+    StallWatch().stalled(0, nobody, crowd, 0)
     compile_terms(preset_named("default").make_terms())
 
 

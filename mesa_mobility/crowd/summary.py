@@ -49,9 +49,7 @@ class CrowdMeasures:
         """Mean speed of the movements under way, m/s; 0 if nobody is inside."""
         if self.inside == 0:
             return 0.0
-        speeds = np.empty(self.inside)
-        _write_speeds(self._rows, self.crowd.records, speeds)
-        return float(np.add.reduce(speeds) / self.inside)
+        return float(np.add.reduce(speeds_of(self._rows, self.crowd)) / self.inside)
 
     @property
     def mean_speed_so_far(self) -> float:
@@ -94,6 +92,13 @@ class CrowdMeasures:
             "mean_speed_mps": self.mean_speed_so_far,
             "occupancy": [list(row) for row in self.occupancy],
         }
+
+
+def speeds_of(rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
+    """(n,) mean speed of the movement under way of those in ``rows``, m/s."""
+    speeds = np.empty(len(rows))
+    _write_speeds(rows, crowd.records, speeds)
+    return speeds
 
 
 @called()

@@ -3,7 +3,16 @@
 import pytest
 from mesa_mobility.models import Doorway
 
-from mesa_mobility.crowd import ahead, beyond, choice, motion, neighbours, patience
+from mesa_mobility.crowd import (
+    ahead,
+    beyond,
+    choice,
+    motion,
+    neighbours,
+    patience,
+    stall,
+    summary,
+)
 
 FUNCTIONS = [
     choice.decide,
@@ -14,6 +23,8 @@ FUNCTIONS = [
     beyond.walk_on,
     beyond.move_on,
     patience.turn,
+    stall._ways_left,
+    summary._write_speeds,
 ]
 
 
