@@ -178,3 +178,31 @@ def lowest_bit(typingctx, bits):
         return builder.cttz(args[0], ir.Constant(BIT, 1))
 
     return types.int64(types.int64), codegen
+
+
+@intrinsic
+def copy_lanes(typingctx, given, row, at, to, first, place, rows):
+    """Copy 8 elements from place ``at`` on in each of so many rows.
+
+    ``given`` and ``to`` are C-contiguous arrays of the same type; rows are copied from ``row`` on
+    to those from ``first`` on, there from ``place`` on. ``rows`` is a literal number.
+    """
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        places = []
+        for array, line, at in ((0, 1, 2), (3, 4, 5)):
+            kind = sig.args[array]
+            held = cgutils.create_struct_proxy(kind)(context, builder, args[array])
+            width = cgutils.unpack_tuple(builder, held.shape, kind.ndim)[-1]
+            line, at = (whole(context, builder, sig.args[k], args[k]) for k in (line, at))
+            places.append((held.data, builder.add(builder.mul(line, width), at), width))
+        (source, at, width), (target, place, there) = places
+        for k in range(rows.literal_value):
+            by = ir.Constant(LONG, k)
+            values = load(builder, source, builder.add(at, builder.mul(width, by)), LANES)
+            store(builder, values, target, builder.add(place, builder.mul(there, by)))
+        return context.get_dummy_value()
+
+    if not isinstance(rows, types.IntegerLiteral):
+        return None
+    return types.void(given, row, at, to, first, place, rows), codegen

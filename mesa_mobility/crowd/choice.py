@@ -11,21 +11,11 @@ from mesa_mobility.crowd.barriers import lay_barriers
 from mesa_mobility.crowd.clearing import free_groups
 from mesa_mobility.crowd.close import Stance, find_close
 from mesa_mobility.crowd.collision import MARGIN, Surroundings, exit_distance, near_walls
-from mesa_mobility.crowd.costs import (
-    LEAD,
-    OTHER_EX,
-    OTHER_EY,
-    OTHER_VX,
-    OTHER_VY,
-    OTHER_X,
-    OTHER_Y,
-    Terms,
-    group_bounds,
-)
+from mesa_mobility.crowd.costs import LEAD, Terms, group_bounds
 from mesa_mobility.crowd.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import commit, lay_path
-from mesa_mobility.crowd.neighbours import Grid, people_within
+from mesa_mobility.crowd.neighbours import COVERED, Grid, cover_in, people_within, place_in
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.pairs import fill_lane, least, mark_counting, pick_foremost
 from mesa_mobility.crowd.queue import Queue, await_neighbours
@@ -34,7 +24,8 @@ from mesa_mobility.crowd.search import CROWD, FEW, NONE, NOT_A_NUMBER, cheapest_
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import called, woven
-from mesa_mobility.machine import fetch, take_number, tell
+from mesa_mobility.lanes import LANES, copy_lanes
+from mesa_mobility.machine import take_number, tell
 
 
 @called()
@@ -74,8 +65,9 @@ def decide(
             pedestrian in turn, or empty.
         extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
         rules: what holds for everybody.
-        moving: (5, people) velocities, directions and ways at the beginning of the frame, in the
-            order of the grid: terms see them as they were, also of those who have just decided.
+        moving: (10, people) places, velocities, directions and ways at the beginning of the frame,
+            in the order of the grid: terms see them as they were, also of those who have just
+            decided; and what people cover, which is kept up to date.
         work: space to work in, of this thread alone.
 
     Returns:
@@ -128,15 +120,26 @@ def _decide_one(
     x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
     me = Stance(i, x, y, math.cos(heading), math.sin(heading), core)
     count = people_within(grid, x, y, i, rules.search_radius, work.near)
-    near, others = work.near[:count], work.others
-    for a in range(count):
+    near, others, sweeps = work.near[:count], work.others, work.sweeps
+    a = 0
+    while a < count:
         at = near[a]
-        others[OTHER_X, a], others[OTHER_Y, a] = grid.x[at], grid.y[at]
-        others[OTHER_VX, a], others[OTHER_VY, a] = moving[0, at], moving[1, at]
-        others[OTHER_EX, a], others[OTHER_EY, a] = moving[2, at], moving[3, at]
-        others[LEAD, a] = state.route[i] - moving[4, at]
+        # Those of a row of the grid lie side by side.
+        if a + LANES <= count and near[a + LANES - 1] == at + LANES - 1:
+            copy_lanes(moving, 0, at, others, 0, a, COVERED)
+            copy_lanes(moving, COVERED, at, sweeps, 0, a, 3)
+            copy_lanes(grid.people, 0, at, near, 0, a, 1)
+            a += LANES
+            continue
+        for row in range(COVERED):
+            others[row, a] = moving[row, at]
+        for row in range(3):
+            sweeps[row, a] = moving[COVERED + row, at]
         near[a] = grid.people[at]
-        fetch(state, near[a], 128)
+        a += 1
+    route, lead = state.route[i], others[LEAD]
+    for a in range(count):
+        lead[a] = route - lead[a]
     fill_lane(count, others)
     farthest = table.farthest[cluster]
     walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
@@ -147,8 +150,9 @@ def _decide_one(
     spanned = groups.clusters[cluster]
     whole = spanned.whole
     found, touching = find_close(
-        me, near if rules.cores else near[:0], min(whole[0], -aside), min(whole[1], -aside),
-        max(whole[2], aside), max(whole[3], aside), state, work.close,
+        me, near if rules.cores else near[:0], sweeps, min(whole[0], -aside),
+        min(whole[1], -aside), max(whole[2], aside), max(whole[3], aside), state, work.unsure,
+        work.dropped, work.close,
     )  # fmt: skip
     n = free_groups(
         me, frame, work.close, found, work.barriers, firm, exits_from, table, groups, state,
@@ -214,4 +218,5 @@ def _decide_one(
             i, frame, table, state, walls, around, near[:found], exits_from <= farthest,
             rules.cores, standing, work.path,
         )  # fmt: skip
+    cover_in(moving, place_in(grid, x, y, i), i, state)
     return True

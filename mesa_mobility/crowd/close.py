@@ -86,40 +86,56 @@ def off_box2(x: float, y: float, x0: float, y0: float, x1: float, y1: float) -> 
 def find_close(
     me: Stance,
     near: NDArray[np.int64],
+    sweeps: NDArray[np.float64],
     x0: float,
     y0: float,
     x1: float,
     y1: float,
     state: CrowdState,
+    picked: NDArray[np.int64],
+    dropped: NDArray[np.int32],
     to: Close,
 ) -> tuple[int, int]:
     """Write those of ``near`` who may come into a box, given in the pedestrian's frame.
+
+    ``sweeps`` (3, n) x, y and radius of circles around all that they cover; ``picked`` and
+    ``dropped`` are space to work in.
 
     Returns:
         Their number, and where in ``to.people`` those stand, up to its end, who are too close
         already: for them the exact test has a rule of its own.
     """
+    sweep_x, sweep_y, radius = sweeps[0], sweeps[1], sweeps[2]
+    px, py, c, s, own = me.x, me.y, me.c, me.s, me.core + MARGIN + SLACK
+    for a in range(len(near)):
+        dx, dy = sweep_x[a] - px, sweep_y[a] - py
+        x, y = c * dx + s * dy, c * dy - s * dx
+        sweep = radius[a] + own
+        dropped[a] = np.int32(off_box2(x, y, x0, y0, x1, y1) >= sweep * sweep)
+    n = 0
+    for a in range(len(near)):
+        picked[n] = a
+        n += 1 - dropped[a]
+    for q in range(n):
+        fetch(state, near[picked[q]], 256)
     count, touching = 0, len(to.people)
-    for j in near:
+    for q in range(n):
+        a = picked[q]
+        j = near[a]
         apart = me.core + state.core[j] + MARGIN
-        dx, dy = state.sweep[j, 0] - me.x, state.sweep[j, 1] - me.y
-        sweep = state.sweep[j, 2] + apart + SLACK
-        x, y = me.c * dx + me.s * dy, me.c * dy - me.s * dx
-        if off_box2(x, y, x0, y0, x1, y1) >= sweep * sweep:
-            continue
-        dx, dy = state.x[j] - me.x, state.y[j] - me.y
+        dx, dy = state.x[j] - px, state.y[j] - py
         if dx * dx + dy * dy < apart * apart:
             touching -= 1
             to.people[touching].who = j
             continue
+        dx, dy = sweep_x[a] - px, sweep_y[a] - py
         somebody = to.people[count]
         somebody.who = j
-        to.sweeps[0, count], to.sweeps[1, count] = x, y
-        to.sweeps[2, count] = sweep + SLACK
+        to.sweeps[0, count], to.sweeps[1, count] = c * dx + s * dy, c * dy - s * dx
+        to.sweeps[2, count] = radius[a] + own + SLACK
         somebody.apart = apart
         somebody.laid = False
         count += 1
-        fetch(state, j, 256)
     return count, touching
 
 

@@ -10,9 +10,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.jit import part
+from mesa_mobility.jit import lean, part
 
 CELL_SIZE = 1.5
+
+COVERED = 7
+"""First of the rows of ``headways`` that tell what people cover, x, y and radius; those before are
+what cost terms are given."""
 
 
 class Grid(NamedTuple):
@@ -57,19 +61,29 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
     return Grid(x0, y0, nx, ny, offsets, people, their_x, their_y)
 
 
+@lean()
+def cover_in(moving: NDArray[np.float64], at: int, i: int, state: CrowdState) -> None:
+    """Write what pedestrian i, at a place in the grid, covers on its way."""
+    moving[COVERED, at], moving[COVERED + 1, at] = state.sweep[i, 0], state.sweep[i, 1]
+    moving[COVERED + 2, at] = state.sweep[i, 2] + state.core[i]
+
+
 @njit(cache=True)
 def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
-    """(5, n) where the people in a grid go, in its order.
+    """(10, n) where the people in a grid are and go, in its order.
 
-    Velocity in m/s, unit vector to the target (0, 0 at the target), metres of way left.
+    Place; velocity in m/s, unit vector to the target (0, 0 at the target), metres of way left; x, y
+    and radius of a circle around all that they cover on their way, their body included.
     """
-    found = np.empty((5, len(grid.people)))
+    found = np.empty((10, len(grid.people)))
     for a, i in enumerate(grid.people):
-        found[0, a], found[1, a] = state.vx[i], state.vy[i]
+        found[0, a], found[1, a] = grid.x[a], grid.y[a]
+        found[2, a], found[3, a] = state.vx[i], state.vy[i]
         dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
         away = math.sqrt(dx * dx + dy * dy)
-        found[2, a], found[3, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
-        found[4, a] = state.route[i]
+        found[4, a], found[5, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
+        found[6, a] = state.route[i]
+        cover_in(found, a, i, state)
     return found
 
 
@@ -94,3 +108,13 @@ def people_within(
             found[count] = a
             count += int(dx * dx + dy * dy <= radius * radius and grid.people[a] != but)
     return count
+
+
+@lean()
+def place_in(grid: Grid, x: float, y: float, who: int) -> int:
+    """Place in the grid of pedestrian ``who``, who is at (x, y) in it."""
+    cell = int((y - grid.y0) / CELL_SIZE) * grid.nx + int((x - grid.x0) / CELL_SIZE)
+    a = grid.offsets[cell]
+    while grid.people[a] != who:
+        a += 1
+    return int(a)

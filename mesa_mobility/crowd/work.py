@@ -42,10 +42,11 @@ class Setting(NamedTuple):
 class Work(NamedTuple):
     """Space to work in, the same for one pedestrian after the other.
 
-    Fields: ``near`` rows of the neighbours, ``others`` the same as the terms see them, ``foremost``
-    those of them who are likely to cost most, ``dropped`` by neighbour; ``close`` those who may
-    come in the way, ``unsure`` rows of those whom only the exact test can tell; ``bodies`` who is
-    where at the levels; ``walls`` those in reach, ``barriers`` the same seen from the pedestrian;
+    Fields: ``near`` rows of the neighbours, ``others`` the same as the terms see them, ``sweeps``
+    (3, n) circles around all that they cover, ``foremost`` those of them who are likely to cost
+    most, ``dropped`` by neighbour; ``close`` those who may come in the way, ``unsure`` rows of
+    those whom only the exact test can tell; ``bodies`` who is where at the levels; ``walls`` those
+    in reach, ``barriers`` the same seen from the pedestrian;
     groups: ``alive`` those not certainly blocked, the ``bounds`` of all; ``circles`` for clearing;
     of those just opened, which are ``picked``, bits of their options that are ``free``, and of 8
     options each, ``lanes`` where they end and ``lane_costs``; by option looked at, ``rows`` in the
@@ -56,6 +57,7 @@ class Work(NamedTuple):
     near: NDArray[np.int64]
     unsure: NDArray[np.int64]
     others: NDArray[np.float64]
+    sweeps: NDArray[np.float64]
     foremost: NDArray[np.float64]
     marks: NDArray[np.int64]
     some: NDArray[np.float64]
@@ -86,6 +88,7 @@ def make_work(people: int, walls: int, options: int, groups: int) -> Work:
         near=np.empty(people, np.int64),
         unsure=np.empty(people, np.int64),
         others=np.empty((COST + 1, people + LANES)),
+        sweeps=np.empty((3, people + LANES)),
         foremost=np.empty((COST + 1, people + LANES)),
         marks=np.empty(people, np.int64),
         some=np.empty((COST + 1, people + LANES)),

@@ -11,7 +11,17 @@ from mesa_mobility.crowd.lanewise import (
     near_box,
     places_within,
 )
-from mesa_mobility.lanes import AT_ONCE, LANES, SAMPLES, WIDE, any_of, lowest_bit, place_of_least
+from mesa_mobility.lanes import (
+    AT_ONCE,
+    LANES,
+    SAMPLES,
+    WIDE,
+    any_of,
+    copy_lanes,
+    lowest_bit,
+    no_more_than,
+    place_of_least,
+)
 
 
 @njit
@@ -42,6 +52,21 @@ def _any(values, at):
 @njit
 def _lowest(bits):
     return lowest_bit(bits)
+
+
+@njit
+def _copy(given, row, at, to, first, place):
+    copy_lanes(given, row, at, to, first, place, 2)
+
+
+@njit
+def _copy_one(given, at, to, place):
+    copy_lanes(given, 0, at, to, 0, place, 1)
+
+
+@njit
+def _little(values, at, most):
+    return no_more_than(values, at, most)
 
 
 @njit
@@ -117,6 +142,27 @@ def test_whether_any_is_not_0():
 
 def test_the_lowest_bit_is_found():
     assert [_lowest(bits) for bits in (1, 2, 12, 1 << 15)] == [0, 1, 2, 15]
+
+
+def test_what_is_at_most_so_much_is_told_by_its_bits():
+    values = np.array([9.0, 1.0, 2.0, 2.5, np.nan, np.inf, -np.inf, 2.0, 3.0, 0.0])
+    # 2 is at most 2; what is not a number is told, whatever the limit.
+    assert _little(values, 2, 2.0) == 0b10111101
+    assert _little(values, 0, np.inf) == 0b11111111
+
+
+def test_rows_are_copied_side_by_side():
+    given, to = np.arange(48.0).reshape(4, 12), np.zeros((3, 20))
+    _copy(given, 1, 3, to, 1, 5)
+    expected = np.zeros((3, 20))
+    expected[1:, 5:13] = given[1:3, 3:11]
+    assert (to == expected).all()
+
+
+def test_whole_numbers_are_copied_in_place():
+    numbers = np.arange(100, 120)
+    _copy_one(numbers, 9, numbers, 2)
+    assert numbers[:12].tolist() == [100, 101, *range(109, 117), 110, 111]
 
 
 def test_options_of_a_group_are_turned_and_moved(rng):

@@ -1,0 +1,60 @@
+"""Where people are in the grid, and what is kept of them in its order."""
+
+import numpy as np
+import pytest
+from numba import njit
+
+from mesa_mobility.crowd.neighbours import COVERED, build_grid, cover_in, headways, place_in
+from mesa_mobility.crowd.state import Crowd
+
+
+@njit
+def _place(grid, x, y, who):
+    return place_in(grid, x, y, who)
+
+
+@njit
+def _cover(moving, at, i, state):
+    cover_in(moving, at, i, state)
+
+
+@pytest.fixture
+def crowd():
+    rng = np.random.default_rng(2)
+    crowd = Crowd(50)
+    crowd.x[:], crowd.y[:] = rng.uniform(-4.0, 9.0, (2, 50))
+    crowd.sweep[:] = rng.uniform(0.0, 1.0, (50, 3))
+    crowd.core[:] = 0.25
+    crowd.target_x[:], crowd.target_y[:] = crowd.x + 3.0, crowd.y + 4.0
+    return crowd
+
+
+def test_everybody_is_found_in_the_grid(crowd):
+    active = np.arange(0, 50, 2)
+    grid = build_grid(active, crowd.x, crowd.y)
+    for i in active:
+        assert grid.people[_place(grid, crowd.x[i], crowd.y[i], i)] == i
+
+
+def test_what_is_kept_of_people_is_in_the_order_of_the_grid(crowd):
+    grid = build_grid(np.arange(50), crowd.x, crowd.y)
+    kept = headways(grid, crowd.records)
+    people = grid.people
+    assert (kept[:2] == [crowd.x[people], crowd.y[people]]).all()
+    assert kept[4] == pytest.approx(np.full(50, 0.6))
+    assert kept[5] == pytest.approx(np.full(50, 0.8))
+    assert (kept[COVERED] == crowd.sweep[people, 0]).all()
+    assert (kept[COVERED + 1] == crowd.sweep[people, 1]).all()
+    assert (kept[COVERED + 2] == crowd.sweep[people, 2] + 0.25).all()
+
+
+def test_what_somebody_covers_is_kept_up_to_date(crowd):
+    grid = build_grid(np.arange(50), crowd.x, crowd.y)
+    kept = headways(grid, crowd.records)
+    before = kept.copy()
+    crowd.sweep[7] = 1.0, 2.0, 0.5
+    at = int(np.flatnonzero(grid.people == 7)[0])
+    _cover(kept, at, 7, crowd.records)
+    assert kept[COVERED:, at].tolist() == [1.0, 2.0, 0.75]
+    before[COVERED:, at] = kept[COVERED:, at]
+    assert (kept == before).all()
