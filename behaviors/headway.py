@@ -53,7 +53,7 @@ class Headway(CompiledTerm):
     """
 
     name = "headway"
-    default_weight = 1.3
+    default_weight = 1.5
     kernel = _headway
 
     def __init__(
@@ -61,7 +61,7 @@ class Headway(CompiledTerm):
         weight: float | None = None,
         distance: float = 0.33,
         time: float = 1.2,
-        width: float = 0.4,
+        width: float = 0.35,
     ) -> None:
         super().__init__(weight)
         for name, value in (("distance", distance), ("time", time), ("width", width)):

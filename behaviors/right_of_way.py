@@ -62,7 +62,7 @@ class RightOfWay(CompiledTerm):
     """
 
     name = "right_of_way"
-    default_weight = 2.0
+    default_weight = 3.0
     kernel = _right_of_way
 
     def __init__(

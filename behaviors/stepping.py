@@ -39,7 +39,7 @@ class Stepping(CompiledTerm):
     """
 
     name = "stepping"
-    default_weight = 1.2
+    default_weight = 1.0
     kernel = _stepping
     bound = _stepping_bound
 

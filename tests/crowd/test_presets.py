@@ -41,10 +41,10 @@ def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_short
     assert model.preset == "default"
     assert weights(model) == {
         TargetDistance: 1.0, FacingDeviation: 1.0, Interference: 1.0, PreferredVelocity: 2.0,
-        Headway: 1.3, RightOfWay: 2.0, Stepping: 1.2,
+        Headway: 1.5, RightOfWay: 3.0, Stepping: 1.0,
     }  # fmt: skip
     (headway,) = (term for term in model.terms if isinstance(term, Headway))
-    assert (headway.distance, headway.time, headway.width) == (0.33, 1.2, 0.4)
+    assert (headway.distance, headway.time, headway.width) == (0.33, 1.2, 0.35)
     (step,) = (term for term in model.terms if isinstance(term, Stepping))
     assert step.length == 0.4
     (way,) = (term for term in model.terms if isinstance(term, RightOfWay))
