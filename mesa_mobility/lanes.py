@@ -116,7 +116,7 @@ def place_of_least(typingctx, values, n):
         while width > 1:
             width //= 2
             halves = [
-                _part(builder, vector, range(start, start + width))
+                some_lanes(builder, vector, range(start, start + width))
                 for start in (0, width)
                 for vector in (value, place)
             ]
@@ -135,7 +135,8 @@ def _lesser(builder: Any, value: Any, place: Any, other: Any, elsewhere: Any) ->
     return builder.select(less, other, value), builder.select(less, elsewhere, place)
 
 
-def _part(builder: Any, vector: Any, lanes: range) -> Any:
+def some_lanes(builder: Any, vector: Any, lanes: range) -> Any:
+    """Those of the lanes of a vector."""
     mask = ir.Constant(ir.VectorType(INT, len(lanes)), list(lanes))
     return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined), mask)
 

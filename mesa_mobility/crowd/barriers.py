@@ -31,6 +31,7 @@ from mesa_mobility.lanes import (
     WIDE,
     load,
     same,
+    some_lanes,
     spread,
     start_of,
     store,
@@ -208,12 +209,7 @@ def path_off2(typingctx, paths, path, barriers, known):
         while width > 1:
             width //= 2
             low, high = (
-                builder.shuffle_vector(
-                    least,
-                    ir.Constant(least.type, ir.Undefined),
-                    ir.Constant(ir.VectorType(INT, width), list(range(first, first + width))),
-                )
-                for first in (0, width)
+                some_lanes(builder, least, range(first, first + width)) for first in (0, width)
             )
             least = builder.select(builder.fcmp_ordered("<", low, high), low, high)
         return builder.fpext(builder.extract_element(least, ir.Constant(INT, 0)), DOUBLE)

@@ -166,16 +166,17 @@ def option_gone_or_blocked(
             doubtful += 1
     if not walled and doubtful == 0:
         return gone, met
-    pieces, spacing = lay_path(me.row, o, me.c, me.s, table, state, work.path), SAMPLE_FRAMES
+    pieces = lay_path(me.row, o, me.c, me.s, table, state, work.path)
+    spacing = np.int64(SAMPLE_FRAMES)
     if walled:
         gone = path_gone_or_walled(
-            me.row, work.path, pieces, np.int64(spacing), reach, now.frame, state, walls, around,
+            me.row, work.path, pieces, spacing, reach, now.frame, state, walls, around,
             exits_near,
         )  # fmt: skip
     if gone < -1 or doubtful == 0:
         return gone, met
     blocked = hits_anybody(
-        me.row, work.path, pieces, np.int64(spacing), now.frame, gone, table, state,
+        me.row, work.path, pieces, spacing, now.frame, gone, table, state,
         work.unsure[:doubtful],
     )  # fmt: skip
     return -2 if blocked else gone, met
