@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from itertools import pairwise
 from typing import TypeVar
 
 from numba import config
@@ -24,6 +25,13 @@ another."""
 def threads_for(people: int) -> int:
     """Threads to share the work for so many people."""
     return THREADS if people >= MANY else 1
+
+
+def shares(people: int) -> list[slice]:
+    """So many people in equal parts, one for each thread."""
+    threads = threads_for(people)
+    ends = [people * k // threads for k in range(threads + 1)]
+    return [slice(first, last) for first, last in pairwise(ends)]
 
 
 def together(work: Callable[[Part], Result], parts: Sequence[Part]) -> list[Result]:

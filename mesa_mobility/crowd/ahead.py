@@ -22,13 +22,12 @@ from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.groups import make_groups
 from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.options import OPTION, SAMPLES, OptionTable, boxes
+from mesa_mobility.crowd.overview import look_over
 from mesa_mobility.crowd.patience import turn
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import Crowd
-from mesa_mobility.crowd.summary import speeds_of
 from mesa_mobility.crowd.terms_table import compile_terms
 from mesa_mobility.threads import THREADS
 
@@ -76,12 +75,11 @@ def compile_the_rest() -> None:
     once a step, and cost terms."""
     nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
     due(nobody, 0, crowd.records, nobody)
-    move(nobody, 0, _table(), crowd.records)
+    move(nobody, 0, 1, _table(), crowd.records)
     walk_on(nobody, 0, np.empty((0, 4)), np.empty((3, 2)), crowd.records)
     move_on(nobody, 0, crowd.records)
     turn(nobody, nothing, nothing, crowd.records)
-    speeds_of(nobody, crowd)
-    StallWatch().stalled(0, nobody, crowd, 0)
+    look_over(nobody, 0, crowd, np.empty((0, 2)))
     compile_terms(preset_named("default").make_terms())
 
 

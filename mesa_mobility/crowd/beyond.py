@@ -103,10 +103,9 @@ def move_on(rows: NDArray[np.int64], frame: int, state: CrowdState) -> int:
     """Move those whose way has not ended by ``frame`` and bring them to the front; how many."""
     count = 0
     for i in rows:
-        if state[i].end > frame:
-            u = (frame - state[i].start) / WALKS_ON
-            state[i].x = state[i].from_x + u * (state[i].to_x - state[i].from_x)
-            state[i].y = state[i].from_y + u * (state[i].to_y - state[i].from_y)
-            rows[count] = i
-            count += 1
+        u = min((frame - state[i].start) / WALKS_ON, 1.0)
+        state[i].x = state[i].from_x + u * (state[i].to_x - state[i].from_x)
+        state[i].y = state[i].from_y + u * (state[i].to_y - state[i].from_y)
+        rows[count] = i
+        count += int(state[i].end > frame)
     return count

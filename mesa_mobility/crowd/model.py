@@ -18,8 +18,9 @@ from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.explain import Explanation, Watch
 from mesa_mobility.crowd.inside import Inside
 from mesa_mobility.crowd.journeys import Journeys
-from mesa_mobility.crowd.motion import due, move
+from mesa_mobility.crowd.motion import LONG_AFTER, due, move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
+from mesa_mobility.crowd.overview import NOBODY
 from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
@@ -153,6 +154,8 @@ class PedestrianModel(CrowdMeasures, People):
             n_agents=64,
         )
         self._rows = np.empty(0, dtype=np.int64)
+        self._next = 0
+        self._seen = NOBODY
         self._beyond = Beyond()
         self._agents_by_row: list[Pedestrian | None] = []
         self._stall_watch = StallWatch()
@@ -184,17 +187,15 @@ class PedestrianModel(CrowdMeasures, People):
 
     def step(self) -> None:
         """Advance ``frames_per_step`` frames."""
-        rows = self._rows
-        for _ in range(self.frames_per_step):
-            rows = self._advance(rows)
+        rows, end = self._rows, self.frame + self.frames_per_step
+        while self.frame < end:
+            rows = self._advance(rows, end)
             if len(rows) == 0 and not self.expecting:
                 break  # the last has left: this step ends with it
         if len(rows) < len(self._rows):
             self._take_out_inactive()
-        self._write_space()
-        self.stalled = self._stall_watch.stalled(
-            self.frame, self._rows, self.crowd, self.journeys.crossed
-        )
+        self._look_over()
+        self.stalled = self._stall_watch.stalled(self.frame, self._seen, self.journeys.crossed)
         self.datacollector.collect(self)
         self.running = (self.inside > 0 or self.expecting) and not self.stalled
 
@@ -224,7 +225,9 @@ class PedestrianModel(CrowdMeasures, People):
                 told = int(self.elapsed)
                 progress(self.elapsed, self.inside)
 
-    def _advance(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _advance(self, rows: NDArray[np.int64], end: int) -> NDArray[np.int64]:
+        """Have those decide who do in this frame, and go on to the next one in which anything but
+        walking happens, to frame ``end`` at most; return who is left of those in ``rows``."""
         self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         if self.sources:
             newcomers = self._let_in()
@@ -243,27 +246,45 @@ class PedestrianModel(CrowdMeasures, People):
                 rows, self.frame, self._repertoire.table, self.crowd.records,
                 self._site.surroundings, self._rules,
             )  # fmt: skip
-        deciding = np.empty_like(rows)
-        deciding = deciding[: due(rows, self.frame, self.crowd.records, deciding)]
-        if len(deciding):
-            self._decide(deciding, rows)
-        self.frame += 1
-        self._beyond.move(self.frame, self.crowd)
-        stay, gone, speeds, fallen = move(
-            rows, self.frame, self._repertoire.table, self.crowd.records
-        )
-        self._walked += speeds
-        self._person_frames += len(rows)
-        self._fallback_frames += fallen
+            self._next = self.frame
+        now = self.frame
+        if self._next <= now:
+            self._have_decide(rows)
+        second = round(self.frame_rate)
+        end = min(end, max(self._next, now + 1), (now // second + 1) * second)
+        replanned = self._plan_version != self.floor_plan.version
+        if self.recorder is not None or self.sources or replanned:
+            end = now + 1
+        self.frame = end
+        self._beyond.move(end, self.crowd)
+        moved = move(rows, end, end - now, self._repertoire.table, self.crowd.records)
+        stay, gone = moved.stay, moved.gone
+        if self._next > now:  # nobody has come meanwhile
+            self._next = moved.next
+        for _ in range(now, end):  # rounding must not tell how many frames are gone over at once
+            self._walked += moved.speeds
+        self._person_frames += (end - now) * (len(stay) + len(gone))
+        self._fallback_frames += (end - now) * moved.fallen
         if self.recorder is not None:
-            self.recorder.add(self.frame, rows, self.crowd)
-        rows = stay
+            self.recorder.add(end, rows, self.crowd)
         if len(gone):
             self.last_left = self.elapsed
             self._beyond.add(gone)
-        if self.frame % round(self.frame_rate) == 0:
-            self.occupancy.append((self.elapsed, len(rows)))
-        return rows
+        if end % second == 0:
+            self.occupancy.append((self.elapsed, len(stay)))
+        return stay
+
+    def _have_decide(self, rows: NDArray[np.int64]) -> None:
+        """Have those in ``rows`` decide whose movement has ended; note what comes next."""
+        state = self.crowd.records
+        deciding, self._next = np.empty_like(rows), LONG_AFTER
+        count, soonest = due(rows, self.frame, state, deciding)
+        if count:
+            deciding = deciding[:count]
+            self._decide(deciding, rows)
+            theirs = due(deciding, self.frame, state, np.empty_like(deciding))[1]
+            soonest = min(soonest, theirs)
+        self._next = min(self._next, soonest)
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
         self.journeys.advance(deciding, self.frame, self.crowd, self._repertoire.table)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,9 @@ from mesa_mobility.crowd.state import FALLBACK, CrowdState
 from mesa_mobility.crowd.under_way import facing_at_knot, knot
 from mesa_mobility.jit import called, lean
 from mesa_mobility.threads import threads_for, together
+
+LONG_AFTER = np.iinfo(np.int64).max
+"""A frame after all others."""
 
 
 @lean()
@@ -85,60 +89,95 @@ BLOCK = 8192
 floats must not depend on how many threads there are."""
 
 
-def move(
-    active: NDArray[np.int64], frame: int, table: OptionTable, state: CrowdState
-) -> tuple[NDArray[np.int64], NDArray[np.int64], float, int]:
-    """Put everybody in rows ``active`` where its movement has it at ``frame``.
+class Moved(NamedTuple):
+    """What people have come to in some frames.
 
-    Returns who stays and who has left, both in order, the sum of everybody's mean speed, m/s, and
-    how many fall back.
+    Fields: who stays and who has left (``gone``), both in order; the sum of everybody's mean
+    ``speeds``, m/s; how many have ``fallen`` back; the ``next`` frame in which a movement of those
+    who stay ends or one of them leaves.
+    """
+
+    stay: NDArray[np.int64]
+    gone: NDArray[np.int64]
+    speeds: float
+    fallen: int
+    next: int
+
+
+def move(
+    active: NDArray[np.int64], frame: int, frames: int, table: OptionTable, state: CrowdState
+) -> Moved:
+    """Put everybody in rows ``active`` where its movement has it at ``frame``, so many later.
+
+    Nobody may leave or come to the end of its movement before that.
     """
     sorted_out = np.empty_like(active)
+    if len(active) <= BLOCK:
+        staying, left, *rest = _move(active, frame, frames, table, state, sorted_out)
+        return Moved(sorted_out[:staying], sorted_out[::-1][:left], *rest)
 
-    def part(starts: range) -> list[tuple[int, int, float, int]]:
+    def part(starts: range) -> list[tuple[int, int, float, int, int]]:
         blocks = [slice(first, first + BLOCK) for first in starts]
-        return [_move(active[own], frame, table, state, sorted_out[own]) for own in blocks]
+        return [_move(active[own], frame, frames, table, state, sorted_out[own]) for own in blocks]
 
     # One part for each thread: to hand a block to a thread takes longer than to move half of it.
-    starts = range(0, max(len(active), 1), BLOCK)
+    starts = range(0, len(active), BLOCK)
     share = -(-len(starts) // threads_for(len(active)))
     shares = [starts[k : k + share] for k in range(0, len(starts), share)]
     counts = [count for counts in together(part, shares) for count in counts]
-    if len(counts) == 1:
-        staying, left, speeds, fallen = counts[0]
-        return sorted_out[:staying], sorted_out[::-1][:left], speeds, fallen
     stay, gone = [], []
-    for first, (staying, left, _, _) in zip(starts, counts, strict=True):
+    for first, (staying, left, *_) in zip(starts, counts, strict=True):
         block = sorted_out[first : first + BLOCK]
         stay.append(block[:staying])
         gone.append(block[::-1][:left])
-    speeds, fallen = sum(count[2] for count in counts), sum(count[3] for count in counts)
-    return np.concatenate(stay), np.concatenate(gone), speeds, fallen
+    return Moved(
+        np.concatenate(stay),
+        np.concatenate(gone),
+        sum(count[2] for count in counts),
+        sum(count[3] for count in counts),
+        min(count[4] for count in counts),
+    )
 
 
 @called()
-def due(active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray[np.int64]) -> int:
-    """Write those in rows ``active`` whose movement has ended by ``frame``; return their number."""
-    count = 0
+def due(
+    active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray[np.int64]
+) -> tuple[int, int]:
+    """Write those in rows ``active`` whose movement has ended by ``frame``; return their number.
+
+    And the next frame in which the movement of one of the others ends, or one of them leaves.
+    """
+    count, soonest = 0, LONG_AFTER
     for i in active:
         found[count] = i
-        count += int(state.end[i] <= frame)
-    return count
+        if state.end[i] <= frame:
+            count += 1
+        else:
+            soonest = min(soonest, _next_event(i, frame, state))
+    return count, soonest
+
+
+@lean()
+def _next_event(i: int, frame: int, state: CrowdState) -> int:
+    """The frame in which the movement of pedestrian i ends or, if it does so before, it leaves."""
+    gone: int = state.gone[i]
+    return gone if gone > frame else state.end[i]
 
 
 @called()
 def _move(
     active: NDArray[np.int64],
     frame: int,
+    frames: int,
     table: OptionTable,
     state: CrowdState,
     sorted_out: NDArray[np.int64],
-) -> tuple[int, int, float, int]:
+) -> tuple[int, int, float, int, int]:
     """Write to ``sorted_out`` those who stay, and backwards from its end those who have left.
 
-    Returns how many they are, the sum of mean speeds and how many fall back.
+    Returns how many they are, and the rest as ``Moved`` has it.
     """
-    staying, left, speeds, fallen = 0, 0, 0.0, 0
+    staying, left, speeds, fallen, soonest = 0, 0, 0.0, 0, LONG_AFTER
     for i in active:
         if not state.active[i]:  # taken out of the model in this very frame
             continue
@@ -156,9 +195,9 @@ def _move(
             a, b = facing_at_knot(state, table, i, k), facing_at_knot(state, table, i, k + 1)
             state.heading[i] = a + u * (b - a)
         speeds += math.sqrt(state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i])
-        state.active_frames[i] += 1
+        state.active_frames[i] += frames
         if state.option[i] == FALLBACK:
-            state.fallback_frames[i] += 1
+            state.fallback_frames[i] += frames
             fallen += 1
         if state.gone[i] == frame:
             state.active[i] = False
@@ -167,4 +206,5 @@ def _move(
         else:
             sorted_out[staying] = i
             staying += 1
-    return staying, left, speeds, fallen
+            soonest = min(soonest, _next_event(i, frame, state))
+    return staying, left, speeds, fallen, soonest

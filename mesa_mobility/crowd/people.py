@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.beyond import Beyond
 from mesa_mobility.crowd.journeys import Journeys
+from mesa_mobility.crowd.overview import NOBODY, Overview, look_over
 from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
@@ -28,7 +29,7 @@ from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.replan import first_free, too_close
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.source import PLACES_TRIED, Inflow, Source
-from mesa_mobility.crowd.space import CrowdSpace, write_places
+from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.crowd.waits import frames_of
@@ -60,6 +61,8 @@ class People(mesa.Model, ABC):
     _entrances: list[Entrance]
     preset: str
     _rows: NDArray[np.int64]
+    _next: int
+    _seen: Overview
     _beyond: Beyond
     _agents_by_row: list[Pedestrian | None]
 
@@ -129,10 +132,11 @@ class People(mesa.Model, ABC):
         face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
         self.count += n
         self._rows = np.concatenate([self._rows, rows])
+        self._next = self.frame
         people = [Pedestrian(self, int(row)) for row in rows]
         self._agents_by_row.extend(people)
         self.space.forget_tables()
-        self._write_space()
+        self._look_over()
         self.running = True
         return people
 
@@ -210,7 +214,7 @@ class People(mesa.Model, ABC):
         for person in people:
             self.crowd.active[person.row] = False
         self._take_out_inactive()
-        self._write_space()
+        self._look_over()
 
     def _take_out_inactive(self) -> None:
         """Take those out of Mesa's registers who are not in the model any more.
@@ -291,6 +295,8 @@ class People(mesa.Model, ABC):
     ) -> Targets:
         """Give the people in ``rows``, who are among those ``inside``, their targets."""
 
-    def _write_space(self) -> None:
+    def _look_over(self) -> None:
+        """Look over everybody inside, and write to Mesa's space where they are."""
+        self._seen = NOBODY
         if len(self._rows):
-            write_places(self._rows, self.crowd.records, self.space.agent_positions)
+            self._seen = look_over(self._rows, self.frame, self.crowd, self.space.agent_positions)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options import FRAME_SECONDS
-from mesa_mobility.crowd.state import Crowd, CrowdState
-from mesa_mobility.jit import called
+from mesa_mobility.crowd.overview import Overview
 
 STALL_SECONDS = 60.0
 """An evacuation has stalled when for so long nobody left and nobody came nearer to an exit."""
@@ -23,41 +21,19 @@ class StallWatch:
         self._since = 0.0
         self._mark: tuple[int, int, int, float] = (-1, 0, 0, 0.0)
 
-    def stalled(self, frame: int, rows: NDArray[np.int64], crowd: Crowd, crossed: int) -> bool:
+    def stalled(self, frame: int, seen: Overview, crossed: int) -> bool:
         """Whether nothing has got better for a minute.
 
         Args:
             frame: now.
-            rows: (n,) the people inside.
-            crowd: the crowd.
+            seen: what the people inside are about.
             crossed: gates that people have crossed on their journeys so far.
         """
         elapsed = frame * FRAME_SECONDS
-        ways = np.empty(len(rows))
-        found, awaited = _ways_left(rows, frame, crowd.records, crowd.agenda, ways)
-        now, left = (len(rows), found, crossed), float(np.add.reduce(ways[:found]))
+        inside = len(seen.speeds)
+        now, left = (inside, len(seen.ways), crossed), float(np.add.reduce(seen.ways))
         # Others may stand because of somebody who is yet to set off. More way to go is news as
         # well: a door closed, and people are on another way.
-        if awaited or now != self._mark[:3] or abs(left - self._mark[3]) > STALL_PROGRESS:
+        if seen.awaited or now != self._mark[:3] or abs(left - self._mark[3]) > STALL_PROGRESS:
             self._since, self._mark = elapsed, (*now, left)
-        return len(rows) > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9
-
-
-@called()
-def _ways_left(
-    rows: NDArray[np.int64],
-    frame: int,
-    state: CrowdState,
-    agenda: NDArray[np.void],
-    ways: NDArray[np.float64],
-) -> tuple[int, bool]:
-    """Write the ways left of those in ``rows`` who have one, metres.
-
-    Returns their number, and whether somebody waits.
-    """
-    found, awaited = 0, False
-    for i in rows:
-        ways[found] = state[i].route
-        found += int(abs(state[i].route) < np.inf)
-        awaited = awaited or agenda[i]["waits_until"] > frame
-    return found, awaited
+        return inside > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9

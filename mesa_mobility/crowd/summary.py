@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options import FRAME_SECONDS
-from mesa_mobility.crowd.state import Crowd, CrowdState
-from mesa_mobility.jit import called
+from mesa_mobility.crowd.overview import Overview
+from mesa_mobility.crowd.state import Crowd
 
 
 class CrowdMeasures:
@@ -25,6 +24,7 @@ class CrowdMeasures:
     occupancy: list[tuple[float, int]]
     expecting: bool
     _rows: NDArray[np.int64]
+    _seen: Overview
     _walked: float
     _person_frames: int
     _fallback_frames: int
@@ -46,10 +46,9 @@ class CrowdMeasures:
 
     @property
     def mean_speed(self) -> float:
-        """Mean speed of the movements under way, m/s; 0 if nobody is inside."""
-        if self.inside == 0:
-            return 0.0
-        return float(np.add.reduce(speeds_of(self._rows, self.crowd)) / self.inside)
+        """Mean speed of the movements under way after the last step, m/s; 0 if nobody is inside."""
+        speeds = self._seen.speeds
+        return float(np.add.reduce(speeds) / len(speeds)) if len(speeds) else 0.0
 
     @property
     def mean_speed_so_far(self) -> float:
@@ -92,17 +91,3 @@ class CrowdMeasures:
             "mean_speed_mps": self.mean_speed_so_far,
             "occupancy": [list(row) for row in self.occupancy],
         }
-
-
-def speeds_of(rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
-    """(n,) mean speed of the movement under way of those in ``rows``, m/s."""
-    speeds = np.empty(len(rows))
-    _write_speeds(rows, crowd.records, speeds)
-    return speeds
-
-
-@called()
-def _write_speeds(rows: NDArray[np.int64], state: CrowdState, speeds: NDArray[np.float64]) -> None:
-    """Write to ``speeds`` (n,) how fast those in ``rows`` go, m/s."""
-    for k in range(len(rows)):
-        speeds[k] = math.hypot(state[rows[k]].vx, state[rows[k]].vy)

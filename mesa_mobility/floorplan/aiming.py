@@ -18,6 +18,7 @@ from mesa_mobility.floorplan.sight import (
 )
 from mesa_mobility.floorplan.views import Views, is_known, nodes_maybe_in_view
 from mesa_mobility.jit import lean, woven
+from mesa_mobility.lanes import AT_ONCE, place_of_least
 
 # A target behind a gate lies at least this far behind it, however near the next wall is (metres).
 _LEAST_BEYOND = 0.3
@@ -60,7 +61,7 @@ def aim(
     `learn`, that is, work out new views; the others leave those who need one `UNSEEN`.
     """
     nodes = len(ways.kind)
-    keys = np.empty(nodes)
+    keys = np.empty(nodes + AT_ONCE)
     seen = np.empty(nodes, dtype=np.int64)
     everything = np.arange(nodes)
     for person in range(len(positions)):
@@ -118,7 +119,7 @@ def _first_in_view(
 ) -> int:
     """The node in view with the shortest way through it, -1 where none of the first `tries` is.
 
-    `maybe` lists the nodes to look at; `keys` is space to work in.
+    `maybe` lists the nodes to look at; `keys` is space to work in, for `AT_ONCE` more.
     """
     count = len(maybe)
     for k in range(count):
@@ -130,12 +131,11 @@ def _first_in_view(
         dy = ways.xy[i, 1] - y
         # Of nodes in one line the farther goes first, whatever rounding says.
         keys[k] = np.sqrt(dx * dx + dy * dy) + to_go[i] * (1.0 + 1e-6)
+    for k in range(count, count + AT_ONCE):
+        keys[k] = np.inf
     for _ in range(min(tries, count)):
-        least, at = np.inf, 0
-        for k in range(count):
-            if keys[k] < least:
-                least, at = keys[k], k
-        if least == np.inf:
+        at = place_of_least(keys, count)
+        if keys[at] == np.inf:
             break
         keys[at] = np.inf
         i = maybe[at]

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import networkx as nx
@@ -20,7 +19,7 @@ from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
 from mesa_mobility.floorplan.views import no_views
-from mesa_mobility.threads import threads_for, together
+from mesa_mobility.threads import shares, together
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -172,18 +171,16 @@ class Router:
         if numbers.view(np.uint64).max() >= len(self._lengths):
             self._tabulate(numbers)
 
-        def aims(first: int, last: int, learn: bool) -> None:
+        def aims(own: slice, learn: bool) -> None:
             aim(
-                self._sight, self._ways, self._views, xy[first:last], numbers[first:last],
-                self._lengths, self._nexts, learn, points[first:last], gates[first:last],
-                distances[first:last], corners[first:last],
+                self._sight, self._ways, self._views, xy[own], numbers[own], self._lengths,
+                self._nexts, learn, points[own], gates[own], distances[own], corners[own],
             )  # fmt: skip
 
-        threads = threads_for(n)
-        if threads > 1:
-            ends = [n * k // threads for k in range(threads + 1)]
-            together(lambda part: aims(*part, False), list(pairwise(ends)))
-        aims(0, n, True)
+        parts = shares(n)
+        if len(parts) > 1:
+            together(lambda own: aims(own, False), parts)
+        aims(slice(n), True)
         return found
 
     def abreast(

@@ -8,6 +8,7 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.boxes import boxes_around, near_line
 from mesa_mobility.floorplan.kernels import (
     point_segment_distance2,
     segment_segment_distance2,
@@ -15,6 +16,7 @@ from mesa_mobility.floorplan.kernels import (
 )
 from mesa_mobility.floorplan.walls import CellTable, as_segments, cell_table
 from mesa_mobility.jit import lean
+from mesa_mobility.lanes import LANES, lowest_bit
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -34,20 +36,23 @@ _CELL = 1.0
 # More than rounding makes of the distance between a wall and a line (metres).
 _ROUNDING = 1e-6
 
-# So many walls are looked at one after the other, without the grid.
-_FEW_WALLS = 64
+# Among so many walls at most boxes tell soonest which are near a line; among more, the grid.
+_FEW_WALLS = 512
 
 
 class Sight(NamedTuple):
     """Wall segments and their grid, as the compiled functions take them.
 
     The first `solid` rows of `walls` are walls; the others are lines that no view
-    crosses but that need no clearance.
+    crosses but that need no clearance. `boxes` are around them and `boxed` their numbers,
+    as `boxes_around` has them, or none at all where there are many walls.
     """
 
     walls: NDArray[np.float64]
     solid: int
     table: CellTable
+    boxes: NDArray[np.float64]
+    boxed: NDArray[np.int64]
 
 
 def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
@@ -56,7 +61,9 @@ def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
     rows = np.concatenate([solid, as_segments(curtains)])
     extent = float(np.ptp(rows.reshape(-1, 2), axis=0).max()) if len(rows) else 1.0
     # The extra millimetre keeps walls that rounding would put just out of reach of a cell.
-    return Sight(rows, len(solid), cell_table(rows, max(_CELL, extent / 400), reach + 1e-3))
+    table = cell_table(rows, max(_CELL, extent / 400), reach + 1e-3)
+    boxes, boxed = boxes_around(rows if len(rows) <= _FEW_WALLS else rows[:0])
+    return Sight(rows, len(solid), table, boxes, boxed)
 
 
 @lean()
@@ -115,12 +122,9 @@ def clear_line(
     view at all, and keeps it on the straight way there (inf: no such person). The wall
     with number `ignored` does not count (`NO_WALL`: all count).
     """
-    walls, _, table = sight
-    if len(walls) <= _FEW_WALLS:
-        for wall in range(len(walls)):
-            if wall != ignored and _bars(sight, wall, px, py, qx, qy, clearance, own):
-                return False
-        return True
+    table = sight.table
+    if len(sight.walls) <= _FEW_WALLS:
+        return _clear_of_boxes(sight, px, py, qx, qy, clearance, own, ignored)
     first_row, last_row = rows_crossed(table, py, qy)
     share = per_metre_up(py, qy)
     for step in range(last_row - first_row + 1):
@@ -138,6 +142,37 @@ def clear_line(
 
 
 @lean()
+def _clear_of_boxes(
+    sight: Sight,
+    px: float,
+    py: float,
+    qx: float,
+    qy: float,
+    clearance: float,
+    own: float,
+    ignored: int,
+) -> bool:
+    """`clear_line` by the boxes around the walls."""
+    reach = max(clearance, TOUCH) + _ROUNDING
+    blocks = len(sight.boxed)
+    outer = len(sight.boxes) - blocks
+    for row in range(max(outer, 1)):
+        near = (1 << blocks) - 1
+        if outer > 0:
+            near = near_line(sight.boxes, row, px, py, qx, qy, reach)
+        while near != 0:
+            block = LANES * row + lowest_bit(near)
+            near &= near - 1
+            walls = near_line(sight.boxes, outer + block, px, py, qx, qy, reach)
+            while walls != 0:
+                wall = sight.boxed[block, lowest_bit(walls)]
+                walls &= walls - 1
+                if wall != ignored and _bars(sight, wall, px, py, qx, qy, clearance, own):
+                    return False
+    return True
+
+
+@lean()
 def _bars(
     sight: Sight,
     wall: int,
@@ -149,7 +184,7 @@ def _bars(
     own: float,
 ) -> bool:
     """Whether the segment pq comes too near to a wall; see `clear_line`."""
-    walls, solid, _ = sight
+    walls, solid = sight.walls, sight.solid
     ax, ay, bx, by = walls[wall, 0], walls[wall, 1], walls[wall, 2], walls[wall, 3]
     limit = clearance if wall < solid and clearance > TOUCH else TOUCH
     # Of boxes around the two the distance is soon known, and never more.
@@ -182,7 +217,7 @@ def wall_distance(sight: Sight, x: float, y: float, at_most: float) -> float:
 
     `at_most` must not exceed the reach that the sight was prepared for.
     """
-    walls, solid, table = sight
+    walls, solid, table = sight.walls, sight.solid, sight.table
     nearest = at_most
     column = int(np.floor((x - table.x0) / table.cell_size))
     row = int(np.floor((y - table.y0) / table.cell_size))
@@ -210,7 +245,7 @@ def wall_distances(
 @lean()
 def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
     """Whether no wall lies across the segment pq, except one that p stands on."""
-    walls, solid, table = sight
+    walls, solid, table = sight.walls, sight.solid, sight.table
     first_row, last_row = rows_crossed(table, py, qy)
     share = per_metre_up(py, qy)
     for row in range(first_row, last_row + 1):
@@ -232,7 +267,7 @@ def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
 @lean()
 def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> float:
     """How far in metres one can look from p towards q before a wall, at most to q."""
-    walls, _, table = sight
+    walls, table = sight.walls, sight.table
     dx = qx - px
     dy = qy - py
     nearest = 1.0

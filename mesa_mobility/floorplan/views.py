@@ -117,7 +117,7 @@ def _hiding(
 
     `first` is one to look at before the others: what hides one place mostly hides the next as well.
     """
-    walls, solid, table = sight
+    walls, solid, table = sight.walls, sight.solid, sight.table
     px = left + side / 2
     py = low + side / 2
     if first != NO_WALL and _hides(walls, first, left, low, side, qx, qy):

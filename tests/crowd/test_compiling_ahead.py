@@ -9,9 +9,8 @@ from mesa_mobility.crowd import (
     choice,
     motion,
     neighbours,
+    overview,
     patience,
-    stall,
-    summary,
 )
 
 FUNCTIONS = [
@@ -23,8 +22,7 @@ FUNCTIONS = [
     beyond.walk_on,
     beyond.move_on,
     patience.turn,
-    stall._ways_left,
-    summary._write_speeds,
+    overview._look_over,
 ]
 
 

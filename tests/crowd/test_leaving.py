@@ -178,5 +178,8 @@ def test_whoever_has_left_walks_straight_away_from_the_exit(line, begun, velocit
     beyond.set_off(30, crowd, exits)
     beyond.move(45, crowd)
     assert (crowd.x[1], crowd.y[1]) == pytest.approx(then)
-    beyond.move(75, crowd)
+    beyond.move(80, crowd)
     assert len(beyond.rows) == 0
+    # It stays where it was after 1.5 s, however many frames that is told later.
+    after = np.array([8.0, 1.0]) + 3.0 * (np.array(then) - [8.0, 1.0])
+    assert (crowd.x[1], crowd.y[1]) == pytest.approx(tuple(after))

@@ -69,14 +69,22 @@ def test_in_another_process():
     assert done.stdout.strip() == run(11)
 
 
-def test_recording_changes_nothing():
-    models = [Doorway(pedestrians=30, mobility_map=shipped_map(), record=record, rng=11)
-              for record in (True, False)]  # fmt: skip
-    for model in models:
-        model.run(max_seconds=SECONDS)
-    assert models[1].recorder is None
-    assert models[0].crowd.x.tobytes() == models[1].crowd.x.tobytes()
-    assert models[0].summary() == models[1].summary()
+@pytest.mark.parametrize("preset", ["default", "paper"])
+@pytest.mark.parametrize("frames_per_step", [1, 3, 30])
+def test_recording_and_steps_change_nothing(frames_per_step, preset):
+    # What is not recorded is not worked out frame by frame.
+    recorded, model = (
+        Doorway(pedestrians=30, mobility_map=shipped_map(), preset=preset, record=record,
+                frames_per_step=frames, rng=11)
+        for record, frames in ((True, 3), (False, frames_per_step))
+    )  # fmt: skip
+    for each in (recorded, model):
+        each.run(max_seconds=SECONDS)
+    assert model.recorder is None
+    for name in ("x", "y", "heading", "active_frames", "fallback_frames", "decisions"):
+        assert recorded.crowd.records[name].tobytes() == model.crowd.records[name].tobytes()
+    assert recorded.last_left == model.last_left
+    assert recorded.summary() == model.summary()
 
 
 def test_with_the_file_of_the_map_or_the_map_itself():
