@@ -8,9 +8,11 @@ in NumPy: the test for it would keep a loop from running several items at once.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
-from numba import njit
+from numba import njit, typeof
 
 called = partial(
     njit, cache=True, error_model="numpy", nogil=True, _nrt=False, no_cfunc_wrapper=True
@@ -28,3 +30,14 @@ takes a sixth less. More than one level of it, or several in one function, takes
 part = partial(lean, forceinline=True)
 """For parts of a larger function, called from one place: they get hundreds of numbers, as each
 array is some eight, and to hand them on takes longer than much of what is done with them."""
+
+
+def entry(function: Any, *arguments: Any) -> Callable[..., Any]:
+    """The compiled ``function`` for arguments of the types of these.
+
+    To call it spares Numba the look-up of their types, which for tuples of arrays takes longer than
+    all else about a call. It must be given arguments of just these types, arrays as contiguous as
+    these: nobody looks at that any more.
+    """
+    compiled: Callable[..., Any] = function.compile(tuple(map(typeof, arguments)))
+    return compiled

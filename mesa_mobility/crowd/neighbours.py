@@ -10,7 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.jit import lean, part
+from mesa_mobility.jit import called, lean, part
+from mesa_mobility.threads import shares, together
 
 CELL_SIZE = 1.5
 
@@ -68,15 +69,27 @@ def cover_in(moving: NDArray[np.float64], at: int, i: int, state: CrowdState) ->
     moving[COVERED + 2, at] = state.sweep[i, 2] + state.core[i]
 
 
-@njit(cache=True)
 def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
     """(10, n) where the people in a grid are and go, in its order.
 
     Place; velocity in m/s, unit vector to the target (0, 0 at the target), metres of way left; x, y
     and radius of a circle around all that they cover on their way, their body included.
     """
-    found = np.empty((10, len(grid.people)))
-    for a, i in enumerate(grid.people):
+    found = np.empty((COVERED + 3, len(grid.people)))
+    together(
+        lambda own: write_headways(grid, state, own.start, own.stop, found),
+        shares(len(grid.people)),
+    )
+    return found
+
+
+@called()
+def write_headways(
+    grid: Grid, state: CrowdState, first: int, last: int, found: NDArray[np.float64]
+) -> None:
+    """Write ``headways`` of people from a first place in the grid to before a last one."""
+    for a in range(first, last):
+        i = grid.people[a]
         found[0, a], found[1, a] = grid.x[a], grid.y[a]
         found[2, a], found[3, a] = state.vx[i], state.vy[i]
         dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
@@ -84,7 +97,6 @@ def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
         found[4, a], found[5, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
         found[6, a] = state.route[i]
         cover_in(found, a, i, state)
-    return found
 
 
 @part()

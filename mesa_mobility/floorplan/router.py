@@ -1,6 +1,6 @@
 """Routes: where each person should aim now, and how far it is to the exit or gate it goes to."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
 from mesa_mobility.floorplan.views import no_views
+from mesa_mobility.jit import entry
 from mesa_mobility.threads import shares, together
 
 if TYPE_CHECKING:
@@ -100,6 +101,8 @@ class Router:
         self._lengths: NDArray[np.float64] = np.empty((0, 0))
         self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
         self._follow: dict[int, NDArray[np.int64]] = {}
+        self._aim: Callable[..., None] | None = None
+        self._pass: Callable[..., None] | None = None
         self._update()
 
     @property
@@ -155,27 +158,31 @@ class Router:
     def targets(self, positions: ArrayLike, destinations: ArrayLike) -> Targets:
         """Where people at (n, 2) `positions` with (n,) `destinations` should aim now."""
         self._update()
-        xy = np.ascontiguousarray(np.asarray(positions, dtype=np.float64).reshape(-1, 2))
-        numbers = np.ascontiguousarray(np.asarray(destinations, dtype=np.int64).reshape(-1))
+        xy = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 2)
+        numbers = np.ascontiguousarray(destinations, dtype=np.int64).reshape(-1)
         if len(xy) != len(numbers):
             raise FloorPlanError(
                 f"targets need a destination for each position, found {len(numbers)} for {len(xy)}"
             )
         n = len(xy)
-        points, gates = np.empty((n, 2)), np.full(n, UNSEEN)
+        points, gates = np.empty((n, 2)), np.empty(n, dtype=np.int64)
         distances, corners = np.empty(n), np.empty((n, 2), dtype=np.int64)
+        gates.fill(UNSEEN)
         found = Targets(points, gates, distances, corners)
         if n == 0:
             return found
         # Seen without a sign, numbers below 0 are above all others.
-        if numbers.view(np.uint64).max() >= len(self._lengths):
+        if np.maximum.reduce(numbers.view(np.uint64)) >= len(self._lengths):
             self._tabulate(numbers)
 
         def aims(own: slice, learn: bool) -> None:
-            aim(
+            given = (
                 self._sight, self._ways, self._views, xy[own], numbers[own], self._lengths,
                 self._nexts, learn, points[own], gates[own], distances[own], corners[own],
             )  # fmt: skip
+            if self._aim is None:
+                self._aim = entry(aim, *given)
+            self._aim(*given)
 
         parts = shares(n)
         if len(parts) > 1:
@@ -193,9 +200,19 @@ class Router:
         Those who have no corner to pass, and those behind whose corner it is too narrow to go
         abreast, keep the points of `targets`, which must be of now.
         """
-        points = targets.points.copy()
+        points = np.array(targets.points, dtype=np.float64, order="C")
         if targets.corners is not None:
-            pass_abreast(self._sight, self._ways, positions, targets.corners, areas, points)
+            given = (
+                self._sight,
+                self._ways,
+                np.ascontiguousarray(positions, dtype=np.float64),
+                np.ascontiguousarray(targets.corners, dtype=np.int64),
+                np.ascontiguousarray(areas, dtype=np.float64),
+                points,
+            )
+            if self._pass is None:
+                self._pass = entry(pass_abreast, *given)
+            self._pass(*given)
         return points
 
     def _tabulate(self, numbers: NDArray[np.int64]) -> None:

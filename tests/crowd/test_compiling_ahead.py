@@ -18,7 +18,7 @@ FUNCTIONS = [
     motion.due,
     motion._move,
     neighbours.build_grid,
-    neighbours.headways,
+    neighbours.write_headways,
     beyond.walk_on,
     beyond.move_on,
     patience.turn,

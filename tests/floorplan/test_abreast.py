@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Polygon, box
 
-from mesa_mobility.floorplan import Exit, FloorPlan, Router, line_of_sight
+from mesa_mobility.floorplan import Exit, FloorPlan, Router, Targets, line_of_sight
 
 # Two halls at a right angle, 20 m wide both. Round their corner, (20, 20), the way on leads to the
 # right: what is behind it is in view from below y = 19.8, where the route bends.
@@ -53,6 +53,21 @@ def test_those_behind_pass_farther_out(place, area, out):
     _, point = aims(HALLS, place, area)
     assert point[1] < BEND[1]
     assert passes_at(place, point) == pytest.approx(BEND[0] - out, abs=0.02)
+
+
+def test_whatever_the_arrays_are_made_of():
+    router = Router(HALLS)
+    places = np.array([[15.0, 26.0], [17.0, 23.0], [10.0, 30.0]])
+    found = router.targets(places, [0, 0, 0])
+    areas = np.array([3.0, 16.0, 40.0])
+    expected = router.abreast(places, found, areas)
+    corners = np.repeat(found.corners, 2, axis=0).astype(np.int32)[::2]
+    points = found.points.copy(order="F")
+    other = Targets(points, found.gates, found.distances, corners)
+    assert not places.copy(order="F").flags.c_contiguous
+    assert (router.abreast(places.copy(order="F"), other, areas.astype(int)) == expected).all()
+    assert (points == found.points).all()
+    assert (expected != found.points).any(axis=1).all()
 
 
 @pytest.mark.parametrize("place", [(15.0, 26.0), (3.0, 45.0), (19.0, 21.0)])
