@@ -32,12 +32,25 @@ part = partial(lean, forceinline=True)
 array is some eight, and to hand them on takes longer than much of what is done with them."""
 
 
-def entry(function: Any, *arguments: Any) -> Callable[..., Any]:
-    """The compiled ``function`` for arguments of the types of these.
+class Entry:
+    """A compiled function that is always given arguments of the types of its first call.
 
-    To call it spares Numba the look-up of their types, which for tuples of arrays takes longer than
-    all else about a call. It must be given arguments of just these types, arrays as contiguous as
-    these: nobody looks at that any more.
+    That spares Numba the look-up of these types, which for tuples of arrays takes longer than all
+    else about a call. Nobody looks at them any more: other ones crash it, arrays less contiguous
+    than the first ones are misread.
+
+    Args:
+        function: one that Numba compiles.
     """
-    compiled: Callable[..., Any] = function.compile(tuple(map(typeof, arguments)))
-    return compiled
+
+    __slots__ = ("_call", "_function")
+
+    def __init__(self, function: Any) -> None:
+        self._function = function
+        self._call: Callable[..., Any] | None = None
+
+    def __call__(self, *arguments: Any) -> Any:
+        """What the function gives."""
+        if self._call is None:
+            self._call = self._function.compile(tuple(map(typeof, arguments)))
+        return self._call(*arguments)

@@ -30,6 +30,8 @@ def threads_for(people: int) -> int:
 def shares(people: int) -> list[slice]:
     """So many people in equal parts, one for each thread."""
     threads = threads_for(people)
+    if threads == 1:
+        return [slice(0, people)]
     ends = [people * k // threads for k in range(threads + 1)]
     return [slice(first, last) for first, last in pairwise(ends)]
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from mesa_mobility.jit import entry
+from mesa_mobility.jit import Entry
 
 
 @njit
@@ -13,14 +13,16 @@ def weighted(factor, pair):
 
 
 def test_an_entry_does_what_the_function_does():
+    call = Entry(weighted)
     ones = np.ones(2)
-    call = entry(weighted, 1, (ones, ones))
+    assert call(1, (ones, ones)) == 2
     assert call(3, (np.array([1.0, 2.0]), np.array([10.0, 1.0]))) == 36
     assert len(weighted.signatures) == 1
 
 
-def test_each_kind_of_arguments_has_an_entry_of_its_own():
-    whole, ones = np.ones(2, dtype=np.int64), np.ones(2)
-    calls = entry(weighted, 1, (whole, ones)), entry(weighted, 0.5, (ones[::-1], ones))
-    assert calls[0](2, (np.array([3, 4]), ones)) == 14
-    assert calls[1](0.5, (np.array([3.0, 4.0])[::-1], np.array([1.0, 0.0]))) == 2.0
+def test_its_first_call_tells_the_types():
+    numbers, floats, ones = Entry(weighted), Entry(weighted), np.ones(2)
+    assert numbers(1, (np.array([3, 4]), ones)) == 7
+    assert floats(0.5, (ones[::-1], ones)) == 1.0
+    assert numbers(2, (np.array([3, 4]), ones)) == 14
+    assert floats(0.5, (np.array([3.0, 4.0])[::-1], np.array([1.0, 0.0]))) == 2.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from mesa_mobility.crowd.terms import CostTerm
 from mesa_mobility.crowd.terms_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.work import Work, make_work
 from mesa_mobility.errors import ModelError
-from mesa_mobility.jit import entry
+from mesa_mobility.jit import Entry
 from mesa_mobility.threads import threads_for, together
 
 
@@ -38,7 +38,7 @@ class Decisions:
         self._least_core = least_core
         self._compiled = CompiledTerms()
         self._works: list[Work] = []
-        self._decide: Callable[..., int] | None = None
+        self._decide = Entry(decide)
 
     def take(
         self,
@@ -77,14 +77,14 @@ class Decisions:
             people, offsets = order[first:last], extra_offsets[first : last + 1]
             queue = new_queue(len(people))
 
-            given = (
-                people, queue, frame, table, groups, crowd.records, grid, around, compiled, extra,
-                offsets, self._rules, moving,
-            )  # fmt: skip
-            if self._decide is None:
-                self._decide = entry(decide, *given, works[0])
-            decide_now = self._decide
-            failed = min(together(lambda work: decide_now(*given, work), works))
+            def work_off(work: Work) -> int:
+                place: int = self._decide(
+                    people, queue, frame, table, groups, crowd.records, grid, around, compiled,
+                    extra, offsets, self._rules, moving, work,
+                )  # fmt: skip
+                return place
+
+            failed = min(together(work_off, works))
             if failed < len(people):
                 names = ", ".join(term.name for term in terms)
                 raise ModelError(

@@ -12,7 +12,7 @@ from mesa_mobility.crowd.collision import box_of
 from mesa_mobility.crowd.options import FRAME_SECONDS, SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
 from mesa_mobility.crowd.under_way import facing_at_knot, knot
-from mesa_mobility.jit import called, lean
+from mesa_mobility.jit import Entry, called, lean
 from mesa_mobility.threads import threads_for, together
 
 LONG_AFTER = np.iinfo(np.int64).max
@@ -113,12 +113,14 @@ def move(
     """
     sorted_out = np.empty_like(active)
     if len(active) <= BLOCK:
-        staying, left, *rest = _move(active, frame, frames, table, state, sorted_out)
+        staying, left, *rest = _move_some(active, frame, frames, table, state, sorted_out)
         return Moved(sorted_out[:staying], sorted_out[::-1][:left], *rest)
 
     def part(starts: range) -> list[tuple[int, int, float, int, int]]:
         blocks = [slice(first, first + BLOCK) for first in starts]
-        return [_move(active[own], frame, frames, table, state, sorted_out[own]) for own in blocks]
+        return [
+            _move_some(active[own], frame, frames, table, state, sorted_out[own]) for own in blocks
+        ]
 
     # One part for each thread: to hand a block to a thread takes longer than to move half of it.
     starts = range(0, len(active), BLOCK)
@@ -208,3 +210,6 @@ def _move(
             staying += 1
             soonest = min(soonest, _next_event(i, frame, state))
     return staying, left, speeds, fallen, soonest
+
+
+_move_some = Entry(_move)

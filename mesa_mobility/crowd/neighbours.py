@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.jit import called, lean, part
+from mesa_mobility.jit import Entry, called, lean, part
 from mesa_mobility.threads import shares, together
 
 CELL_SIZE = 1.5
@@ -76,10 +76,11 @@ def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
     and radius of a circle around all that they cover on their way, their body included.
     """
     found = np.empty((COVERED + 3, len(grid.people)))
-    together(
-        lambda own: write_headways(grid, state, own.start, own.stop, found),
-        shares(len(grid.people)),
-    )
+
+    def share(own: slice) -> None:
+        _write_headways(grid, state, own.start, own.stop, found)
+
+    together(share, shares(len(grid.people)))
     return found
 
 
@@ -97,6 +98,9 @@ def write_headways(
         found[4, a], found[5, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
         found[6, a] = state.route[i]
         cover_in(found, a, i, state)
+
+
+_write_headways = Entry(write_headways)
 
 
 @part()

@@ -1,6 +1,6 @@
 """Routes: where each person should aim now, and how far it is to the exit or gate it goes to."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -19,7 +19,7 @@ from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
 from mesa_mobility.floorplan.views import no_views
-from mesa_mobility.jit import entry
+from mesa_mobility.jit import Entry
 from mesa_mobility.threads import shares, together
 
 if TYPE_CHECKING:
@@ -101,8 +101,7 @@ class Router:
         self._lengths: NDArray[np.float64] = np.empty((0, 0))
         self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
         self._follow: dict[int, NDArray[np.int64]] = {}
-        self._aim: Callable[..., None] | None = None
-        self._pass: Callable[..., None] | None = None
+        self._aim, self._pass_abreast = Entry(aim), Entry(pass_abreast)
         self._update()
 
     @property
@@ -176,13 +175,10 @@ class Router:
             self._tabulate(numbers)
 
         def aims(own: slice, learn: bool) -> None:
-            given = (
+            self._aim(
                 self._sight, self._ways, self._views, xy[own], numbers[own], self._lengths,
                 self._nexts, learn, points[own], gates[own], distances[own], corners[own],
             )  # fmt: skip
-            if self._aim is None:
-                self._aim = entry(aim, *given)
-            self._aim(*given)
 
         parts = shares(n)
         if len(parts) > 1:
@@ -202,7 +198,7 @@ class Router:
         """
         points = np.array(targets.points, dtype=np.float64, order="C")
         if targets.corners is not None:
-            given = (
+            self._pass_abreast(
                 self._sight,
                 self._ways,
                 np.ascontiguousarray(positions, dtype=np.float64),
@@ -210,9 +206,6 @@ class Router:
                 np.ascontiguousarray(areas, dtype=np.float64),
                 points,
             )
-            if self._pass is None:
-                self._pass = entry(pass_abreast, *given)
-            self._pass(*given)
         return points
 
     def _tabulate(self, numbers: NDArray[np.int64]) -> None:
