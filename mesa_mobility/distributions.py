@@ -1,7 +1,8 @@
 """Distributions that speeds and times are drawn from, built or read from a text.
 
-Draws come from NumPy's generator; only bounded ones need SciPy's truncated distributions, which
-are loaded when the first is drawn.
+A crowd is drawn in strata: its members share out the distribution among them, so that even a
+small crowd has the spread that was asked for, and runs differ by who is fast and not by how many
+are. Only bounded normals need SciPy's truncated ones, which are loaded when the first is drawn.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import gammaincinv, ndtri
 
 from mesa_mobility.errors import ModelError
 
@@ -26,8 +28,27 @@ class Distribution(ABC):
     """A distribution of numbers: seconds, or m/s."""
 
     @abstractmethod
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares of the distribution lie, each in (0, 1)."""
+
     def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
+        """(n,) draws, one from each of n equal parts of the distribution, in random order.
+
+        One draw alone has the distribution itself. For draws that are independent of one another,
+        as many single ones.
+        """
+        return self.quantile(strata(n, rng))
+
+
+def strata(n: int, rng: np.random.Generator) -> NDArray[np.float64]:
+    """(n,) shares in (0, 1), one at random in each nth part, in random order.
+
+    Latin hypercube sampling in one dimension (McKay, Beckman and Conover 1979, Technometrics 21:
+    239-245).
+    """
+    share = (rng.permutation(n) + rng.random(n)) / max(n, 1)
+    # 0 and 1, which rounding can give, have no quantile.
+    return np.clip(share, 2.0**-54, 1.0 - 2.0**-53)
 
 
 @dataclass(frozen=True)
@@ -42,6 +63,10 @@ class Constant(Distribution):
 
     def __post_init__(self) -> None:
         _check(self, _finite(self.value), "a finite value")
+
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) times the value."""
+        return np.full(len(share), float(self.value))
 
     def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
         """(n,) times the value; nothing is drawn from the generator."""
@@ -62,9 +87,9 @@ class Uniform(Distribution):
     def __post_init__(self) -> None:
         _check(self, _finite(self.low, self.high) and self.low <= self.high, "finite low <= high")
 
-    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
-        return rng.uniform(self.low, self.high, n)
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares lie."""
+        return self.low + (self.high - self.low) * share
 
 
 @dataclass(frozen=True)
@@ -88,9 +113,9 @@ class Normal(Distribution):
         if self.sd == 0.0:
             _check(self, self.low <= self.mean <= self.high, "a mean within the bounds")
 
-    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
-        return _normal(self.mean, self.sd, self.low, self.high, n, rng)
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares lie."""
+        return _normal(self.mean, self.sd, self.low, self.high, share)
 
 
 @dataclass(frozen=True)
@@ -109,9 +134,9 @@ class Clipped(Distribution):
         _check(self, isinstance(self.of, Distribution), "a distribution")
         _check(self, _ordered(self.low, self.high), "low <= high")
 
-    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
-        return np.clip(self.of.draw(n, rng), self.low, self.high)
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares lie."""
+        return np.clip(self.of.quantile(share), self.low, self.high)
 
 
 @dataclass(frozen=True)
@@ -134,11 +159,11 @@ class LogNormal(Distribution):
         _check(self, _finite(self.mu, self.sigma) and self.sigma > 0.0, "finite mu and sigma > 0")
         _check(self, _ordered(0.0, self.low) and self.low < self.high, "0 <= low < high")
 
-    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares lie."""
         low = math.log(self.low) if self.low > 0.0 else -math.inf
-        drawn = np.exp(_normal(self.mu, self.sigma, low, math.log(self.high), n, rng))
-        return np.clip(drawn, self.low, self.high)  # for the rounding of exp
+        values = np.exp(_normal(self.mu, self.sigma, low, math.log(self.high), share))
+        return np.clip(values, self.low, self.high)  # for the rounding of exp
 
 
 @dataclass(frozen=True)
@@ -155,9 +180,9 @@ class Weibull(Distribution):
     def __post_init__(self) -> None:
         _check_positive(self)
 
-    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
-        return self.scale * rng.weibull(self.shape, n)
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares lie."""
+        return self.scale * (-np.log1p(-share)) ** (1.0 / self.shape)
 
 
 @dataclass(frozen=True)
@@ -174,9 +199,10 @@ class Gamma(Distribution):
     def __post_init__(self) -> None:
         _check_positive(self)
 
-    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
-        return rng.gamma(self.shape, self.scale, n)
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares lie."""
+        values: NDArray[np.float64] = self.scale * gammaincinv(self.shape, share)
+        return values
 
 
 class Empirical(Distribution):
@@ -229,9 +255,10 @@ class Empirical(Distribution):
         except (ValueError, IndexError):
             raise ModelError(f"{path}: column {column!r}, expected a number in each line") from None
 
-    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(n,) independent draws."""
-        return rng.choice(self.values, n)
+    def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) values below which these shares lie."""
+        at = (share * len(self.values)).astype(np.int64)
+        return np.sort(self.values)[np.minimum(at, len(self.values) - 1)]
 
     def __repr__(self) -> str:
         return f"Empirical({len(self.values)} values)"
@@ -270,15 +297,16 @@ def parse(text: str) -> Distribution:
 
 
 def _normal(
-    mean: float, sd: float, low: float, high: float, n: int, rng: np.random.Generator
+    mean: float, sd: float, low: float, high: float, share: NDArray[np.float64]
 ) -> NDArray[np.float64]:
+    values: NDArray[np.float64]
     if sd == 0.0 or (low == -math.inf and high == math.inf):
-        return rng.normal(mean, sd, n)
+        values = mean + sd * ndtri(share)
+        return values
     from scipy.stats import truncnorm
 
-    bounds = (low - mean) / sd, (high - mean) / sd
-    drawn: NDArray[np.float64] = truncnorm.rvs(*bounds, mean, sd, size=n, random_state=rng)
-    return np.clip(drawn, low, high)  # for rounding
+    values = truncnorm.ppf(share, (low - mean) / sd, (high - mean) / sd, mean, sd)
+    return np.clip(values, low, high)  # for rounding
 
 
 def _finite(*values: float) -> bool:

@@ -10,6 +10,7 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.distributions import strata
 from mesa_mobility.errors import ModelError
 
 WITHIN = 3.0
@@ -23,7 +24,8 @@ def walking_speed(
 
     Mean and standard deviation are those of Weidmann (1993), as RiMEA shows them in its test 7,
     linear between the ages given there; speeds are normal about the mean, cut off at three
-    deviations and at what bodies can do.
+    deviations and at what bodies can do. How far the people given are from their mean is drawn in
+    strata, as from any `Distribution`.
 
     Args:
         ages: (n,) years, 3 to 80.
@@ -43,7 +45,8 @@ def walking_speed(
     if not (fastest >= means).all():
         raise ModelError(f"fastest: {fastest} m/s, expected at least the mean, {means.max():.2f}")
     most = np.minimum((fastest - means) / deviations, WITHIN)
-    return means + deviations * truncnorm.rvs(-WITHIN, most, random_state=rng)
+    off = truncnorm.ppf(strata(len(years), rng), -WITHIN, most)
+    return np.minimum(means + deviations * off, fastest)  # for rounding
 
 
 @cache

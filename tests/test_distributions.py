@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -44,6 +44,35 @@ def drawn(distribution, n=MANY, seed=1):
 )
 def test_draws_follow_the_closed_form(distribution, cdf):
     assert stats.kstest(drawn(distribution), cdf).pvalue > 0.01
+
+
+@given(n=st.integers(1, 300), seed=st.integers(0, 2**32 - 1))
+@example(n=1, seed=0)
+def test_a_crowd_shares_out_its_distribution(n, seed):
+    # Of 1 - exp(-(x / 2)^3), one lies in each nth part: between 0 and 1/n, 1/n and 2/n, ...
+    below = 1.0 - np.exp(-((np.sort(drawn(Weibull(2.0, 3.0), n, seed)) / 2.0) ** 3))
+    part = np.arange(n)
+    assert (below * n >= part - 1e-6).all()
+    assert (below * n <= part + 1 + 1e-6).all()
+
+
+def test_who_gets_which_part_is_random():
+    x = np.array([drawn(Uniform(0.0, 1.0), 4, seed) for seed in range(2_000)])
+    # Each of four people gets each quarter in 500 of 2,000 crowds, 19 being one deviation.
+    counts = [np.histogram(column, 4, (0.0, 1.0))[0] for column in x.T]
+    assert np.abs(np.array(counts) - 500).max() < 90
+    # Within its quarter a value may be anywhere.
+    assert stats.kstest((x * 4 % 1).ravel(), "uniform").pvalue > 0.01
+
+
+def test_draws_for_two_things_have_nothing_to_do_with_each_other():
+    rng = np.random.default_rng(7)
+    speed, time = Normal(1.3, 0.2).draw(5_000, rng), Weibull(60.0, 1.2).draw(5_000, rng)
+    assert abs(stats.spearmanr(speed, time).statistic) < 0.05
+
+
+def test_nobody_draws_nothing():
+    assert Normal(1.3, 0.2).draw(0, np.random.default_rng(1)).shape == (0,)
 
 
 def test_a_constant_draws_nothing_from_the_generator():

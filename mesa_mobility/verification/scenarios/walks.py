@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
+from mesa_mobility.distributions import Normal, Uniform
 from mesa_mobility.populations import WITHIN, walking_speed
 from mesa_mobility.verification.references import speed_by_age
 from mesa_mobility.verification.runs import CLEARANCE, Run, crowd_model, evacuate, passing_time
@@ -86,13 +87,13 @@ def speeds_walked(run: Run, n: int) -> list[float | None]:
 def uniform_speeds(seed: int, *, people: int, low: float, high: float) -> dict[str, Any]:
     """People with speeds from U(low, high)."""
     model = lanes_model(people, seed)
-    return _walked(model, model.rng.uniform(low, high, people))
+    return _walked(model, Uniform(low, high).draw(people, model.rng))
 
 
 def normal_speeds(seed: int, *, people: int, mean: float, sd: float) -> dict[str, Any]:
     """People with speeds from N(mean, sd)."""
     model = lanes_model(people, seed)
-    return _walked(model, model.rng.normal(mean, sd, people))
+    return _walked(model, Normal(mean, sd).draw(people, model.rng))
 
 
 def speeds_by_age(seed: int, *, people: int, youngest: float, oldest: float) -> dict[str, Any]:
