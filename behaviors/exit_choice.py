@@ -24,6 +24,7 @@ class Choosing:
         preferred_speeds: (k,) how fast each would walk if nothing slowed it down, m/s.
         distances: (k, e) metres to each exit; inf where it is closed, out of reach or not theirs.
         current: (k,) number of the exit that each heads for, -1 for none.
+        under_way: (k,) seconds since each chose an exit for the first time.
         heading: (m,) the same of everybody inside, in the order of ``deciding.inside``.
         deciding: everybody who decides, and everybody inside.
     """
@@ -33,6 +34,7 @@ class Choosing:
     preferred_speeds: NDArray[np.float64]
     distances: NDArray[np.float64]
     current: NDArray[np.int64]
+    under_way: NDArray[np.float64]
     heading: NDArray[np.int64]
     deciding: Deciding
 
@@ -57,6 +59,7 @@ class ExitChoice(TargetChoice):
         self.interval = interval
         self._chosen = np.empty(0, dtype=np.int64)
         self._thought = np.empty(0)
+        self._set_out = np.empty(0)
 
     @abstractmethod
     def choose(self, choosing: Choosing) -> NDArray[np.int64]:
@@ -85,6 +88,8 @@ class ExitChoice(TargetChoice):
         again = deciding.rng.random(len(rows)) < 1.0 - np.exp(-waited / self.interval)
         who = np.flatnonzero((again | (self._chosen[rows] == UNDECIDED) | gone) & ~for_gate)
         self._thought[rows] = deciding.elapsed
+        new = who[np.isnan(self._set_out[rows[who]])]
+        self._set_out[rows[new]] = deciding.elapsed
         if len(who):
             self._chosen[rows[who]] = self._choice(deciding, who, numbers, may[who])
         chosen = self._chosen[rows]
@@ -118,6 +123,7 @@ class ExitChoice(TargetChoice):
             preferred_speeds=inside.preferred_speeds[inside.places(rows)],
             distances=distances,
             current=self._chosen[rows],
+            under_way=deciding.elapsed - self._set_out[rows],
             heading=heading,
             deciding=deciding,
         )
@@ -143,3 +149,4 @@ class ExitChoice(TargetChoice):
         if more > 0:
             self._chosen = np.append(self._chosen, np.full(more, UNDECIDED))
             self._thought = np.append(self._thought, np.zeros(more))
+            self._set_out = np.append(self._set_out, np.full(more, np.nan))

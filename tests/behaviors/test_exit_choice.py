@@ -75,6 +75,23 @@ def test_only_a_gain_of_a_tenth_turns_people_round(queue, turns):
     assert heads_for(choice, [person]) == [int(turns)]
 
 
+@pytest.mark.parametrize(("queue", "turns"), [(33, False), (36, True)])
+def test_the_longer_people_have_been_under_way_the_more_they_must_gain(queue, turns):
+    # 10 s either way, and a minute gone. 33 before oneself make it 17.67 s: 7.67 s to gain, of
+    # 77.7 s in all, are less than a tenth; with 36 it is 8.36 s of 78.4 s.
+    choice = QuickestExit(interval=0.01)
+    model = model_of(hall(), [statues(), statues()], target_choice=choice, rng=1)
+    person = put(model, 10.0, 3.0, preferred_speeds=[1.0])
+    advance(model, 1800)
+    model.add_pedestrians(
+        [(1.0 + 0.5 * (k // 10), 0.5 + 0.5 * (k % 10)) for k in range(queue)],
+        exits=["left"],
+        kind=1,
+    )
+    advance(model, 13)
+    assert heads_for(choice, [person]) == [int(turns)]
+
+
 def test_a_jam_at_the_nearer_exit_sends_some_to_the_farther_one():
     # RiMEA test 11, smaller: two exits in one wall, everybody nearer to the first of them.
     near, far = Exit("near", (11, 10), (12, 10)), Exit("far", (16, 10), (17, 10))
