@@ -41,13 +41,16 @@ def test_no_option_of_a_group_costs_less_than_its_bound(x, y, radius, angle, out
     assert least >= 0.0
 
 
-def test_ten_people_walk_one_behind_the_other():
+def test_people_in_a_jam_walk_one_behind_the_other():
     from mesa_mobility.verification.scenarios.oval import oval_model
 
-    model = oval_model(OVAL, 10, 1, speed=1.2, spacing=0.34, clearance=0.18)
+    model = oval_model(OVAL, 30, 1, speed=1.2, spacing=0.34, clearance=0.18)
     model.terms.append(InLine(OVAL))
+    squares = []
     while model.elapsed < 30.0:
         model.step()
-    aside = OVAL.unroll(np.array([person.position for person in model.agents]))[1]
-    # Without the term they use the 0.26 m that there are on either side.
-    assert np.abs(aside).max() < 0.12
+        if model.elapsed >= 15.0:
+            places = np.array([person.position for person in model.agents])
+            squares.append(OVAL.unroll(places)[1] ** 2)
+    # Without the term they use the room on either side, and are 0.16 m off on average.
+    assert np.sqrt(np.mean(squares)) < 0.1

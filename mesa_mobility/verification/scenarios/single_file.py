@@ -42,11 +42,13 @@ def _off_line_bound(  # type: ignore[no-untyped-def]
 class InLine(CompiledTerm):
     """Metres from the mobility point to the centre line of an oval.
 
-    Dear enough that nobody leaves the line for the room beside whoever walks ahead.
+    Dear enough that nobody leaves the line for the room beside whoever walks ahead: with 20 a
+    metre people in a jam are as near to it as those who walk freely (0.05 to 0.07 m, root mean
+    square, against 0.06), with 10 they are 0.09 m off and with 5 0.13.
     """
 
     name = "in_line"
-    default_weight = 10.0
+    default_weight = 20.0
     kernel = _off_line
     bound = _off_line_bound
 
