@@ -78,7 +78,7 @@ PRESETS = {
         name="default",
         terms={
             "target_distance": 1.0,
-            "facing_deviation": 1.0,
+            "facing_deviation": 1.2,
             "preferred_velocity": 2.0,
             "interference": 1.0,
             "headway": 1.5,
