@@ -11,9 +11,11 @@ to as many of its registers as they take.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from llvmlite import ir
+from llvmlite.binding import llvm_version_info
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
@@ -29,6 +31,9 @@ SAMPLES = 16
 
 AT_ONCE = 32
 """Numbers of which the least is found at once."""
+
+_PRESSES = 19
+"""Version of LLVM from which on it has an instruction for pressing lanes together."""
 
 BIT, INT, LONG = ir.IntType(1), ir.IntType(32), ir.IntType(64)
 FLOAT, DOUBLE = ir.FloatType(), ir.DoubleType()
@@ -135,10 +140,45 @@ def _lesser(builder: Any, value: Any, place: Any, other: Any, elsewhere: Any) ->
     return builder.select(less, other, value), builder.select(less, elsewhere, place)
 
 
-def some_lanes(builder: Any, vector: Any, lanes: range) -> Any:
+def some_lanes(builder: Any, vector: Any, lanes: Sequence[int]) -> Any:
     """Those of the lanes of a vector."""
     mask = ir.Constant(ir.VectorType(INT, len(lanes)), list(lanes))
     return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined), mask)
+
+
+def times(builder: Any, one: Any, other: Any) -> Any:
+    """A product that may be added to something without being rounded, where that is one step."""
+    return builder.fmul(one, other, flags=("contract",))
+
+
+def plus(builder: Any, one: Any, other: Any) -> Any:
+    """A sum; a product in it need not be rounded (see ``times``)."""
+    return builder.fadd(one, other, flags=("contract",))
+
+
+def minus(builder: Any, one: Any, other: Any) -> Any:
+    """A difference; a product in it need not be rounded (see ``times``)."""
+    return builder.fsub(one, other, flags=("contract",))
+
+
+def less_of(builder: Any, one: Any, other: Any) -> Any:
+    """The lesser of two, lane by lane."""
+    return builder.select(builder.fcmp_ordered("<", one, other), one, other)
+
+
+def more_of(builder: Any, one: Any, other: Any) -> Any:
+    """The greater of two, lane by lane."""
+    return builder.select(builder.fcmp_ordered(">", one, other), one, other)
+
+
+def across(builder: Any, vector: Any, of_two: Callable[[Any, Any, Any], Any]) -> Any:
+    """The least or the greatest of the lanes of a vector, by what tells it of two."""
+    width = vector.type.count
+    while width > 1:
+        width //= 2
+        halves = (some_lanes(builder, vector, range(first, first + width)) for first in (0, width))
+        vector = of_two(builder, *halves)
+    return builder.extract_element(vector, ir.Constant(INT, 0))
 
 
 @intrinsic
@@ -181,17 +221,41 @@ def lowest_bit(typingctx, bits):
     return types.int64(types.int64), codegen
 
 
-@intrinsic
-def copy_lanes(typingctx, given, row, at, to, first, place, rows):
-    """Copy 8 elements from place ``at`` on in each of so many rows.
+def _pressed(builder: Any, vector: Any, bits: Any) -> Any:
+    """Those lanes of a vector whose bit is set, side by side from the first one on."""
+    width = vector.type.count
+    mask = builder.bitcast(builder.trunc(bits, ir.IntType(width)), ir.VectorType(BIT, width))
+    none = ir.Constant(vector.type, ir.Undefined)
+    if llvm_version_info[0] >= _PRESSES:
+        kind = f"{'f' if vector.type.element == DOUBLE else 'i'}64"
+        press = cgutils.get_or_insert_function(
+            builder.module,
+            ir.FunctionType(vector.type, [vector.type, mask.type, vector.type]),
+            f"llvm.experimental.vector.compress.v{width}{kind}",
+        )
+        return builder.call(press, [vector, mask, none])
+    found = cgutils.alloca_once(builder, ir.VectorType(vector.type.element, width))
+    start = builder.bitcast(found, vector.type.element.as_pointer())
+    at = ir.Constant(LONG, 0)
+    for lane in range(width):
+        number = ir.Constant(INT, lane)
+        builder.store(builder.extract_element(vector, number), builder.gep(start, [at]))
+        at = builder.add(at, builder.zext(builder.extract_element(mask, number), LONG))
+    return builder.load(found)
 
-    ``given`` and ``to`` are C-contiguous arrays of the same type; rows are copied from ``row`` on
-    to those from ``first`` on, there from ``place`` on. ``rows`` is a literal number.
+
+@intrinsic
+def press_lanes(typingctx, given, row, at, bits, to, first, place, rows):
+    """Copy those of 8 elements of 8 bytes whose bit is set, side by side, in each of so many rows.
+
+    ``given`` and ``to`` are C-contiguous arrays of the same type; rows are copied from ``row`` on,
+    from place ``at`` on, to those from ``first`` on, there from ``place`` on. ``rows`` is a literal
+    number. Read and written are whole vectors: what follows is of no meaning.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         places = []
-        for array, line, at in ((0, 1, 2), (3, 4, 5)):
+        for array, line, at in ((0, 1, 2), (4, 5, 6)):
             kind = sig.args[array]
             held = cgutils.create_struct_proxy(kind)(context, builder, args[array])
             width = cgutils.unpack_tuple(builder, held.shape, kind.ndim)[-1]
@@ -201,9 +265,37 @@ def copy_lanes(typingctx, given, row, at, to, first, place, rows):
         for k in range(rows.literal_value):
             by = ir.Constant(LONG, k)
             values = load(builder, source, builder.add(at, builder.mul(width, by)), LANES)
+            values = _pressed(builder, values, args[3])
             store(builder, values, target, builder.add(place, builder.mul(there, by)))
         return context.get_dummy_value()
 
     if not isinstance(rows, types.IntegerLiteral):
         return None
-    return types.void(given, row, at, to, first, place, rows), codegen
+    return types.void(given, row, at, types.int64, to, first, place, rows), codegen
+
+
+@intrinsic
+def press_numbers(typingctx, first, bits, to, place):
+    """Write those of the 8 whole numbers from ``first`` on whose bit is set, side by side.
+
+    ``to`` int64; written is a whole vector: what follows is of no meaning.
+    """
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        begin = start_of(context, builder, sig.args[2], args[2])
+        first, place = (whole(context, builder, sig.args[k], args[k]) for k in (0, 3))
+        values = builder.add(spread(builder, first, LANES), numbers(LANES))
+        store(builder, _pressed(builder, values, args[1]), begin, place)
+        return context.get_dummy_value()
+
+    return types.void(first, types.int64, to, place), codegen
+
+
+@intrinsic
+def bits_set(typingctx, bits):
+    """How many bits are set."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.ctpop(args[0])
+
+    return types.int64(types.int64), codegen

@@ -10,6 +10,7 @@ farther away than it can move between samples does not. Only what is left needs 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -29,12 +30,17 @@ from mesa_mobility.lanes import (
     LONG,
     SAMPLES,
     WIDE,
+    across,
+    less_of,
     load,
+    minus,
+    more_of,
+    plus,
     same,
-    some_lanes,
     spread,
     start_of,
     store,
+    times,
     whole,
 )
 
@@ -100,40 +106,34 @@ def _off2(builder: Any, x: Any, y: Any, barriers: Any, size: Any, at: Any) -> An
         )
         for k in range(BARRIER_FIELDS)
     )
-    add, sub, mul = builder.fadd, builder.fsub, builder.fmul
+    add, sub, mul = (partial(step, builder) for step in (plus, minus, times))
     qx, qy = sub(x, ax), sub(y, ay)
     along = mul(add(mul(qx, ex), mul(qy, ey)), inverse)
-    none, all_ = same(FLOAT, width, 0.0), same(FLOAT, width, 1.0)
-    along = builder.select(builder.fcmp_ordered(">", along, none), along, none)
-    along = builder.select(builder.fcmp_ordered("<", along, all_), along, all_)
+    along = more_of(builder, along, same(FLOAT, width, 0.0))
+    along = less_of(builder, along, same(FLOAT, width, 1.0))
     qx, qy = sub(qx, mul(along, ex)), sub(qy, mul(along, ey))
     return add(mul(qx, qx), mul(qy, qy))
 
 
-def _least_off2(
-    builder: Any, x: Any, y: Any, context: Any, kind: Any, barriers: Any, known: Any
-) -> Any:
-    """Squared distances of places from the nearest of the first ``known`` barriers."""
-    begin = start_of(context, builder, kind, barriers)
-    shape = cgutils.create_struct_proxy(kind)(context, builder, barriers).shape
-    size = builder.extract_value(shape, 1)
+def _least_off2(builder: Any, x: Any, y: Any, begin: Any, first: Any, size: Any, known: Any) -> Any:
+    """Squared distances of places from the nearest of ``known`` barriers from one on."""
     least = cgutils.alloca_once(builder, x.type)
     builder.store(same(FLOAT, x.type.count, math.inf), least)
     with cgutils.for_range(builder, known) as loop:
-        off2 = _off2(builder, x, y, begin, size, loop.index)
-        before = builder.load(least)
-        builder.store(builder.select(builder.fcmp_ordered("<", off2, before), off2, before), least)
+        off2 = _off2(builder, x, y, begin, size, builder.add(first, loop.index))
+        builder.store(less_of(builder, off2, builder.load(least)), least)
     return builder.load(least)
 
 
 @intrinsic
-def drop_beside(typingctx, circles, at, row, n, barriers, known, apart, dropped):
+def drop_beside(typingctx, circles, at, row, n, barriers, first, size, known, apart, dropped):
     """Set ``dropped`` of those of n circles that lie wholly within ``apart`` of a barrier.
 
     Args:
         circles: float32, C-contiguous: x of the first circle at place ``at``, its y ``row`` places
             and its radius twice as many farther on. Read are whole vectors.
-        barriers: (5, size) float32, C-contiguous.
+        barriers: float32, C-contiguous: the first field of the first barrier at place ``first``,
+            each of the others ``size`` places farther on.
         known: how many barriers.
         apart: metres.
         dropped: int32 by circle.
@@ -141,20 +141,19 @@ def drop_beside(typingctx, circles, at, row, n, barriers, known, apart, dropped)
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
-        marks = start_of(context, builder, sig.args[7], args[7])
+        barriers_begin = start_of(context, builder, sig.args[4], args[4])
+        marks = start_of(context, builder, sig.args[9], args[9])
         at, row, n = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2, 3))
-        known = whole(context, builder, sig.args[5], args[5])
-        apart = spread(builder, builder.fptrunc(args[6], FLOAT), WIDE)
-        none = same(FLOAT, WIDE, 0.0)
+        of = [whole(context, builder, sig.args[k], args[k]) for k in (5, 6, 7)]
+        apart = spread(builder, builder.fptrunc(args[8], FLOAT), WIDE)
         wide = ir.Constant(LONG, WIDE)
         with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
             place = builder.add(at, block)
             x = load(builder, begin, place, WIDE)
             y = load(builder, begin, builder.add(place, row), WIDE)
             radius = load(builder, begin, builder.add(place, builder.add(row, row)), WIDE)
-            off2 = _least_off2(builder, x, y, context, sig.args[4], args[4], known)
-            room = builder.fsub(apart, radius)
-            room = builder.select(builder.fcmp_ordered(">", room, none), room, none)
+            off2 = _least_off2(builder, x, y, barriers_begin, *of)
+            room = more_of(builder, builder.fsub(apart, radius), same(FLOAT, WIDE, 0.0))
             within = builder.fcmp_ordered("<", off2, builder.fmul(room, room))
             before = builder.icmp_signed(
                 "!=", load(builder, marks, block, WIDE), same(INT, WIDE, 0)
@@ -163,12 +162,12 @@ def drop_beside(typingctx, circles, at, row, n, barriers, known, apart, dropped)
             store(builder, builder.zext(found, ir.VectorType(INT, WIDE)), marks, block)
         return context.get_dummy_value()
 
-    given = [circles, at, row, n, barriers, known, types.float64, dropped]
+    given = [circles, at, row, n, barriers, first, size, known, types.float64, dropped]
     return types.void(*given), codegen
 
 
 @intrinsic
-def places_beside(typingctx, places, at, row, barriers, known, apart):
+def places_beside(typingctx, places, at, row, barriers, first, size, known, apart):
     """Bits of those of 8 places closer than ``apart`` to a barrier.
 
     ``places`` float32, C-contiguous: x of the first at place ``at``, its y ``row`` places farther
@@ -177,16 +176,18 @@ def places_beside(typingctx, places, at, row, barriers, known, apart):
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
+        barriers_begin = start_of(context, builder, sig.args[3], args[3])
         at, row = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
-        known = whole(context, builder, sig.args[4], args[4])
+        of = [whole(context, builder, sig.args[k], args[k]) for k in (4, 5, 6)]
         x = load(builder, begin, at, LANES)
         y = load(builder, begin, builder.add(at, row), LANES)
-        apart = spread(builder, builder.fptrunc(args[5], FLOAT), LANES)
-        off2 = _least_off2(builder, x, y, context, sig.args[3], args[3], known)
+        apart = spread(builder, builder.fptrunc(args[7], FLOAT), LANES)
+        off2 = _least_off2(builder, x, y, barriers_begin, *of)
         within = builder.fcmp_ordered("<", off2, builder.fmul(apart, apart))
         return builder.zext(builder.bitcast(within, ir.IntType(LANES)), LONG)
 
-    return types.int64(places, at, row, barriers, known, types.float64), codegen
+    given = [places, at, row, barriers, first, size, known, types.float64]
+    return types.int64(*given), codegen
 
 
 @intrinsic
@@ -194,24 +195,19 @@ def path_off2(typingctx, paths, path, barriers, known):
     """Least squared distance of the samples of a path from any of the barriers, inf without any.
 
     ``paths`` (n, 3, 16) float32, C-contiguous: x, y and something else at the samples; ``path``
-    which one; the others as of ``drop_beside``.
+    which one; ``barriers`` (5, size) float32, C-contiguous, of which the first ``known`` count.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
+        held = cgutils.create_struct_proxy(sig.args[2])(context, builder, args[2])
+        size = builder.extract_value(held.shape, 1)
         path = whole(context, builder, sig.args[1], args[1])
         known = whole(context, builder, sig.args[3], args[3])
         start = builder.mul(path, ir.Constant(LONG, 3 * SAMPLES))
         x = load(builder, begin, start, SAMPLES)
         y = load(builder, begin, builder.add(start, ir.Constant(LONG, SAMPLES)), SAMPLES)
-        least = _least_off2(builder, x, y, context, sig.args[2], args[2], known)
-        width = SAMPLES
-        while width > 1:
-            width //= 2
-            low, high = (
-                some_lanes(builder, least, range(first, first + width)) for first in (0, width)
-            )
-            least = builder.select(builder.fcmp_ordered("<", low, high), low, high)
-        return builder.fpext(builder.extract_element(least, ir.Constant(INT, 0)), DOUBLE)
+        least = _least_off2(builder, x, y, held.data, ir.Constant(LONG, 0), size, known)
+        return builder.fpext(across(builder, least, less_of), DOUBLE)
 
     return types.float64(paths, path, barriers, known), codegen

@@ -15,7 +15,7 @@ from mesa_mobility.crowd.costs import LEAD, Terms, group_bounds
 from mesa_mobility.crowd.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.groups import OptionGroups
 from mesa_mobility.crowd.motion import commit, lay_path
-from mesa_mobility.crowd.neighbours import COVERED, Grid, cover_in, people_within, place_in
+from mesa_mobility.crowd.neighbours import Grid, cover_in, neighbours_within, place_in
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.pairs import fill_lane, least, mark_counting, pick_foremost
 from mesa_mobility.crowd.queue import Queue, await_neighbours
@@ -24,7 +24,7 @@ from mesa_mobility.crowd.search import CROWD, FEW, NONE, NOT_A_NUMBER, cheapest_
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import called, woven
-from mesa_mobility.lanes import LANES, copy_lanes
+from mesa_mobility.lanes import AT_ONCE, place_of_least
 from mesa_mobility.machine import take_number, tell
 
 
@@ -119,24 +119,11 @@ def _decide_one(
     cluster, destination = state.cluster[i], state.destination[i]
     x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
     me = Stance(i, x, y, math.cos(heading), math.sin(heading), core)
-    count = people_within(grid, x, y, i, rules.search_radius, work.near)
-    near, others, sweeps = work.near[:count], work.others, work.sweeps
-    a = 0
-    while a < count:
-        at = near[a]
-        # Those of a row of the grid lie side by side.
-        if a + LANES <= count and near[a + LANES - 1] == at + LANES - 1:
-            copy_lanes(moving, 0, at, others, 0, a, COVERED)
-            copy_lanes(moving, COVERED, at, sweeps, 0, a, 3)
-            copy_lanes(grid.people, 0, at, near, 0, a, 1)
-            a += LANES
-            continue
-        for row in range(COVERED):
-            others[row, a] = moving[row, at]
-        for row in range(3):
-            sweeps[row, a] = moving[COVERED + row, at]
-        near[a] = grid.people[at]
-        a += 1
+    others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
+    count = neighbours_within(
+        grid, moving, x, y, place, rules.search_radius, work.near, others, sweeps
+    )
+    near = work.near[:count]
     route, lead = state.route[i], others[LEAD]
     for a in range(count):
         lead[a] = route - lead[a]
@@ -156,12 +143,12 @@ def _decide_one(
     )  # fmt: skip
     n = free_groups(
         me, frame, work.close, found, work.barriers, firm, exits_from, table, groups, state,
-        work.bodies, work.circles, work.alive,
+        work.bodies, work.fences, work.blocked,
     )  # fmt: skip
     option, gone = NONE, -1
     if n > 0:
         first, last = spanned.first, spanned.last
-        bounds, dropped = work.bounds[: last - first], work.circles.dropped
+        bounds, dropped = work.bounds[: last - first], work.blocked
         bounds[:] = 0.0
         if bounded:
             group_bounds(me, first, last, groups, state, terms, work.ends, bounds)
@@ -171,13 +158,16 @@ def _decide_one(
             bounds[a] = np.inf if dropped[a] != 0 else bounds[a]
         if bad != 0:
             return False
+        # So many are looked at at once.
+        work.bounds[len(bounds) : len(bounds) + AT_ONCE] = np.inf
+        lowest = bounds[place_of_least(work.bounds, len(bounds))]
         foremost = 0
         if not eager and len(terms.pair_address) > 0:
             foremost = pick_foremost(
                 me, others, count, state, work.unsure, work.dropped, work.foremost
             )
         rough = bounded and mark_counting(
-            me, first, bounds, work.ends, groups, foremost, work.foremost, state, terms,
+            me, first, bounds, lowest, work.ends, groups, foremost, work.foremost, state, terms,
             work.picked, work.marks,
         )  # fmt: skip
         ranked = bounded and n > FEW
@@ -187,8 +177,8 @@ def _decide_one(
             frame, firm, stay, found, touching, count, foremost, rough, exits_from, eager, ranked
         )
         option, gone = cheapest_free(
-            me, setting, first, bounds, walls, extra, rules.cores, table, groups, state, around,
-            terms, work,
+            me, setting, first, bounds, lowest, walls, extra, rules.cores, table, groups, state,
+            around, terms, work,
         )  # fmt: skip
         if option == NOT_A_NUMBER:
             return False
@@ -218,5 +208,5 @@ def _decide_one(
             i, frame, table, state, walls, around, near[:found], exits_from <= farthest,
             rules.cores, standing, work.path,
         )  # fmt: skip
-    cover_in(moving, place_in(grid, x, y, i), i, state)
+    cover_in(moving, place, i, state)
     return True

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.collision import MARGIN, box_of
-from mesa_mobility.crowd.lanewise import lay_samples, near_box
+from mesa_mobility.crowd.lanewise import near_box
+from mesa_mobility.crowd.laying import lay_samples
 from mesa_mobility.crowd.options import SAMPLE_FRAMES, SAMPLES, OptionTable, in_lines
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.under_way import position_at

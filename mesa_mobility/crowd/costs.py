@@ -48,6 +48,7 @@ class Terms(NamedTuple):
 # moment of its decision: place, velocity, unit vector to their targets, metres by which their way
 # is the shorter one, and space for what each costs.
 END_X, END_Y, END_UX, END_UY, SECONDS, SPEED = range(6)
+END_ROWS = 6
 OTHER_X, OTHER_Y, OTHER_VX, OTHER_VY, OTHER_EX, OTHER_EY, LEAD, COST = range(8)
 
 

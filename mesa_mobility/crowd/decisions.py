@@ -71,7 +71,7 @@ class Decisions:
         if others:
             extra, extra_offsets = extra_costs(others, order, table, crowd, grid, self._rules)
         moving = headways(grid, crowd.records)
-        works = self._works_for(threads_for(len(order)), len(rows), around)
+        works = self._works_for(threads_for(len(order)), len(rows), around, len(terms))
 
         def part(first: int, last: int) -> None:
             people, offsets = order[first:last], extra_offsets[first : last + 1]
@@ -117,21 +117,26 @@ class Decisions:
         """Which of these options hit something now; see ``explain.judge``."""
         return judge(weighed, self._repertoire.table, crowd, around, self._rules)
 
-    def _works_for(self, threads: int, people: int, around: Surroundings) -> list[Work]:
-        """Space for decisions among so many people, for each thread."""
+    def _works_for(self, threads: int, people: int, around: Surroundings, terms: int) -> list[Work]:
+        """Space for decisions among so many people by so many terms, for each thread."""
         walls = len(around.segments) + len(around.exits)
         if self._rules.cores:
             # No more bodies than have room within the search radius.
             room = (self._rules.search_radius / self._least_core + 1.0) ** 2
             people = min(people, int(room) + 1)
         works = self._works
-        if works and (people > len(works[0].near) or walls > len(works[0].walls)):
+        if works and (
+            people > len(works[0].marks)
+            or walls > len(works[0].walls)
+            or terms > len(works[0].sums)
+        ):
             works.clear()
         while len(works) < threads:
             if works:
-                people, walls = len(works[0].near), len(works[0].walls)
+                people, walls = len(works[0].marks), len(works[0].walls)
+                terms = len(works[0].sums)
             options = int(np.diff(self._repertoire.table.offsets).max())
             clusters = self._repertoire.groups.clusters
             most = int((clusters["last"] - clusters["first"]).max())
-            works.append(make_work(people, walls, options, most))
+            works.append(make_work(people, walls, options, most, terms))
         return works[:threads]

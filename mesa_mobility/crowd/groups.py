@@ -46,15 +46,15 @@ CLUSTER = np.dtype(
         ("stay", "i8"),
         ("whole", "f8", (4,)),
         ("reach", "f8", (len(LEVELS),)),
-        ("spans", "f8", (len(LEVELS), 4)),
+        ("spans", "f4", (4, len(LEVELS))),
     ],
     align=True,
 )
 """What the options of a cluster span: ``first`` of its groups and the one after its ``last``;
 ``stay`` the one with the option that turns least of those that cover no ground, or -1;
-``whole`` least x and y, greatest x and y of all options on the way; ``spans`` (levels, 4) a box
-around the circles of its groups at a level, ``reach`` (levels,) the farthest that they have led by
-then.
+``whole`` least x and y, greatest x and y of all options on the way; ``spans`` (4, levels) the same
+of a box around the circles of its groups at a level, ``reach`` (levels,) the farthest that they
+have led by then.
 """
 
 X, Y, RADIUS, UX, UY, TURN, DURATION, SLOWEST, FASTEST = range(9)
@@ -196,7 +196,7 @@ def make_groups(table: OptionTable, boxes: NDArray[np.float32]) -> OptionGroups:
     spanned["whole"] = np.column_stack(
         [np.minimum.reduceat(boxes[:, :2], clusters), np.maximum.reduceat(boxes[:, 2:], clusters)]
     )
-    spanned["spans"] = np.stack([x0.T, y0.T, x1.T, y1.T], axis=2)
+    spanned["spans"] = np.stack([x0.T, y0.T, x1.T, y1.T], axis=1)
     spanned["reach"] = np.sqrt(farthest2)
     alike_ends = [
         ends[0],

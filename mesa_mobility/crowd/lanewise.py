@@ -9,6 +9,7 @@ takes as long as to look at 16 of its numbers.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from llvmlite import ir
@@ -16,6 +17,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from mesa_mobility.crowd.options import LEVELS
 from mesa_mobility.lanes import (
     BIT,
     DOUBLE,
@@ -25,12 +27,17 @@ from mesa_mobility.lanes import (
     LONG,
     SAMPLES,
     WIDE,
+    across,
+    less_of,
     load,
-    numbers,
+    more_of,
+    plus,
     same,
+    some_lanes,
     spread,
     start_of,
     store,
+    times,
     whole,
 )
 
@@ -43,7 +50,7 @@ def _away2(builder: Any, x: Any, y: Any, bodies: Any, at: Any, row: Any) -> Any:
         for k in (ir.Constant(LONG, 0), row, builder.add(row, row))
     ]
     dx, dy = builder.fsub(x, of[0]), builder.fsub(y, of[1])
-    return builder.fadd(builder.fmul(dx, dx), builder.fmul(dy, dy)), of[2]
+    return plus(builder, times(builder, dx, dx), times(builder, dy, dy)), of[2]
 
 
 @intrinsic
@@ -79,7 +86,7 @@ def drop_within(typingctx, circles, at, row, n, bodies, first, size, known, drop
                 body = builder.add(first, loop.index)
                 away2, apart = _away2(builder, x, y, bodies_begin, body, size)
                 room = builder.fsub(apart, radius)
-                room = builder.select(builder.fcmp_ordered(">", room, none), room, none)
+                room = more_of(builder, room, none)
                 within = builder.fcmp_ordered("<", away2, builder.fmul(room, room))
                 builder.store(builder.or_(builder.load(found), within), found)
             store(
@@ -114,6 +121,44 @@ def places_within(typingctx, places, at, row, bodies, first, size, known):
 
 
 @intrinsic
+def places_near(typingctx, x, y, at, px, py, radius):
+    """Bits of those of 8 places from ``at`` on that are within ``radius`` of (px, py).
+
+    ``x`` and ``y`` are float64. Nothing is rounded otherwise than for one place.
+    """
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        at = whole(context, builder, sig.args[2], args[2])
+        away2 = []
+        for k in range(2):
+            begin = start_of(context, builder, sig.args[k], args[k])
+            away = builder.fsub(
+                load(builder, begin, at, LANES), spread(builder, args[3 + k], LANES)
+            )
+            away2.append(builder.fmul(away, away))
+        most = spread(builder, builder.fmul(args[5], args[5]), LANES)
+        near = builder.fcmp_ordered("<=", builder.fadd(*away2), most)
+        return builder.zext(builder.bitcast(near, ir.IntType(LANES)), LONG)
+
+    return types.int64(x, y, at, *[types.float64] * 3), codegen
+
+
+@intrinsic
+def numbers_between(typingctx, values, at, above, up_to):
+    """Bits of those of 8 float64 from place ``at`` on that are more than a number up to another."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        begin = start_of(context, builder, sig.args[0], args[0])
+        value = load(builder, begin, whole(context, builder, sig.args[1], args[1]), LANES)
+        more = builder.fcmp_ordered(">", value, spread(builder, args[2], LANES))
+        little = builder.fcmp_ordered("<=", value, spread(builder, args[3], LANES))
+        bits = builder.bitcast(builder.and_(more, little), ir.IntType(LANES))
+        return builder.zext(bits, LONG)
+
+    return types.int64(values, at, types.float64, types.float64), codegen
+
+
+@intrinsic
 def near_box(typingctx, circles, at, row, x0, y0, x1, y1):
     """Bits of those of 16 circles that reach into a box; arguments as of ``drop_within``."""
 
@@ -129,7 +174,7 @@ def near_box(typingctx, circles, at, row, x0, y0, x1, y1):
         for place, low, high in ((x, x0, x1), (y, y0, y1)):
             away = same(FLOAT, WIDE, 0.0)
             for gap in (builder.fsub(low, place), builder.fsub(place, high)):
-                away = builder.select(builder.fcmp_ordered(">", gap, away), gap, away)
+                away = more_of(builder, gap, away)
             squared = builder.fmul(away, away)
             off = squared if off is None else builder.fadd(off, squared)
         near = builder.fcmp_ordered("<", off, builder.fmul(radius, radius))
@@ -139,87 +184,76 @@ def near_box(typingctx, circles, at, row, x0, y0, x1, y1):
 
 
 @intrinsic
-def lay_lanes(typingctx, lanes, group, ends, at, c, s, px, py, seconds):
-    """Write where the 8 options of a group end, in the world, from column ``at`` of ``ends`` on.
+def extent(typingctx, circles, at, row, n, dropped):
+    """A box around those of n circles that are not dropped: least x and y, greatest x and y.
 
-    ``lanes`` (groups, fields, 8) float32 with the fields x, y, ux, uy and speed first; ``ends``
-    (6, n) gets x, y, ux, uy, the seconds that they all take and the speed.
+    Arguments as of ``drop_within``; what fills up the last vector must be dropped. If all are, it
+    is empty: the least are inf, the greatest -inf.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
-        to = start_of(context, builder, sig.args[2], args[2])
-        fields, columns = sig.args[0], sig.args[2]
-        shape = cgutils.create_struct_proxy(fields)(context, builder, args[0]).shape
-        width = cgutils.create_struct_proxy(columns)(context, builder, args[2]).shape
-        per_group = builder.mul(builder.extract_value(shape, 1), builder.extract_value(shape, 2))
-        of = builder.mul(per_group, whole(context, builder, sig.args[1], args[1]))
-        row, at = builder.extract_value(width, 1), whole(context, builder, sig.args[3], args[3])
-        wide = ir.VectorType(DOUBLE, LANES)
-        x, y, ux, uy, speed = (
-            builder.fpext(
-                load(builder, begin, builder.add(of, ir.Constant(LONG, LANES * k)), LANES), wide
-            )
-            for k in range(5)
-        )
-        c, s, px, py, seconds = (spread(builder, args[k], LANES) for k in range(4, 9))
-        add, sub, mul = builder.fadd, builder.fsub, builder.fmul
-        rows = (
-            sub(add(px, mul(c, x)), mul(s, y)),
-            add(add(py, mul(s, x)), mul(c, y)),
-            sub(mul(c, ux), mul(s, uy)),
-            add(mul(s, ux), mul(c, uy)),
-            seconds,
-            speed,
-        )
-        for k, value in enumerate(rows):
-            store(builder, value, to, builder.add(at, builder.mul(row, ir.Constant(LONG, k))))
-        return context.get_dummy_value()
+        marks = start_of(context, builder, sig.args[4], args[4])
+        at, row, n = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2, 3))
+        ends = [
+            (less_of, math.inf),
+            (less_of, math.inf),
+            (more_of, -math.inf),
+            (more_of, -math.inf),
+        ]
+        found = [cgutils.alloca_once(builder, ir.VectorType(FLOAT, WIDE)) for _ in ends]
+        for (_, none), end in zip(ends, found, strict=True):
+            builder.store(same(FLOAT, WIDE, none), end)
+        wide = ir.Constant(LONG, WIDE)
+        with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
+            place = builder.add(at, block)
+            x = load(builder, begin, place, WIDE)
+            y = load(builder, begin, builder.add(place, row), WIDE)
+            radius = load(builder, begin, builder.add(place, builder.add(row, row)), WIDE)
+            kept = builder.icmp_signed("==", load(builder, marks, block, WIDE), same(INT, WIDE, 0))
+            reached = [
+                change(middle, radius)
+                for change in (builder.fsub, builder.fadd)
+                for middle in (x, y)
+            ]
+            for (of_two, none), end, value in zip(ends, found, reached, strict=True):
+                value = builder.select(kept, value, same(FLOAT, WIDE, none))
+                builder.store(of_two(builder, value, builder.load(end)), end)
+        box = [
+            builder.fpext(across(builder, builder.load(end), of_two), DOUBLE)
+            for (of_two, _), end in zip(ends, found, strict=True)
+        ]
+        return context.make_tuple(builder, sig.return_type, box)
 
-    return types.void(lanes, group, ends, at, *[types.float64] * 5), codegen
+    return types.UniTuple(types.float64, 4)(circles, at, row, n, dropped), codegen
 
 
 @intrinsic
-def lay_samples(typingctx, paths, path, first, share, c, s, x, y, to, at, row):
-    """Write where somebody on a path is at the sample times to come, 16 of them.
+def levels_within(typingctx, ahead, at, row, spans, apart):
+    """Bits of the levels at which somebody is less than ``apart`` from a box.
 
-    Args:
-        paths: (n, 3, 16) float32, C-contiguous: x, y and something else at the samples, the last
-            ones at the end.
-        path: which one.
-        first: sample that comes before now, 15 at most.
-        share: how much of the way from there to the next one is behind, 0 to 1.
-        c, s, x, y: cosine and sine of what the path is turned by, and where it begins.
-        to: float32, C-contiguous; gets x from place ``at`` on and y ``row`` places farther on.
+    ``ahead`` float32, C-contiguous: x at the 16 samples from place ``at`` on, y ``row`` places
+    farther on; ``spans`` (4, levels) float32, C-contiguous: least x and y, greatest x and y of the
+    boxes.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
-        target = start_of(context, builder, sig.args[8], args[8])
-        path, first = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
-        at, row = (whole(context, builder, sig.args[k], args[k]) for k in (9, 10))
-        share, c, s, x, y = (
-            spread(builder, builder.fptrunc(args[k], FLOAT), SAMPLES) for k in range(3, 8)
-        )
-        start = builder.mul(path, ir.Constant(LONG, 3 * SAMPLES))
-        add, sub, mul = builder.fadd, builder.fsub, builder.fmul
-        # Where the samples end, those of the next row follow: the last one stands for them.
-        beyond = builder.add(spread(builder, first, SAMPLES), numbers(SAMPLES))
-        own = []
+        spans = start_of(context, builder, sig.args[3], args[3])
+        at, row = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
+        width = len(LEVELS)
+        apart = spread(builder, builder.fptrunc(args[4], FLOAT), width)
+        off2 = []
         for k in range(2):
-            begins = builder.add(start, ir.Constant(LONG, SAMPLES * k))
-            end = builder.load(builder.gep(begin, [builder.add(begins, ir.Constant(LONG, 15))]))
-            end = spread(builder, end, SAMPLES)
-            begins = builder.add(begins, first)
-            here = load(builder, begin, begins, SAMPLES)
-            there = load(builder, begin, builder.add(begins, ir.Constant(LONG, 1)), SAMPLES)
-            between = add(here, mul(share, sub(there, here)))
-            ended = builder.icmp_signed(">=", beyond, same(LONG, SAMPLES, SAMPLES - 1))
-            own.append(builder.select(ended, end, between))
-        store(builder, add(x, sub(mul(c, own[0]), mul(s, own[1]))), target, at)
-        place = builder.add(at, row)
-        store(builder, add(y, add(mul(s, own[0]), mul(c, own[1]))), target, place)
-        return context.get_dummy_value()
+            samples = load(builder, begin, builder.add(at, row) if k else at, SAMPLES)
+            place = some_lanes(builder, samples, LEVELS)
+            low, high = (
+                load(builder, spans, ir.Constant(LONG, width * end), width) for end in (k, k + 2)
+            )
+            off = more_of(builder, builder.fsub(low, place), builder.fsub(place, high))
+            off = more_of(builder, off, same(FLOAT, width, 0.0))
+            off2.append(builder.fmul(off, off))
+        near = builder.fcmp_ordered("<", builder.fadd(*off2), builder.fmul(apart, apart))
+        return builder.zext(builder.bitcast(near, ir.IntType(width)), LONG)
 
-    given = [types.float64] * 5
-    return types.void(paths, path, first, *given, to, at, row), codegen
+    return types.int64(ahead, at, row, spans, types.float64), codegen

@@ -9,8 +9,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.lanewise import places_near
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import Entry, called, lean, part
+from mesa_mobility.lanes import LANES, bits_set, press_lanes
 from mesa_mobility.threads import shares, together
 
 CELL_SIZE = 1.5
@@ -53,8 +55,10 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
     for c in range(nx * ny):
         offsets[c + 1] += offsets[c]
     fill = offsets[:-1].copy()
-    people = np.empty(len(active), np.int64)
-    their_x, their_y = np.empty(len(active)), np.empty(len(active))
+    # With room for the last ones to be read 8 at a time.
+    n = len(active)
+    people = np.empty(n + LANES, np.int64)[:n]
+    their_x, their_y = np.empty(n + LANES)[:n], np.empty(n + LANES)[:n]
     for a, i in enumerate(active):
         at = fill[cell[a]]
         people[at], their_x[at], their_y[at] = i, x[i], y[i]
@@ -73,14 +77,16 @@ def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
     """(10, n) where the people in a grid are and go, in its order.
 
     Place; velocity in m/s, unit vector to the target (0, 0 at the target), metres of way left; x, y
-    and radius of a circle around all that they cover on their way, their body included.
+    and radius of a circle around all that they cover on their way, their body included. Behind the
+    last there is room to read 8 numbers.
     """
-    found = np.empty((COVERED + 3, len(grid.people)))
+    rows, n = COVERED + 3, len(grid.people)
+    found = np.empty(rows * n + LANES)[: rows * n].reshape(rows, n)
 
     def share(own: slice) -> None:
         _write_headways(grid, state, own.start, own.stop, found)
 
-    together(share, shares(len(grid.people)))
+    together(share, shares(n))
     return found
 
 
@@ -123,6 +129,54 @@ def people_within(
             dx, dy = grid.x[a] - px, grid.y[a] - py
             found[count] = a
             count += int(dx * dx + dy * dy <= radius * radius and grid.people[a] != but)
+    return count
+
+
+@part()
+def neighbours_within(
+    grid: Grid,
+    moving: NDArray[np.float64],
+    px: float,
+    py: float,
+    own: int,
+    radius: float,
+    near: NDArray[np.int64],
+    others: NDArray[np.float64],
+    sweeps: NDArray[np.float64],
+) -> int:
+    """Copy what is kept of people within ``radius`` of (px, py), but for the one at place ``own``.
+
+    Those that ``people_within`` finds, 8 at a time.
+
+    Args:
+        grid: where people are.
+        moving: (10, people) as of ``headways``.
+        px, py: place, metres.
+        own: place in the grid of somebody who is left out.
+        radius: metres.
+        near: gets their rows.
+        others: gets what cost terms are given.
+        sweeps: gets the circles around what they cover.
+
+    Returns:
+        Their number; each array must have room for everybody and 8 more.
+    """
+    cx0 = max(int((px - radius - grid.x0) / CELL_SIZE), 0)
+    cx1 = min(int((px + radius - grid.x0) / CELL_SIZE), grid.nx - 1)
+    cy0 = max(int((py - radius - grid.y0) / CELL_SIZE), 0)
+    cy1 = min(int((py + radius - grid.y0) / CELL_SIZE), grid.ny - 1)
+    count = 0
+    for cy in range(cy0, cy1 + 1):
+        last = grid.offsets[cy * grid.nx + cx1 + 1]
+        for at in range(grid.offsets[cy * grid.nx + cx0], last, LANES):
+            bits = places_near(grid.x, grid.y, at, px, py, radius)
+            bits &= (1 << min(last - at, LANES)) - 1
+            if at <= own < at + LANES:
+                bits &= ~(1 << (own - at))
+            press_lanes(moving, 0, at, bits, others, 0, count, COVERED)
+            press_lanes(moving, COVERED, at, bits, sweeps, 0, count, 3)
+            press_lanes(grid.people, 0, at, bits, near, 0, count, 1)
+            count += bits_set(bits)
     return count
 
 

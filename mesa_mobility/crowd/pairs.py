@@ -28,12 +28,16 @@ from mesa_mobility.crowd.costs import (
 )
 from mesa_mobility.crowd.groups import DURATION, FASTEST, SLOWEST, OptionGroups
 from mesa_mobility.crowd.kernels import call_pair_loop, call_pairs_loop
+from mesa_mobility.crowd.lanewise import numbers_between
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import lean, part
-from mesa_mobility.lanes import LANES, any_of
+from mesa_mobility.lanes import LANES, any_of, bits_set, press_numbers
 
 LITTLE_LESS = 1.0 - 1e-9
 """Sums over some of the neighbours may exceed that over all by rounding, though not by so much."""
+
+ENOUGH = -1.0
+"""Stands for a cost that is more than what matters."""
 
 AHEAD = 1.5
 """Seconds for which it is looked ahead for those who come near: the longest option."""
@@ -44,7 +48,7 @@ FEW_NEIGHBOURS = 4
 MOST_TERMS = 60
 """Bits of a mark."""
 
-ASKED, LIKELY = 6, 1.5
+ASKED, LIKELY = 3, 1.5
 """Groups that are asked who counts, and by how much the bounds of those may exceed the least."""
 
 WORTH_MENTION = 0.02
@@ -61,16 +65,33 @@ def pair_cost(
     ends: NDArray[np.float64],
     count: int,
     others: NDArray[np.float64],
+    enough: float,
     state: CrowdState,
     terms: Terms,
+    sums: NDArray[np.float64],
+    telling: NDArray[np.int64],
 ) -> float:
     """Weighted sum of the pair terms of option k over the first ``count`` neighbours.
 
-    ``others`` must be in full lanes (see ``fill_lane``).
+    Args:
+        me: the pedestrian.
+        k: the option.
+        ends: (6, n) where options end.
+        count: how many neighbours.
+        others: (8, n) these, in full lanes (see ``fill_lane``).
+        enough: it does not matter how much more it is; finite only if no pair cost is negative.
+        state: the crowd.
+        terms: compiled terms.
+        sums: (terms,) space to work in.
+        telling: (1,) the term to begin with: mostly it is the same that costs enough.
+
+    Returns:
+        The sum, or ``ENOUGH`` if it is certainly more than that.
     """
-    total = 0.0
-    costs = others[COST]
-    for t in range(len(terms.pair_address)):
+    costs, n, so_far = others[COST], len(terms.pair_address), 0.0
+    first_term = telling[0] if telling[0] < n else 0
+    for q in range(n):
+        t = first_term + q if first_term + q < n else first_term + q - n
         call_pair_loop(
             terms.pair_address[t], in_lanes(count), ends[END_X, k], ends[END_Y, k],
             ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
@@ -85,7 +106,15 @@ def pair_cost(
             if any_of(costs, first):
                 for a in range(first, min(first + LANES, count)):
                     summed += costs[a]
-        total += terms.pair_weight[t] * summed
+        sums[t] = terms.pair_weight[t] * summed
+        so_far += sums[t]
+        if enough < so_far * LITTLE_LESS < np.inf:
+            telling[0] = t
+            return ENOUGH
+    # In the order of the terms, whichever came first.
+    total = 0.0
+    for t in range(n):
+        total += sums[t]
     return total
 
 
@@ -139,6 +168,7 @@ def mark_counting(
     me: Stance,
     first: int,
     bounds: NDArray[np.float64],
+    lowest: float,
     ends: NDArray[np.float64],
     groups: OptionGroups,
     count: int,
@@ -158,10 +188,7 @@ def mark_counting(
     """
     if count <= FEW_NEIGHBOURS or len(terms.pair_address) > MOST_TERMS:
         return False
-    lowest, n = least(bounds), 0
-    for a in range(len(bounds)):
-        likely[n] = a
-        n += int(bounds[a] <= lowest + LIKELY)
+    n = pick_between(bounds, -np.inf, lowest + LIKELY, 0, likely)
     marks[:count] = 0
     costs = others[COST]
     for asked in range(ASKED):
@@ -179,6 +206,28 @@ def mark_counting(
             for b in range(count):
                 marks[b] |= int(costs[b] * terms.pair_weight[t] > WORTH_MENTION) << t
     return True
+
+
+@lean()
+def pick_between(
+    bounds: NDArray[np.float64],
+    above: float,
+    up_to: float,
+    first: int,
+    picked: NDArray[np.int64],
+) -> int:
+    """Write numbers of the bounds, from ``first`` on, that are more than ``above`` up to ``up_to``.
+
+    Behind the last bound there must be room to read, behind the last number to write 8 of them.
+    Returns how many they are.
+    """
+    count = 0
+    for at in range(0, len(bounds), LANES):
+        bits = numbers_between(bounds, at, above, up_to)
+        bits &= (1 << min(len(bounds) - at, LANES)) - 1
+        press_numbers(first + at, bits, picked, count)
+        count += bits_set(bits)
+    return count
 
 
 @lean()

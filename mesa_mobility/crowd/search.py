@@ -11,22 +11,39 @@ working everything out; most of it never is.
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.clearing import ALL_LANES, free_lanes
 from mesa_mobility.crowd.close import SLACK, Stance
 from mesa_mobility.crowd.collision import MARGIN, Surroundings
-from mesa_mobility.crowd.costs import SPEED, Terms, option_costs
+from mesa_mobility.crowd.costs import END_ROWS, SPEED, Terms, option_costs
 from mesa_mobility.crowd.groups import DURATION, OptionGroups
-from mesa_mobility.crowd.lanewise import lay_lanes
+from mesa_mobility.crowd.laying import lay_lanes
 from mesa_mobility.crowd.options import OptionTable
-from mesa_mobility.crowd.pairs import LITTLE_LESS, fill_ends, least, pair_cost, pair_costs_at_least
+from mesa_mobility.crowd.pairs import (
+    ENOUGH,
+    LITTLE_LESS,
+    fill_ends,
+    pair_cost,
+    pair_costs_at_least,
+    pick_between,
+)
 from mesa_mobility.crowd.passage import option_gone_or_blocked
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.crowd.work import Setting, Work
 from mesa_mobility.jit import lean, part
-from mesa_mobility.lanes import AT_ONCE, LANES, lowest_bit, no_more_than, place_of_least
+from mesa_mobility.lanes import (
+    AT_ONCE,
+    LANES,
+    bits_set,
+    no_more_than,
+    place_of_least,
+    press_lanes,
+    press_numbers,
+)
 from mesa_mobility.machine import fetch
 
 NONE = -1
@@ -47,6 +64,11 @@ CROWD = 10
 
 DEAREST = 1e300
 """What costs more is blocked."""
+
+_LEAST = -sys.float_info.max
+
+_ROUNDING = 1e-12
+"""Share of a cost that is more than what sums of costs are rounded by."""
 
 _AHEAD = 4
 """Groups that are fetched before they are needed."""
@@ -75,8 +97,6 @@ def _open_groups(
     """
     picked, free = work.picked, work.free
     apart = me.core + MARGIN - SLACK
-    # Whoever may be out before may not meet the walls of those ahead.
-    firm = now.firm if now.exits_from > table.farthest[state.cluster[me.row]] else 0
     # What costs too much is told sooner than what is blocked.
     dear = most < np.inf
     for q in range(min(opened, _AHEAD)):
@@ -87,7 +107,7 @@ def _open_groups(
             fetch(groups.lanes, picked[q + _AHEAD], 416)
         g, bits = picked[q], ALL_LANES
         if not dear:
-            bits = free_lanes(g, bits, work.bodies, work.barriers, firm, apart, groups)
+            bits = free_lanes(g, bits, work.bodies, work.fences, apart, groups)
         lay_lanes(
             groups.lanes, g, work.lanes, LANES * n, me.c, me.s, me.x, me.y, groups.ends[DURATION, g]
         )
@@ -108,20 +128,19 @@ def _open_groups(
     for q in range(n):
         g, bits = picked[q], free[q] & no_more_than(costs, LANES * q, most)
         if dear and bits != 0:
-            bits = free_lanes(g, bits, work.bodies, work.barriers, firm, apart, groups)
-        row = groups.first[g]
-        while bits != 0:
-            lane = lowest_bit(bits)
-            bits &= bits - 1
-            k = LANES * q + lane
-            bad |= int(not abs(costs[k]) < np.inf)
-            work.rows[kept], work.costs[kept] = row + lane, costs[k]
-            for field in range(SPEED + 1):
-                work.ends[field, kept] = work.lanes[field, k]
-            kept += 1
+            bits = free_lanes(g, bits, work.bodies, work.fences, apart, groups)
+        # No more than the least of numbers are those alone that are none.
+        bad |= bits & no_more_than(costs, LANES * q, _LEAST)
+        press_numbers(groups.first[g], bits, work.rows, kept)
+        press_lanes(work.lane_costs, 0, LANES * q, bits, work.costs, 0, kept, 1)
+        press_lanes(work.lanes, 0, LANES * q, bits, work.ends, 0, kept, END_ROWS)
+        kept += bits_set(bits)
     if now.eager:
         for k in range(count, kept):
-            work.costs[k] += pair_cost(me, k, work.ends, now.neighbours, work.others, state, terms)
+            work.costs[k] += pair_cost(
+                me, k, work.ends, now.neighbours, work.others, np.inf, state, terms, work.sums,
+                work.telling,
+            )  # fmt: skip
             bad |= int(not abs(work.costs[k]) < np.inf)
     if bad != 0:
         return NOT_A_NUMBER
@@ -158,12 +177,19 @@ def standing(count: int, work: Work) -> int:
     return found
 
 
+@lean()
+def _enough(most: float, cost: float) -> float:
+    """What an option may cost more, rounding aside, lest it cost more than ``most``."""
+    return most - cost + _ROUNDING * (abs(most) + abs(cost))
+
+
 @part()
 def cheapest_free(
     me: Stance,
     now: Setting,
     first: int,
     bounds: NDArray[np.float64],
+    lowest: float,
     walls: NDArray[np.float64],
     extra: NDArray[np.float64],
     cores: bool,
@@ -182,6 +208,7 @@ def cheapest_free(
         first: the first group of its cluster.
         bounds: lower bounds of what the options cost in groups from there on; inf where they
             are certainly blocked.
+        lowest: the least of them.
         walls: walls within reach, with squared distances.
         extra: costs of the options that are known already, or empty.
         cores: whether bodies are hard.
@@ -196,7 +223,6 @@ def cheapest_free(
         The option's row in the table, that of the least turn if several cost the same, -1 if all
         hit something, -2 if a cost is not a number; the frame of leaving by an exit, or -1.
     """
-    lowest = least(bounds)
     # Typed, as functions are compiled once more for literal numbers.
     best, leaving, most = NONE, -1, np.inf
     band, count, met, k = np.int64(0), np.int64(0), np.int64(0), np.int64(0)
@@ -218,9 +244,7 @@ def cheapest_free(
                 else:
                     up_to = DEAREST
                 band += 1
-                for a in range(len(bounds)):
-                    work.picked[opened] = first + a
-                    opened += int((above < bounds[a]) & (bounds[a] <= up_to))
+                opened = pick_between(bounds, above, up_to, first, work.picked)
             if opened > 0:
                 count = _open_groups(
                     me, now, count, opened, most, extra, table, groups, state, terms, work
@@ -249,9 +273,13 @@ def cheapest_free(
         if work.rough[this]:
             # Whoever is likely to cost most, all of them.
             work.rough[this] = False
-            bound = work.costs[this] + LITTLE_LESS * pair_cost(
-                me, this, work.ends, now.foremost, work.foremost, state, terms
-            )
+            more = pair_cost(
+                me, this, work.ends, now.foremost, work.foremost,
+                _enough(most, work.costs[this]), state, terms, work.sums, work.telling,
+            )  # fmt: skip
+            if more == ENOUGH:
+                continue
+            bound = work.costs[this] + LITTLE_LESS * more
             if min(dearest, most) < bound < np.inf:
                 work.least[this] = bound
                 continue
@@ -263,7 +291,13 @@ def cheapest_free(
             continue
         cost = work.costs[this]
         if not now.eager:
-            cost += pair_cost(me, this, work.ends, now.neighbours, work.others, state, terms)
+            more = pair_cost(
+                me, this, work.ends, now.neighbours, work.others, _enough(most, cost), state,
+                terms, work.sums, work.telling,
+            )  # fmt: skip
+            if more == ENOUGH:
+                continue
+            cost += more
             if not abs(cost) < np.inf:
                 return NOT_A_NUMBER, -1
         if cost < most or (cost == most and turns_less(o, best, table)):

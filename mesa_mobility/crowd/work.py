@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.barriers import BARRIER_FIELDS
-from mesa_mobility.crowd.clearing import Bodies, Circles
+from mesa_mobility.crowd.clearing import Bodies, Fences
 from mesa_mobility.crowd.close import Close, make_close
 from mesa_mobility.crowd.costs import COST, SPEED
 from mesa_mobility.crowd.options import LEVELS, SAMPLES
@@ -45,13 +45,13 @@ class Work(NamedTuple):
     Fields: ``near`` rows of the neighbours, ``others`` the same as the terms see them, ``sweeps``
     (3, n) circles around all that they cover, ``foremost`` those of them who are likely to cost
     most, ``dropped`` by neighbour; ``close`` those who may come in the way, ``unsure`` rows of
-    those whom only the exact test can tell; ``bodies`` who is where at the levels; ``walls`` those
-    in reach, ``barriers`` the same seen from the pedestrian;
-    groups: ``alive`` those not certainly blocked, the ``bounds`` of all; ``circles`` for clearing;
-    of those just opened, which are ``picked``, bits of their options that are ``free``, and of 8
-    options each, ``lanes`` where they end and ``lane_costs``; by option looked at, ``rows`` in the
-    table, ``ends``, ``costs`` but for pairs, ``least`` that all costs may be, and ``rough``,
-    whether little more work tells more of that; ``path`` one path.
+    those whom only the exact test can tell; ``bodies`` who is where at the levels, ``fences`` the
+    walls there; ``walls`` those in reach, ``barriers`` the same seen from the pedestrian; groups:
+    which are certainly ``blocked``, the ``bounds`` of all; of those just opened, which are
+    ``picked``, bits of their options that are ``free``, and of 8 options each, ``lanes`` where they
+    end and ``lane_costs``; by option looked at, ``rows`` in the table, ``ends``, ``costs`` but for
+    pairs, ``least`` that all costs may be, and ``rough``, whether little more work tells more of
+    that; ``sums`` by term over pairs, and the ``telling`` one, to begin with; ``path`` one path.
     """
 
     near: NDArray[np.int64]
@@ -64,11 +64,11 @@ class Work(NamedTuple):
     dropped: NDArray[np.int32]
     close: Close
     bodies: Bodies
+    fences: Fences
     walls: NDArray[np.float64]
     barriers: NDArray[np.float32]
     bounds: NDArray[np.float64]
-    alive: NDArray[np.int64]
-    circles: Circles
+    blocked: NDArray[np.int32]
     picked: NDArray[np.int64]
     free: NDArray[np.int64]
     lanes: NDArray[np.float64]
@@ -78,14 +78,16 @@ class Work(NamedTuple):
     costs: NDArray[np.float64]
     least: NDArray[np.float64]
     rough: NDArray[np.bool_]
+    sums: NDArray[np.float64]
+    telling: NDArray[np.int64]
     path: NDArray[np.float64]
 
 
-def make_work(people: int, walls: int, options: int, groups: int) -> Work:
-    """Space for so many people, walls near one place, options and groups of one cluster."""
+def make_work(people: int, walls: int, options: int, groups: int, terms: int) -> Work:
+    """Space for so many people, walls near one place, options and groups of one cluster, terms."""
     lanes = LANES * groups
     return Work(
-        near=np.empty(people, np.int64),
+        near=np.empty(people + LANES, np.int64),
         unsure=np.empty(people, np.int64),
         others=np.empty((COST + 1, people + LANES)),
         sweeps=np.empty((3, people + LANES)),
@@ -95,21 +97,26 @@ def make_work(people: int, walls: int, options: int, groups: int) -> Work:
         dropped=np.empty(people, np.int32),
         close=make_close(people),
         bodies=Bodies(
-            np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people), np.float32)
+            np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people + 1), np.float32)
+        ),
+        fences=Fences(
+            np.empty(len(LEVELS), np.int64),
+            np.empty((len(LEVELS), BARRIER_FIELDS, walls), np.float32),
         ),
         walls=np.empty((walls, 5)),
         barriers=np.empty((BARRIER_FIELDS, walls), np.float32),
-        bounds=np.empty(groups),
-        alive=np.empty(groups + 1, np.int64),
-        circles=Circles(np.empty((3, groups), np.float32), np.empty(groups + WIDE, np.int32)),
-        picked=np.empty(groups + 1, np.int64),
+        bounds=np.empty(groups + AT_ONCE),
+        blocked=np.empty(groups + WIDE, np.int32),
+        picked=np.empty(groups + LANES, np.int64),
         free=np.empty(groups, np.int64),
         lanes=np.empty((SPEED + 1, lanes)),
         lane_costs=np.empty(lanes),
-        rows=np.empty(options + 1, np.int64),
+        rows=np.empty(options + LANES, np.int64),
         ends=np.empty((SPEED + 1, options + LANES)),
-        costs=np.empty(options + 1),
+        costs=np.empty(options + LANES),
         least=np.empty(options + AT_ONCE),
         rough=np.empty(options, np.bool_),
+        sums=np.empty(terms),
+        telling=np.zeros(1, np.int64),
         path=np.empty((3, SAMPLES)),
     )

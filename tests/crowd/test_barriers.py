@@ -26,13 +26,13 @@ def _lay(row, x, y, c, s, core, walls, farthest, radius, to):
 
 
 @njit
-def _drop(circles, at, row, n, barriers, known, apart, dropped):
-    drop_beside(circles, at, row, n, barriers, known, apart, dropped)
+def _drop(circles, at, row, n, barriers, first, size, known, apart, dropped):
+    drop_beside(circles, at, row, n, barriers, first, size, known, apart, dropped)
 
 
 @njit
-def _beside(places, at, row, barriers, known, apart):
-    return places_beside(places, at, row, barriers, known, apart)
+def _beside(places, at, row, barriers, first, size, known, apart):
+    return places_beside(places, at, row, barriers, first, size, known, apart)
 
 
 @njit
@@ -74,7 +74,10 @@ def test_circles_within_a_wall_are_dropped(rng, barriers, n):
     circles[2] = rng.uniform(0.0, 0.15, 60)
     dropped = np.zeros(n + WIDE, dtype=np.int32)
     dropped[:n:7] = 1
-    _drop(circles, 2, 60, n, barriers, len(ENDS), 0.25, dropped)
+    # Those at the second of two levels.
+    fences = np.stack([barriers + 0.1, barriers])
+    size = barriers.shape[1]
+    _drop(circles, 2, 60, n, fences, BARRIER_FIELDS * size, size, len(ENDS), 0.25, dropped)
     x, y, radius = circles[:, 2 : 2 + n].astype(float)
     expected = off(x, y) + radius < 0.25
     expected[::7] = True
@@ -84,10 +87,11 @@ def test_circles_within_a_wall_are_dropped(rng, barriers, n):
 def test_places_beside_a_wall_are_told_by_their_bits(rng, barriers):
     for _ in range(20):
         places = rng.uniform(-1.2, 1.2, (2, 3, LANES)).astype(np.float32)
-        bits = _beside(places, LANES, 3 * LANES, barriers, len(ENDS), 0.2)
+        size = barriers.shape[1]
+        bits = _beside(places, LANES, 3 * LANES, barriers, 0, size, len(ENDS), 0.2)
         expected = off(*places[:, 1].astype(float)) < 0.2
         assert [bool(bits >> lane & 1) for lane in range(LANES)] == expected.tolist()
-    assert _beside(places, LANES, 3 * LANES, barriers, 0, 0.2) == 0
+    assert _beside(places, LANES, 3 * LANES, barriers, 0, size, 0, 0.2) == 0
 
 
 def test_a_path_is_as_far_from_the_walls_as_its_nearest_sample(rng, barriers):

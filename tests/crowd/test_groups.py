@@ -100,7 +100,7 @@ def test_groups_span_their_options(maps, shares):
         x, y = path[:, 0, sample], path[:, 1, sample]
         dx, dy = x - groups.at[level, X][of_group], y - groups.at[level, Y][of_group]
         assert (np.hypot(dx, dy) <= groups.at[level, RADIUS][of_group] + slack).all()
-        span = spanned["spans"][cluster, level]
+        span = spanned["spans"][cluster, :, level]
         assert (np.minimum(x - span[:, 0], span[:, 2] - x) >= -slack).all()
         assert (np.minimum(y - span[:, 1], span[:, 3] - y) >= -slack).all()
         farthest = np.hypot(path[:, 0, : sample + 1], path[:, 1, : sample + 1]).max(axis=1)

@@ -6,21 +6,27 @@ from numba import njit
 
 from mesa_mobility.crowd.lanewise import (
     drop_within,
-    lay_lanes,
-    lay_samples,
+    extent,
+    levels_within,
     near_box,
+    numbers_between,
+    places_near,
     places_within,
 )
+from mesa_mobility.crowd.laying import lay_lanes, lay_samples
+from mesa_mobility.crowd.options import LEVELS
 from mesa_mobility.lanes import (
     AT_ONCE,
     LANES,
     SAMPLES,
     WIDE,
     any_of,
-    copy_lanes,
+    bits_set,
     lowest_bit,
     no_more_than,
     place_of_least,
+    press_lanes,
+    press_numbers,
 )
 
 
@@ -32,6 +38,16 @@ def _drop(circles, at, row, n, bodies, first, size, known, dropped):
 @njit
 def _within(places, at, row, bodies, first, size, known):
     return places_within(places, at, row, bodies, first, size, known)
+
+
+@njit
+def _extent(circles, at, row, n, dropped):
+    return extent(circles, at, row, n, dropped)
+
+
+@njit
+def _levels(ahead, at, row, spans, apart):
+    return levels_within(ahead, at, row, spans, apart)
 
 
 @njit
@@ -55,13 +71,28 @@ def _lowest(bits):
 
 
 @njit
-def _copy(given, row, at, to, first, place):
-    copy_lanes(given, row, at, to, first, place, 2)
+def _press(given, row, at, bits, to, first, place):
+    press_lanes(given, row, at, bits, to, first, place, 2)
 
 
 @njit
-def _copy_one(given, at, to, place):
-    copy_lanes(given, 0, at, to, 0, place, 1)
+def _press_numbers(first, bits, to, place):
+    press_numbers(first, bits, to, place)
+
+
+@njit
+def _set(bits):
+    return bits_set(bits)
+
+
+@njit
+def _near_place(x, y, at, px, py, radius):
+    return places_near(x, y, at, px, py, radius)
+
+
+@njit
+def _between(values, at, above, up_to):
+    return numbers_between(values, at, above, up_to)
 
 
 @njit
@@ -125,6 +156,29 @@ def test_circles_that_reach_into_a_box_are_told_by_their_bits(rng):
     assert [bool(bits >> k & 1) for k in range(WIDE)] == (np.hypot(off_x, off_y) < radius).tolist()
 
 
+@pytest.mark.parametrize("n", [1, 16, 29])
+def test_a_box_is_drawn_around_the_circles_that_are_left(rng, n):
+    first, row = 5, 70
+    circles = rng.uniform(-1.0, 1.0, (3, row)).astype(np.float32)
+    dropped = np.ones(n + WIDE, dtype=np.int32)
+    dropped[:n:3] = 0
+    box = _extent(circles, first, row, n, dropped)
+    x, y, radius = circles[:, first : first + n : 3]
+    expected = (x - radius).min(), (y - radius).min(), (x + radius).max(), (y + radius).max()
+    assert box == pytest.approx(expected, abs=1e-7)
+    assert _extent(circles, first, row, n, np.ones_like(dropped)) == (np.inf,) * 2 + (-np.inf,) * 2
+
+
+def test_the_levels_at_which_somebody_is_near_a_box_are_told_by_their_bits():
+    ahead = np.full((3, 2, SAMPLES), 9.0, dtype=np.float32)
+    boxes = np.array([[-1.0, -2.0, 1.0, 2.0]] * len(LEVELS), dtype=np.float32)
+    # Within it; 0.5 m beside it; 0.5 m off its corner either way, 0.71 m; 2 m ahead of it.
+    ahead[1][:, list(LEVELS)] = [[0.0, -1.5, 1.5, 3.0], [0.0, 1.0, 2.5, 0.0]]
+    at = 2 * SAMPLES
+    assert _levels(ahead, at, SAMPLES, np.ascontiguousarray(boxes.T), 0.6) == 0b0011
+    assert _levels(ahead, at, SAMPLES, np.ascontiguousarray(boxes.T), 0.8) == 0b0111
+
+
 @pytest.mark.parametrize("n", [1, 8, 31, 32, 33, 100])
 def test_the_first_of_the_least_is_found(rng, n):
     values = np.full(n + AT_ONCE, np.inf)
@@ -151,18 +205,53 @@ def test_what_is_at_most_so_much_is_told_by_its_bits():
     assert _little(values, 0, np.inf) == 0b11111111
 
 
-def test_rows_are_copied_side_by_side():
-    given, to = np.arange(48.0).reshape(4, 12), np.zeros((3, 20))
-    _copy(given, 1, 3, to, 1, 5)
-    expected = np.zeros((3, 20))
-    expected[1:, 5:13] = given[1:3, 3:11]
-    assert (to == expected).all()
+@pytest.mark.parametrize("bits", [0, 0b1, 0b10110010, 0b11111111])
+@pytest.mark.parametrize("kind", [np.float64, np.int64])
+def test_lanes_are_pressed_side_by_side(bits, kind):
+    given = np.arange(48).reshape(4, 12).astype(kind)
+    to = np.full((3, 20), -1, dtype=kind)
+    _press(given, 1, 3, bits, to, 1, 5)
+    lanes = [3 + lane for lane in range(LANES) if bits >> lane & 1]
+    assert _set(bits) == len(lanes)
+    assert (to[1:, 5 : 5 + len(lanes)] == given[1:3, lanes]).all()
+    # Whole vectors are written, and nothing else.
+    outside = np.ones(20, dtype=bool)
+    outside[5 : 5 + LANES] = False
+    assert (to[0] == -1).all()
+    assert (to[:, outside] == -1).all()
 
 
-def test_whole_numbers_are_copied_in_place():
-    numbers = np.arange(100, 120)
-    _copy_one(numbers, 9, numbers, 2)
-    assert numbers[:12].tolist() == [100, 101, *range(109, 117), 110, 111]
+def test_lanes_are_pressed_together_without_an_instruction_for_it(monkeypatch):
+    monkeypatch.setattr("mesa_mobility.lanes._PRESSES", 10**6)
+
+    @njit
+    def press(given, bits, to):
+        press_lanes(given, 0, 0, bits, to, 0, 1, 1)
+
+    to = np.zeros(12)
+    press(np.arange(1.0, 9.0), 0b11000101, to)
+    assert to[:5].tolist() == [0.0, 1.0, 3.0, 7.0, 8.0]
+
+
+def test_numbers_of_bits_are_written_side_by_side():
+    to = np.zeros(12, dtype=np.int64)
+    _press_numbers(100, 0b11000101, to, 2)
+    assert to[:6].tolist() == [0, 0, 100, 102, 106, 107]
+
+
+def test_places_near_another_are_told_by_their_bits(rng):
+    x, y = rng.uniform(-2.0, 2.0, (2, 20))
+    x[5], y[5] = 0.5 + 3.0 * 0.25, 0.25 + 4.0 * 0.25
+    bits = _near_place(x, y, 4, 0.5, 0.25, 1.25)
+    near = np.hypot(x - 0.5, y - 0.25) <= 1.25
+    assert near[5]  # at that very distance
+    assert [bool(bits >> lane & 1) for lane in range(LANES)] == near[4:12].tolist()
+
+
+def test_numbers_between_two_are_told_by_their_bits():
+    values = np.array([9.0, 1.0, 2.0, 2.5, np.inf, -np.inf, 3.0, 1.5, 1.0, 9.0])
+    assert _between(values, 1, 1.0, 2.5) == 0b01000110
+    assert _between(values, 1, -np.inf, 1e300) == 0b11100111
 
 
 def test_options_of_a_group_are_turned_and_moved(rng):

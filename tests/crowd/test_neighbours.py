@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from numba import njit
 
-from mesa_mobility.crowd.neighbours import COVERED, build_grid, cover_in, headways, place_in
+from mesa_mobility.crowd.neighbours import (
+    COVERED,
+    build_grid,
+    cover_in,
+    headways,
+    neighbours_within,
+    place_in,
+)
 from mesa_mobility.crowd.state import Crowd
 
 
@@ -16,6 +23,11 @@ def _place(grid, x, y, who):
 @njit
 def _cover(moving, at, i, state):
     cover_in(moving, at, i, state)
+
+
+@njit
+def _within(grid, moving, x, y, own, radius, near, others, sweeps):
+    return neighbours_within(grid, moving, x, y, own, radius, near, others, sweeps)
 
 
 @pytest.fixture
@@ -58,3 +70,18 @@ def test_what_somebody_covers_is_kept_up_to_date(crowd):
     assert kept[COVERED:, at].tolist() == [1.0, 2.0, 0.75]
     before[COVERED:, at] = kept[COVERED:, at]
     assert (kept == before).all()
+
+
+@pytest.mark.parametrize("radius", [0.5, 3.0, 30.0])
+def test_neighbours_are_copied_in_the_order_of_the_grid(crowd, radius):
+    grid = build_grid(np.arange(50), crowd.x, crowd.y)
+    kept = headways(grid, crowd.records)
+    near, others, sweeps = np.zeros(58, dtype=np.int64), np.zeros((8, 58)), np.zeros((3, 58))
+    for i in range(0, 50, 7):
+        own = int(np.flatnonzero(grid.people == i)[0])
+        count = _within(grid, kept, crowd.x[i], crowd.y[i], own, radius, near, others, sweeps)
+        away = np.hypot(grid.x - crowd.x[i], grid.y - crowd.y[i])
+        expected = np.flatnonzero((away <= radius) & (grid.people != i))
+        assert near[:count].tolist() == grid.people[expected].tolist()
+        assert (others[:COVERED, :count] == kept[:COVERED, expected]).all()
+        assert (sweeps[:, :count] == kept[COVERED:, expected]).all()
