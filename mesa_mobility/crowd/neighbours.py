@@ -13,7 +13,7 @@ from mesa_mobility.crowd.lanewise import places_near
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import Entry, called, lean, part
 from mesa_mobility.lanes import LANES, bits_set, press_lanes
-from mesa_mobility.threads import shares, together
+from mesa_mobility.threads import BRIEF, shares, together
 
 CELL_SIZE = 1.5
 
@@ -86,7 +86,7 @@ def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
     def share(own: slice) -> None:
         _write_headways(grid, state, own.start, own.stop, found)
 
-    together(share, shares(n))
+    together(share, shares(n, BRIEF))
     return found
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.jit import called
-from mesa_mobility.threads import shares, together
+from mesa_mobility.threads import BRIEF, shares, together
 
 
 class Overview(NamedTuple):
@@ -40,7 +40,7 @@ def look_over(
             rows[own], frame, crowd.records, crowd.agenda, positions[own], speeds[own], ways[own]
         )
 
-    parts = shares(n)
+    parts = shares(n, BRIEF)
     found = together(part, parts)
     if len(parts) == 1:
         ways = ways[: found[0][0]]
