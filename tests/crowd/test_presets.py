@@ -40,7 +40,7 @@ def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_short
     model = model_of(corridor(), strider())
     assert model.preset == "default"
     assert weights(model) == {
-        TargetDistance: 1.0, FacingDeviation: 1.0, Interference: 1.0, PreferredVelocity: 2.0,
+        TargetDistance: 1.0, FacingDeviation: 1.2, Interference: 1.0, PreferredVelocity: 2.0,
         Headway: 1.5, RightOfWay: 3.0, Stepping: 1.0,
     }  # fmt: skip
     (headway,) = (term for term in model.terms if isinstance(term, Headway))
