@@ -2,7 +2,7 @@
 
 A crowd is drawn in strata: its members share out the distribution among them, so that even a
 small crowd has the spread that was asked for, and runs differ by who is fast and not by how many
-are. Only bounded normals need SciPy's truncated ones, which are loaded when the first is drawn.
+are. What SciPy has to do with it is loaded when the first is drawn.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import gammaincinv, ndtri
 
 from mesa_mobility.errors import ModelError
 
@@ -201,6 +200,8 @@ class Gamma(Distribution):
 
     def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n,) values below which these shares lie."""
+        from scipy.special import gammaincinv
+
         values: NDArray[np.float64] = self.scale * gammaincinv(self.shape, share)
         return values
 
@@ -301,6 +302,8 @@ def _normal(
 ) -> NDArray[np.float64]:
     values: NDArray[np.float64]
     if sd == 0.0 or (low == -math.inf and high == math.inf):
+        from scipy.special import ndtri
+
         values = mean + sd * ndtri(share)
         return values
     from scipy.stats import truncnorm

@@ -56,6 +56,16 @@ def load(builder: Any, start: Any, at: Any, width: int) -> Any:
     return builder.load(builder.bitcast(place, vector.as_pointer()), align=4)
 
 
+def load_three(builder: Any, start: Any, at: Any, row: Any, width: int) -> tuple[Any, Any, Any]:
+    """``width`` elements from place ``at`` on in each of three rows ``row`` places apart."""
+    second, third = builder.add(at, row), builder.add(at, builder.add(row, row))
+    return (
+        load(builder, start, at, width),
+        load(builder, start, second, width),
+        load(builder, start, third, width),
+    )
+
+
 def store(builder: Any, value: Any, start: Any, at: Any) -> None:
     """Write a vector from place ``at`` on."""
     place = builder.gep(start, [at])

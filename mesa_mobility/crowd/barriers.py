@@ -33,6 +33,7 @@ from mesa_mobility.lanes import (
     across,
     less_of,
     load,
+    load_three,
     minus,
     more_of,
     plus,
@@ -148,10 +149,7 @@ def drop_beside(typingctx, circles, at, row, n, barriers, first, size, known, ap
         apart = spread(builder, builder.fptrunc(args[8], FLOAT), WIDE)
         wide = ir.Constant(LONG, WIDE)
         with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
-            place = builder.add(at, block)
-            x = load(builder, begin, place, WIDE)
-            y = load(builder, begin, builder.add(place, row), WIDE)
-            radius = load(builder, begin, builder.add(place, builder.add(row, row)), WIDE)
+            x, y, radius = load_three(builder, begin, builder.add(at, block), row, WIDE)
             off2 = _least_off2(builder, x, y, barriers_begin, *of)
             room = more_of(builder, builder.fsub(apart, radius), same(FLOAT, WIDE, 0.0))
             within = builder.fcmp_ordered("<", off2, builder.fmul(room, room))

@@ -30,6 +30,7 @@ from mesa_mobility.lanes import (
     across,
     less_of,
     load,
+    load_three,
     more_of,
     plus,
     same,
@@ -76,10 +77,7 @@ def drop_within(typingctx, circles, at, row, n, bodies, first, size, known, drop
         none = same(FLOAT, WIDE, 0.0)
         found = cgutils.alloca_once(builder, ir.VectorType(BIT, WIDE))
         with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
-            place = builder.add(at, block)
-            x = load(builder, begin, place, WIDE)
-            y = load(builder, begin, builder.add(place, row), WIDE)
-            radius = load(builder, begin, builder.add(place, builder.add(row, row)), WIDE)
+            x, y, radius = load_three(builder, begin, builder.add(at, block), row, WIDE)
             before = load(builder, marks, block, WIDE)
             builder.store(builder.icmp_signed("!=", before, same(INT, WIDE, 0)), found)
             with cgutils.for_range(builder, known) as loop:
@@ -167,9 +165,7 @@ def near_box(typingctx, circles, at, row, x0, y0, x1, y1):
         at, row = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
         box = [context.cast(builder, args[k], sig.args[k], types.float32) for k in (3, 4, 5, 6)]
         x0, y0, x1, y1 = (spread(builder, number, WIDE) for number in box)
-        x = load(builder, begin, at, WIDE)
-        y = load(builder, begin, builder.add(at, row), WIDE)
-        radius = load(builder, begin, builder.add(at, builder.add(row, row)), WIDE)
+        x, y, radius = load_three(builder, begin, at, row, WIDE)
         off = None
         for place, low, high in ((x, x0, x1), (y, y0, y1)):
             away = same(FLOAT, WIDE, 0.0)
@@ -206,10 +202,7 @@ def extent(typingctx, circles, at, row, n, dropped):
             builder.store(same(FLOAT, WIDE, none), end)
         wide = ir.Constant(LONG, WIDE)
         with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
-            place = builder.add(at, block)
-            x = load(builder, begin, place, WIDE)
-            y = load(builder, begin, builder.add(place, row), WIDE)
-            radius = load(builder, begin, builder.add(place, builder.add(row, row)), WIDE)
+            x, y, radius = load_three(builder, begin, builder.add(at, block), row, WIDE)
             kept = builder.icmp_signed("==", load(builder, marks, block, WIDE), same(INT, WIDE, 0))
             reached = [
                 change(middle, radius)

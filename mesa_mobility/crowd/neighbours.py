@@ -109,6 +109,20 @@ def write_headways(
 _write_headways = Entry(write_headways)
 
 
+@lean()
+def _cells_within(grid: Grid, px: float, py: float, radius: float) -> tuple[int, int, int, int]:
+    """First and last column, first and last row of cells within ``radius`` of (px, py).
+
+    Beyond the last one there are none: the first number is then the greater.
+    """
+    return (
+        max(int((px - radius - grid.x0) / CELL_SIZE), 0),
+        min(int((px + radius - grid.x0) / CELL_SIZE), grid.nx - 1),
+        max(int((py - radius - grid.y0) / CELL_SIZE), 0),
+        min(int((py + radius - grid.y0) / CELL_SIZE), grid.ny - 1),
+    )
+
+
 @part()
 def people_within(
     grid: Grid, px: float, py: float, but: int, radius: float, found: NDArray[np.int64]
@@ -117,10 +131,7 @@ def people_within(
 
     ``found`` must have room for everybody: there is no cap on neighbours.  Returns their number.
     """
-    cx0 = max(int((px - radius - grid.x0) / CELL_SIZE), 0)
-    cx1 = min(int((px + radius - grid.x0) / CELL_SIZE), grid.nx - 1)
-    cy0 = max(int((py - radius - grid.y0) / CELL_SIZE), 0)
-    cy1 = min(int((py + radius - grid.y0) / CELL_SIZE), grid.ny - 1)
+    cx0, cx1, cy0, cy1 = _cells_within(grid, px, py, radius)
     count = 0
     if cx0 > cx1:  # beyond the last column; beyond the last row there is nothing to loop over
         return count
@@ -161,10 +172,7 @@ def neighbours_within(
     Returns:
         Their number; each array must have room for everybody and 8 more.
     """
-    cx0 = max(int((px - radius - grid.x0) / CELL_SIZE), 0)
-    cx1 = min(int((px + radius - grid.x0) / CELL_SIZE), grid.nx - 1)
-    cy0 = max(int((py - radius - grid.y0) / CELL_SIZE), 0)
-    cy1 = min(int((py + radius - grid.y0) / CELL_SIZE), grid.ny - 1)
+    cx0, cx1, cy0, cy1 = _cells_within(grid, px, py, radius)
     count = 0
     for cy in range(cy0, cy1 + 1):
         last = grid.offsets[cy * grid.nx + cx1 + 1]
