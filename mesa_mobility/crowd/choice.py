@@ -65,8 +65,8 @@ def decide(
             pedestrian in turn, or empty.
         extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
         rules: what holds for everybody.
-        moving: (10, people) places, velocities, directions and ways at the beginning of the frame,
-            in the order of the grid: terms see them as they were, also of those who have just
+        moving: (8, people) velocities, directions and ways at the beginning of the frame, in
+            the order of the grid: terms see them as they were, also of those who have just
             decided; and what people cover, which is kept up to date.
         work: space to work in, of this thread alone.
 

@@ -289,9 +289,9 @@ class PedestrianModel(CrowdMeasures, People):
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
         self.journeys.advance(deciding, self.frame, self.crowd, self._repertoire.table)
         waiting = self.waits.waiting(deciding, self.frame, self.crowd)
-        targets = self._set_targets(deciding, rows, waiting)
-        # Those nearest to where they go decide first: that frees space for those behind.
-        order = deciding[targets.nearest_first]
+        # Those nearest to where they go decide first: that frees space for those behind. All else
+        # that there is to targets is with the crowd by now, and can be forgotten here.
+        order = deciding[self._set_targets(deciding, rows, waiting).nearest_first]
         self._decisions.take(
             order,
             self.frame,

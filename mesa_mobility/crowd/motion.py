@@ -44,14 +44,6 @@ def lay_path(
 
 
 @lean()
-def cover(i: int, x0: float, y0: float, x1: float, y1: float, state: CrowdState) -> None:
-    """Set what the movement of pedestrian i covers: a box, and the circle around it."""
-    state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3] = x0, y0, x1, y1
-    state.sweep[i, 0], state.sweep[i, 1] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
-    state.sweep[i, 2] = 0.5 * math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))
-
-
-@lean()
 def commit(
     i: int,
     option: int,
@@ -81,7 +73,7 @@ def commit(
         longest2 = max(longest2, dx * dx + dy * dy)
     state.stride[i] = math.sqrt(longest2) * SAMPLE_FRAMES / spacing
     x0, y0, x1, y1 = box_of(path, pieces)
-    cover(i, x0, y0, x1, y1, state)
+    state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3] = x0, y0, x1, y1
 
 
 BLOCK = 8192

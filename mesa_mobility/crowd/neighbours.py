@@ -17,9 +17,9 @@ from mesa_mobility.threads import BRIEF, shares, together
 
 CELL_SIZE = 1.5
 
-COVERED = 7
+COVERED = 5
 """First of the rows of ``headways`` that tell what people cover, x, y and radius; those before are
-what cost terms are given."""
+what cost terms are given besides places."""
 
 
 class Grid(NamedTuple):
@@ -69,16 +69,18 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
 @lean()
 def cover_in(moving: NDArray[np.float64], at: int, i: int, state: CrowdState) -> None:
     """Write what pedestrian i, at a place in the grid, covers on its way."""
-    moving[COVERED, at], moving[COVERED + 1, at] = state.sweep[i, 0], state.sweep[i, 1]
-    moving[COVERED + 2, at] = state.sweep[i, 2] + state.core[i]
+    x0, y0, x1, y1 = state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3]
+    moving[COVERED, at], moving[COVERED + 1, at] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+    radius = 0.5 * math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))
+    moving[COVERED + 2, at] = radius + state.core[i]
 
 
 def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
-    """(10, n) where the people in a grid are and go, in its order.
+    """(8, n) where the people in a grid go, in its order.
 
-    Place; velocity in m/s, unit vector to the target (0, 0 at the target), metres of way left; x, y
-    and radius of a circle around all that they cover on their way, their body included. Behind the
-    last there is room to read 8 numbers.
+    Velocity in m/s, unit vector to the target (0, 0 at the target), metres of way left; x, y and
+    radius of a circle around all that they cover on their way, their body included. Behind the last
+    there is room to read 8 numbers.
     """
     rows, n = COVERED + 3, len(grid.people)
     found = np.empty(rows * n + LANES)[: rows * n].reshape(rows, n)
@@ -97,12 +99,11 @@ def write_headways(
     """Write ``headways`` of people from a first place in the grid to before a last one."""
     for a in range(first, last):
         i = grid.people[a]
-        found[0, a], found[1, a] = grid.x[a], grid.y[a]
-        found[2, a], found[3, a] = state.vx[i], state.vy[i]
+        found[0, a], found[1, a] = state.vx[i], state.vy[i]
         dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
         away = math.sqrt(dx * dx + dy * dy)
-        found[4, a], found[5, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
-        found[6, a] = state.route[i]
+        found[2, a], found[3, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
+        found[4, a] = state.route[i]
         cover_in(found, a, i, state)
 
 
@@ -161,7 +162,7 @@ def neighbours_within(
 
     Args:
         grid: where people are.
-        moving: (10, people) as of ``headways``.
+        moving: (8, people) as of ``headways``.
         px, py: place, metres.
         own: place in the grid of somebody who is left out.
         radius: metres.
@@ -181,7 +182,9 @@ def neighbours_within(
             bits &= (1 << min(last - at, LANES)) - 1
             if at <= own < at + LANES:
                 bits &= ~(1 << (own - at))
-            press_lanes(moving, 0, at, bits, others, 0, count, COVERED)
+            press_lanes(grid.x, 0, at, bits, others, 0, count, 1)
+            press_lanes(grid.y, 0, at, bits, others, 1, count, 1)
+            press_lanes(moving, 0, at, bits, others, 2, count, COVERED)
             press_lanes(moving, COVERED, at, bits, sweeps, 0, count, 3)
             press_lanes(grid.people, 0, at, bits, near, 0, count, 1)
             count += bits_set(bits)

@@ -97,7 +97,6 @@ def place(
     state.knots[rows] = 1 + waits
     state.from_x[rows], state.from_y[rows] = state.to_x[rows], state.to_y[rows] = points.T
     state.box[rows] = np.column_stack([points, points])
-    state.sweep[rows, :2], state.sweep[rows, 2] = points, 0.0
     state.stride[rows] = 0.0
     state.active[rows] = True
     agenda = state.agenda

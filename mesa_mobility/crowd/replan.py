@@ -14,7 +14,6 @@ from mesa_mobility.crowd.collision import (
     hits_wall,
     near_walls,
 )
-from mesa_mobility.crowd.motion import cover
 from mesa_mobility.crowd.neighbours import Grid, build_grid, people_within
 from mesa_mobility.crowd.options import SAMPLES, OptionTable
 from mesa_mobility.crowd.rules import Rules
@@ -117,7 +116,8 @@ def _stop(i: int, frame: int, state: CrowdState, rules: Rules) -> None:
     state.from_x[i] = state.to_x[i] = state.x[i]
     state.from_y[i] = state.to_y[i] = state.y[i]
     state.from_heading[i] = state.to_heading[i] = state.heading[i]
-    cover(i, state.x[i], state.y[i], state.x[i], state.y[i], state)
+    state.box[i, 0] = state.box[i, 2] = state.x[i]
+    state.box[i, 1] = state.box[i, 3] = state.y[i]
 
 
 def too_close(

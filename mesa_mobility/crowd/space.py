@@ -44,9 +44,16 @@ class CrowdSpace(ContinuousSpace):
         self.active_agents = agents
         self._n_agents = len(self.active_agents)
         self.agent_positions = self._agent_positions[: self._n_agents]
-        self.forget_tables()
+        self._forget_tables()
 
-    def forget_tables(self) -> None:
+    def _add_agent(self, agent: ContinuousSpaceAgent) -> int:
+        # Mesa writes to its tables; with two empty ones nobody has to make them anew for that.
+        self._indices, self._agents_by_index = {}, {}
+        place: int = super()._add_agent(agent)
+        self._forget_tables()
+        return place
+
+    def _forget_tables(self) -> None:
         """Forget the tables between agents and places: they take 200 bytes a person."""
         self._indices = self._agents_by_index = None
 

@@ -22,13 +22,12 @@ PERSON = np.dtype(
         ("vx", "f8"),
         ("vy", "f8"),
         ("core", "f8"),
-        ("sweep", "f8", (3,)),
-        ("stride", "f8"),
-        ("start", "i8"),
-        ("gone", "i8"),
-        ("spacing", "i4"),
-        ("knots", "i4"),
         ("box", "f8", (4,)),
+        ("stride", "f8"),
+        ("start", "i4"),
+        ("gone", "i4"),
+        ("spacing", "i4"),
+        ("option", "i4"),
         ("from_x", "f8"),
         ("from_y", "f8"),
         ("from_c", "f8"),
@@ -42,16 +41,16 @@ PERSON = np.dtype(
         ("target_y", "f8"),
         ("route", "f8"),
         ("preferred", "f8"),
-        ("end", "i8"),
-        ("option", "i8"),
+        ("end", "i4"),
         ("cluster", "i4"),
-        ("kind", "i4"),
         ("destination", "i4"),
+        ("kind", "i2"),
+        ("knots", "i1"),
         ("active", "?"),
-        ("decisions", "i8"),
-        ("fallbacks", "i8"),
-        ("fallback_frames", "i8"),
-        ("active_frames", "i8"),
+        ("decisions", "i4"),
+        ("fallbacks", "i4"),
+        ("fallback_frames", "i4"),
+        ("active_frames", "i4"),
     ],
     align=True,
 )
@@ -65,10 +64,11 @@ end), ``start`` and ``end`` frames, ``gone`` (frame at which the person has cros
 or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``from_x``, ``from_y``,
 ``from_heading`` where it starts, with cosine and sine ``from_c`` and ``from_s`` of an option's,
 ``to_x``, ``to_y``, ``to_heading`` where it ends, ``box`` (4,) what the path covers: least x, least
-y, greatest x, greatest y, ``sweep`` (3,) x, y and radius of a circle around that, ``stride`` most
-metres on the way in the time between two samples.  Where to: ``target_x``, ``target_y``,
-``route`` (metres left).
+y, greatest x, greatest y, ``stride`` most metres on the way in the time between two samples.
+Where to: ``target_x``, ``target_y``, ``route`` (metres left).
 Counters: ``decisions``, ``fallbacks``, ``fallback_frames``, ``active_frames``.
+
+Frames have 31 bits, which last for two years.
 """
 
 CrowdState: TypeAlias = "np.recarray[Any, Any]"
@@ -82,8 +82,8 @@ FALLBACK = -2
 AGENDA = np.dtype(
     [
         ("speed", "f8"),
-        ("sets_off", "i8"),
-        ("waits_until", "i8"),
+        ("sets_off", "i4"),
+        ("waits_until", "i4"),
         ("journey", "i4"),
         ("crossed", "i4"),
         ("group", "i4"),
@@ -126,13 +126,12 @@ class Crowd:
     vx: NDArray[np.float64]
     vy: NDArray[np.float64]
     core: NDArray[np.float64]
-    sweep: NDArray[np.float64]
-    stride: NDArray[np.float64]
-    start: NDArray[np.int64]
-    gone: NDArray[np.int64]
-    spacing: NDArray[np.int32]
-    knots: NDArray[np.int32]
     box: NDArray[np.float64]
+    stride: NDArray[np.float64]
+    start: NDArray[np.int32]
+    gone: NDArray[np.int32]
+    spacing: NDArray[np.int32]
+    option: NDArray[np.int32]
     from_x: NDArray[np.float64]
     from_y: NDArray[np.float64]
     from_c: NDArray[np.float64]
@@ -146,16 +145,16 @@ class Crowd:
     target_y: NDArray[np.float64]
     route: NDArray[np.float64]
     preferred: NDArray[np.float64]
-    end: NDArray[np.int64]
-    option: NDArray[np.int64]
+    end: NDArray[np.int32]
     cluster: NDArray[np.int32]
-    kind: NDArray[np.int32]
     destination: NDArray[np.int32]
+    kind: NDArray[np.int16]
+    knots: NDArray[np.int8]
     active: NDArray[np.bool_]
-    decisions: NDArray[np.int64]
-    fallbacks: NDArray[np.int64]
-    fallback_frames: NDArray[np.int64]
-    active_frames: NDArray[np.int64]
+    decisions: NDArray[np.int32]
+    fallbacks: NDArray[np.int32]
+    fallback_frames: NDArray[np.int32]
+    active_frames: NDArray[np.int32]
 
     def __init__(self, capacity: int) -> None:
         self._take(np.zeros(capacity, dtype=PERSON))

@@ -14,7 +14,7 @@ from mesa_mobility.errors import ModelError
 LONGEST_WAIT = 1e6
 """Seconds at most; eleven days."""
 
-_UNTIL_TOLD = np.iinfo(np.int64).max
+_UNTIL_TOLD = np.iinfo(np.int32).max
 
 
 def frames_of(seconds: NDArray[np.float64], name: str) -> NDArray[np.int64]:

@@ -16,7 +16,7 @@ from mesa_mobility.floorplan.sight import (
     unwalled,
     wall_distance,
 )
-from mesa_mobility.floorplan.views import Views, is_known, nodes_maybe_in_view
+from mesa_mobility.floorplan.views import Views, has_room, is_known, nodes_maybe_in_view
 from mesa_mobility.jit import lean, woven
 from mesa_mobility.lanes import AT_ONCE, place_of_least
 
@@ -53,13 +53,15 @@ def aim(
     gates: NDArray[np.int64],
     lengths: NDArray[np.float64],
     corners: NDArray[np.int64],
-) -> None:
+) -> bool:
     """Write targets (n, 2), gates (n,), route lengths (n,) and corners (n, 2) of the `UNSEEN`.
 
     See `Router.targets`. For every destination and node, `distances` is the route length in metres
     and `follow` the next node of the route (-1 where it ends). Only one thread at a time may
-    `learn`, that is, work out new views; the others leave those who need one `UNSEEN`.
+    `learn`, that is, work out new views; the others leave those who need one `UNSEEN`. So does
+    whoever learns where there is no more room for views. Returns whether nobody has been left.
     """
+    all_told = True
     nodes = len(ways.kind)
     keys = np.empty(nodes + AT_ONCE)
     seen = np.empty(nodes, dtype=np.int64)
@@ -79,7 +81,8 @@ def aim(
             node = _first_in_view(
                 sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES
             )
-        if node < 0 and not (hidden_known or learn):
+        if node < 0 and not (hidden_known or (learn and has_room(views))):
+            all_told = False
             continue
         if node < 0:
             maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
@@ -101,6 +104,7 @@ def aim(
             if corner >= 0:
                 corners[person, 0] = corner
                 corners[person, 1] = after[corner]
+    return all_told
 
 
 @lean()

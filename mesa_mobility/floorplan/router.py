@@ -18,7 +18,7 @@ from mesa_mobility.floorplan.nodes import EDGE_SHARE, NODE_SHARE, VIEW_SHARE, No
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
-from mesa_mobility.floorplan.views import no_views
+from mesa_mobility.floorplan.views import Views, no_views, with_room
 from mesa_mobility.jit import Entry
 from mesa_mobility.threads import shares, together
 
@@ -101,6 +101,7 @@ class Router:
         self._lengths: NDArray[np.float64] = np.empty((0, 0))
         self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
         self._follow: dict[int, NDArray[np.int64]] = {}
+        self._views: Views
         self._aim, self._pass_abreast = Entry(aim), Entry(pass_abreast)
         self._update()
 
@@ -174,16 +175,18 @@ class Router:
         if np.maximum.reduce(numbers.view(np.uint64)) >= len(self._lengths):
             self._tabulate(numbers)
 
-        def aims(own: slice, learn: bool) -> None:
-            self._aim(
+        def aims(own: slice, learn: bool) -> bool:
+            all_told: bool = self._aim(
                 self._sight, self._ways, self._views, xy[own], numbers[own], self._lengths,
                 self._nexts, learn, points[own], gates[own], distances[own], corners[own],
             )  # fmt: skip
+            return all_told
 
         parts = shares(n)
         if len(parts) > 1:
             together(lambda own: aims(own, False), parts)
-        aims(slice(n), True)
+        while not aims(slice(n), True):
+            self._views = with_room(self._views)
         return found
 
     def abreast(

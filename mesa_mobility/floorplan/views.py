@@ -23,13 +23,15 @@ from mesa_mobility.jit import lean, woven
 
 _CELL = 0.5
 _MOST_WORDS = 1 << 22
+_ROWS = 64
 
 
 class Views(NamedTuple):
     """For each square of floor, one bit per node: set where the node may be in view.
 
-    `known` (cells,) tells which squares have been worked out; `bits` is
-    (cells, words) with node i in bit i % 64 of word i // 64.
+    `row` (squares,) is 0 for those that have not been worked out, else one more than their row of
+    `bits` (rows, words), which has node i in bit i % 64 of word i // 64; `known` (1,) how many have
+    been, which is how many rows are taken.
     """
 
     x0: float
@@ -37,8 +39,9 @@ class Views(NamedTuple):
     nx: int
     ny: int
     cell_size: float
-    known: NDArray[np.bool_]
+    row: NDArray[np.int32]
     bits: NDArray[np.uint64]
+    known: NDArray[np.int64]
 
 
 def no_views(bounds: tuple[float, float, float, float], nodes: int) -> Views:
@@ -49,9 +52,13 @@ def no_views(bounds: tuple[float, float, float, float], nodes: int) -> Views:
     while ((xmax - xmin) / cell + 1) * ((ymax - ymin) / cell + 1) * words > _MOST_WORDS:
         cell *= 2
     nx, ny = int((xmax - xmin) / cell) + 1, int((ymax - ymin) / cell) + 1
-    return Views(
-        xmin, ymin, nx, ny, cell, np.zeros(nx * ny, np.bool_), np.zeros((nx * ny, words), np.uint64)
-    )
+    row, bits = np.zeros(nx * ny, np.int32), np.zeros((_ROWS, words), np.uint64)
+    return Views(xmin, ymin, nx, ny, cell, row, bits, np.zeros(1, np.int64))
+
+
+def with_room(views: Views) -> Views:
+    """The same views, with as much room again for others."""
+    return views._replace(bits=np.concatenate([views.bits, np.zeros_like(views.bits)]))
 
 
 @lean()
@@ -67,7 +74,13 @@ def _square(views: Views, x: float, y: float) -> int:
 def is_known(views: Views, x: float, y: float) -> bool:
     """Whether what is hidden from the square around (x, y) has been worked out."""
     square = _square(views, x, y)
-    return square >= 0 and views.known[square]
+    return square >= 0 and views.row[square] > 0
+
+
+@lean()
+def has_room(views: Views) -> bool:
+    """Whether another square can be worked out."""
+    return views.known[0] < len(views.bits)
 
 
 @woven()
@@ -81,27 +94,29 @@ def nodes_maybe_in_view(
 ) -> int:
     """Write the nodes that may be in view from (x, y) to `found`; returns how many.
 
-    `places` is (nodes, 2) metres.
+    `places` is (nodes, 2) metres. If the square is not known yet, there must be room for it.
     """
     nodes = len(places)
-    cell = _square(views, x, y)
-    if cell < 0:
+    square = _square(views, x, y)
+    if square < 0:
         for i in range(nodes):
             found[i] = i
         return nodes
-    if not views.known[cell]:
-        row, column = divmod(cell, views.nx)
+    if views.row[square] == 0:
+        row, column = divmod(square, views.nx)
         left = views.x0 + column * views.cell_size
         low = views.y0 + row * views.cell_size
         wall = NO_WALL
         for i in range(nodes):
             wall = _hiding(sight, left, low, views.cell_size, places[i, 0], places[i, 1], wall)
             if wall == NO_WALL:
-                views.bits[cell, i // 64] |= np.uint64(1) << np.uint64(i % 64)
-        views.known[cell] = True
+                views.bits[views.known[0], i // 64] |= np.uint64(1) << np.uint64(i % 64)
+        views.known[0] += 1
+        views.row[square] = views.known[0]
+    row = views.row[square] - 1
     count = 0
     for word in range(views.bits.shape[1]):
-        bits = views.bits[cell, word]
+        bits = views.bits[row, word]
         while bits != np.uint64(0):
             found[count] = 64 * word + np.int64(trailing_zeros(bits))
             count += 1

@@ -60,6 +60,24 @@ def test_the_space_answers_for_where_people_are_now(model):
     assert distance == pytest.approx(np.hypot(3.0, 1.0), abs=1e-6)
 
 
+def test_rows_are_of_people_alone_whatever_other_agents_there_are(model):
+    mesa.Agent(model)
+    places = [(8.0, 1.0), (11.0, 2.0), (14.0, 3.0)]
+    people = model.add_pedestrians(places)
+    assert [person.row for person in people] == [3, 4, 5]
+    assert len({person.unique_id for person in model.agents_by_type[Pedestrian]}) == 6
+    assert [person.position.tolist() for person in people] == [list(place) for place in places]
+
+
+def test_the_space_knows_whoever_has_come_since_it_was_asked(model):
+    assert model.space.get_agents_in_radius((14.0, 3.0), 0.1)[0] == []
+    first = next(iter(model.agents))
+    assert len(first.get_neighbors_in_radius(30.0)[0]) == 2
+    (person,) = model.add_pedestrians([(14.0, 3.0)])
+    assert model.space.get_agents_in_radius((14.0, 3.0), 0.1)[0] == [person]
+    assert len(person.get_neighbors_in_radius(30.0)[0]) == 3
+
+
 def test_everybody_lies_within_the_space(model):
     while model.running:
         model.step()

@@ -35,8 +35,10 @@ def crowd():
     rng = np.random.default_rng(2)
     crowd = Crowd(50)
     crowd.x[:], crowd.y[:] = rng.uniform(-4.0, 9.0, (2, 50))
-    crowd.sweep[:] = rng.uniform(0.0, 1.0, (50, 3))
+    least = rng.uniform(0.0, 1.0, (50, 2))
+    crowd.box[:] = np.hstack([least, least + np.array([0.6, 0.8])])
     crowd.core[:] = 0.25
+    crowd.vx[:], crowd.vy[:] = rng.uniform(-1.0, 1.0, (2, 50))
     crowd.target_x[:], crowd.target_y[:] = crowd.x + 3.0, crowd.y + 4.0
     return crowd
 
@@ -52,22 +54,22 @@ def test_what_is_kept_of_people_is_in_the_order_of_the_grid(crowd):
     grid = build_grid(np.arange(50), crowd.x, crowd.y)
     kept = headways(grid, crowd.records)
     people = grid.people
-    assert (kept[:2] == [crowd.x[people], crowd.y[people]]).all()
-    assert kept[4] == pytest.approx(np.full(50, 0.6))
-    assert kept[5] == pytest.approx(np.full(50, 0.8))
-    assert (kept[COVERED] == crowd.sweep[people, 0]).all()
-    assert (kept[COVERED + 1] == crowd.sweep[people, 1]).all()
-    assert (kept[COVERED + 2] == crowd.sweep[people, 2] + 0.25).all()
+    assert (kept[:2] == [crowd.vx[people], crowd.vy[people]]).all()
+    assert kept[2] == pytest.approx(np.full(50, 0.6))
+    assert kept[3] == pytest.approx(np.full(50, 0.8))
+    assert kept[COVERED] == pytest.approx(crowd.box[people, 0] + 0.3)
+    assert kept[COVERED + 1] == pytest.approx(crowd.box[people, 1] + 0.4)
+    assert kept[COVERED + 2] == pytest.approx(np.full(50, 0.75))
 
 
 def test_what_somebody_covers_is_kept_up_to_date(crowd):
     grid = build_grid(np.arange(50), crowd.x, crowd.y)
     kept = headways(grid, crowd.records)
     before = kept.copy()
-    crowd.sweep[7] = 1.0, 2.0, 0.5
+    crowd.box[7] = 0.7, 1.6, 1.3, 2.4
     at = int(np.flatnonzero(grid.people == 7)[0])
     _cover(kept, at, 7, crowd.records)
-    assert kept[COVERED:, at].tolist() == [1.0, 2.0, 0.75]
+    assert kept[COVERED:, at] == pytest.approx([1.0, 2.0, 0.75])
     before[COVERED:, at] = kept[COVERED:, at]
     assert (kept == before).all()
 
@@ -83,5 +85,6 @@ def test_neighbours_are_copied_in_the_order_of_the_grid(crowd, radius):
         away = np.hypot(grid.x - crowd.x[i], grid.y - crowd.y[i])
         expected = np.flatnonzero((away <= radius) & (grid.people != i))
         assert near[:count].tolist() == grid.people[expected].tolist()
-        assert (others[:COVERED, :count] == kept[:COVERED, expected]).all()
+        assert (others[:2, :count] == [grid.x[expected], grid.y[expected]]).all()
+        assert (others[2 : 2 + COVERED, :count] == kept[:COVERED, expected]).all()
         assert (sweeps[:, :count] == kept[COVERED:, expected]).all()

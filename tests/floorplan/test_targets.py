@@ -159,14 +159,25 @@ def test_what_cannot_be_in_view_is_left_out_rightly(plans, places_in, name: str)
     places = places_in(plan, 0.31)
     found = Router(plan).targets(places, np.zeros(len(places), int))
     thorough = Router(plan)
-    views = thorough._views
-    views.known[:] = True
-    views.bits[:] = 0
+    everything = np.zeros_like(thorough._views.bits)
     for node in range(thorough.graph.number_of_nodes()):
-        views.bits[:, node // 64] |= np.uint64(1) << np.uint64(node % 64)
+        everything[0, node // 64] |= np.uint64(1) << np.uint64(node % 64)
+    thorough._views.row[:] = 1
+    thorough._views.bits[:] = everything
     expected = thorough.targets(places, np.zeros(len(places), int))
     assert (found.points == expected.points).all()
     assert (found.distances == expected.distances).all()
+
+
+def test_squares_get_a_row_of_views_when_somebody_comes_by(plans, places_in) -> None:
+    plan = plans["hall"]()
+    router = Router(plan)
+    places = places_in(plan, 0.31)
+    router.targets(places, np.zeros(len(places), int))
+    known, views = int(router._views.known[0]), router._views
+    assert 64 < known <= len(views.bits)
+    assert sorted(views.row[views.row > 0].tolist()) == list(range(1, known + 1))
+    assert not views.bits[known:].any()
 
 
 def test_people_outside_the_plan_do_no_harm(plans) -> None:
