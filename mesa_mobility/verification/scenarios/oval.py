@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from shapely import LineString, Polygon, box
 
 from mesa_mobility import FloorPlan, Gate, PedestrianModel
+from mesa_mobility.distributions import Distribution
 from mesa_mobility.verification.runs import crowd_model
 
 FloatArray = NDArray[np.float64]
@@ -107,7 +108,7 @@ def oval_model(
     people: int,
     seed: int,
     *,
-    speed: float | None = None,
+    speed: float | Distribution | None = None,
     spacing: float,
     clearance: float,
     **rules: Any,

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mesa_mobility.distributions import Distribution
 from mesa_mobility.results import individual_densities
 from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.runs import Run
@@ -29,7 +30,7 @@ def track(
     *,
     density: float,
     width: float,
-    speed: float | None = None,
+    speed: float | Distribution | None = None,
     settle_s: float = 30.0,
     measure_s: float = 60.0,
     **rules: Any,
@@ -40,7 +41,7 @@ def track(
         seed: of the run.
         density: persons per square metre of the whole track.
         width: of the track, metres.
-        speed: preferred by everybody, m/s; by default the type's own spread.
+        speed: preferred by everybody, m/s, or a distribution; by default the type's own.
         settle_s: seconds before anything is measured.
         measure_s: seconds that count.
         **rules: other than those of the default preset, as ``PedestrianModel`` takes them.
