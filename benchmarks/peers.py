@@ -51,7 +51,11 @@ def our_model(scenario: Scenario, mobility_map: Any = None) -> Any:
 
 def ours(scenario: Scenario) -> Callable[[], tuple[float, int]]:
     """Set up our model; the function returned runs it: person-seconds, people left inside."""
+    from mesa_mobility.crowd.ahead import compile_the_rest
+
     model = our_model(scenario)
+    # What people who walk freely do not need: a jam would compile it while it is timed.
+    compile_the_rest()
 
     def run() -> tuple[float, int]:
         model.run(max_seconds=scenario.seconds or LIMIT_S)
@@ -101,11 +105,6 @@ def measure(peer: str, name: str) -> dict[str, Any]:
     prepare = ours if peer == PEERS[0] else jupedsim
     start = time.process_time()
     prepare(open_walk(20, seconds=2.0))()
-    if peer == PEERS[0]:
-        from mesa_mobility.crowd.ahead import compile_the_rest
-
-        # What people who walk freely do not need: a jam would compile it while it is timed.
-        compile_the_rest()
     compiled = time.process_time() - start
     start = time.process_time()
     run = prepare(SCENARIOS[name]())
