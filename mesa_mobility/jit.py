@@ -9,7 +9,7 @@ in NumPy: the test for it would keep a loop from running several items at once.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import partial, update_wrapper
 from typing import Any
 
 from numba import njit, typeof
@@ -40,17 +40,17 @@ class Entry:
     than the first ones are misread.
 
     Args:
-        function: one that Numba compiles.
+        function: one that Numba compiles; ``__wrapped__`` is it.
     """
 
-    __slots__ = ("_call", "_function")
+    __wrapped__: Any
 
     def __init__(self, function: Any) -> None:
-        self._function = function
+        update_wrapper(self, function, updated=())
         self._call: Callable[..., Any] | None = None
 
     def __call__(self, *arguments: Any) -> Any:
         """What the function gives."""
         if self._call is None:
-            self._call = self._function.compile(tuple(map(typeof, arguments)))
+            self._call = self.__wrapped__.compile(tuple(map(typeof, arguments)))
         return self._call(*arguments)

@@ -21,18 +21,20 @@ MANY = 256
 """People from whom on threads are worth their while: in small crowds they mostly wait for one
 another."""
 
-BRIEF = 8_192
-"""The same for what takes some nanoseconds a person: to hand out a part takes 50 microseconds."""
+BLOCK = 8_192
+"""People at a time of what takes some nanoseconds a person: to hand out a part takes 50
+microseconds. A number of its own, not a share of the crowd for each thread: sums of floats must not
+depend on how many threads there are."""
 
 
-def threads_for(people: int, least: int = MANY) -> int:
-    """Threads to share the work for so many people, of whom it takes ``least`` to do so."""
-    return THREADS if people >= least else 1
+def threads_for(people: int) -> int:
+    """Threads to share the work for so many people."""
+    return THREADS if people >= MANY else 1
 
 
-def shares(people: int, least: int = MANY) -> list[slice]:
+def shares(people: int) -> list[slice]:
     """So many people in equal parts, one for each thread."""
-    threads = threads_for(people, least)
+    threads = threads_for(people)
     if threads == 1:
         return [slice(0, people)]
     ends = [people * k // threads for k in range(threads + 1)]
@@ -42,6 +44,21 @@ def shares(people: int, least: int = MANY) -> list[slice]:
 def together(work: Callable[[Part], Result], parts: Sequence[Part]) -> list[Result]:
     """``work`` of each part, in several threads; it must let go of Python's lock to gain by it."""
     return [work(parts[0])] if len(parts) == 1 else list(_pool().map(work, parts))
+
+
+def by_blocks(work: Callable[[int, int], Result], people: int) -> list[Result]:
+    """``work(first, last)`` of each block of so many people, in order, by all threads."""
+    if people <= BLOCK:
+        return [work(0, people)]
+
+    def part(starts: range) -> list[Result]:
+        return [work(first, min(first + BLOCK, people)) for first in starts]
+
+    # One part for each thread: to hand a block to a thread takes longer than to move half of it.
+    starts = range(0, people, BLOCK)
+    share = -(-len(starts) // THREADS)
+    parts = [starts[k : k + share] for k in range(0, len(starts), share)]
+    return [result for results in together(part, parts) for result in results]
 
 
 @lru_cache(maxsize=1)

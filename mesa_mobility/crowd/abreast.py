@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.crowd.target_choice import Deciding
 from mesa_mobility.floorplan import Targets
+from mesa_mobility.jit import Entry
 
 CAPACITY = 1.22
 """People a second and metre of width at most (Weidmann, IVT Schriftenreihe 90, 1993)."""
@@ -32,12 +33,14 @@ def keep_abreast(deciding: Deciding, targets: Targets, crowd: Crowd) -> NDArray[
         return targets.points
     areas = np.zeros(len(deciding.pedestrians))
     bent = _areas(
-        deciding.pedestrians, targets.nearest_first, targets.corners, deciding.inside.pedestrians,
+        deciding.pedestrians, targets.nearest_first,
+        np.ascontiguousarray(targets.corners, dtype=np.int64), deciding.inside.pedestrians,
         crowd.records, crowd.agenda, areas,
     )  # fmt: skip
     return deciding.site.abreast(deciding.positions, targets, areas) if bent else targets.points
 
 
+@Entry
 @njit(cache=True, nogil=True)
 def _areas(
     rows: NDArray[np.int64],

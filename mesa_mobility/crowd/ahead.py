@@ -15,15 +15,15 @@ from pathlib import Path
 
 import numpy as np
 
-from mesa_mobility.crowd.beyond import move_on, walk_on
+from mesa_mobility.crowd.beyond import merge, move_on, walk_on
 from mesa_mobility.crowd.choice import decide
 from mesa_mobility.crowd.collision import Surroundings
 from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.groups import make_groups
 from mesa_mobility.crowd.motion import due, move
 from mesa_mobility.crowd.options import OPTION, SAMPLES, OptionTable, boxes
-from mesa_mobility.crowd.overview import look_over
-from mesa_mobility.crowd.patience import turn
+from mesa_mobility.crowd.overview import look_over, sort_out
+from mesa_mobility.crowd.patience import pick, turn
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.repertoire import Repertoire
 from mesa_mobility.crowd.rules import Rules
@@ -78,8 +78,11 @@ def compile_the_rest() -> None:
     move(nobody, 0, 1, _table(), crowd.records)
     walk_on(nobody, 0, np.empty((0, 4)), np.empty((3, 2)), crowd.records)
     move_on(nobody, 0, crowd.records)
+    merge(nobody, nobody, nobody)
+    pick(nothing, nobody, nothing)
     turn(nobody, nothing, nothing, crowd.records)
     look_over(nobody, 0, crowd, np.empty((0, 2)))
+    sort_out(nobody, crowd.records, nobody, nobody)
     compile_terms(preset_named("default").make_terms())
 
 

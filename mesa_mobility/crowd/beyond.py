@@ -16,7 +16,7 @@ from mesa_mobility.crowd.motion import commit
 from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.floorplan.kernels import point_segment_distance2
-from mesa_mobility.jit import called
+from mesa_mobility.jit import Entry, called
 
 WALKS_ON = 45
 """Frames for which somebody is still there: 1.5 s, the longest that anybody looks ahead."""
@@ -29,22 +29,24 @@ class Beyond:
 
     Attributes:
         rows: their rows in the crowd, in order.
+        new: rows of those of them who have not set off yet, one array a frame.
     """
 
     def __init__(self) -> None:
         self.rows = np.empty(0, dtype=np.int64)
-        self._new = self.rows
+        self.new: list[NDArray[np.int64]] = []
 
     def add(self, rows: NDArray[np.int64]) -> None:
         """People have crossed an exit in this frame."""
+        rows = np.ascontiguousarray(rows)
         self.rows = self.together_with(rows)
-        self._new = np.concatenate([self._new, rows])
+        self.new.append(rows)
 
     def set_off(self, frame: int, crowd: Crowd, exits: NDArray[np.float64]) -> None:
         """Have those who are new walk on, away from the (e, 4) exits."""
-        if len(self._new):
-            walk_on(self._new, frame, exits, np.empty((3, 2)), crowd.records)
-            self._new = self._new[:0]
+        for rows in self.new:
+            walk_on(rows, frame, exits, np.empty((3, 2)), crowd.records)
+        self.new.clear()
 
     def move(self, frame: int, crowd: Crowd) -> None:
         """Put them where they are at ``frame``, and forget those who are far enough away."""
@@ -57,10 +59,26 @@ class Beyond:
         """These rows and those of the people beyond, in order."""
         if len(self.rows) == 0:
             return rows
-        # Both are in order: a stable sort merges them.
-        return np.sort(np.concatenate([rows, self.rows]), kind="stable")
+        merged = np.empty(len(rows) + len(self.rows), dtype=np.int64)
+        merge(rows, self.rows, merged)
+        return merged
 
 
+@Entry
+@called()
+def merge(some: NDArray[np.int64], others: NDArray[np.int64], merged: NDArray[np.int64]) -> None:
+    """Write two arrays that are in order into one that is."""
+    a = 0
+    for b in range(len(others)):
+        while a < len(some) and some[a] < others[b]:
+            merged[a + b] = some[a]
+            a += 1
+        merged[a + b] = others[b]
+    for k in range(a, len(some)):
+        merged[k + len(others)] = some[k]
+
+
+@Entry
 @called()
 def walk_on(
     rows: NDArray[np.int64],
@@ -98,6 +116,7 @@ def walk_on(
         state.route[i] = 0.0
 
 
+@Entry
 @called()
 def move_on(rows: NDArray[np.int64], frame: int, state: CrowdState) -> int:
     """Move those whose way has not ended by ``frame`` and bring them to the front; how many."""

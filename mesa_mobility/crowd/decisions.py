@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 
 import numpy as np
@@ -35,10 +36,12 @@ class Decisions:
     def __init__(self, repertoire: Repertoire, rules: Rules, least_core: float) -> None:
         self._repertoire = repertoire
         self._rules = rules
-        self._least_core = least_core
+        # No more bodies than have room within the search radius.
+        room = (rules.search_radius / least_core + 1.0) ** 2
+        self._most_near = int(room) + 1 if rules.cores else sys.maxsize
         self._compiled = CompiledTerms()
         self._works: list[Work] = []
-        self._decide = Entry(decide)
+        self._decide, self._build_grid = Entry(decide), Entry(build_grid)
 
     def take(
         self,
@@ -67,7 +70,7 @@ class Decisions:
         table, groups = self._repertoire.table, self._repertoire.groups
         compiled, others = self._compiled(terms)
         extra, extra_offsets = NO_EXTRA
-        grid = build_grid(rows, crowd.x, crowd.y)
+        grid = self._build_grid(rows, crowd.x, crowd.y)
         if others:
             extra, extra_offsets = extra_costs(others, order, table, crowd, grid, self._rules)
         moving = headways(grid, crowd.records)
@@ -120,10 +123,7 @@ class Decisions:
     def _works_for(self, threads: int, people: int, around: Surroundings, terms: int) -> list[Work]:
         """Space for decisions among so many people by so many terms, for each thread."""
         walls = len(around.segments) + len(around.exits)
-        if self._rules.cores:
-            # No more bodies than have room within the search radius.
-            room = (self._rules.search_radius / self._least_core + 1.0) ** 2
-            people = min(people, int(room) + 1)
+        people = min(people, self._most_near)
         works = self._works
         if works and (
             people > len(works[0].marks)

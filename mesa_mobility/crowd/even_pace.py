@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.state import NO_OPTION, Crowd, CrowdState
-from mesa_mobility.jit import called
+from mesa_mobility.jit import Entry, called
 
 FREELY = 0.1
 """Whoever is within so much of the speed that it prefers walks freely, m/s."""
@@ -46,6 +46,7 @@ def keep_pace(
     return kept
 
 
+@Entry
 @called()
 def _keep_pace(
     rows: NDArray[np.int64],

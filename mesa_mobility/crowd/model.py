@@ -16,10 +16,10 @@ from mesa_mobility.crowd.candidates import Candidates
 from mesa_mobility.crowd.capability import Capability
 from mesa_mobility.crowd.decisions import Decisions
 from mesa_mobility.crowd.explain import Explanation, Watch
-from mesa_mobility.crowd.inside import Inside
 from mesa_mobility.crowd.journeys import Journeys
 from mesa_mobility.crowd.motion import LONG_AFTER, due, move
 from mesa_mobility.crowd.neighbours import Grid, build_grid
+from mesa_mobility.crowd.options import FRAMES_A_SECOND
 from mesa_mobility.crowd.overview import NOBODY
 from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
@@ -31,12 +31,12 @@ from mesa_mobility.crowd.repertoire import repertoire
 from mesa_mobility.crowd.replan import stop_where_blocked
 from mesa_mobility.crowd.rules import Rules
 from mesa_mobility.crowd.source import Inflow
-from mesa_mobility.crowd.space import CrowdSpace, write_places
+from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state import Crowd
 from mesa_mobility.crowd.summary import CrowdMeasures
 from mesa_mobility.crowd.surroundings import Site
-from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
+from mesa_mobility.crowd.target_choice import TargetChoice
 from mesa_mobility.crowd.terms import CostTerm
 from mesa_mobility.crowd.waits import Waits
 from mesa_mobility.crowd.wishes import set_wishes
@@ -105,10 +105,8 @@ class PedestrianModel(CrowdMeasures, People):
         super().__init__(rng=rng)
         if not isinstance(frames_per_step, int) or frames_per_step < 1:
             raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
-        rules = preset_named(preset)
+        rules = self._preset = preset_named(preset)
         self.preset = rules.name
-        self._abreast, self._impatience = rules.abreast, rules.impatience
-        self._even_pace = rules.even_pace
         self.floor_plan = floor_plan
         self.pedestrian_types = types_of(mobility_map, pedestrian_types)
         self._repertoire = repertoire(
@@ -228,7 +226,8 @@ class PedestrianModel(CrowdMeasures, People):
     def _advance(self, rows: NDArray[np.int64], end: int) -> NDArray[np.int64]:
         """Have those decide who do in this frame, and go on to the next one in which anything but
         walking happens, to frame ``end`` at most; return who is left of those in ``rows``."""
-        self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
+        if self._beyond.new:
+            self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         if self.sources:
             newcomers = self._let_in()
             rows = np.concatenate([rows, newcomers])
@@ -250,8 +249,8 @@ class PedestrianModel(CrowdMeasures, People):
         now = self.frame
         if self._next <= now:
             self._have_decide(rows)
-        second = round(self.frame_rate)
-        end = min(end, max(self._next, now + 1), (now // second + 1) * second)
+        full_second = (now // FRAMES_A_SECOND + 1) * FRAMES_A_SECOND
+        end = min(end, max(self._next, now + 1), full_second)
         replanned = self._plan_version != self.floor_plan.version
         if self.recorder is not None or self.sources or replanned:
             end = now + 1
@@ -270,7 +269,7 @@ class PedestrianModel(CrowdMeasures, People):
         if len(gone):
             self.last_left = self.elapsed
             self._beyond.add(gone)
-        if end % second == 0:
+        if end == full_second:
             self.occupancy.append((self.elapsed, len(stay)))
         return stay
 
@@ -288,10 +287,10 @@ class PedestrianModel(CrowdMeasures, People):
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
         self.journeys.advance(deciding, self.frame, self.crowd, self._repertoire.table)
-        waiting = self.waits.waiting(deciding, self.frame, self.crowd)
+        self.waits.ask(deciding, self.frame, self.crowd)
         # Those nearest to where they go decide first: that frees space for those behind. All else
         # that there is to targets is with the crowd by now, and can be forgotten here.
-        order = deciding[self._set_targets(deciding, rows, waiting).nearest_first]
+        order = deciding[self._set_targets(deciding, rows).nearest_first]
         self._decisions.take(
             order,
             self.frame,
@@ -303,26 +302,11 @@ class PedestrianModel(CrowdMeasures, People):
         )
 
     def _set_targets(
-        self,
-        rows: NDArray[np.int64],
-        inside: NDArray[np.int64],
-        waiting: NDArray[np.bool_] | None = None,
+        self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, all_go: bool = False
     ) -> Targets:
-        state = self.crowd
-        positions = np.empty((len(rows), 2))
-        write_places(rows, state.records, positions)
-        deciding = Deciding(
-            pedestrians=rows,
-            positions=positions,
-            destinations=state.destination[rows],
-            elapsed=self.elapsed,
-            inside=Inside(inside, state),
-            rng=self.rng,
-            site=self._site,
-        )
         return set_wishes(
-            deciding, state, self.floor_plan, self.target_choice, self.paces, waiting,
-            abreast=self._abreast, impatience=self._impatience, even_pace=self._even_pace,
+            rows, inside, self.frame, self.crowd, self._site, self.target_choice, self.paces,
+            self._preset, self.rng, all_go=all_go,
         )  # fmt: skip
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
@@ -343,6 +327,7 @@ class PedestrianModel(CrowdMeasures, People):
         return self._decisions.judge(weighed, self.crowd, self._site.surroundings)
 
     def _grid(self) -> Grid:
-        self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
+        if self._beyond.new:
+            self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         rows = self._beyond.together_with(self._rows)
         return build_grid(rows, self.crowd.x, self.crowd.y)

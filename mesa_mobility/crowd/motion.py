@@ -13,7 +13,7 @@ from mesa_mobility.crowd.options import FRAME_SECONDS, SAMPLE_FRAMES, SAMPLES, O
 from mesa_mobility.crowd.state import FALLBACK, CrowdState
 from mesa_mobility.crowd.under_way import facing_at_knot, knot
 from mesa_mobility.jit import Entry, called, lean
-from mesa_mobility.threads import threads_for, together
+from mesa_mobility.threads import BLOCK, by_blocks
 
 LONG_AFTER = np.iinfo(np.int64).max
 """A frame after all others."""
@@ -76,11 +76,6 @@ def commit(
     state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3] = x0, y0, x1, y1
 
 
-BLOCK = 8192
-"""People moved at a time. A number of its own, not a share of the crowd for each thread: sums of
-floats must not depend on how many threads there are."""
-
-
 class Moved(NamedTuple):
     """What people have come to in some frames.
 
@@ -104,35 +99,33 @@ def move(
     Nobody may leave or come to the end of its movement before that.
     """
     sorted_out = np.empty_like(active)
-    if len(active) <= BLOCK:
-        staying, left, *rest = _move_some(active, frame, frames, table, state, sorted_out)
-        return Moved(sorted_out[:staying], sorted_out[::-1][:left], *rest)
 
-    def part(starts: range) -> list[tuple[int, int, float, int, int]]:
-        blocks = [slice(first, first + BLOCK) for first in starts]
-        return [
-            _move_some(active[own], frame, frames, table, state, sorted_out[own]) for own in blocks
-        ]
+    def block(first: int, last: int) -> tuple[int, int, float, int, int]:
+        some = active[first:last]
+        found: tuple[int, int, float, int, int] = _move(
+            some, frame, frames, table, state, sorted_out[first:last]
+        )
+        return found
 
-    # One part for each thread: to hand a block to a thread takes longer than to move half of it.
-    starts = range(0, len(active), BLOCK)
-    share = -(-len(starts) // threads_for(len(active)))
-    shares = [starts[k : k + share] for k in range(0, len(starts), share)]
-    counts = [count for counts in together(part, shares) for count in counts]
+    found = by_blocks(block, len(active))
+    if len(found) == 1:
+        staying, left, speeds, fallen, soonest = found[0]
+        return Moved(sorted_out[:staying], sorted_out[::-1][:left], speeds, fallen, soonest)
     stay, gone = [], []
-    for first, (staying, left, *_) in zip(starts, counts, strict=True):
-        block = sorted_out[first : first + BLOCK]
-        stay.append(block[:staying])
-        gone.append(block[::-1][:left])
+    for k, (staying, left, *_) in enumerate(found):
+        some = sorted_out[k * BLOCK : (k + 1) * BLOCK]
+        stay.append(some[:staying])
+        gone.append(some[::-1][:left])
     return Moved(
         np.concatenate(stay),
         np.concatenate(gone),
-        sum(count[2] for count in counts),
-        sum(count[3] for count in counts),
-        min(count[4] for count in counts),
+        sum(each[2] for each in found),
+        sum(each[3] for each in found),
+        min(each[4] for each in found),
     )
 
 
+@Entry
 @called()
 def due(
     active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray[np.int64]
@@ -158,6 +151,7 @@ def _next_event(i: int, frame: int, state: CrowdState) -> int:
     return gone if gone > frame else state.end[i]
 
 
+@Entry
 @called()
 def _move(
     active: NDArray[np.int64],
@@ -202,6 +196,3 @@ def _move(
             staying += 1
             soonest = min(soonest, _next_event(i, frame, state))
     return staying, left, speeds, fallen, soonest
-
-
-_move_some = Entry(_move)

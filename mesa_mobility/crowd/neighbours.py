@@ -13,7 +13,7 @@ from mesa_mobility.crowd.lanewise import places_near
 from mesa_mobility.crowd.state import CrowdState
 from mesa_mobility.jit import Entry, called, lean, part
 from mesa_mobility.lanes import LANES, bits_set, press_lanes
-from mesa_mobility.threads import BRIEF, shares, together
+from mesa_mobility.threads import by_blocks
 
 CELL_SIZE = 1.5
 
@@ -85,15 +85,16 @@ def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
     rows, n = COVERED + 3, len(grid.people)
     found = np.empty(rows * n + LANES)[: rows * n].reshape(rows, n)
 
-    def share(own: slice) -> None:
-        _write_headways(grid, state, own.start, own.stop, found)
+    def block(first: int, last: int) -> None:
+        _write_headways(grid, state, first, last, found)
 
-    together(share, shares(n, BRIEF))
+    by_blocks(block, n)
     return found
 
 
+@Entry
 @called()
-def write_headways(
+def _write_headways(
     grid: Grid, state: CrowdState, first: int, last: int, found: NDArray[np.float64]
 ) -> None:
     """Write ``headways`` of people from a first place in the grid to before a last one."""
@@ -105,9 +106,6 @@ def write_headways(
         found[2, a], found[3, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
         found[4, a] = state.route[i]
         cover_in(found, a, i, state)
-
-
-_write_headways = Entry(write_headways)
 
 
 @lean()

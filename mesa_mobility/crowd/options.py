@@ -11,7 +11,8 @@ from numpy.typing import DTypeLike, NDArray
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 
-FRAME_SECONDS = 1.0 / 30.0
+FRAMES_A_SECOND = 30
+FRAME_SECONDS = 1.0 / FRAMES_A_SECOND
 SAMPLE_FRAMES = 3
 """Frames between two samples of an option's path."""
 

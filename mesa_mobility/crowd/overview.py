@@ -9,47 +9,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state import Crowd, CrowdState
-from mesa_mobility.jit import called
-from mesa_mobility.threads import BRIEF, shares, together
+from mesa_mobility.jit import Entry, called
+from mesa_mobility.threads import by_blocks
 
 
 class Overview(NamedTuple):
     """What the people inside are about.
 
-    Fields: ``speeds`` (n,) mean speed of the movement under way of each, m/s; ``ways`` (m,) metres
-    left to go of those who have a way; ``awaited``, whether any of them waits.
+    Fields: how many ``people`` they are; the sum of their ``speeds``, m/s, each the mean of the
+    movement under way; how many have a way to go (``going``), and metres that these have ``left``,
+    all together; how many are ``awaited``: they wait.
     """
 
-    speeds: NDArray[np.float64]
-    ways: NDArray[np.float64]
-    awaited: bool
+    people: int
+    speeds: float
+    going: int
+    left: float
+    awaited: int
 
 
-NOBODY = Overview(np.empty(0), np.empty(0), awaited=False)
+NOBODY = Overview(0, 0.0, 0, 0.0, 0)
 
 
 def look_over(
     rows: NDArray[np.int64], frame: int, crowd: Crowd, positions: NDArray[np.float64]
 ) -> Overview:
     """Look over those in ``rows`` and write to ``positions`` (n, 2) where they are, metres."""
-    n = len(rows)
-    speeds, ways = np.empty(n), np.empty(n)
 
-    def part(own: slice) -> tuple[int, bool]:
-        return _look_over(
-            rows[own], frame, crowd.records, crowd.agenda, positions[own], speeds[own], ways[own]
-        )
+    def block(first: int, last: int) -> Overview:
+        some, places = rows[first:last], positions[first:last]
+        return Overview(last - first, *_look_over(some, frame, crowd.records, crowd.agenda, places))
 
-    parts = shares(n, BRIEF)
-    found = together(part, parts)
-    if len(parts) == 1:
-        ways = ways[: found[0][0]]
-    else:
-        own = [ways[each][:count] for each, (count, _) in zip(parts, found, strict=True)]
-        ways = np.concatenate(own)
-    return Overview(speeds, ways, any(awaited for _, awaited in found))
+    found = by_blocks(block, len(rows))
+    return found[0] if len(found) == 1 else Overview(*map(sum, zip(*found, strict=True)))
 
 
+@Entry
 @called()
 def _look_over(
     rows: NDArray[np.int64],
@@ -57,19 +52,32 @@ def _look_over(
     state: CrowdState,
     agenda: NDArray[np.void],
     positions: NDArray[np.float64],
-    speeds: NDArray[np.float64],
-    ways: NDArray[np.float64],
-) -> tuple[int, bool]:
-    """Write places, speeds, and the ways left of those who have one; returns how many they are.
-
-    And whether somebody waits.
-    """
-    found, awaited = 0, False
+) -> tuple[float, int, float, int]:
+    """Write places; returns all but the number of people as ``Overview`` has it."""
+    speeds, going, left, awaited = 0.0, 0, 0.0, 0
     for k in range(len(rows)):
         i = rows[k]
         positions[k, 0], positions[k, 1] = state[i].x, state[i].y
-        speeds[k] = math.hypot(state[i].vx, state[i].vy)
-        ways[found] = state[i].route
-        found += int(abs(state[i].route) < np.inf)
-        awaited = awaited or agenda[i]["waits_until"] > frame
-    return found, awaited
+        speeds += math.sqrt(state[i].vx * state[i].vx + state[i].vy * state[i].vy)
+        if abs(state[i].route) < np.inf:
+            going += 1
+            left += state[i].route
+        awaited += int(agenda[i]["waits_until"] > frame)
+    return speeds, going, left, awaited
+
+
+@Entry
+@called()
+def sort_out(
+    rows: NDArray[np.int64],
+    state: CrowdState,
+    stay: NDArray[np.int64],
+    places: NDArray[np.int64],
+) -> int:
+    """Write those in ``rows`` to ``stay`` who are in the model, and where in ``rows`` the others
+    are to ``places``; returns how many others there are."""
+    count = 0
+    for k in range(len(rows)):
+        stay[k - count], places[count] = rows[k], k
+        count += int(not state[rows[k]].active)
+    return count

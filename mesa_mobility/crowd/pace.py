@@ -41,7 +41,7 @@ def ask_paces(
         ModelError: speeds that are negative or not finite, or an array of another shape.
     """
     for pace in paces:
-        given = np.asarray(pace.speeds(deciding, speeds), dtype=np.float64)
+        given = np.asarray(pace.speeds(deciding, speeds), dtype=np.float64, order="C")
         if given.shape != speeds.shape or not ((given >= 0.0) & (given < np.inf)).all():
             raise ModelError(
                 f"behaviour {pace.name!r}: gave speeds of shape {given.shape}, expected "

@@ -10,12 +10,14 @@ stands because it was told to, or has not set off yet, is patient.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.state import Crowd, CrowdState
-from mesa_mobility.jit import called
+from mesa_mobility.jit import Entry, called
 
 GETTING_NEARER = 0.25
 """Metres that somebody must come nearer to count as getting on."""
@@ -49,12 +51,12 @@ def look_around(
     count = _impatient(rows, elapsed, crowd.records, crowd.agenda, who, spread)
     if count == 0:
         return
-    looks = (rng.random(count) < LOOKS).nonzero()[0]
-    if len(looks):
-        angle = spread[looks] * rng.standard_normal(len(looks))
-        turn(who[looks], np.cos(angle), np.sin(angle), crowd.records)
+    count = pick(rng.random(count), who, spread)
+    if count:
+        turn(who, spread, rng.standard_normal(count), crowd.records)
 
 
+@Entry
 @called()
 def _impatient(
     rows: NDArray[np.int64],
@@ -86,13 +88,31 @@ def _impatient(
     return count
 
 
+@Entry
+@called()
+def pick(chances: NDArray[np.float64], who: NDArray[np.int64], spread: NDArray[np.float64]) -> int:
+    """Bring those to the front who look for a way round, by a number of 0 to 1 for each of the
+    impatient; returns how many do."""
+    count = 0
+    for k in range(len(chances)):
+        who[count], spread[count] = who[k], spread[k]
+        count += int(chances[k] < LOOKS)
+    return count
+
+
+@Entry
 @called()
 def turn(
-    rows: NDArray[np.int64], c: NDArray[np.float64], s: NDArray[np.float64], state: CrowdState
+    rows: NDArray[np.int64],
+    spread: NDArray[np.float64],
+    times: NDArray[np.float64],
+    state: CrowdState,
 ) -> None:
-    """Turn the targets of those in ``rows`` about them, by angles of these cosines and sines."""
-    for k in range(len(rows)):
-        i = rows[k]
+    """Turn the targets of the first of those in ``rows`` about them, by so many ``times`` their
+    ``spread``, radians."""
+    for k in range(len(times)):
+        i, angle = rows[k], spread[k] * times[k]
+        c, s = math.cos(angle), math.sin(angle)
         dx, dy = state[i].target_x - state[i].x, state[i].target_y - state[i].y
-        state[i].target_x = state[i].x + c[k] * dx - s[k] * dy
-        state[i].target_y = state[i].y + s[k] * dx + c[k] * dy
+        state[i].target_x = state[i].x + c * dx - s * dy
+        state[i].target_y = state[i].y + s * dx + c * dy

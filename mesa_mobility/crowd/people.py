@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.beyond import Beyond
 from mesa_mobility.crowd.journeys import Journeys
-from mesa_mobility.crowd.overview import NOBODY, Overview, look_over
+from mesa_mobility.crowd.overview import NOBODY, Overview, look_over, sort_out
 from mesa_mobility.crowd.pace import Pace
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
@@ -128,7 +128,9 @@ class People(mesa.Model, ABC):
         if self.count + n > len(self.crowd.x):
             self.crowd.grow(max(self.count + n, 2 * len(self.crowd.x)))
         place(self.crowd, rows, points, speeds, self.frame, sets_off, new)
-        aim = self._set_targets(rows, np.concatenate([self._present, rows])).points - points
+        inside = np.concatenate([self._present, rows])
+        # Those who are yet to set off face where they will go.
+        aim = self._set_targets(rows, inside, all_go=True).points - points
         face(self.crowd, rows, np.arctan2(aim[:, 1], aim[:, 0]) if facing is None else facing)
         self.count += n
         self._rows = np.concatenate([self._rows, rows])
@@ -230,14 +232,17 @@ class People(mesa.Model, ABC):
 
         Their places in its space are taken by those behind them, whose positions must be written.
         """
-        stay = self.crowd.active[self._rows]
-        for row in self._rows[~stay].tolist():
+        stay, places = np.empty_like(self._rows), np.empty_like(self._rows)
+        count = sort_out(self._rows, self.crowd.records, stay, places)
+        leaving = places[:count].tolist()
+        for at in leaving:
+            row = self._rows[at]
             person = self._agents_by_row[row]
             if person is not None:
                 self.deregister_agent(person)
                 self._agents_by_row[row] = None
-        self.space.keep(stay)
-        self._rows = self._rows[stay]
+        self.space.take_out(leaving)
+        self._rows = stay[: len(stay) - count]
 
     @property
     def rows(self) -> NDArray[np.int64]:
@@ -297,12 +302,10 @@ class People(mesa.Model, ABC):
 
     @abstractmethod
     def _set_targets(
-        self,
-        rows: NDArray[np.int64],
-        inside: NDArray[np.int64],
-        waiting: NDArray[np.bool_] | None = None,
+        self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, all_go: bool = False
     ) -> Targets:
-        """Give the people in ``rows``, who are among those ``inside``, their targets."""
+        """Give the people in ``rows``, who are among those ``inside``, their targets; those who
+        wait get one only if ``all_go``."""
 
     def _look_over(self) -> None:
         """Look over everybody inside, and write to Mesa's space where they are."""

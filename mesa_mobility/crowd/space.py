@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from itertools import compress
 from typing import Any
 
-import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
-from numpy.typing import NDArray
-
-from mesa_mobility.crowd.state import CrowdState
-from mesa_mobility.jit import called
 
 _FEW = 50
 
@@ -28,19 +22,19 @@ class CrowdSpace(ContinuousSpace):
         self._agents_by_index: dict[int, ContinuousSpaceAgent] | None = None
         super().__init__(*args, **kwargs)
 
-    def keep(self, stay: NDArray[np.bool_]) -> None:
-        """Remove the agents that do not stay, ``stay`` in the order of ``active_agents``.
+    def take_out(self, places: list[int]) -> None:
+        """Remove the agents at these places of ``active_agents``, in rising order.
 
         Positions are not moved up: they must be written anew.
         """
         agents: list[ContinuousSpaceAgent] = self.active_agents  # type: ignore[has-type]
-        leaving = np.flatnonzero(~stay).tolist()
-        if len(leaving) < _FEW:
+        if len(places) < _FEW:
             # To move the rest of a list up is faster than to go through all of it.
-            for place in reversed(leaving):
+            for place in reversed(places):
                 del agents[place]
         else:
-            agents = list(compress(agents, stay.tolist()))
+            leaving = set(places)
+            agents = [agent for k, agent in enumerate(agents) if k not in leaving]
         self.active_agents = agents
         self._n_agents = len(self.active_agents)
         self.agent_positions = self._agent_positions[: self._n_agents]
@@ -76,12 +70,3 @@ class CrowdSpace(ContinuousSpace):
     @_index_to_agent.setter
     def _index_to_agent(self, table: dict[int, ContinuousSpaceAgent]) -> None:
         self._agents_by_index = table
-
-
-@called()
-def write_places(
-    rows: NDArray[np.int64], state: CrowdState, positions: NDArray[np.float64]
-) -> None:
-    """Write to ``positions`` (n, 2) where those in ``rows`` are, metres."""
-    for k in range(len(rows)):
-        positions[k, 0], positions[k, 1] = state[rows[k]].x, state[rows[k]].y

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from mesa_mobility.crowd.options import FRAME_SECONDS
 from mesa_mobility.crowd.overview import Overview
 
@@ -30,8 +28,8 @@ class StallWatch:
             crossed: gates that people have crossed on their journeys so far.
         """
         elapsed = frame * FRAME_SECONDS
-        inside = len(seen.speeds)
-        now, left = (inside, len(seen.ways), crossed), float(np.add.reduce(seen.ways))
+        inside, left = seen.people, seen.left
+        now = (inside, seen.going, crossed)
         # Others may stand because of somebody who is yet to set off. More way to go is news as
         # well: a door closed, and people are on another way.
         if seen.awaited or now != self._mark[:3] or abs(left - self._mark[3]) > STALL_PROGRESS:

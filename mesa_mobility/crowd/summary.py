@@ -47,8 +47,7 @@ class CrowdMeasures:
     @property
     def mean_speed(self) -> float:
         """Mean speed of the movements under way after the last step, m/s; 0 if nobody is inside."""
-        speeds = self._seen.speeds
-        return float(np.add.reduce(speeds) / len(speeds)) if len(speeds) else 0.0
+        return self._seen.speeds / self._seen.people if self._seen.people else 0.0
 
     @property
     def mean_speed_so_far(self) -> float:

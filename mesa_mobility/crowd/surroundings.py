@@ -59,7 +59,7 @@ class Site:
             self._version = -1
         return number
 
-    def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int32]) -> Targets:
+    def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int64]) -> Targets:
         """Where people at ``points`` (n, 2) should aim now."""
         return self._router.targets(points, destinations)
 

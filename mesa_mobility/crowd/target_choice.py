@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.inside import Inside
+from mesa_mobility.crowd.state import Crowd, CrowdState
 from mesa_mobility.crowd.surroundings import Site
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
+from mesa_mobility.jit import Entry, called
 
 
-@dataclass(frozen=True)
-class Deciding:
+class Deciding(NamedTuple):
     """The pedestrians who need a target now.
 
     Attributes:
@@ -33,7 +33,7 @@ class Deciding:
 
     pedestrians: NDArray[np.int64]
     positions: NDArray[np.float64]
-    destinations: NDArray[np.int32]
+    destinations: NDArray[np.int64]
     elapsed: float
     inside: Inside
     rng: np.random.Generator
@@ -63,18 +63,37 @@ class TargetChoice(ABC):
         """
 
 
-def ask(choice: TargetChoice, deciding: Deciding) -> Targets:
-    """The targets that a choice gives, checked.
+def ask(choice: TargetChoice, deciding: Deciding, crowd: Crowd) -> Targets:
+    """The targets that a choice gives, checked; the crowd gets the ways left to go.
 
     Raises:
         ModelError: points that are not finite, or arrays of other shapes.
     """
     targets = choice.targets(deciding)
-    points, distances = np.asarray(targets.points), np.asarray(targets.distances)
-    n = len(deciding.pedestrians)
-    if points.shape != (n, 2) or distances.shape != (n,) or not np.isfinite(points).all():
+    points = np.asarray(targets.points, dtype=np.float64, order="C")
+    distances = np.asarray(targets.distances, dtype=np.float64, order="C")
+    rows, n = deciding.pedestrians, len(deciding.pedestrians)
+    shaped = points.shape == (n, 2) and distances.shape == (n,)
+    if not (shaped and _note_ways(rows, points, distances, crowd.records)):
         raise ModelError(
             f"behaviour {choice.name!r}: gave points of shape {points.shape} and distances of "
             f"shape {distances.shape}, expected ({n}, 2) finite ones and ({n},)"
         )
     return targets
+
+
+@Entry
+@called()
+def _note_ways(
+    rows: NDArray[np.int64],
+    points: NDArray[np.float64],
+    distances: NDArray[np.float64],
+    state: CrowdState,
+) -> bool:
+    """Note how far those in ``rows`` have to go, unless one of their targets is not finite."""
+    for k in range(len(rows)):
+        if not (abs(points[k, 0]) < np.inf and abs(points[k, 1]) < np.inf):
+            return False
+    for k in range(len(rows)):
+        state[rows[k]].route = distances[k]
+    return True

@@ -60,12 +60,12 @@ class Waits:
             frames = frames_of(np.array([seconds], dtype=np.float64), "wait")
             crowd.agenda["waits_until"][row] = frame + frames[0]
 
-    def waiting(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> NDArray[np.bool_]:
-        """(n,) who of those in ``rows`` waits; asks the conditions, and forgets those fulfilled."""
+    def ask(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
+        """Ask what those in ``rows`` wait for, and have those go on for whom it has come true."""
+        if not self._conditions:
+            return
         until = crowd.agenda["waits_until"]
-        for row in rows[until[rows] == _UNTIL_TOLD].tolist() if self._conditions else ():
+        for row in rows[until[rows] == _UNTIL_TOLD].tolist():
             if self._conditions[row]():
                 del self._conditions[row]
                 until[row] = frame
-        waiting: NDArray[np.bool_] = until[rows] > frame
-        return waiting

@@ -38,6 +38,10 @@ _PAST_CORNER = (0.5, 0.25, 0.125)
 UNSEEN = -2
 """Gate of somebody whose target is not known yet."""
 
+ALL_TOLD, SOME_UNSEEN, NO_TABLE = 0, 1, 2
+"""What `aim` comes to: everybody has a target; some are left `UNSEEN`; all are, as there are no
+distances to a destination."""
+
 
 @njit(cache=True, nogil=True)
 def aim(
@@ -53,15 +57,18 @@ def aim(
     gates: NDArray[np.int64],
     lengths: NDArray[np.float64],
     corners: NDArray[np.int64],
-) -> bool:
+) -> int:
     """Write targets (n, 2), gates (n,), route lengths (n,) and corners (n, 2) of the `UNSEEN`.
 
     See `Router.targets`. For every destination and node, `distances` is the route length in metres
     and `follow` the next node of the route (-1 where it ends). Only one thread at a time may
     `learn`, that is, work out new views; the others leave those who need one `UNSEEN`. So does
-    whoever learns where there is no more room for views. Returns whether nobody has been left.
+    whoever learns where there is no more room for views. Returns what it has come to.
     """
-    all_told = True
+    for number in destinations:
+        if not 0 <= number < len(distances):
+            return NO_TABLE
+    outcome = ALL_TOLD
     nodes = len(ways.kind)
     keys = np.empty(nodes + AT_ONCE)
     seen = np.empty(nodes, dtype=np.int64)
@@ -82,7 +89,7 @@ def aim(
                 sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES
             )
         if node < 0 and not (hidden_known or (learn and has_room(views))):
-            all_told = False
+            outcome = SOME_UNSEEN
             continue
         if node < 0:
             maybe = seen[: nodes_maybe_in_view(sight, views, ways.xy, x, y, seen)]
@@ -104,7 +111,7 @@ def aim(
             if corner >= 0:
                 corners[person, 0] = corner
                 corners[person, 1] = after[corner]
-    return all_told
+    return outcome
 
 
 @lean()

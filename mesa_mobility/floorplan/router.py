@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.aiming import UNSEEN, aim
+from mesa_mobility.floorplan.aiming import ALL_TOLD, NO_TABLE, UNSEEN, aim
 from mesa_mobility.floorplan.bends import pass_abreast
 from mesa_mobility.floorplan.edges import opening_segments
 from mesa_mobility.floorplan.gaps import narrow_gaps
@@ -57,7 +57,7 @@ class Targets:
     @cached_property
     def nearest_first(self) -> NDArray[np.intp]:
         """(n,) the people in rising order of distance; those with equal ones as they come."""
-        return np.argsort(self.distances, kind="stable")
+        return np.asarray(self.distances).argsort(kind="stable")
 
 
 class Router:
@@ -171,22 +171,22 @@ class Router:
         found = Targets(points, gates, distances, corners)
         if n == 0:
             return found
-        # Seen without a sign, numbers below 0 are above all others.
-        if np.maximum.reduce(numbers.view(np.uint64)) >= len(self._lengths):
-            self._tabulate(numbers)
 
-        def aims(own: slice, learn: bool) -> bool:
-            all_told: bool = self._aim(
+        def aims(own: slice, learn: bool) -> int:
+            outcome: int = self._aim(
                 self._sight, self._ways, self._views, xy[own], numbers[own], self._lengths,
                 self._nexts, learn, points[own], gates[own], distances[own], corners[own],
             )  # fmt: skip
-            return all_told
+            return outcome
 
         parts = shares(n)
         if len(parts) > 1:
             together(lambda own: aims(own, False), parts)
-        while not aims(slice(n), True):
-            self._views = with_room(self._views)
+        while (outcome := aims(slice(n), True)) != ALL_TOLD:
+            if outcome == NO_TABLE:
+                self._tabulate(numbers)
+            else:
+                self._views = with_room(self._views)
         return found
 
     def abreast(

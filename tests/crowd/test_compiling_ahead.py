@@ -15,14 +15,17 @@ from mesa_mobility.crowd import (
 
 FUNCTIONS = [
     choice.decide,
-    motion.due,
-    motion._move,
+    motion.due.__wrapped__,
+    motion._move.__wrapped__,
     neighbours.build_grid,
-    neighbours.write_headways,
-    beyond.walk_on,
-    beyond.move_on,
-    patience.turn,
-    overview._look_over,
+    neighbours._write_headways.__wrapped__,
+    beyond.walk_on.__wrapped__,
+    beyond.move_on.__wrapped__,
+    beyond.merge.__wrapped__,
+    patience.pick.__wrapped__,
+    patience.turn.__wrapped__,
+    overview._look_over.__wrapped__,
+    overview.sort_out.__wrapped__,
 ]
 
 
