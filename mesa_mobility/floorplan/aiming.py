@@ -16,6 +16,7 @@ from mesa_mobility.floorplan.sight import (
     unwalled,
     wall_distance,
 )
+from mesa_mobility.floorplan.told import keep, recall
 from mesa_mobility.floorplan.views import Views, has_room, is_known, nodes_maybe_in_view
 from mesa_mobility.jit import lean, woven
 from mesa_mobility.lanes import AT_ONCE, place_of_least
@@ -48,6 +49,7 @@ def aim(
     sight: Sight,
     ways: Ways,
     views: Views,
+    told: NDArray[np.void],
     positions: NDArray[np.float64],
     destinations: NDArray[np.int64],
     distances: NDArray[np.float64],
@@ -62,8 +64,9 @@ def aim(
 
     See `Router.targets`. For every destination and node, `distances` is the route length in metres
     and `follow` the next node of the route (-1 where it ends). Only one thread at a time may
-    `learn`, that is, work out new views; the others leave those who need one `UNSEEN`. So does
-    whoever learns where there is no more room for views. Returns what it has come to.
+    `learn`, that is, work out new views and keep answers in `told`, while no other reads them; the
+    others leave those who need a view `UNSEEN`. So does whoever learns where there is no more room
+    for views. Returns what it has come to.
     """
     for number in destinations:
         if not 0 <= number < len(distances):
@@ -74,11 +77,16 @@ def aim(
     seen = np.empty(nodes, dtype=np.int64)
     everything = np.arange(nodes)
     for person in range(len(positions)):
-        if gates[person] != UNSEEN:
-            continue
         x, y = positions[person]
-        to_go = distances[destinations[person]]
-        after = follow[destinations[person]]
+        number = destinations[person]
+        if gates[person] != UNSEEN:
+            if learn:
+                keep(told, x, y, number, person, points, gates, lengths, corners)
+            continue
+        if recall(told, x, y, number, person, points, gates, lengths, corners):
+            continue
+        to_go = distances[number]
+        after = follow[number]
         own = wall_distance(sight, x, y, ways.view_clearance)
         view = ways.view_clearance
         node = -1
@@ -111,6 +119,8 @@ def aim(
             if corner >= 0:
                 corners[person, 0] = corner
                 corners[person, 1] = after[corner]
+        if learn:
+            keep(told, x, y, number, person, points, gates, lengths, corners)
     return outcome
 
 

@@ -18,6 +18,7 @@ from mesa_mobility.floorplan.nodes import EDGE_SHARE, NODE_SHARE, VIEW_SHARE, No
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routes import Ways, edges_in_view
 from mesa_mobility.floorplan.sight import Sight, sight_of
+from mesa_mobility.floorplan.told import nothing_told
 from mesa_mobility.floorplan.views import Views, no_views, with_room
 from mesa_mobility.jit import Entry
 from mesa_mobility.threads import shares, together
@@ -102,6 +103,7 @@ class Router:
         self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
         self._follow: dict[int, NDArray[np.int64]] = {}
         self._views: Views
+        self._told: NDArray[np.void]
         self._aim, self._pass_abreast = Entry(aim), Entry(pass_abreast)
         self._update()
 
@@ -174,8 +176,9 @@ class Router:
 
         def aims(own: slice, learn: bool) -> int:
             outcome: int = self._aim(
-                self._sight, self._ways, self._views, xy[own], numbers[own], self._lengths,
-                self._nexts, learn, points[own], gates[own], distances[own], corners[own],
+                self._sight, self._ways, self._views, self._told, xy[own], numbers[own],
+                self._lengths, self._nexts, learn, points[own], gates[own], distances[own],
+                corners[own],
             )  # fmt: skip
             return outcome
 
@@ -266,6 +269,7 @@ class Router:
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
         self._graph = self._network(nodes)
         self._views = no_views(plan.bounds, len(nodes.kind))
+        self._told = nothing_told()
         self._distances, self._follow = {}, {}
         self._lengths = self._lengths[:0]
         self._version = plan.version
