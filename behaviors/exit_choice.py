@@ -95,7 +95,7 @@ class ExitChoice(TargetChoice):
         chosen = self._chosen[rows]
         known = (chosen != UNDECIDED) & ~for_gate
         to = np.where(known, numbers[chosen] if len(numbers) else 0, deciding.destinations)
-        return site.targets(deciding.positions, to.astype(np.int32))
+        return site.targets(deciding.positions, to)
 
     def _choice(
         self,

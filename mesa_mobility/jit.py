@@ -35,9 +35,10 @@ array is some eight, and to hand them on takes longer than much of what is done 
 class Entry:
     """A compiled function that is always given arguments of the types of its first call.
 
-    That spares Numba the look-up of these types, which for tuples of arrays takes longer than all
-    else about a call. Nobody looks at them any more: other ones crash it, arrays less contiguous
-    than the first ones are misread.
+    For one of a module that is the first call in the process, whoever makes it. That spares Numba
+    the look-up of these types, which for tuples of arrays takes longer than all else about a call.
+    Nobody looks at them any more: other ones crash it, arrays less contiguous than the first ones
+    are misread.
 
     Args:
         function: one that Numba compiles; ``__wrapped__`` is it.

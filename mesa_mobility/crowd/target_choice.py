@@ -79,6 +79,12 @@ def ask(choice: TargetChoice, deciding: Deciding, crowd: Crowd) -> Targets:
             f"behaviour {choice.name!r}: gave points of shape {points.shape} and distances of "
             f"shape {distances.shape}, expected ({n}, 2) finite ones and ({n},)"
         )
+    # Compiled functions would take them for what they are not.
+    if targets.corners is not None and np.shape(targets.corners) != (n, 2):
+        raise ModelError(
+            f"behaviour {choice.name!r}: gave corners of shape {np.shape(targets.corners)}, "
+            f"expected ({n}, 2)"
+        )
     return targets
 
 

@@ -158,7 +158,11 @@ class Router:
         return self._distances[destination]
 
     def targets(self, positions: ArrayLike, destinations: ArrayLike) -> Targets:
-        """Where people at (n, 2) `positions` with (n,) `destinations` should aim now."""
+        """Where people at (n, 2) `positions` with (n,) `destinations` should aim now.
+
+        It shares the work among threads itself and keeps what it has found out: only one thread at
+        a time may ask.
+        """
         self._update()
         xy = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 2)
         numbers = np.ascontiguousarray(destinations, dtype=np.int64).reshape(-1)
@@ -183,7 +187,8 @@ class Router:
             return outcome
 
         parts = shares(n)
-        if len(parts) > 1:
+        if len(parts) > 1 and NO_TABLE in together(lambda own: aims(own, False), parts):
+            self._tabulate(numbers)
             together(lambda own: aims(own, False), parts)
         while (outcome := aims(slice(n), True)) != ALL_TOLD:
             if outcome == NO_TABLE:

@@ -1,9 +1,13 @@
 """Behaviours may give arrays of any making: compiled functions are given what they take."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 from mesa_mobility.behaviors import NearestExit
 
 from mesa_mobility import Pace, PedestrianModel, Targets
+from mesa_mobility.errors import ModelError
 from tests.crowd.test_abreast import halls
 
 PLACES = [(8.0 + 1.5 * (k % 5), 30.0 + 1.5 * (k // 5)) for k in range(20)]
@@ -20,6 +24,18 @@ class Strided(NearestExit):
             np.repeat(found.distances, 2)[::2],
             found.corners.astype(np.int32).copy(order="F"),
         )
+
+
+class Cut(NearestExit):
+    """The nearest exit, with corners cut to another shape."""
+
+    def __init__(self, cut) -> None:
+        super().__init__()
+        self._cut = cut
+
+    def targets(self, deciding):
+        found = super().targets(deciding)
+        return replace(found, corners=found.corners[self._cut])
 
 
 class Slower(Pace):
@@ -46,3 +62,12 @@ def test_arrays_of_any_making_do():
     # First the usual ones: compiled functions go by the types of their first call.
     expected = places(NearestExit(), 1)
     assert (places(Strided(), 3) == expected).all()
+
+
+@pytest.mark.parametrize("cut", [np.s_[:, 0], np.s_[:1]])
+def test_corners_of_another_shape_are_refused(cut):
+    places(NearestExit(), 1)
+    with pytest.raises(
+        ModelError, match=r"'nearest_exit': gave corners of shape \(.*\), expected \(20, 2\)"
+    ):
+        places(Cut(cut), 1)
