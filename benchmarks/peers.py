@@ -29,9 +29,15 @@ PEERS = ("mesa-mobility", "jupedsim")
 
 
 def our_model(scenario: Scenario, mobility_map: Any = None) -> Any:
-    """Our model of a scenario; the package is imported here, as the other's runs do without."""
-    from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
+    """Our model of a scenario, with what it needs compiled but for what its first steps compile.
 
+    The package is imported here, as the other's runs do without.
+    """
+    from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
+    from mesa_mobility.crowd.ahead import compile_the_rest
+
+    # What people who walk freely do not need: a jam would compile it while it is timed.
+    compile_the_rest()
     plan = FloorPlan(
         scenario.floor,
         exits=[Exit(name, *line) for name, (line, _) in scenario.exits.items()],
@@ -51,11 +57,7 @@ def our_model(scenario: Scenario, mobility_map: Any = None) -> Any:
 
 def ours(scenario: Scenario) -> Callable[[], tuple[float, int]]:
     """Set up our model; the function returned runs it: person-seconds, people left inside."""
-    from mesa_mobility.crowd.ahead import compile_the_rest
-
     model = our_model(scenario)
-    # What people who walk freely do not need: a jam would compile it while it is timed.
-    compile_the_rest()
 
     def run() -> tuple[float, int]:
         model.run(max_seconds=scenario.seconds or LIMIT_S)

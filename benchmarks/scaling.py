@@ -25,7 +25,6 @@ from peers import our_model
 from scenarios import Scenario, open_walk
 
 from mesa_mobility import MobilityMap
-from mesa_mobility.crowd.ahead import compile_the_rest
 
 PEOPLE = (1_000, 3_000, 10_000, 30_000, 100_000)
 DENSITIES = (0.1, 0.25, 0.5, 1.0, 1.5)
@@ -61,7 +60,6 @@ def thinned(map_: MobilityMap, every: int) -> MobilityMap:
 def timed(scenario: Scenario, map_: MobilityMap | None = None) -> dict[str, Any]:
     """One run: microseconds a person-second and a decision."""
     model = our_model(scenario, map_)
-    compile_the_rest()
     cpu, wall = time.process_time(), time.perf_counter()
     model.run(max_seconds=scenario.seconds)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall

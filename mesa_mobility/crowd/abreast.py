@@ -33,8 +33,7 @@ def keep_abreast(deciding: Deciding, targets: Targets, crowd: Crowd) -> NDArray[
         return targets.points
     areas = np.zeros(len(deciding.pedestrians))
     bent = _areas(
-        deciding.pedestrians, targets.nearest_first,
-        np.ascontiguousarray(targets.corners, dtype=np.int64), deciding.inside.pedestrians,
+        deciding.pedestrians, targets.nearest_first, targets.corners, deciding.inside.pedestrians,
         crowd.records, crowd.agenda, areas,
     )  # fmt: skip
     return deciding.site.abreast(deciding.positions, targets, areas) if bent else targets.points

@@ -29,24 +29,24 @@ class Beyond:
 
     Attributes:
         rows: their rows in the crowd, in order.
-        new: rows of those of them who have not set off yet, one array a frame.
     """
 
     def __init__(self) -> None:
         self.rows = np.empty(0, dtype=np.int64)
-        self.new: list[NDArray[np.int64]] = []
+        # Of those who have not set off yet, one array a frame.
+        self._new: list[NDArray[np.int64]] = []
 
     def add(self, rows: NDArray[np.int64]) -> None:
         """People have crossed an exit in this frame."""
         rows = np.ascontiguousarray(rows)
         self.rows = self.together_with(rows)
-        self.new.append(rows)
+        self._new.append(rows)
 
     def set_off(self, frame: int, crowd: Crowd, exits: NDArray[np.float64]) -> None:
         """Have those who are new walk on, away from the (e, 4) exits."""
-        for rows in self.new:
+        for rows in self._new:
             walk_on(rows, frame, exits, np.empty((3, 2)), crowd.records)
-        self.new.clear()
+        self._new.clear()
 
     def move(self, frame: int, crowd: Crowd) -> None:
         """Put them where they are at ``frame``, and forget those who are far enough away."""

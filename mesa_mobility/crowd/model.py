@@ -226,8 +226,7 @@ class PedestrianModel(CrowdMeasures, People):
     def _advance(self, rows: NDArray[np.int64], end: int) -> NDArray[np.int64]:
         """Have those decide who do in this frame, and go on to the next one in which anything but
         walking happens, to frame ``end`` at most; return who is left of those in ``rows``."""
-        if self._beyond.new:
-            self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
+        self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         if self.sources:
             newcomers = self._let_in()
             rows = np.concatenate([rows, newcomers])
@@ -327,7 +326,6 @@ class PedestrianModel(CrowdMeasures, People):
         return self._decisions.judge(weighed, self.crowd, self._site.surroundings)
 
     def _grid(self) -> Grid:
-        if self._beyond.new:
-            self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
+        self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         rows = self._beyond.together_with(self._rows)
         return build_grid(rows, self.crowd.x, self.crowd.y)

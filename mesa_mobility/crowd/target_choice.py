@@ -64,28 +64,31 @@ class TargetChoice(ABC):
 
 
 def ask(choice: TargetChoice, deciding: Deciding, crowd: Crowd) -> Targets:
-    """The targets that a choice gives, checked; the crowd gets the ways left to go.
+    """The targets that a choice gives, checked, in arrays that compiled functions take; the crowd
+    gets the ways left to go.
 
     Raises:
         ModelError: points that are not finite, or arrays of other shapes.
     """
-    targets = choice.targets(deciding)
-    points = np.asarray(targets.points, dtype=np.float64, order="C")
-    distances = np.asarray(targets.distances, dtype=np.float64, order="C")
+    given = choice.targets(deciding)
+    points = np.asarray(given.points, dtype=np.float64, order="C")
+    distances = np.asarray(given.distances, dtype=np.float64, order="C")
+    corners = given.corners
+    if corners is not None:
+        corners = np.asarray(corners, dtype=np.int64, order="C")
     rows, n = deciding.pedestrians, len(deciding.pedestrians)
+    # Compiled functions would take corners of another shape for what they are not.
+    if corners is not None and corners.shape != (n, 2):
+        raise ModelError(
+            f"behaviour {choice.name!r}: gave corners of shape {corners.shape}, expected ({n}, 2)"
+        )
     shaped = points.shape == (n, 2) and distances.shape == (n,)
     if not (shaped and _note_ways(rows, points, distances, crowd.records)):
         raise ModelError(
             f"behaviour {choice.name!r}: gave points of shape {points.shape} and distances of "
             f"shape {distances.shape}, expected ({n}, 2) finite ones and ({n},)"
         )
-    # Compiled functions would take them for what they are not.
-    if targets.corners is not None and np.shape(targets.corners) != (n, 2):
-        raise ModelError(
-            f"behaviour {choice.name!r}: gave corners of shape {np.shape(targets.corners)}, "
-            f"expected ({n}, 2)"
-        )
-    return targets
+    return Targets(points, given.gates, distances, corners)
 
 
 @Entry

@@ -70,7 +70,7 @@ def set_wishes(
         points = np.where(waiting[:, None], positions, points)
     if preset.even_pace:
         speeds = keep_pace(rows, crowd, speeds)
-    _settle(rows, np.ascontiguousarray(points, dtype=np.float64), speeds, crowd.records)
+    _settle(rows, points, speeds, crowd.records)
     if preset.impatience:
         look_around(rows, crowd, elapsed, rng)
     return targets

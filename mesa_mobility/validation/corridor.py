@@ -8,12 +8,14 @@ corridor is walked twice, by crowds that differ in nothing but that.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesa_mobility.distributions import Clipped, Normal
+from mesa_mobility.crowd.pedestrian_type import PREFERRED_SPEED
+from mesa_mobility.distributions import Normal
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict, case
@@ -26,9 +28,11 @@ DENSITIES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
 ASKED = (0.5, 1.125, 1.625, 2.125, 3.125)
 """Densities at which the speed must lie within the reference, persons/m2: bins of it."""
 WIDTH = 1.8
-RECORDED = Clipped(Normal(1.55, 0.18), 0.6, 2.0)
+RECORDED = replace(PREFERRED_SPEED, of=Normal(1.55, 0.18))
 """Speeds at which those in the recorded corridors walk alone, m/s (HERMES, 42 students: Liao et al.
 2014), in the range that the default preset has."""
+AS_RECORDED = "speeds as recorded"
+"""What that crowd is called; the preset's has no name, in figures as in checks."""
 
 
 def near(runs: Sequence[Figures], density: float) -> np.ndarray:
@@ -45,7 +49,7 @@ def judge(runs: Runs) -> Verdict:
         [row[first : first + len(DENSITIES)] for row in runs] for first in (0, len(DENSITIES))
     )
     checks, figures = _judged(preset, "")
-    theirs, beside = _judged(recorded, "speeds as recorded: ")
+    theirs, beside = _judged(recorded, f"{AS_RECORDED}: ")
     return Verdict((*checks, *theirs), {"global density": list(DENSITIES), **figures, **beside})
 
 
@@ -87,7 +91,7 @@ def draw(figures: dict[str, Any]) -> Figure:
     flow = axes[2]
     for panel, crowd, title, colour in (
         (axes[0], "", "speeds of the preset", drawing.OURS.colour),
-        (axes[1], "speeds as recorded: ", "speeds as recorded", drawing.OTHER.colour),
+        (axes[1], f"{AS_RECORDED}: ", AS_RECORDED, drawing.OTHER.colour),
     ):
         look = drawing.Look(colour, f"mesa-mobility, {title}", "o")
         bins = {name: np.array(values) for name, values in figures[f"{crowd}bins"].items()}
