@@ -1,4 +1,4 @@
-"""Behaviours that ship, each a plug-in like any other."""
+"""The shipped behaviours, each a plug-in like any other."""
 
 from mesa_mobility.behaviors.exit_choice import Choosing, ExitChoice
 from mesa_mobility.behaviors.familiar_exit import FamiliarExit

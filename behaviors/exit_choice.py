@@ -1,4 +1,4 @@
-"""Choosing among exits: what the behaviours that do so have in common."""
+"""Base class of behaviours that choose among exits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ UNDECIDED = -1
 
 @dataclass(frozen=True)
 class Choosing:
-    """Those who choose an exit now: k people, and e exits.
+    """The k people who choose among e exits in this frame.
 
     Attributes:
         pedestrians: (k,) their rows in the crowd.
@@ -40,14 +40,14 @@ class Choosing:
 
 
 class ExitChoice(TargetChoice):
-    """Everybody picks one of the exits that it may leave by, and thinks again from time to time.
+    """People choose one of the exits by which they may leave, and reconsider from time to time.
 
-    Whoever has no exit, or whose exit has closed, chooses at its next decision; the others think
-    again every ``interval`` seconds on average, at random, so that not everybody runs to and fro at
-    once. Those on their way to a gate go there. An object of this class serves one model.
+    People without an exit, or whose exit has closed, choose at their next decision. The others
+    reconsider at random, every ``interval`` seconds on average, so that not everybody runs to and
+    fro at once. Those on their way to a gate keep to it. An object of this class serves one model.
 
     Args:
-        interval: mean seconds between two thoughts.
+        interval: mean seconds between two choices.
 
     Raises:
         ModelError: an interval that is not positive.
@@ -63,24 +63,24 @@ class ExitChoice(TargetChoice):
 
     @abstractmethod
     def choose(self, choosing: Choosing) -> NDArray[np.int64]:
-        """(k,) number of the exit that each takes, in the order of the floor plan."""
+        """(k,) number of each one's exit, in the order of the floor plan."""
 
     def heading(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
-        """(n,) number of the exit that people in these rows head for, -1 for none."""
+        """(n,) number of the exit chosen by people in these rows, -1 for none."""
         self._make_room(pedestrians)
         return self._chosen[pedestrians]
 
     def forget(self, pedestrian: int) -> None:
-        """Have the person in a row of the crowd choose again at its next decision."""
+        """Let the person in a row of the crowd choose again at its next decision."""
         self._make_room(np.array([pedestrian]))
         self._chosen[pedestrian] = UNDECIDED
 
     def targets(self, deciding: Deciding) -> Targets:
-        """The way to the exit chosen."""
+        """Targets on the routes to the chosen exits."""
         rows, site = deciding.pedestrians, deciding.site
         self._make_room(rows)
         names = [exit_.name for exit_ in site.plan.exits]
-        numbers = np.array([site.destination((name,)) for name in names], dtype=np.int32)
+        numbers = self._numbers(deciding, names)
         may = self._may(deciding, names)
         gone = self._closed(rows, deciding, names)
         for_gate = ~may.any(axis=1)
@@ -91,17 +91,17 @@ class ExitChoice(TargetChoice):
         new = who[np.isnan(self._set_out[rows[who]])]
         self._set_out[rows[new]] = deciding.elapsed
         if len(who):
-            self._chosen[rows[who]] = self._choice(deciding, who, numbers, may[who])
+            self._chosen[rows[who]] = self._choice(deciding, who, numbers[who], may[who])
         chosen = self._chosen[rows]
         known = (chosen != UNDECIDED) & ~for_gate
-        to = np.where(known, numbers[chosen] if len(numbers) else 0, deciding.destinations)
+        to = np.where(known, numbers[np.arange(len(rows)), chosen], deciding.destinations)
         return site.targets(deciding.positions, to)
 
     def _choice(
         self,
         deciding: Deciding,
         who: NDArray[np.int64],
-        numbers: NDArray[np.int32],
+        numbers: NDArray[np.int64],
         may: NDArray[np.bool_],
     ) -> NDArray[np.int64]:
         rows, positions, inside = (
@@ -111,8 +111,8 @@ class ExitChoice(TargetChoice):
         )
         distances = np.column_stack(
             [
-                deciding.site.targets(positions, np.full(len(who), number)).distances
-                for number in numbers
+                deciding.site.targets(positions, np.ascontiguousarray(to)).distances
+                for to in numbers.T[:-1]
             ]
         )
         distances[~may] = np.inf
@@ -127,11 +127,26 @@ class ExitChoice(TargetChoice):
             heading=heading,
             deciding=deciding,
         )
-        # Whoever can reach none stays undecided, and asks again.
-        return np.where(np.isfinite(distances).any(axis=1), self.choose(choosing), UNDECIDED)
+        # People who can reach none stay undecided, and choose again.
+        chosen = np.asarray(self.choose(choosing))
+        exits = distances.shape[1]
+        if chosen.shape != (len(who),) or not np.isin(chosen, np.arange(-1, exits)).all():
+            raise ModelError(
+                f"behaviour {self.name!r}: chose exits of shape {chosen.shape}, expected "
+                f"({len(who)},) numbers of exits, 0 to {exits - 1}, or -1 for none"
+            )
+        return np.where(np.isfinite(distances).any(axis=1), chosen, UNDECIDED)
+
+    def _numbers(self, deciding: Deciding, names: list[str]) -> NDArray[np.int64]:
+        """(n, e + 1) destination number of each exit for each deciding pedestrian; the last column,
+        for no exit, is -1."""
+        types, inverse = np.unique(deciding.types, return_inverse=True)
+        site = deciding.site
+        table = [[*(site.destination((name,), kind) for name in names), -1] for kind in types]
+        return np.array(table, dtype=np.int64).reshape(len(types), len(names) + 1)[inverse]
 
     def _may(self, deciding: Deciding, names: list[str]) -> NDArray[np.bool_]:
-        """(n, e) which exits each may leave by; none for those on their way to a gate."""
+        """(n, e) whether each may leave by each exit; none for those on their way to a gate."""
         destinations, inverse = np.unique(deciding.destinations, return_inverse=True)
         allowed = [deciding.site.exits(int(number)) for number in destinations]
         table = np.array([[name in each for name in names] for each in allowed], dtype=np.bool_)
@@ -140,7 +155,7 @@ class ExitChoice(TargetChoice):
     def _closed(
         self, rows: NDArray[np.int64], deciding: Deciding, names: list[str]
     ) -> NDArray[np.bool_]:
-        """(n,) whose exit is closed now."""
+        """(n,) whether each one's exit is closed."""
         open_ = np.array([*(deciding.site.plan.is_open(name) for name in names), True])
         return ~open_[self._chosen[rows]]
 

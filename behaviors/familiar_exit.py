@@ -1,4 +1,4 @@
-"""Leaving by an exit that one knows."""
+"""Leaving by a familiar exit."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from mesa_mobility.errors import ModelError
 
 
 class FamiliarExit(RandomUtility):
-    """People leave by the exits that they know, if the way is not much farther.
+    """People leave by an exit that they know, unless another is much nearer.
 
     Place affiliation (Sime 1985, Environment and Behavior 17: 697-724): an exit that somebody
-    knows, mostly the one by which it came, is worth ``affiliation`` metres of way. An exit that is
-    not known is taken if it is nearer by more than that, tastes aside. How much that is depends on
-    the place and is to be calibrated: 15 m by default.
+    knows, mostly the one by which it came, is worth ``affiliation`` metres of route. An exit that
+    is not known is taken if it is nearer by more than that, tastes aside. The value depends on the
+    place and has to be calibrated; the default is 15 m.
 
     Args:
-        familiar: names of the exits that everybody knows of whom ``know`` says nothing else.
+        familiar: names of the exits that people know by default; ``know`` sets others.
         affiliation: what a known exit is worth, metres.
         scale: of people's tastes, metres.
-        interval: mean seconds between two thoughts.
+        interval: mean seconds between two choices.
 
     Raises:
         ModelError: a parameter out of range.
@@ -47,7 +47,7 @@ class FamiliarExit(RandomUtility):
         self._known = np.empty((0, 0), dtype=np.bool_)
 
     def know(self, people: Iterable[Pedestrian], exits: Iterable[str]) -> None:
-        """Say which exits some people know; they choose again at their next decision.
+        """Set the exits that some people know; they choose again at their next decision.
 
         Raises:
             ModelError: a name that is not an exit's.

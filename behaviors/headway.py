@@ -30,8 +30,9 @@ def _headway(  # type: ignore[no-untyped-def]
 
 
 class Headway(CompiledTerm):
-    """Sum over neighbours ahead of how much faster an option is than the room to them allows.
+    """Keeps a distance from people ahead that grows with speed.
 
+    Sum over neighbours ahead of how much faster an option is than the room to them allows:
     (v - (d - l) / T) x 1.5 where it is positive: d is how far ahead of the mobility point the
     neighbour will be by then at constant velocity, v the speed of the option, l the distance that
     people keep when they stand, T the time gap when they walk.  In metres over the paper's 1.5 s.

@@ -35,11 +35,12 @@ def _interference(  # type: ignore[no-untyped-def]
 
 
 class Interference(CompiledTerm):
-    """Sum over neighbours of P = a exp(-d / (b v)), equation (2).
+    """Keeps away from where other people will be.
 
-    d is the distance from the mobility point to where the neighbour will be by then at
-    constant velocity, v the speed of the option: who moves slowly accepts to be closer, and
-    P tends to 0 with v.  Neighbours behind the mobility point do not count.
+    Sum over neighbours of P = a exp(-d / (b v)), equation (2): d is the distance from
+    the mobility point to where the neighbour will be by then at constant velocity, v the
+    speed of the option: who moves slowly accepts to be closer, and P tends to 0 with v.
+    Neighbours behind the mobility point do not count.
 
     Args:
         weight: w_P.

@@ -1,4 +1,4 @@
-"""Leaving by the exit that one is soonest through."""
+"""Leaving by the exit with the shortest expected time."""
 
 import numpy as np
 from mesa_mobility.behaviors.exit_choice import Choosing, ExitChoice
@@ -20,7 +20,7 @@ class QuickestExit(ExitChoice):
     bottleneck experiments of 0.7 to 3 m, and 0.5 at least.
 
     Args:
-        interval: mean seconds between two thoughts.
+        interval: mean seconds between two choices.
         patience: least gain for which people turn round, as a share of the time expected in all.
 
     Raises:
@@ -36,7 +36,7 @@ class QuickestExit(ExitChoice):
         self.patience = patience
 
     def choose(self, choosing: Choosing):  # type: ignore[no-untyped-def]
-        """(k,) number of the exit with the least time expected, or the current one."""
+        """(k,) number of the exit with the least expected time, or the current one."""
         times = self.expected_times(choosing)
         best = times.argmin(axis=1)
         everyone = np.arange(len(best))
@@ -47,7 +47,7 @@ class QuickestExit(ExitChoice):
         return np.where((times[everyone, best] < worth) | ~has, best, choosing.current)
 
     def expected_times(self, choosing: Choosing):  # type: ignore[no-untyped-def]
-        """(k, e) seconds until each of those who choose expects to be through each exit."""
+        """(k, e) seconds that each expects to take to pass each exit."""
         inside = choosing.deciding.inside
         to_go = inside.distances
         at = inside.places(choosing.pedestrians)

@@ -20,7 +20,7 @@ class RandomUtility(ExitChoice):
 
     Args:
         scale: of the tastes, metres; with 0 everybody chooses alike.
-        interval: mean seconds between two thoughts.
+        interval: mean seconds between two choices.
 
     Raises:
         ModelError: a parameter out of range.
@@ -39,7 +39,13 @@ class RandomUtility(ExitChoice):
 
     def choose(self, choosing: Choosing) -> NDArray[np.int64]:
         """(k,) number of the exit of the greatest utility."""
-        utility = self.bonus(choosing) - choosing.distances
+        bonus = np.asarray(self.bonus(choosing))
+        if bonus.shape != choosing.distances.shape or not np.isfinite(bonus).all():
+            raise ModelError(
+                f"behaviour {self.name!r}: gave a bonus of shape {bonus.shape}, expected "
+                f"{choosing.distances.shape} finite numbers"
+            )
+        utility = bonus - choosing.distances
         return (utility + self._tastes_of(choosing)).argmax(axis=1)
 
     def _tastes_of(self, choosing: Choosing) -> NDArray[np.float64]:

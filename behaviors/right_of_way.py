@@ -35,8 +35,9 @@ def _right_of_way(  # type: ignore[no-untyped-def]
 
 
 class RightOfWay(CompiledTerm):
-    """Sum over neighbours of how far a mobility point is in the way of somebody who has priority.
+    """Makes way for people who have priority.
 
+    Sum over neighbours of how far a mobility point is in the way of somebody who has priority.
     Oncoming people, whose way is at more than 120 degrees to one's own, have it, so that both
     make way, and people who have less far to go have it over those right beside them, so that two
     who want the same gap do not both block it.  The cost is 1 on the line from an oncoming

@@ -12,7 +12,7 @@ from mesa_mobility.floorplan import lines_of_sight
 
 
 class SocialInfluence(RandomUtility):
-    """People take the exit that those in view head for, if the way is not much farther.
+    """People take the exit that those in view head for, unless it is much farther.
 
     The share of the people in view who head for an exit is worth up to ``influence`` metres of
     way. That others' choices count beside distance was seen in experiments (Kinateder, Comunale
@@ -23,7 +23,7 @@ class SocialInfluence(RandomUtility):
         influence: what an exit is worth for which all in view head, metres.
         sight: how far people look, metres; walls hide, people do not.
         scale: of people's tastes, metres.
-        interval: mean seconds between two thoughts.
+        interval: mean seconds between two choices.
 
     Raises:
         ModelError: a parameter out of range.

@@ -1,4 +1,4 @@
-"""How far to go in one option: as far as possible, or as far as one likes."""
+"""The speed of an option: as fast as possible, or near the preferred speed."""
 
 from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 
@@ -28,8 +28,9 @@ def _preferred_speed_bound(  # type: ignore[no-untyped-def]
 
 
 class Displacement(CompiledTerm):
-    """-S of equation (1): minus the displacement in metres, which rewards speed without limit.
+    """Prefers options that go far, and so rewards speed without limit.
 
+    -S of equation (1): minus the displacement in metres.
     On its own it makes everybody walk as fast as the recorded person ever did.
     """
 
@@ -39,9 +40,10 @@ class Displacement(CompiledTerm):
 
 
 class PreferredSpeed(CompiledTerm):
-    """|S - v0 t| x 1.5 / t: how far an option's displacement is from the pedestrian's own speed.
+    """Prefers options near the pedestrian's preferred speed.
 
-    In metres over the paper's 1.5 s whatever the option's duration t, so that options of
+    ``|S - v0 t| x 1.5 / t``: S is the displacement, v0 the preferred speed, t the
+    option's duration.  In metres over the paper's 1.5 s whatever the duration, so that options of
     different durations compare.  Takes the place of ``Displacement``.
     """
 

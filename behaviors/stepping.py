@@ -1,4 +1,4 @@
-"""Waiting for room for a step, rather than shuffling."""
+"""Waiting for room for a step instead of shuffling."""
 
 import math
 
@@ -6,7 +6,7 @@ from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 from mesa_mobility.errors import ModelError
 
 STANDS = 0.01
-"""Whoever covers no more ground than this in a movement stands, metres."""
+"""A person who covers no more ground than this in a movement stands, metres."""
 
 
 @option_kernel
@@ -24,8 +24,9 @@ def _stepping_bound(  # type: ignore[no-untyped-def]
 
 
 class Stepping(CompiledTerm):
-    """1 - s / l for an option that covers s metres, 0 from l on and where one stays where one is.
+    """Avoids short steps: people wait until there is room for a proper one.
 
+    1 - s / l for an option that covers s metres, 0 from l on and where one stays where one is.
     The effort of a step is mostly that of making one, so a short one is hardly worth it: people in
     a queue wait until there is room for one that is, and stand quietly until then. Of those who
     walk anyway it favours no option.

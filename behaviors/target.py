@@ -23,7 +23,7 @@ def _distance_bound(  # type: ignore[no-untyped-def]
     return max(math.sqrt(dx * dx + dy * dy) - radius, 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _angle(along, across):  # type: ignore[no-untyped-def]
     # The angle from its tangent by the polynomial 4.4.49 of Abramowitz and Stegun, to 2e-8 rad:
     # unlike a call of atan2, arithmetic alone runs for several options at once.
@@ -65,7 +65,10 @@ def _deviation_bound(  # type: ignore[no-untyped-def]
 
 
 class TargetDistance(CompiledTerm):
-    """D of equation (1): distance in metres from the mobility point to the target."""
+    """Prefers options that end near the target.
+
+    D of equation (1): metres from the mobility point to the target.
+    """
 
     name = "target_distance"
     kernel = _distance
@@ -73,9 +76,10 @@ class TargetDistance(CompiledTerm):
 
 
 class FacingDeviation(CompiledTerm):
-    """theta of equation (1): angle between facing and target at the mobility point.
+    """Prefers options that end facing the target.
 
-    Radians, 0 to pi, exact to 2e-8; 0 where the mobility point is the target itself.
+    theta of equation (1): angle between facing and target at the mobility point.  Radians,
+    0 to pi, exact to 2e-8; 0 where the mobility point is the target itself.
     """
 
     name = "facing_deviation"

@@ -1,4 +1,4 @@
-"""How fast to go, and which way: a velocity of one's own."""
+"""The preferred velocity: speed and direction."""
 
 import math
 
@@ -32,11 +32,11 @@ def _preferred_velocity_bound(  # type: ignore[no-untyped-def]
 
 
 class PreferredVelocity(CompiledTerm):
-    """|S - v0 e t| x 1.5 / t: how far an option is from walking to the target at one's own speed.
+    """Prefers to walk straight to the target at the preferred speed.
 
-    S is the displacement, e the unit vector to the target, v0 the preferred speed and t the
-    option's duration.  In metres over the paper's 1.5 s whatever the duration, so that
-    options of different durations compare.
+    ``|S - v0 e t| x 1.5 / t``: S is the displacement, e the unit vector to the target,
+    v0 the preferred speed and t the option's duration.  In metres over the
+    paper's 1.5 s whatever the duration, so that options of different durations compare.
     """
 
     name = "preferred_velocity"

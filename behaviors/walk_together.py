@@ -2,17 +2,17 @@
 
 import numpy as np
 
-from mesa_mobility import Deciding, Pace
+from mesa_mobility import Deciding, SpeedRule
 
 LEAST_SHARE = 0.2
 
 
-class WalkTogether(Pace):
+class WalkTogether(SpeedRule):
     """Members of a group walk at the pace of its slowest and do not run away from one another.
 
-    Whoever is ahead of the middle of its group by more than h metres of the way to go slows down,
-    to a fifth of the group's pace at 2 h: never to nothing, lest somebody who waits in a door keeps
-    the others from coming. Whoever is behind by more than h walks at its own pace. h is
+    Members ahead of their group's middle by more than h metres of route slow down, to a fifth of
+    the group's pace at 2 h. They never stop, so that nobody waits in a door and blocks the others.
+    Members behind by more than h walk at their own pace. h is
     (N - 1) / 2 m for a group of N, the distance beyond which Moussaid et al. (2010, PLoS ONE
     5: e10047) have members drawn to the group's centre, but 1 m at least.
 

@@ -22,7 +22,7 @@ import numpy as np
 from mesa_mobility import MobilityMap, PedestrianType
 from mesa_mobility.crowd.presets import PRESETS
 from mesa_mobility.mobility.map import CORE_RADIUS
-from mesa_mobility.registry import load_behavior
+from mesa_mobility.plugins.registry import load_behavior
 from mesa_mobility.results.files import json_text
 from mesa_mobility.validation.bottleneck import DENSITY_IN_FRONT, bottleneck
 from mesa_mobility.validation.corridor import RECORDED
@@ -32,7 +32,7 @@ from mesa_mobility.verification.references import (
     corridor_band,
 )
 from mesa_mobility.verification.scenarios.counterflow import counterflow
-from mesa_mobility.verification.scenarios.track import track
+from mesa_mobility.verification.scenarios.tracks.track import track
 
 _TERMS = PRESETS["default"].terms
 _CONSTANTS = {

@@ -1,9 +1,10 @@
 """Is anybody ever frozen or lost?  500 runs, each with a seed of its own, counted independently.
 
-python benchmarks/campaign.py campaign.jsonl [--runs 500] [--minutes 9] [--jobs 2]
+python benchmarks/campaign.py campaign.jsonl [--runs 500] [--plans 0] [--minutes 9] [--jobs 2]
 
 Appends one JSON line a run and goes on where the file ends, so that it can be run in pieces;
 with nothing left to run it prints the figures and ends with status 1 if anybody was frozen or lost.
+With --plans so many random floor plans are run besides: halls, rooms, corridors, stars and traps.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from mesa_mobility.validation.bottleneck import bottleneck
 from mesa_mobility.verification import Case, case
 from mesa_mobility.verification.cases import run_units
 from mesa_mobility.verification.scenarios.counterflow import counterflow
+from mesa_mobility.verification.scenarios.random_plans import SHAPES, random_plan
 from mesa_mobility.verification.scenarios.shipped import shipped
 
 ROUND: tuple[Case, ...] = (
@@ -39,15 +41,22 @@ ROUND: tuple[Case, ...] = (
 )
 """What is run in turn: in 500 runs 84 doorways, 251 bottlenecks, 124 counterflows, 41 halls."""
 
-SEED = 10_000
-"""Of the first run; each one after it has the next."""
+PLANS: tuple[Case, ...] = tuple(
+    case(random_plan, shape=shape, both_ways=both_ways)
+    for both_ways in (False, True)
+    for shape in SHAPES
+)
+"""Random plans, in turn: each seed is another plan."""
+
+SEED, PLAN_SEED = 10_000, 1_000_000
+"""Of the first run, and of the first random plan; each one after it has the next."""
 
 KEPT = (
-    "pedestrians", "left_inside", "stalled", "overlaps", "wall_crossings", "min_distance_m",
-    "simulated_s", "egress_s", "fallback_time_share", "person_s",
+    "pedestrians", "left_inside", "stalled", "overlaps", "wall_crossings", "off_floor",
+    "min_distance_m", "simulated_s", "egress_s", "fallback_time_share", "person_s",
 )  # fmt: skip
 
-COUNTED = ("pedestrians", "left_inside", "overlaps", "wall_crossings")
+COUNTED = ("pedestrians", "left_inside", "overlaps", "wall_crossings", "off_floor")
 
 
 def main() -> None:
@@ -55,18 +64,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", type=Path, help="one JSON line a run")
     parser.add_argument("--runs", type=int, default=500)
+    parser.add_argument("--plans", type=int, default=0, help="random floor plans besides")
     parser.add_argument("--minutes", type=float, default=9.0, help="begin no run after this")
     parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
     done = {row["seed"]: row for row in _rows(given.file)}
     begun = time.monotonic()
+    units = [(ROUND[k % len(ROUND)], SEED + k) for k in range(given.runs)]
+    units += [(PLANS[k % len(PLANS)], PLAN_SEED + k) for k in range(given.plans)]
 
     def missing() -> Iterator[tuple[Case, int]]:
-        for number in range(given.runs):
+        for each, seed in units:
             if time.monotonic() - begun > 60.0 * given.minutes:
                 return
-            if SEED + number not in done:
-                yield ROUND[number % len(ROUND)], SEED + number
+            if seed not in done:
+                yield each, seed
 
     with given.file.open("a", encoding="utf-8") as file:
         for each, seed, figures in run_units(missing(), given.jobs):
@@ -77,8 +89,8 @@ def main() -> None:
             file.write(json_text(row) + "\n")
             file.flush()
             done[seed] = row
-    wanted = [done[SEED + k] for k in range(given.runs) if SEED + k in done]
-    print(f"{len(wanted)} of {given.runs} runs")
+    wanted = [done[seed] for _, seed in units if seed in done]
+    print(f"{len(wanted)} of {len(units)} runs")
     bad = report(wanted)
     sys.exit(1 if bad else 0)
 
@@ -86,8 +98,8 @@ def main() -> None:
 def report(rows: list[dict[str, Any]]) -> bool:
     """Print figures for each scenario; whether anything was wrong in any run."""
     print("| scenario | runs | people | frozen or lost | runs with any | overlaps | wall crossings "
-          "| fallback, share of time |")  # fmt: skip
-    print("|---" * 8 + "|")
+          "| frames off the floor | fallback, share of time |")  # fmt: skip
+    print("|---" * 9 + "|")
     wrong = False
     for name in [*dict.fromkeys(row["scenario"] for row in rows), "all"]:
         mine = [row for row in rows if name in (row["scenario"], "all")]
@@ -98,10 +110,11 @@ def report(rows: list[dict[str, Any]]) -> bool:
         share = sum(row["fallback_time_share"] * row["person_s"] for row in good) / (time_ or 1.0)
         stuck = sum(row["left_inside"] > 0 for row in good)
         print(f"| {name} | {len(mine)} | {total['pedestrians']} | {total['left_inside']} | {stuck} "
-              f"| {total['overlaps']} | {total['wall_crossings']} | {share:.1%} |")  # fmt: skip
+              f"| {total['overlaps']} | {total['wall_crossings']} | {total['off_floor']} "
+              f"| {share:.1%} |")  # fmt: skip
         for row in failed:
             print(f"seed {row['seed']}: {row['error']}")
-        wrong |= bool(failed or stuck or total["overlaps"] or total["wall_crossings"])
+        wrong |= bool(failed or stuck or any(total[name] for name in COUNTED[1:]))
     return wrong
 
 

@@ -34,7 +34,7 @@ def our_model(scenario: Scenario, mobility_map: Any = None) -> Any:
     The package is imported here, as the other's runs do without.
     """
     from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
-    from mesa_mobility.crowd.ahead import compile_the_rest
+    from mesa_mobility.crowd.precompile import compile_the_rest
 
     # What people who walk freely do not need: a jam would compile it while it is timed.
     compile_the_rest()

@@ -6,14 +6,12 @@ and the command line start at once.
 
 from __future__ import annotations
 
-from importlib.metadata import version
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mesa_mobility.kernel_cache import drop_stale_kernels
-from mesa_mobility.lazily import names_of
+from mesa_mobility._lazy import beside_in_a_checkout, names_of
 
 if TYPE_CHECKING:
+    from mesa_mobility._version import __version__
     from mesa_mobility.batch import batch_run
     from mesa_mobility.crowd import (
         Candidates,
@@ -21,11 +19,11 @@ if TYPE_CHECKING:
         CompiledTerm,
         CostTerm,
         Deciding,
-        Pace,
         Pedestrian,
         PedestrianModel,
         PedestrianType,
         Source,
+        SpeedRule,
         TargetChoice,
         bound_kernel,
         option_kernel,
@@ -34,11 +32,8 @@ if TYPE_CHECKING:
     from mesa_mobility.errors import MobilityError
     from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone, Targets
     from mesa_mobility.mobility import MobilityMap, MotionGraph
+    from mesa_mobility.plugins.annotations import Files, Range
     from mesa_mobility.results import Trajectories
-
-__version__ = version("mesa-mobility")
-
-drop_stale_kernels(Path(__file__).parent)
 
 _ROOMS = {
     "Candidates": "crowd",
@@ -47,20 +42,23 @@ _ROOMS = {
     "CostTerm": "crowd",
     "Deciding": "crowd",
     "Exit": "floorplan",
+    "Files": "plugins.annotations",
     "FloorPlan": "floorplan",
     "Gate": "floorplan",
     "MobilityError": "errors",
     "MobilityMap": "mobility",
     "MotionGraph": "mobility",
-    "Pace": "crowd",
+    "SpeedRule": "crowd",
     "Pedestrian": "crowd",
     "PedestrianModel": "crowd",
     "PedestrianType": "crowd",
+    "Range": "plugins.annotations",
     "Source": "crowd",
     "SpeedZone": "floorplan",
     "TargetChoice": "crowd",
     "Targets": "floorplan",
     "Trajectories": "results",
+    "__version__": "_version",
     "batch_run": "batch",
     "bound_kernel": "crowd",
     "option_kernel": "crowd",
@@ -74,24 +72,28 @@ __all__ = [
     "CostTerm",
     "Deciding",
     "Exit",
+    "Files",
     "FloorPlan",
     "Gate",
     "MobilityError",
     "MobilityMap",
     "MotionGraph",
-    "Pace",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
+    "Range",
     "Source",
+    "SpeedRule",
     "SpeedZone",
     "TargetChoice",
     "Targets",
     "Trajectories",
+    "__version__",
     "batch_run",
     "bound_kernel",
     "option_kernel",
     "pair_kernel",
 ]
 
+__path__ += beside_in_a_checkout(__path__[0], "models")
 __getattr__, __dir__ = names_of(__name__, _ROOMS)

@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import inspect
+import os
+import sys
 from collections.abc import Iterable, Mapping, Sequence
+from multiprocessing import current_process, get_context
 from typing import Any
 
 import mesa
+
+from mesa_mobility.errors import ModelError
+
+_TRIAL, _CALLED_AGAIN = "mesa-mobility trial", 75
 
 
 def batch_run(
@@ -35,7 +42,14 @@ def batch_run(
 
     Returns:
         One row a run and collected step, with parameters and collected values.
+
+    Raises:
+        ModelError: ``rng`` is among the parameters, or another process cannot import the model.
     """
+    if "rng" in parameters:
+        raise ModelError("batch_run: rng is among the parameters, expected seeds as rng=[...]")
+    if number_processes != 1:
+        _check_importable(model_class)
     seeds = list(rng)
     options: dict[str, Any] = {
         "max_steps": max_steps,
@@ -47,6 +61,41 @@ def batch_run(
         return mesa.batch_run(model_class, dict(parameters), rng=seeds, **options)
     values: dict[str, Any | Iterable[Any]] = {**parameters, "rng": seeds}
     return mesa.batch_run(model_class, values, **options)
+
+
+def _check_importable(model_class: type[mesa.Model]) -> None:
+    """Raise ModelError where a process of its own would not find the class.
+
+    Mesa starts its processes again and again for as long as they fail.
+    """
+    if current_process().name == _TRIAL:  # this script, imported by the trial below
+        sys.exit(_CALLED_AGAIN)
+    module, name = model_class.__module__, model_class.__qualname__
+    reason = ""
+    main = sys.modules["__main__"]
+    if "<locals>" in name:
+        reason = "it is defined within a function"
+    elif module == "__main__" and getattr(main, "__spec__", None) is None:
+        file = getattr(main, "__file__", None)
+        if file is None or not os.path.isfile(file):
+            reason = "it is defined in a notebook or at a prompt"
+    if not reason and module == "__main__":
+        reason = _tried(model_class)
+    if reason:
+        raise ModelError(
+            f"batch_run: other processes cannot import {name}: {reason}; expected a class of a "
+            "module, or number_processes=1"
+        )
+
+
+def _tried(model_class: type[mesa.Model]) -> str:
+    """Why a process that is started like those of Mesa does not find the class, or nothing."""
+    trial = get_context("spawn").Process(target=id, args=(model_class,), name=_TRIAL)
+    trial.start()
+    trial.join()
+    if trial.exitcode == _CALLED_AGAIN:
+        return "its script calls batch_run when it is imported, not below `if __name__ == ...`"
+    return "its script fails when it is imported" if trial.exitcode else ""
 
 
 def _takes_seeds() -> bool:

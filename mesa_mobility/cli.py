@@ -1,7 +1,6 @@
 """The command line: `mesa-mobility`.
 
-Each command lives in `mesa_mobility.commands`; whatever is slow to import is imported where it is
-used, so that help and errors come at once.
+What is imported here comes before Ctrl-C is answered: the commands are imported after that.
 """
 
 from __future__ import annotations
@@ -9,64 +8,58 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-import typer
-from typer.core import TyperGroup
+from mesa_mobility.interrupts import end_on_interrupt, ignore_interrupts
 
-from mesa_mobility.commands import mobility_map, plugins
-from mesa_mobility.commands.dashboard import dashboard
-from mesa_mobility.commands.run import run
-from mesa_mobility.commands.validate import validate
-from mesa_mobility.commands.verify import verify
-from mesa_mobility.errors import MobilityError
-
-BAD_INPUT, INTERRUPTED = 2, 130
-
-
-class _Commands(TyperGroup):
-    """The commands; Ctrl-C in any of them is said, with the shell's own status for it."""
-
-    def invoke(self, ctx: Any) -> Any:
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            print("interrupted: nothing written", file=sys.stderr)
-            raise typer.Exit(INTERRUPTED) from None
-
-
-app = typer.Typer(
-    name="mesa-mobility",
-    cls=_Commands,
-    help="Pedestrian crowds driven by recorded human movement.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
-app.command("run")(run)
-app.command("verify")(verify)
-app.command("validate")(validate)
-app.command("dashboard")(dashboard)
-app.add_typer(mobility_map.app, name="map")
-app.command("models")(plugins.models)
-app.command("behaviors")(plugins.behaviors)
+BAD_INPUT = 2
 
 
 def main() -> None:
     """Run the command line; leave with status 0, 1 (a check failed), 2 (bad input) or 130.
 
-    Bad input gives one line on standard error that says what is wrong and where.
+    Bad input gives one line on standard error that says what is wrong and where. To be called once,
+    in the main thread of a process of its own: Ctrl-C ends that process.
     """
+    end_on_interrupt()
     try:
-        app(prog_name="mesa-mobility")
-    except MobilityError as error:
-        _fail(str(error))
-    # What nobody foresaw: still one line, with the place for whoever reports it.
+        status = _run()
+    finally:
+        ignore_interrupts()
+    sys.exit(status)
+
+
+def _run() -> int:
+    try:
+        from mesa_mobility.commands.app import UsageError, app
+        from mesa_mobility.commands.environment import check_environment
+        from mesa_mobility.errors import MobilityError
+
+        try:
+            check_environment()
+            # Commands answer with nothing, and `typer.Exit` with its status.
+            return app(prog_name="mesa-mobility", standalone_mode=False) or 0
+        except UsageError as error:
+            return _wrong_usage(error)
+        except MobilityError as error:
+            return _fail(str(error))
+    except MemoryError as error:
+        return _fail(f"not enough memory: {error}")
+    # Unforeseen errors: still one line, with the place in the source for a report.
     except Exception as error:
-        _fail(f"unexpected {type(error).__name__}: {error} [{_place(error)}]")
+        return _fail(f"unexpected {type(error).__name__}: {error} [{_place(error)}]")
 
 
-def _fail(message: str) -> None:
+def _wrong_usage(error: Any) -> int:
+    # A group without a command has its help for a message, which Rich has printed already.
+    if type(error).__name__ == "NoArgsIsHelpError":
+        print(error.format_message(), end="")
+        return BAD_INPUT
+    command = error.ctx.command_path if error.ctx else "mesa-mobility"
+    return _fail(f"{error.format_message().rstrip('.')}; see {command} --help")
+
+
+def _fail(message: str) -> int:
     print(f"error: {' '.join(message.split())}", file=sys.stderr)
-    sys.exit(BAD_INPUT)
+    return BAD_INPUT
 
 
 def _place(error: BaseException) -> str:

@@ -24,7 +24,17 @@ from mesa_mobility.errors import ModelError
 
 
 class Distribution(ABC):
-    """A distribution of numbers: seconds, or m/s."""
+    """A distribution of numbers: seconds, or m/s.
+
+    Examples:
+        >>> import numpy as np
+        >>> from mesa_mobility.distributions import Normal, Uniform, parse
+        >>> rng = np.random.default_rng(1)
+        >>> np.sort(Uniform(0.0, 4.0).draw(4, rng)).astype(int)  # one from each quarter
+        array([0, 1, 2, 3])
+        >>> parse("normal(1.34, 0.26)") == Normal(1.34, 0.26)
+        True
+    """
 
     @abstractmethod
     def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:

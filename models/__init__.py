@@ -1,8 +1,9 @@
-"""Models that ship, each a plug-in like any other."""
+"""The shipped models, each a plug-in like any other."""
 
 from mesa_mobility.models.auditorium import Auditorium
 from mesa_mobility.models.doorway import Doorway
+from mesa_mobility.models.floor_plan import FloorPlanEgress
 from mesa_mobility.models.open_space import OpenSpace
 from mesa_mobility.models.straight_walk import StraightWalk
 
-__all__ = ["Auditorium", "Doorway", "OpenSpace", "StraightWalk"]
+__all__ = ["Auditorium", "Doorway", "FloorPlanEgress", "OpenSpace", "StraightWalk"]

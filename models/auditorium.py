@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon, box, union_all
 
-from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel, Range
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 
@@ -38,7 +39,7 @@ OUTER_WALL = 0.4
 OFFICE_DOOR = 0.9
 
 FORECOURT = (3.0, 8.0)
-"""Depth and width of the paved area outside each exit door; whoever has crossed it has left."""
+"""Depth and width of the paved area outside each exit door; people leave by crossing it."""
 
 
 class Auditorium(PedestrianModel):
@@ -63,7 +64,7 @@ class Auditorium(PedestrianModel):
 
     def __init__(
         self,
-        pedestrians: int = 750,
+        pedestrians: Annotated[int, Range(1, 782)] = 750,
         pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from shapely import Polygon, box
 
-from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel, Range
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 
@@ -33,8 +35,8 @@ class Doorway(PedestrianModel):
 
     def __init__(
         self,
-        pedestrians: int = 60,
-        door_width: float = 1.0,
+        pedestrians: Annotated[int, Range(1, 200)] = 60,
+        door_width: Annotated[float, Range(0.6, 4.0)] = 1.0,
         pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel, Range
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 
@@ -26,8 +28,8 @@ class OpenSpace(PedestrianModel):
 
     def __init__(
         self,
-        pedestrians: int = 100,
-        size: float = 30.0,
+        pedestrians: Annotated[int, Range(1, 1000)] = 100,
+        size: Annotated[float, Range(10.0, 100.0)] = 30.0,
         pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,

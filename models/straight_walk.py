@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel, Range
 from mesa_mobility.errors import ModelError
 
 LANE = 3.0
@@ -28,10 +30,10 @@ class StraightWalk(PedestrianModel):
 
     def __init__(
         self,
-        pedestrians: int = 50,
-        slowest: float = 0.9,
-        fastest: float = 1.5,
-        length: float = 40.0,
+        pedestrians: Annotated[int, Range(1, 200)] = 50,
+        slowest: Annotated[float, Range(0.3, 2.5)] = 0.9,
+        fastest: Annotated[float, Range(0.3, 2.5)] = 1.5,
+        length: Annotated[float, Range(5.0, 100.0)] = 40.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
         frames_per_step: int = 3,

@@ -3,6 +3,7 @@
 from mesa_mobility.capture.amc import read_amc
 from mesa_mobility.capture.bvh import read_bvh
 from mesa_mobility.capture.folder import find_clips, read_folder
+from mesa_mobility.capture.jumps import find_jumps, sound_parts
 from mesa_mobility.capture.legs import LegJoints, leg_joints
 from mesa_mobility.capture.loading import LoadedClips, load_clips
 from mesa_mobility.capture.manifest import Clip, Manifest, read_manifest
@@ -19,6 +20,7 @@ __all__ = [
     "Recording",
     "Skeleton",
     "find_clips",
+    "find_jumps",
     "leg_joints",
     "load_clips",
     "mirror",
@@ -28,5 +30,6 @@ __all__ = [
     "read_manifest",
     "read_recording",
     "resample",
+    "sound_parts",
     "trim",
 ]

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from mesa_mobility.capture.asf import ROOT, AsfSkeleton, Bone, read_asf
 from mesa_mobility.capture.motion import root_to_world, to_world
-from mesa_mobility.capture.recording import Recording
+from mesa_mobility.capture.recording import Recording, check_size
 from mesa_mobility.capture.text import quote, read_bytes, table, text_lines, whole_number
 from mesa_mobility.errors import CaptureError
 
@@ -105,8 +105,8 @@ def _rotation(bone: Bone, values: NDArray[np.float64], degrees: bool) -> NDArray
     return (bone.axis * moved * bone.axis.inv()).as_quat()
 
 
-BoneRow = tuple[int, list[str]]
-"""Line number and the words behind the name of a bone."""
+BoneRow = tuple[int, str]
+"""Line number and the text behind the name of a bone."""
 
 
 def _read_motion(
@@ -132,6 +132,7 @@ def _read_motion(
             if frames and number != expected:
                 raise CaptureError(f"{where}, line {line}: frame {number}, expected {expected}")
             frames.append({})
+            check_size(len(frames), len(rig.skeleton), f"{where}, line {line}")
         else:
             _add(words, frames, widths, line, where)
     if not frames:
@@ -161,7 +162,7 @@ def _add(
         )
     if name in frames[-1]:
         raise CaptureError(f"{where}, line {line}: bone {quote(name)} occurs twice in the frame")
-    frames[-1][name] = (line, words[1:])
+    frames[-1][name] = (line, " ".join(words[1:]))
 
 
 def _require_all(frame: dict[str, BoneRow], widths: dict[str, int], where: str) -> None:

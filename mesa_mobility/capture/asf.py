@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from mesa_mobility.capture.skeleton import END, Skeleton
+from mesa_mobility.capture.skeleton import END, Skeleton, check_joints
 from mesa_mobility.capture.text import check_unit, numbers, quote, read_bytes, text_lines
 from mesa_mobility.errors import CaptureError
 
@@ -158,6 +158,7 @@ def _bones(rows: list[Row], where: str, degrees: bool) -> dict[str, Bone]:
             if name in bones or name == ROOT:
                 raise CaptureError(f"{begun}: bone {quote(name)} occurs twice")
             bones[name] = bone
+            check_joints(len(bones), at)
             block = None
         else:
             block[key] = (at, values)

@@ -21,7 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from mesa_mobility.capture.bvh_hierarchy import BvhJoint, read_hierarchy
 from mesa_mobility.capture.motion import FRAME_TIME_S, frame_rate_of, root_to_world, to_world
-from mesa_mobility.capture.recording import Recording
+from mesa_mobility.capture.recording import Recording, check_size
 from mesa_mobility.capture.skeleton import Skeleton
 from mesa_mobility.capture.text import (
     check_unit,
@@ -84,6 +84,7 @@ def _read_motion(
     frames = whole_number(text, f"{where}, line {line}, Frames")
     if frames < 1:
         raise CaptureError(f"{where}, line {line}: {frames} frames, expected at least one")
+    check_size(frames, len(joints), f"{where}, line {line}")
     line, text = _header(lines, "Frame Time:", where)
     frame_time = number(text, f"{where}, line {line}, Frame Time")
     shortest, longest = FRAME_TIME_S
@@ -92,7 +93,7 @@ def _read_motion(
             f"{where}, line {line}: frame time {frame_time:g} s, "
             f"expected {shortest:g} to {longest:g} s"
         )
-    rows = [(line, words) for line, text in lines if (words := text.split())]
+    rows = [(line, text) for line, text in lines if text and not text.isspace()]
     if len(rows) > frames:
         raise CaptureError(
             f"{where}, line {rows[frames][0]}: {len(rows)} rows of motion, expected {frames}"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from mesa_mobility.capture.skeleton import END
+from mesa_mobility.capture.skeleton import END, check_joints
 from mesa_mobility.capture.text import numbers, quote, whole_number
 from mesa_mobility.errors import CaptureError
 
@@ -68,6 +68,7 @@ class _Builder:
         if name in self.names:
             raise CaptureError(f"{at}: joint {quote(name)} occurs twice, expected distinct names")
         self.names.add(name)
+        check_joints(len(self.names), at)
         self.open_joints.append(len(self.joints))
         joint = BvhJoint(name, parent, line, is_end=is_end)
         if is_end:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import os
+from itertools import islice
 from pathlib import Path
 
 from mesa_mobility.capture.amc import FRAME_RATE
@@ -18,6 +20,9 @@ MANIFEST = "manifest.tsv"
 
 UNITS_M = (1.0, 0.01, 0.0254, 0.0564444, 0.001)
 """Units in use: metre, centimetre, inch, CMU's 0.0254 / 0.45 m, millimetre."""
+
+MOST_FOLDERS = 1000
+"""Folders that are looked through for recordings when the one that was given has none."""
 
 LEG_LENGTH_M = (0.6, 1.1)
 """Thigh and shank of an adult.  No two of the units put one skeleton within this range."""
@@ -43,7 +48,7 @@ def read_folder(path: str | Path) -> Manifest:
 
     What a manifest would say is taken from the files: all frames are used, the type is not known,
     the unit is the one of :data:`UNITS_M` that makes the leg of plausible length, and AMC files
-    have 120 frames a second.  Recordings that begin with a T-pose need a manifest.
+    have 120 frames a second.  A T-pose at the beginning of a recording is cut off as a jump.
 
     Raises:
         CaptureError: the folder cannot be read or holds no recordings, or one of them cannot be
@@ -55,8 +60,23 @@ def read_folder(path: str | Path) -> Manifest:
     except OSError as error:
         raise CaptureError(f"{path}: cannot be read ({error.strerror or error})") from None
     if not files:
-        raise CaptureError(f"{path}: no recordings, expected files named {', '.join(SUFFIXES)}")
+        raise CaptureError(
+            f"{path}: no recordings, expected files named {', '.join(SUFFIXES)}{_below(path)}"
+        )
     return Manifest(path, tuple(_clip(file) for file in files))
+
+
+def _below(path: Path) -> str:
+    """Which folders below have recordings, for the error about one that has none."""
+    found = [
+        str(Path(folder).relative_to(path))
+        for folder, _, files in islice(os.walk(path), 1, MOST_FOLDERS)
+        if any(is_recording(Path(file)) for file in files)
+    ]
+    if not found:
+        return ""
+    named = ", ".join(sorted(found)[:3]) + (", ..." if len(found) > 3 else "")
+    return f" in the folder itself; there are some below it in {named}: give one of these"
 
 
 def _clip(path: Path) -> Clip:

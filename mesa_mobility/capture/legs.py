@@ -72,7 +72,9 @@ def leg_joints(skeleton: Skeleton) -> LegJoints:
         f"{', '.join(left[:3])}, {left[3][0]} and the same of the right ({label})"
         for label, left, _ in CONVENTIONS
     )
-    raise CaptureError(f"no legs among the joints {', '.join(skeleton.names)}: expected {expected}")
+    names = ", ".join(skeleton.names)
+    names = names if len(names) <= 500 else names[:497] + "..."
+    raise CaptureError(f"no legs among the joints {names}: expected {expected}")
 
 
 def _leg(names: Names, plain: dict[str, int]) -> tuple[int, int, int, int] | None:
@@ -116,7 +118,7 @@ def leg_length(skeleton: Skeleton) -> float:
 def counterparts(skeleton: Skeleton) -> NDArray[np.int64]:
     """(J,) index of each joint's counterpart on the other side; the joint itself if it has none.
 
-    Sides are told by ``Left``/``Right`` anywhere in a name, ``_L``/``_R`` or ``.L``/``.R`` at its
+    Sides are marked by ``Left``/``Right`` anywhere in a name, ``_L``/``_R`` or ``.L``/``.R`` at its
     end, or ``l``/``r`` (``L``/``R``) at its beginning, where both names occur.
 
     Raises:

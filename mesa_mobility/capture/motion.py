@@ -15,8 +15,12 @@ MIRROR_IN_FILE = np.diag([-1.0, 1.0, 1.0])
 MIRROR_IN_WORLD = np.diag([1.0, -1.0, 1.0])
 """Left-right reflection in the world, y -> -y."""
 
-FRAME_TIME_S = (1e-5, 10.0)
-"""Shortest and longest time between frames, seconds; what lies outside is a slip."""
+FRAME_TIME_S = (1e-5, 1 / 12)
+"""Shortest and longest time between frames, seconds.
+
+Walking moves with frequencies of up to 6 Hz (Winter, Biomechanics and Motor Control of Human
+Movement, chapter 2), which take at least 12 frames a second.
+"""
 
 RATE_TOLERANCE = 5e-4
 """Relative error of a frame time of few digits, such as .00833 s for 120 Hz."""

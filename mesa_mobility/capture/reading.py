@@ -22,7 +22,7 @@ def is_recording(path: Path) -> bool:
 def read_recording(
     path: str | Path, *, unit_to_m: float, frame_rate: float = FRAME_RATE
 ) -> Recording:
-    """Read a ``.bvh``, ``.bvh.xz`` or ``.amc`` file, told by its name.
+    """Read a ``.bvh``, ``.bvh.xz`` or ``.amc`` file, by the ending of its name.
 
     Args:
         path: the file.

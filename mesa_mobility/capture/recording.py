@@ -18,6 +18,22 @@ if TYPE_CHECKING:
 UNIT_TOLERANCE = 1e-6
 """How far the length of a unit quaternion may be from 1."""
 
+LARGEST_SIZE = 4_000_000
+"""Frames times joints of one recording: an hour of 38 joints at 30 Hz."""
+
+
+def check_size(frames: int, joints: int, where: str) -> None:
+    """Refuse more frames of more joints than :data:`LARGEST_SIZE`.
+
+    Raises:
+        CaptureError: as said.
+    """
+    if frames * joints > LARGEST_SIZE:
+        raise CaptureError(
+            f"{where}: {frames} frames of {joints} joints, expected at most "
+            f"{LARGEST_SIZE // joints} frames of so many joints"
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Recording:

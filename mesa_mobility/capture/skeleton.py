@@ -12,6 +12,19 @@ from mesa_mobility.errors import CaptureError
 END = ".end"
 """Suffix of the joint at the free end of a leaf, which files leave without a name."""
 
+MOST_JOINTS = 500
+"""Joints of a skeleton; those with fingers and face have some two hundred."""
+
+
+def check_joints(count: int, where: str) -> None:
+    """Refuse more than :data:`MOST_JOINTS` joints.
+
+    Raises:
+        CaptureError: as said.
+    """
+    if count > MOST_JOINTS:
+        raise CaptureError(f"{where}: more than {MOST_JOINTS} joints, expected a body")
+
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:

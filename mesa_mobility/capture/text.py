@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import lzma
 import math
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,37 +13,66 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import CaptureError
 
+LARGEST_FILE = 64_000_000
+"""Bytes of text in a file, uncompressed: some ten minutes of 31 joints at 120 Hz."""
+
+MOST_LINES = 3_000_000
+"""Lines of a file; an AMC file has one for each bone in each frame."""
+
+_XZ_MEMORY = 200_000_000
+"""Bytes that unpacking may take; the highest preset of xz takes 65 million."""
+
 
 def read_bytes(path: Path) -> bytes:
     """Content of a file; of an ``.xz`` file, what was compressed.
 
     Raises:
-        CaptureError: the file is missing, cannot be read, is empty, or is not xz though named so.
+        CaptureError: the file is missing, cannot be read, is empty, holds more than
+            :data:`LARGEST_FILE`, or is not xz though named so.
     """
     try:
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
     except OSError as error:
         raise CaptureError(f"{path}: cannot be read ({error.strerror or error})") from None
-    if path.suffix.lower() == ".xz":
+    if path.suffix.lower() == ".xz" and len(data) <= LARGEST_FILE:
         try:
-            data = lzma.decompress(data)
+            data = _unpack(data)
         except lzma.LZMAError as error:
             raise CaptureError(f"{path}: not a complete xz file ({error})") from None
-    if not data.strip():
+    if len(data) > LARGEST_FILE:
+        raise CaptureError(
+            f"{path}: more than {LARGEST_FILE // 10**6} MB of text, expected a shorter recording"
+        )
+    if not data or data.isspace():
         raise CaptureError(f"{path}: empty file")
     return data
+
+
+def _unpack(data: bytes) -> bytes:
+    """Content of xz streams, cut off behind ``LARGEST_FILE`` bytes and one more."""
+    unpacked = bytearray()
+    while data and len(unpacked) <= LARGEST_FILE:
+        stream = lzma.LZMADecompressor(memlimit=_XZ_MEMORY)
+        unpacked += stream.decompress(data, LARGEST_FILE + 1 - len(unpacked))
+        if not stream.eof and len(unpacked) <= LARGEST_FILE:
+            raise lzma.LZMAError("it ends too soon")
+        data = stream.unused_data.lstrip(b"\0")
+    return bytes(unpacked)
 
 
 def text_lines(data: bytes, path: Path) -> list[str]:
     """Lines of a text file, in UTF-8 or else Latin-1; line n of the file is item n - 1.
 
     Raises:
-        CaptureError: the bytes are not text.
+        CaptureError: the bytes are not text, or of more than :data:`MOST_LINES` lines.
     """
     at = data.find(b"\0")
     if at >= 0:
         line = data.count(b"\n", 0, at) + 1
         raise CaptureError(f"{path}, line {line}: zero byte, expected a text file")
+    if max(data.count(b"\n"), data.count(b"\r")) > MOST_LINES:
+        raise CaptureError(f"{path}: more than {MOST_LINES} lines, expected a shorter recording")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -67,7 +97,8 @@ def number(text: str, where: str) -> float:
         CaptureError: the text is no such number; ``where`` says what file and line.
     """
     try:
-        value = float(text)
+        # Python's own notation for digits in groups is none of any file's.
+        value = math.nan if "_" in text else float(text)
     except ValueError:
         value = math.nan
     if not abs(value) <= LARGEST:
@@ -86,11 +117,11 @@ def numbers(texts: Sequence[str], count: int, where: str) -> list[float]:
     return [number(text, where) for text in texts]
 
 
-def table(rows: Sequence[tuple[int, list[str]]], width: int, where: str) -> NDArray[np.float64]:
+def table(rows: Sequence[tuple[int, str]], width: int, where: str) -> NDArray[np.float64]:
     """(rows, width) finite numbers.
 
     Args:
-        rows: (line number, words) of each row.
+        rows: line number and text of each row.
         width: numbers in each row.
         where: what stands before the line number in errors.
 
@@ -98,13 +129,15 @@ def table(rows: Sequence[tuple[int, list[str]]], width: int, where: str) -> NDAr
         CaptureError: a row has more or fewer, or a word is no finite number.
     """
     try:
-        values = np.array([words for _, words in rows], dtype=np.float64)
-    except ValueError:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)  # rows that are all empty
+            values = np.loadtxt([text for _, text in rows], ndmin=2, comments=None)
+    except (ValueError, UserWarning):
         values = np.empty((0, 0))
     if values.shape == (len(rows), width) and (np.abs(values) <= LARGEST).all():
         return values
     # One conversion of everything is fast; the slow way finds the line that is at fault.
-    return np.array([numbers(words, width, f"{where}, line {line}") for line, words in rows])
+    return np.array([numbers(text.split(), width, f"{where}, line {line}") for line, text in rows])
 
 
 def whole_number(text: str, where: str) -> int:
@@ -114,9 +147,11 @@ def whole_number(text: str, where: str) -> int:
         CaptureError: the text is no whole number.
     """
     try:
-        return int(text)
+        if "_" not in text:
+            return int(text)
     except ValueError:
-        raise CaptureError(f"{where}: {quote(text)}, expected a whole number") from None
+        pass
+    raise CaptureError(f"{where}: {quote(text)}, expected a whole number")
 
 
 def check_unit(unit_to_m: float, where: str) -> None:

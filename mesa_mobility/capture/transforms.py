@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from mesa_mobility.capture.legs import counterparts
 from mesa_mobility.capture.motion import MIRROR_IN_FILE, MIRROR_IN_WORLD
-from mesa_mobility.capture.recording import Recording
+from mesa_mobility.capture.recording import Recording, check_size
 from mesa_mobility.capture.skeleton import Skeleton
 from mesa_mobility.errors import CaptureError
 
@@ -46,7 +46,7 @@ def resample(recording: Recording, frame_rate: float = 30.0) -> Recording:
     the last frame, never beyond it.
 
     Raises:
-        CaptureError: the frame rate is not positive.
+        CaptureError: the frame rate is not positive, or gives too many frames.
     """
     if not (np.isfinite(frame_rate) and frame_rate > 0):
         raise CaptureError(f"{recording.name}: resampling to {frame_rate} Hz, expected more than 0")
@@ -60,12 +60,13 @@ def resample(recording: Recording, frame_rate: float = 30.0) -> Recording:
             rotations=recording.rotations[::step],
         )
     last = recording.frames - 1
+    joints = len(recording.skeleton)
+    check_size(int(last / ratio) + 1, joints, recording.name)
     # The times, counted in old frames, at which the new ones fall.
     times = np.arange(int(last / ratio + RATIO_TOLERANCE) + 1) * ratio
     before = np.minimum(times.astype(np.int64), last)
     after = np.minimum(before + 1, last)
     share = np.clip(times - before, 0.0, 1.0)[:, None]
-    joints = len(recording.skeleton)
     start = Rotation.from_quat(recording.rotations[before].reshape(-1, 4))
     stop = Rotation.from_quat(recording.rotations[after].reshape(-1, 4))
     part = np.repeat(share, joints, axis=0) * (start.inv() * stop).as_rotvec()

@@ -5,8 +5,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Protocol
 
+import typer
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -17,12 +19,21 @@ from rich.progress import (
 )
 from rich.table import Table
 
+from mesa_mobility.interrupts import cleaning_up
+
 
 class Report(Protocol):
     """Tells how far a long work has come."""
 
     def __call__(self, what: str, done: float, total: float) -> None:
         """`what` is being done, `done` of `total`."""
+
+
+def some_path(text: str) -> Path:
+    """A path as an option gives it; an empty text, which stands for the current folder, is none."""
+    if not text.strip():
+        raise typer.BadParameter("got nothing, expected a path")
+    return Path(text)
 
 
 def say(message: str) -> None:
@@ -61,7 +72,8 @@ def progress_bar(*, shown: bool = True) -> Iterator[Report]:
         disable=not shown or not console.is_terminal,
         transient=True,
     )
-    with bar:
+    # Rich hides the cursor while a bar is drawn.
+    with cleaning_up(lambda: console.is_terminal and console.show_cursor()), bar:
         task = bar.add_task("starting", total=None)
 
         def report(what: str, done: float, total: float) -> None:

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from mesa_mobility.commands.console import say
-from mesa_mobility.errors import MobilityError
+from mesa_mobility.errors import MobilityError, ModelError
+
+OPENING, PLAN_MODEL = "doorway", "floor_plan"
 
 
 def dashboard(
     model: Annotated[
-        str,
-        typer.Argument(metavar="[MODEL]", help="Name of a model; `mesa-mobility models` has them."),
-    ] = "doorway",
+        str | None,
+        typer.Argument(
+            metavar="[MODEL]",
+            help="Name of a model; `mesa-mobility models` has them. Or FILE.py, or FILE.py:NAME.",
+        ),
+    ] = None,
+    plan: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="GeoJSON floor plan to put people on, without a model."),
+    ] = None,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8765,
 ) -> None:
@@ -27,6 +37,25 @@ def dashboard(
         raise MobilityError(
             "the dashboard needs Solara: pip install 'mesa-mobility[viz]' brings what it needs"
         )
+    if plan is not None and model is not None:
+        raise ModelError(f"--plan {plan}: got model {model!r} as well, expected one of the two")
+    from mesa_mobility.dashboard.guard import is_loopback
     from mesa_mobility.dashboard.server import serve
 
-    serve(model, host, port, ready=lambda url: say(f"{model}: open {url} (Ctrl-C ends)"))
+    given = {}
+    if plan is not None:
+        from mesa_mobility.models.floor_plan import read_plan
+
+        read_plan(plan)
+        given["plan"] = plan.resolve()
+    name = model or (OPENING if plan is None else PLAN_MODEL)
+
+    def ready(url: str) -> None:
+        if not is_loopback(host):
+            say(
+                f"warning: {host} is reached from the network: who has the address below can run "
+                "models on this machine, and nothing is encrypted"
+            )
+        say(f"{name if plan is None else plan}: open {url} (Ctrl-C ends)")
+
+    serve(name, host, port, ready, given)

@@ -11,9 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, answer_table, progress_bar, say
-from mesa_mobility.commands.interrupt import Stopped, gentle_interrupt
+from mesa_mobility.commands.console import (
+    answer_json,
+    answer_table,
+    progress_bar,
+    say,
+    some_path,
+)
 from mesa_mobility.errors import MapError
+from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt, putting_in_place
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import LoadedClips
@@ -32,7 +38,12 @@ def build(
             metavar="MANIFEST_OR_DIR", help="Manifest of recordings, or a folder of them."
         ),
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Map file to write (.npz).")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o", "--output", help="Map file to write (.npz).", parser=some_path, metavar="PATH"
+        ),
+    ],
     type_name: Annotated[
         str, typer.Option("--type", metavar="NAME", help="Pedestrian type: rows to take.")
     ] = "able_bodied",
@@ -61,11 +72,13 @@ def build(
             metadata={"command": _command(source, type_name, clusters, mirrored)},
             progress=report,
         )
-    built.save(output)
+    with putting_in_place():
+        built.save(output)
     info = {
         "file": str(output),
         "recordings": len(clips.recordings),
         "skipped": [list(each) for each in clips.skipped],
+        "split": [list(each) for each in clips.split],
         "wall_s": round(time.perf_counter() - wall, 3),
         "cpu_s": round(time.process_time() - cpu, 3),
         **built.info(),
@@ -123,7 +136,8 @@ def _stoppable_progress() -> Iterator[Report]:
         try:
             yield progress
         except Stopped:
-            raise KeyboardInterrupt from None
+            say("interrupted: nothing written")
+            raise typer.Exit(INTERRUPTED) from None
 
 
 def _load(source: Path, report: Report, *, type_name: str | None, mirrored: bool) -> LoadedClips:
@@ -137,6 +151,8 @@ def _load(source: Path, report: Report, *, type_name: str | None, mirrored: bool
     )
     for clip, reason in loaded.skipped:
         say(f"skipped {clip}: {reason}")
+    for clip, reason in loaded.split:
+        say(f"split {clip}: {reason}")
     return loaded
 
 

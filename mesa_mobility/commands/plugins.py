@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from rich.console import Console
 from rich.table import Table
 
-from mesa_mobility import registry
 from mesa_mobility.commands.console import say
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins import registry
 
 
 def models() -> None:
@@ -19,7 +19,7 @@ def models() -> None:
 
 
 def behaviors() -> None:
-    """List the installed behaviours (cost terms, target choices, paces), plug-ins included."""
+    """List the installed behaviours: cost terms, target choices and speed rules, plug-ins too."""
     _list(registry.behaviors())
 
 

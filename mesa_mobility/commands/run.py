@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import secrets
 import time
@@ -11,12 +12,18 @@ from typing import Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, answer_table, progress_bar, say
-from mesa_mobility.commands.interrupt import Stopped, gentle_interrupt
+from mesa_mobility._startup import nothing_collected
+from mesa_mobility.commands.console import (
+    answer_json,
+    answer_table,
+    progress_bar,
+    say,
+    some_path,
+)
 from mesa_mobility.errors import ModelError
-from mesa_mobility.garbage import nothing_collected
+from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
-STALLED, INTERRUPTED = 1, 130
+STALLED = 1
 
 
 def run(
@@ -37,11 +44,21 @@ def run(
     ] = None,
     preset: Annotated[str, typer.Option(help="default or paper.")] = "default",
     map_file: Annotated[
-        Path | None, typer.Option("--map", help="Mobility map instead of the shipped one.")
+        Path | None,
+        typer.Option(
+            "--map",
+            help="Mobility map instead of the shipped one.",
+            parser=some_path,
+            metavar="PATH",
+        ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for summary, trajectories, floor plan and pictures."),
+        typer.Option(
+            help="Folder for summary, trajectories, floor plan and pictures.",
+            parser=some_path,
+            metavar="PATH",
+        ),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="One JSON object as the last line of output.")
@@ -56,32 +73,41 @@ def run(
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
     seed = secrets.randbelow(2**31) if seed is None else seed
     with nothing_collected():
-        from mesa_mobility.crowd.ahead import compiling_ahead
+        from mesa_mobility.crowd.precompile import compiling_ahead
 
         with compiling_ahead():
-            simulation = _create(model, settings or [], preset, map_file, seed)
+            simulation, given = _create(model, settings or [], preset, map_file, seed)
 
-    from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run
+    from mesa_mobility.results import (
+        Trajectories,
+        check_safety,
+        check_writable,
+        write_run,
+    )
+    from mesa_mobility.results.run import RUN_FILES
 
     if out is not None:
-        check_writable(out)
+        check_writable(out, RUN_FILES)
     # From here on there is something to lose: Ctrl-C stops the simulation, not the writing.
     with gentle_interrupt() as stop_here:
         wall, cpu, interrupted = _simulate(simulation, seconds, stop_here, shown=not no_progress)
         with progress_bar(shown=not no_progress) as report:
             report("checking distances and walls", 0, 1)
             trajectories = Trajectories.of(simulation)
-            safety = check_safety(trajectories, simulation.floor_plan.walls)
+            plan = simulation.floor_plan
+            safety = check_safety(trajectories, plan.walls, plan.free)
             summary = {
                 **simulation.summary(),
                 "model": model,
                 "preset": preset,
                 "seed": seed,
+                **_origin(given, map_file),
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
                 "overlaps": safety.overlaps,
                 "min_distance_m": safety.min_distance_m,
                 "wall_crossings": safety.wall_crossings,
+                "off_floor": safety.off_floor,
                 "stalled": bool(simulation.stalled),
                 "interrupted": interrupted,
             }
@@ -91,7 +117,7 @@ def run(
                     out,
                     summary=summary,
                     trajectories=trajectories,
-                    plan=simulation.floor_plan,
+                    plan=plan,
                     reference_occupancy=simulation.reference_occupancy,
                 )
     if out is not None:
@@ -104,23 +130,55 @@ def run(
         say(f"interrupted after {simulation.elapsed:.1f} simulated seconds: results up to there")
         raise typer.Exit(INTERRUPTED)
     if simulation.stalled:
-        say(f"stalled: {simulation.inside} people left inside after {simulation.elapsed:.1f} s")
+        reason = summary.get("stall_reason")
+        say(
+            f"stalled: {simulation.inside} people left inside after {simulation.elapsed:.1f} s"
+            + (f": {reason}" if reason else "")
+        )
         raise typer.Exit(STALLED)
 
 
-def _create(name: str, settings: list[str], preset: str, map_file: Path | None, seed: int) -> Any:
-    from mesa_mobility.commands.parameters import chosen, parameters
-    from mesa_mobility.registry import load_model
+def _create(
+    name: str, settings: list[str], preset: str, map_file: Path | None, seed: int
+) -> tuple[Any, dict[str, Any]]:
+    """The model, and its own parameters with the values that they have."""
+    from mesa_mobility.plugins.parameters import NOT_SETTABLE, chosen, parameters
+    from mesa_mobility.plugins.registry import load_model
 
     kind = load_model(name)
     keywords = chosen(kind, name, settings)
     keywords |= {"preset": preset, "rng": seed, "record": True}
     if map_file is not None:
         keywords["mobility_map"] = str(map_file)
-    missing = [key for key in keywords if key not in parameters(kind)]
+    taken = parameters(kind)
+    missing = [key for key in keywords if key not in taken]
     if missing:
         raise ModelError(f"model {name}: its constructor does not take {', '.join(missing)}")
-    return kind(**keywords)
+    given = {
+        key: keywords.get(key, each.default)
+        for key, each in taken.items()
+        if key not in NOT_SETTABLE
+    }
+    return kind(**keywords), given
+
+
+def _origin(given: dict[str, Any], map_file: Path | None) -> dict[str, Any]:
+    """What is needed, beside model, preset and seed, to run the same again."""
+    from mesa_mobility._version import __version__
+    from mesa_mobility.mobility.mapfile import shipped_map_path
+
+    map_file = shipped_map_path("able_bodied") if map_file is None else map_file
+    with map_file.open("rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    plain = (bool, int, float, str, type(None))
+    return {
+        "parameters": {
+            key: value if isinstance(value, plain) else str(value) for key, value in given.items()
+        },
+        "map": map_file.name,
+        "map_sha256": digest,
+        "mesa_mobility": __version__,
+    }
 
 
 def _simulate(
@@ -164,5 +222,6 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
         "Overlaps": f"{summary['overlaps']}",
         "Smallest distance": "-" if distance is None else f"{distance:.3f} m",
         "Wall crossings": f"{summary['wall_crossings']}",
+        "Off the floor": f"{summary['off_floor']} frames",
         "Wall time": f"{summary['wall_s']:.1f} s ({summary['cpu_s']:.1f} s of CPU)",
     }

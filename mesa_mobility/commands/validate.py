@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, progress_bar, say
+from mesa_mobility.commands.console import answer_json, progress_bar, say, some_path
 from mesa_mobility.commands.verify import FAILED, AsJson, Jobs, Seeds, processes
 
 if TYPE_CHECKING:
@@ -23,7 +23,12 @@ def validate(
     jobs: Jobs = None,
     as_json: AsJson = False,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for a picture of each and validation.json.")
+        Path | None,
+        typer.Option(
+            help="Folder for a picture of each and validation.json.",
+            parser=some_path,
+            metavar="PATH",
+        ),
     ] = None,
 ) -> None:
     """Compare crowds with measured ones: speeds, flows, densities, lanes, standing.
@@ -36,7 +41,7 @@ def validate(
 
     experiments = chosen(names or [])
     if out is not None:
-        check_writable(out)
+        check_writable(out, _files(experiments))
     numbers = range(1, seeds + 1)
     cases = [each for experiment in experiments for each in experiment.cases]
     with progress_bar() as report:
@@ -76,15 +81,20 @@ def _write(
     verdicts: dict[str, Verdict],
     answer: dict[str, Any],
 ) -> None:
-    from mesa_mobility.results.files import json_text, replacing
+    from mesa_mobility.results.files import all_or_none, json_text
 
-    for each in experiments:
-        figures = verdicts[each.name].figures
-        if figures:
-            with replacing(out / f"{each.name}.png") as temporary:
-                each.draw(figures).savefig(temporary)
-    with replacing(out / "validation.json") as temporary:
-        temporary.write_text(json_text(answer, indent=1) + "\n", encoding="utf-8")
+    with all_or_none(out, _files(experiments)) as temporary:
+        for each in experiments:
+            figures = verdicts[each.name].figures
+            if figures:
+                each.draw(figures).savefig(temporary / f"{each.name}.png")
+        text = json_text(answer, indent=1) + "\n"
+        (temporary / "validation.json").write_text(text, encoding="utf-8")
+
+
+def _files(experiments: list[Experiment]) -> list[str]:
+    """Names of the files that `--out` may get."""
+    return [*(f"{each.name}.png" for each in experiments), "validation.json"]
 
 
 def _print_table(experiments: list[Experiment], verdicts: dict[str, Verdict]) -> None:

@@ -8,45 +8,45 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesa_mobility.lazily import names_of
+from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
-    from mesa_mobility.crowd.candidates import Candidates
-    from mesa_mobility.crowd.capability import Capability
-    from mesa_mobility.crowd.explain import FREE, PERSON, WALL, Explanation, Watch
-    from mesa_mobility.crowd.kernels import bound_kernel, option_kernel, pair_kernel
+    from mesa_mobility.crowd.costs.candidates import Candidates
+    from mesa_mobility.crowd.costs.kernels import bound_kernel, option_kernel, pair_kernel
+    from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
     from mesa_mobility.crowd.model import PedestrianModel
-    from mesa_mobility.crowd.pace import Pace
+    from mesa_mobility.crowd.options.capability import Capability
     from mesa_mobility.crowd.pedestrian import Pedestrian
     from mesa_mobility.crowd.pedestrian_type import PedestrianType
+    from mesa_mobility.crowd.planning.explanation import FREE, PERSON, WALL, Explanation, Watch
     from mesa_mobility.crowd.presets import PRESETS, Preset
-    from mesa_mobility.crowd.source import Inflow, Source
-    from mesa_mobility.crowd.target_choice import Deciding, TargetChoice
-    from mesa_mobility.crowd.terms import CompiledTerm, CostTerm
+    from mesa_mobility.crowd.sources import Inflow, Source
+    from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+    from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
 
 _MODULES = {
-    "FREE": "explain",
-    "PERSON": "explain",
+    "FREE": "planning.explanation",
+    "PERSON": "planning.explanation",
     "PRESETS": "presets",
-    "WALL": "explain",
-    "Candidates": "candidates",
-    "Capability": "capability",
-    "CompiledTerm": "terms",
-    "CostTerm": "terms",
-    "Deciding": "target_choice",
-    "Explanation": "explain",
-    "Inflow": "source",
-    "Pace": "pace",
+    "WALL": "planning.explanation",
+    "Candidates": "costs.candidates",
+    "Capability": "options.capability",
+    "CompiledTerm": "costs.terms",
+    "CostTerm": "costs.terms",
+    "Deciding": "tactics.target_choice",
+    "Explanation": "planning.explanation",
+    "Inflow": "sources",
+    "SpeedRule": "tactics.speed_rules",
     "Pedestrian": "pedestrian",
     "PedestrianModel": "model",
     "PedestrianType": "pedestrian_type",
     "Preset": "presets",
-    "Source": "source",
-    "TargetChoice": "target_choice",
-    "Watch": "explain",
-    "bound_kernel": "kernels",
-    "option_kernel": "kernels",
-    "pair_kernel": "kernels",
+    "Source": "sources",
+    "TargetChoice": "tactics.target_choice",
+    "Watch": "planning.explanation",
+    "bound_kernel": "costs.kernels",
+    "option_kernel": "costs.kernels",
+    "pair_kernel": "costs.kernels",
 }
 
 __all__ = [
@@ -61,12 +61,12 @@ __all__ = [
     "Deciding",
     "Explanation",
     "Inflow",
-    "Pace",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
     "Preset",
     "Source",
+    "SpeedRule",
     "TargetChoice",
     "Watch",
     "bound_kernel",

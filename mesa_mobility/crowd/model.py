@@ -3,50 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from copy import deepcopy
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from mesa.datacollection import DataCollector
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.batch import make_candidates
-from mesa_mobility.crowd.beyond import Beyond
-from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.capability import Capability
-from mesa_mobility.crowd.decisions import Decisions
-from mesa_mobility.crowd.explain import Explanation, Watch
-from mesa_mobility.crowd.journeys import Journeys
-from mesa_mobility.crowd.motion import LONG_AFTER, due, move
-from mesa_mobility.crowd.neighbours import Grid, build_grid
-from mesa_mobility.crowd.options import FRAMES_A_SECOND
-from mesa_mobility.crowd.overview import NOBODY
-from mesa_mobility.crowd.pace import Pace
-from mesa_mobility.crowd.pedestrian import Pedestrian
+from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.options.capability import Capability
+from mesa_mobility.crowd.options.repertoire import repertoire
+from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.crowd.pedestrian import Pedestrian, number_on
 from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
-from mesa_mobility.crowd.people import People
+from mesa_mobility.crowd.planning.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.explanation import Explanation, Watch
+from mesa_mobility.crowd.planning.grid import Grid, build_grid
+from mesa_mobility.crowd.planning.replanning import stop_where_blocked
+from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
+from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.population import Population
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.recorder import Recorder
-from mesa_mobility.crowd.repertoire import repertoire
-from mesa_mobility.crowd.replan import stop_where_blocked
-from mesa_mobility.crowd.rules import Rules
-from mesa_mobility.crowd.source import Inflow
+from mesa_mobility.crowd.seeds import seed_of
+from mesa_mobility.crowd.sources import Inflow
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.stall import StallWatch
-from mesa_mobility.crowd.state import Crowd
-from mesa_mobility.crowd.summary import CrowdMeasures
-from mesa_mobility.crowd.surroundings import Site
-from mesa_mobility.crowd.target_choice import TargetChoice
-from mesa_mobility.crowd.terms import CostTerm
-from mesa_mobility.crowd.waits import Waits
-from mesa_mobility.crowd.wishes import set_wishes
+from mesa_mobility.crowd.state.advance import LONG_AFTER, move, select_due
+from mesa_mobility.crowd.state.aggregates import EMPTY
+from mesa_mobility.crowd.state.departed import Departed
+from mesa_mobility.crowd.state.environment import Environment
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.statistics import CrowdStatistics
+from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Steps
+from mesa_mobility.crowd.tactics.journeys import Journeys
+from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+from mesa_mobility.crowd.tactics.target_choice import TargetChoice
+from mesa_mobility.crowd.tactics.waiting import Waits
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan, Targets
 from mesa_mobility.floorplan.entrance import Entrance
+from mesa_mobility.floorplan.occupants import add_occupants
 from mesa_mobility.mobility import MobilityMap
 
 
-class PedestrianModel(CrowdMeasures, People):
+class PedestrianModel(CrowdStatistics, Population):
     """Pedestrians on a floor plan, driven by recorded movement.
 
     Concrete models build a floor plan, call this constructor and then
@@ -59,31 +62,46 @@ class PedestrianModel(CrowdMeasures, People):
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
         behaviors: cost terms instead of the preset's.
-        target_choice: who goes where; by default everybody leaves by the nearest exit.
+        target_choice: where people go; by default everybody leaves by the nearest exit.
         frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
         record: keep every frame in ``recorder``.
-        rng: seed or NumPy generator.
+        rng: seed, also as text, or NumPy generator.
 
     Attributes:
         space: Mesa's continuous space with everybody inside.
         crowd: the crowd's arrays; see ``Crowd``.
-        journeys: the itineraries of those who have one.
-        waits: those who have been told to wait.
-        sources: those who come in over time, one for each ``add_source``.
+        journeys: the routes of people who cross gates in order.
+        waits: conditions for which people wait.
+        sources: an ``Inflow`` for each ``add_source``.
         groups: names of the groups, in the order of their numbers from 1 on.
-        paces: behaviours that slow people down, the preset's one for groups from the first group
-            on; may be added to and removed at run time.
+        speed_rules: behaviours that change preferred speeds; the preset's rule for groups is added
+            with the first group. May be changed at run time.
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
         occupancy: (seconds, people inside) each simulated second.
         last_left: seconds at which somebody last left.
-        stalled: nobody left or came nearer to an exit for a minute.
+        stalled: whether for a minute nobody has left and people have come no nearer to an exit;
+            ``stall_reason`` says why.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
         datacollector: time, people inside, mean speed and fallback share after each step.
 
     Raises:
         ModelError: an unknown preset or a parameter out of range.
         MapError: an unusable map file.
+
+    Examples:
+        >>> from mesa_mobility import Exit, FloorPlan, PedestrianModel
+        >>> plan = FloorPlan(
+        ...     "POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))", exits=[Exit("door", (6, 1.5), (6, 2.5))]
+        ... )
+        >>> model = PedestrianModel(plan, rng=1)
+        >>> people = model.add_pedestrians([(1.0, 2.0), (2.0, 1.0)], preferred_speeds=1.2)
+        >>> model.step()
+        >>> model.inside, round(model.elapsed, 3)
+        (2, 0.1)
+        >>> model.run(max_seconds=30)
+        >>> model.inside
+        0
     """
 
     reference_occupancy: dict[float, int] | None = None
@@ -102,7 +120,7 @@ class PedestrianModel(CrowdMeasures, People):
         record: bool = False,
         rng: Any = None,
     ) -> None:
-        super().__init__(rng=rng)
+        super().__init__(rng=seed_of(rng))
         if not isinstance(frames_per_step, int) or frames_per_step < 1:
             raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
         rules = self._preset = preset_named(preset)
@@ -110,12 +128,12 @@ class PedestrianModel(CrowdMeasures, People):
         self.floor_plan = floor_plan
         self.pedestrian_types = types_of(mobility_map, pedestrian_types)
         self._repertoire = repertoire(
-            tuple(kind.mobility_map for kind in self.pedestrian_types),
+            tuple(each.mobility_map for each in self.pedestrian_types),
             rules.durations,
             rules.shares,
         )
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
-        self.paces: list[Pace] = []
+        self.speed_rules: list[SpeedRule] = []
         self.target_choice = target_choice or rules.make_target_choice()
         self.frames_per_step = frames_per_step
         self.frame = 0
@@ -124,20 +142,33 @@ class PedestrianModel(CrowdMeasures, People):
         self.count = 0
         self.watch: Watch | None = None
 
-        core = max(kind.core_radius for kind in self.pedestrian_types)
+        core = max(each.core_radius for each in self.pedestrian_types)
         reach = self._repertoire.reach
         self._rules = Rules(
             search_radius=reach + self._repertoire.extent + 2.0 * core + 0.01,
-            cores=rules.cores,
+            hard_bodies=rules.hard_bodies,
             standing=self._repertoire.standing,
             first_option=self._repertoire.first_option,
         )
-        self._decisions = Decisions(
+        self._decisions = DecisionScheduler(
             self._repertoire,
             self._rules,
-            least_core=min(kind.core_radius for kind in self.pedestrian_types),
+            least_core=min(each.core_radius for each in self.pedestrian_types),
         )
-        self._site = Site(floor_plan, reach=reach + core + 0.02, body=core)
+        self._site = Environment(
+            floor_plan,
+            reach=reach + core + 0.02,
+            core_radii=[each.core_radius for each in self.pedestrian_types],
+        )
+        self._desired_motion = DesiredMotion(
+            self._site,
+            Steps(
+                spread_at_corners=rules.abreast,
+                take_turns=rules.turns,
+                compensate_speed=rules.even_pace,
+                perturb_targets=rules.impatience,
+            ),
+        )
         self.journeys = Journeys(floor_plan, self._site)
         self.waits = Waits()
         self.groups: list[str | int] = []
@@ -146,15 +177,16 @@ class PedestrianModel(CrowdMeasures, People):
         self._plan_version = floor_plan.version
         x0, y0, x1, y1 = floor_plan.bounds
         self.space = CrowdSpace(
-            # Whoever crosses an exit ends up a step outside.
+            # People who cross an exit end up a step outside.
             [[x0 - reach, x1 + reach], [y0 - reach, y1 + reach]],
             random=self.random,
             n_agents=64,
         )
         self._rows = np.empty(0, dtype=np.int64)
+        add_occupants(floor_plan, self)
         self._next = 0
-        self._seen = NOBODY
-        self._beyond = Beyond()
+        self._seen = EMPTY
+        self._beyond = Departed()
         self._agents_by_row: list[Pedestrian | None] = []
         self._stall_watch = StallWatch()
         self.stalled = False
@@ -171,9 +203,28 @@ class PedestrianModel(CrowdMeasures, People):
             }
         )
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """An independent copy that continues exactly as this model would.
+
+        Both share the mobility map and compiled code, which neither changes.
+        """
+        copied = type(self).__new__(type(self))
+        memo[id(self)] = copied
+        # Its agents go into registers that use their model's number.
+        number_on(self, copied)
+        for name, value in self.__dict__.items():
+            copied.__dict__[name] = deepcopy(value, memo)
+        return copied
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise ModelError(
+            f"{type(self).__name__}: a model can be copied by copy.deepcopy, neither by copy.copy "
+            "nor by pickle; expected its parameters and seed, which make it anew"
+        )
+
     @property
     def capabilities(self) -> tuple[Capability, ...]:
-        """What the body of each pedestrian type can do."""
+        """The capability of each pedestrian type."""
         return self._repertoire.capabilities
 
     @property
@@ -189,11 +240,14 @@ class PedestrianModel(CrowdMeasures, People):
         while self.frame < end:
             rows = self._advance(rows, end)
             if len(rows) == 0 and not self.expecting:
-                break  # the last has left: this step ends with it
+                break  # the last person has left: the step ends here
         if len(rows) < len(self._rows):
             self._take_out_inactive()
         self._look_over()
-        self.stalled = self._stall_watch.stalled(self.frame, self._seen, self.journeys.crossed)
+        self.stalled = self._stall_watch.stalled(
+            self.frame, self._rows, self.crowd, self._seen, self.count - self.inside,
+            self.journeys.crossed,
+        )  # fmt: skip
         self.datacollector.collect(self)
         self.running = (self.inside > 0 or self.expecting) and not self.stalled
 
@@ -209,7 +263,7 @@ class PedestrianModel(CrowdMeasures, People):
             progress: called as ``progress(elapsed, inside)`` each simulated second.
 
         Raises:
-            ModelError: no end is given where people go round or come for ever.
+            ModelError: ``max_seconds`` is missing where people go round or come for ever.
         """
         if max_seconds is None and self._endless:
             raise ModelError("max_seconds: got none, but people go round or come for ever")
@@ -224,8 +278,8 @@ class PedestrianModel(CrowdMeasures, People):
                 progress(self.elapsed, self.inside)
 
     def _advance(self, rows: NDArray[np.int64], end: int) -> NDArray[np.int64]:
-        """Have those decide who do in this frame, and go on to the next one in which anything but
-        walking happens, to frame ``end`` at most; return who is left of those in ``rows``."""
+        """Take this frame's decisions and advance to the next frame in which anything but walking
+        happens, to frame ``end`` at most; return those of ``rows`` who are left."""
         self._beyond.set_off(self.frame, self.crowd, self._site.surroundings.exits)
         if self.sources:
             newcomers = self._let_in()
@@ -238,7 +292,7 @@ class PedestrianModel(CrowdMeasures, People):
                 self.recorder.add(0, rows, self.crowd)
         if self._plan_version != self.floor_plan.version:
             self._plan_version = self.floor_plan.version
-            # The paths of those who stop are forgotten.
+            # Those who stop lose their paths, on which crossed gates are found.
             self.journeys.advance(rows, self.frame, self.crowd, self._repertoire.table)
             stop_where_blocked(
                 rows, self.frame, self._repertoire.table, self.crowd.records,
@@ -257,9 +311,9 @@ class PedestrianModel(CrowdMeasures, People):
         self._beyond.move(end, self.crowd)
         moved = move(rows, end, end - now, self._repertoire.table, self.crowd.records)
         stay, gone = moved.stay, moved.gone
-        if self._next > now:  # nobody has come meanwhile
+        if self._next > now:  # otherwise newcomers decide in this frame
             self._next = moved.next
-        for _ in range(now, end):  # rounding must not tell how many frames are gone over at once
+        for _ in range(now, end):  # rounding must not depend on how many frames are skipped
             self._walked += moved.speeds
         self._person_frames += (end - now) * (len(stay) + len(gone))
         self._fallback_frames += (end - now) * moved.fallen
@@ -273,22 +327,22 @@ class PedestrianModel(CrowdMeasures, People):
         return stay
 
     def _have_decide(self, rows: NDArray[np.int64]) -> None:
-        """Have those in ``rows`` decide whose movement has ended; note what comes next."""
+        """Take the decisions of those in ``rows`` whose movement has ended; note the next event."""
         state = self.crowd.records
         deciding, self._next = np.empty_like(rows), LONG_AFTER
-        count, soonest = due(rows, self.frame, state, deciding)
+        count, soonest = select_due(rows, self.frame, state, deciding)
         if count:
             deciding = deciding[:count]
             self._decide(deciding, rows)
-            theirs = due(deciding, self.frame, state, np.empty_like(deciding))[1]
+            theirs = select_due(deciding, self.frame, state, np.empty_like(deciding))[1]
             soonest = min(soonest, theirs)
         self._next = min(self._next, soonest)
 
     def _decide(self, deciding: NDArray[np.int64], rows: NDArray[np.int64]) -> None:
         self.journeys.advance(deciding, self.frame, self.crowd, self._repertoire.table)
         self.waits.ask(deciding, self.frame, self.crowd)
-        # Those nearest to where they go decide first: that frees space for those behind. All else
-        # that there is to targets is with the crowd by now, and can be forgotten here.
+        # Those nearest to their destination decide first, which frees space for those behind. The
+        # crowd has the rest of the targets by now, so they can be freed here.
         order = deciding[self._set_targets(deciding, rows).nearest_first]
         self._decisions.take(
             order,
@@ -303,17 +357,17 @@ class PedestrianModel(CrowdMeasures, People):
     def _set_targets(
         self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, all_go: bool = False
     ) -> Targets:
-        return set_wishes(
-            rows, inside, self.frame, self.crowd, self._site, self.target_choice, self.paces,
-            self._preset, self.rng, all_go=all_go,
+        return self._desired_motion.update(
+            rows, inside, self.frame, self.crowd, self.target_choice, self.speed_rules, self.rng,
+            all_go=all_go,
         )  # fmt: skip
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
-        """Movement options of the people in ``rows``, were they to decide here and now."""
+        """Movement options of the people in ``rows`` if they decided now."""
         return make_candidates(rows, self._repertoire.table, self.crowd, self._grid(), self._rules)
 
     def explain(self, row: int) -> Explanation:
-        """The decision of the person in ``row``, were it to decide here and now, before others.
+        """The decision of the person in ``row`` if it decided now, before all others.
 
         It keeps the target of its last decision. Set ``watch`` to have decisions as they are taken.
 

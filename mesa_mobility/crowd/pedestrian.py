@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from itertools import count
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
@@ -11,21 +10,37 @@ import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpaceAgent
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.candidates import Candidates
-from mesa_mobility.crowd.capability import Capability
-from mesa_mobility.crowd.options import FRAME_SECONDS
+from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.options.capability import Capability
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
-from mesa_mobility.crowd.state import FALLBACK
+from mesa_mobility.crowd.state.records import FALLBACK
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
 
 
-class _Counters(WeakKeyDictionary[Any, Iterator[int]]):
-    """A counter for each model that goes when the model goes."""
+class _Counter:
+    """A counter from 1 on."""
 
-    def __getitem__(self, model: Any) -> Iterator[int]:
-        return self.setdefault(model, count(1))
+    def __init__(self) -> None:
+        self.last = 0
+
+    def __next__(self) -> int:
+        self.last += 1
+        return self.last
+
+
+class _Counters(WeakKeyDictionary[Any, _Counter]):
+    """A counter for each model, freed with the model."""
+
+    def __getitem__(self, model: Any) -> _Counter:
+        return self.setdefault(model, _Counter())
+
+
+def number_on(model: PedestrianModel, copied: PedestrianModel) -> None:
+    """Continue the numbers of a model's pedestrians in a copy."""
+    Pedestrian._ids[copied].last = Pedestrian._ids[model].last
 
 
 class Pedestrian(ContinuousSpaceAgent):
@@ -35,7 +50,7 @@ class Pedestrian(ContinuousSpaceAgent):
         row: row of this person in the crowd's arrays, the same for ever.
     """
 
-    # Mesa 3.3 numbers agents from a dictionary that keeps every model there ever was.
+    # Mesa 3.3 keeps agent numbers in a dictionary that never frees a model.
     _ids = _Counters()
 
     def __init__(self, model: PedestrianModel, row: int) -> None:
@@ -44,7 +59,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """(2,) where the person is, metres."""
+        """(2,) position, metres."""
         state = self.model.crowd
         return np.array([state.x[self.row], state.y[self.row]])
 
@@ -66,24 +81,25 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def preferred_speed(self) -> float:
-        """Speed at which the person likes to walk, m/s."""
+        """Preferred speed, m/s."""
         return float(self.model.crowd.agenda["speed"][self.row])
 
     @property
     def start_time(self) -> float:
-        """Seconds of simulated time at which the person sets off: its pre-movement time is over."""
+        """Simulated time in seconds at which the person sets off, after its pre-movement time."""
         return float(self.model.crowd.agenda["sets_off"][self.row]) * FRAME_SECONDS
 
     def wait(
         self, seconds: float | None = None, *, until: Callable[[], bool] | None = None
     ) -> None:
-        """Have the person come to a stand when its movement under way has ended, and stay there.
+        """Let the person stop when the movement under way has ended, and wait.
 
         Args:
-            seconds: for so long from now on.
-            until: or until this function, asked whenever the person could decide, is true.
+            seconds: how long it waits, from now on.
+            until: instead, a function that is called whenever the person could decide; the wait
+                ends when it returns true.
 
-        It goes on with the decision after that, 0.4 s later at most.
+        It walks on with its next decision, 0.4 s later at most.
 
         Raises:
             ModelError: neither of them, both, or a time out of range.
@@ -92,7 +108,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def waiting(self) -> bool:
-        """Whether the person waits, as told or because its pre-movement time is not over."""
+        """Whether the person waits, by ``wait`` or during its pre-movement time."""
         return bool(self.model.crowd.agenda["waits_until"][self.row] > self.model.frame)
 
     @property
@@ -108,30 +124,30 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def gates_crossed(self) -> int:
-        """Gates of its route that the person had crossed when it last decided, laps and all."""
+        """Gates that the person had crossed when it last decided, over all laps."""
         return int(self.model.crowd.agenda["crossed"][self.row])
 
     @property
     def target(self) -> NDArray[np.float64]:
-        """(2,) where the person was heading for when it last decided, metres."""
+        """(2,) target of the last decision, metres."""
         state = self.model.crowd
         return np.array([state.target_x[self.row], state.target_y[self.row]])
 
     @property
     def pedestrian_type(self) -> PedestrianType:
         """The person's type."""
-        return self.model.pedestrian_types[int(self.model.crowd.kind[self.row])]
+        return self.model.pedestrian_types[int(self.model.crowd.type_index[self.row])]
 
     @property
     def capability(self) -> Capability:
         """The component through which the person consults its type's mobility map."""
-        return self.model.capabilities[int(self.model.crowd.kind[self.row])]
+        return self.model.capabilities[int(self.model.crowd.type_index[self.row])]
 
     @property
     def cluster(self) -> int:
         """Cluster, in the type's map, of the pose in which the movement under way ends."""
-        kind = int(self.model.crowd.kind[self.row])
-        return int(self.model.crowd.cluster[self.row]) - int(self.model.first_cluster[kind])
+        type_index = int(self.model.crowd.type_index[self.row])
+        return int(self.model.crowd.cluster[self.row]) - int(self.model.first_cluster[type_index])
 
     @property
     def in_fallback(self) -> bool:
@@ -145,7 +161,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
     def movement_options(self) -> Candidates:
         """The person's movement options, were it to decide here and now."""
-        return self.model.candidates(np.array([self.row]))
+        return self.model.candidates(np.array([self.row], dtype=np.int64))
 
     def remove(self) -> None:
         """Take the person out of the model."""

@@ -1,4 +1,4 @@
-"""Types of pedestrians: whose recorded movement they share, and how fast they like to walk."""
+"""Types of pedestrians: a mobility map, a body and preferred speeds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.map import CORE_RADIUS
 
 PREFERRED_SPEED = Clipped(Normal(1.34, 0.26), 0.6, 2.0)
-"""Weidmann (1993): 1.34 +- 0.26 m/s, in the range that recordings of walking adults serve."""
+"""Weidmann (1993): 1.34 +- 0.26 m/s, within the range of recordings of walking adults."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mesa_mobility.crowd.pace import Pace
-from mesa_mobility.crowd.target_choice import TargetChoice
-from mesa_mobility.crowd.terms import CostTerm
+from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
-from mesa_mobility.registry import load_behavior
+from mesa_mobility.plugins.registry import load_behavior
 
 
 @dataclass(frozen=True)
@@ -16,16 +16,17 @@ class Preset:
     """A named set of rules.
 
     Attributes:
-        name: as it is asked for.
+        name: by which it is selected.
         terms: weight of each registered cost term.
         target_choice: registered behaviour that gives people their targets.
-        group_pace: registered behaviour that keeps groups together, where there are any.
+        group_pace: registered speed rule that keeps groups together.
         durations: option durations in frames.
         shares: shortened copies of the shortest options, as shares of the ground they cover.
-        cores: whether bodies are hard.
+        hard_bodies: whether bodies are hard.
         abreast: whether a crowd spreads out to pass a corner.
-        impatience: whether people who get nowhere look for a way round.
-        even_pace: whether whoever walks freely makes up for steps longer or shorter than it likes.
+        turns: whether people take turns at passages too narrow for two.
+        impatience: whether people who make no progress look for a way round.
+        even_pace: whether free walkers correct their accumulated distance error.
     """
 
     name: str
@@ -34,8 +35,9 @@ class Preset:
     group_pace: str | None
     durations: tuple[int, ...]
     shares: tuple[float, ...]
-    cores: bool
+    hard_bodies: bool
     abreast: bool
+    turns: bool
     impatience: bool
     even_pace: bool
 
@@ -43,8 +45,8 @@ class Preset:
         """The target choice, looked up among the installed behaviours."""
         return load_behavior(self.target_choice)()
 
-    def make_group_paces(self) -> list[Pace]:
-        """What a model with groups needs, looked up among the installed behaviours."""
+    def make_group_paces(self) -> list[SpeedRule]:
+        """The speed rules of a model with groups, looked up among the installed behaviours."""
         return [load_behavior(self.group_pace)()] if self.group_pace else []
 
     def make_terms(self) -> list[CostTerm]:
@@ -67,13 +69,14 @@ PRESETS = {
         group_pace=None,
         durations=(45,),
         shares=(),
-        cores=False,
+        hard_bodies=False,
         abreast=False,
+        turns=False,
         impatience=False,
         even_pace=False,
     ),
-    # The same terms and constants, but a velocity of one's own in place of reward without
-    # limit, bodies that do not overlap and make way, and options short enough for a queue to move.
+    # The same terms and constants, but a preferred velocity in place of unlimited reward, bodies
+    # that do not overlap and make way, and options short enough for a queue to move.
     "default": Preset(
         name="default",
         terms={
@@ -89,8 +92,9 @@ PRESETS = {
         group_pace="walk_together",
         durations=(12, 24, 45),
         shares=(0.5, 0.25, 0.0),
-        cores=True,
+        hard_bodies=True,
         abreast=True,
+        turns=True,
         impatience=True,
         even_pace=True,
     ),

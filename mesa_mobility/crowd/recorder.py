@@ -1,11 +1,11 @@
-"""What happened, frame by frame, as arrays."""
+"""Recording of positions and headings, frame by frame."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.state import Crowd
+from mesa_mobility.crowd.state.records import Crowd
 
 
 class Recorder:

@@ -1,37 +1,104 @@
-"""Has an evacuation stalled?"""
+"""Detection of a stalled evacuation, and its reason."""
 
 from __future__ import annotations
 
-from mesa_mobility.crowd.options import FRAME_SECONDS
-from mesa_mobility.crowd.overview import Overview
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options.table import FRAME_SECONDS, FRAMES_A_SECOND
+from mesa_mobility.crowd.state.aggregates import Aggregates
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.floorplan import FloorPlan
 
 STALL_SECONDS = 60.0
-"""An evacuation has stalled when for so long nobody left and nobody came nearer to an exit."""
+"""Time without progress after which an evacuation has stalled."""
 
-STALL_PROGRESS = 1.0
-"""Metres of route, summed over everybody, that count as coming nearer."""
+NEARER_TOGETHER = 0.25
+"""Metres by which people must come nearer on average for it to count as progress.  People in a
+deadlock press closer by less."""
+
+NEARER_ALONE = 10.0
+"""Metres by which a single person must come nearer for it to count; jostling moves nobody that
+far."""
+
+ANOTHER_WAY = 3.0
+"""Metres by which a route changes from one check to the next only if it is another route: a
+movement takes 1.5 s at most, and nobody walks at 2 m/s."""
 
 
 class StallWatch:
-    """Watches people inside and the way they still have to go."""
+    """Checks the progress of the people inside once a simulated second.
+
+    Progress is how much nearer to their exits they are on average than at the last progress. People
+    in a jam who change places, or step back and forth, make none: their route lengths add up to the
+    same. A single person on a long route counts by itself. After a change of route, progress is
+    measured along the new one.
+    """
 
     def __init__(self) -> None:
         self._since = 0.0
-        self._mark: tuple[int, int, int, float] = (-1, 0, 0, 0.0)
+        self._look = 0
+        self._mark: tuple[int, int, int] = (-1, 0, 0)
+        self._route = np.empty(0)
+        self._start = np.empty(0)
 
-    def stalled(self, frame: int, seen: Overview, crossed: int) -> bool:
-        """Whether nothing has got better for a minute.
+    def stalled(
+        self,
+        frame: int,
+        rows: NDArray[np.int64],
+        crowd: Crowd,
+        seen: Aggregates,
+        gone: int,
+        crossed: int,
+    ) -> bool:
+        """Whether there has been no progress for ``STALL_SECONDS``.
 
         Args:
             frame: now.
-            seen: what the people inside are about.
+            rows: the people inside.
+            crowd: the crowd.
+            seen: aggregates of the people inside.
+            gone: people who have left so far.
             crossed: gates that people have crossed on their journeys so far.
         """
         elapsed = frame * FRAME_SECONDS
-        inside, left = seen.people, seen.left
-        now = (inside, seen.going, crossed)
-        # Others may stand because of somebody who is yet to set off. More way to go is news as
-        # well: a door closed, and people are on another way.
-        if seen.awaited or now != self._mark[:3] or abs(left - self._mark[3]) > STALL_PROGRESS:
-            self._since, self._mark = elapsed, (*now, left)
-        return inside > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9
+        now = (gone, seen.going, crossed)
+        # Others may be standing because of somebody who has not set off yet.
+        if seen.awaited or now != self._mark:
+            self._begin(elapsed, rows, crowd)
+            self._mark = now
+        elif frame >= self._look:
+            self._look = frame + FRAMES_A_SECOND
+            gained = self._gained(rows, crowd)
+            if gained.sum() > NEARER_TOGETHER * len(rows) or (gained > NEARER_ALONE).any():
+                self._begin(elapsed, rows, crowd)
+        return seen.people > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9
+
+    def _begin(self, elapsed: float, rows: NDArray[np.int64], crowd: Crowd) -> None:
+        self._since = elapsed
+        self._route = np.full(len(crowd.route), np.inf)
+        self._route[rows] = crowd.route[rows]
+        self._start = self._route.copy()
+
+    def _gained(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
+        """(n,) metres by which those in ``rows`` are nearer than at the last progress; 0 without a
+        route."""
+        more = len(crowd.route) - len(self._route)
+        self._route = np.append(self._route, np.full(more, np.inf))
+        self._start = np.append(self._start, np.full(more, np.inf))
+        route, before, start = crowd.route[rows], self._route[rows], self._start[rows]
+        with_way = np.isfinite(route)
+        known = with_way & np.isfinite(before)
+        jump = np.where(known, route, 0.0) - np.where(known, before, 0.0)
+        start = np.where(known, start + np.where(np.abs(jump) > ANOTHER_WAY, jump, 0.0), route)
+        self._route[rows], self._start[rows] = route, start
+        return np.where(with_way, start, 0.0) - np.where(with_way, route, 0.0)
+
+
+def stall_reason(plan: FloorPlan, seen: Aggregates) -> str:
+    """Why an evacuation has stalled, in a few words."""
+    if plan.exits and not plan.open_exits():
+        return "every exit is closed"
+    if seen.going == 0:
+        return "nobody inside has a way to go"
+    return f"nobody has come nearer to an exit for {STALL_SECONDS:.0f} s"

@@ -1,4 +1,4 @@
-"""The dashboard: a page on which a behaviour is tried, watched and understood.
+"""The dashboard: a page on which to try and watch behaviours.
 
 Needs the extra ``viz``. Names are imported when they are first used.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesa_mobility.lazily import names_of
+from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
     from mesa_mobility.dashboard.app import Dashboard

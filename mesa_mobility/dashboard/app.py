@@ -1,48 +1,73 @@
-"""The dashboard: everything on one page."""
+"""The dashboard's page, put together."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import reacton.core
 import solara
 import solara.lab
 
-from mesa_mobility import MobilityError, PedestrianModel, registry
-from mesa_mobility.dashboard.charts import Charts
-from mesa_mobility.dashboard.controls import BehaviourControls, ParameterForm, TimeControls
-from mesa_mobility.dashboard.crowd_view import CrowdCanvas
-from mesa_mobility.dashboard.decision_view import DecisionCanvas
-from mesa_mobility.dashboard.feed import use_feed
-from mesa_mobility.dashboard.map_view import MapView
-from mesa_mobility.dashboard.session import AS_TAKEN, IF_NOW, Session
+from mesa_mobility import MobilityError, PedestrianModel
+from mesa_mobility.dashboard.address import Address, Start, read, write
+from mesa_mobility.dashboard.controls import BehaviourControls, TimeControls
+from mesa_mobility.dashboard.forms import ParameterForm
+from mesa_mobility.dashboard.quiet import keep_quiet
+from mesa_mobility.dashboard.session.feed import Fed
+from mesa_mobility.dashboard.session.session import AS_TAKEN, IF_NOW, Session
+from mesa_mobility.dashboard.views.charts import Charts
+from mesa_mobility.dashboard.views.crowd_view import CrowdCanvas
+from mesa_mobility.dashboard.views.decision_view import DecisionCanvas
+from mesa_mobility.dashboard.views.map_view import MapView
+from mesa_mobility.dashboard.views.page_frame import PageFrame
+from mesa_mobility.plugins import registry
 
 DEFAULT_MODEL = "doorway"
 
+# A page that imports this is served by Solara a moment later.
+keep_quiet()
+
 
 @solara.component
-def Dashboard(model: str | type[PedestrianModel] = DEFAULT_MODEL) -> None:
+def Dashboard(
+    model: str | type[PedestrianModel] = DEFAULT_MODEL,
+    given: Mapping[str, Any] = {},
+) -> None:
     """A model's whole page, with a run of its own for each browser tab.
 
     ``page = Dashboard(MyModel)`` in a file makes it a page for ``solara run``.
 
     Args:
         model: name of an installed model, or the class of one.
+        given: values of model parameters that the page does not set, by name.
     """
-    given = model if isinstance(model, type) else None
-    own = [] if given is None else [given.__name__]
-    names = [*own, *registry.models()]
-    name, choose = solara.use_state(model if isinstance(model, str) else model.__name__)
-    session = solara.use_memo(Session, [])
+    router = solara.use_router()
+    start = solara.use_memo(lambda: read(router.search or ""), [])
+    own = model if isinstance(model, type) else None
+    opening = model if isinstance(model, str) else model.__name__
+    names = [*([] if own is None else [opening]), *registry.models()]
+    first = start.model if start.model in names else opening
+    name, choose = solara.use_state(first)
+    texts, set_texts = solara.use_state(start.texts)
+    opened = solara.use_ref(False)
+
+    def make_session() -> Session:
+        made = Session(start.behaviours, start.choice)
+        made.enter(start.run)
+        return made
+
+    session = solara.use_memo(make_session, [])
     session.together = reacton.core.get_render_context()
 
     def run() -> Callable[[], None]:
         session.start()
+        opened.current = True
         return session.close
 
     solara.use_effect(run, [])
-    problem, kind = "", given
-    if given is None or name != given.__name__:
+    problem, kind = "", own
+    if own is None or name != opening:
         try:
             kind = registry.load_model(name)
         except MobilityError as error:
@@ -51,15 +76,24 @@ def Dashboard(model: str | type[PedestrianModel] = DEFAULT_MODEL) -> None:
     solara.Title(f"{name} - mesa-mobility")
     with solara.AppBar():
         solara.AppBarTitle("mesa-mobility")
+        PageFrame()
     with solara.Sidebar():
         with solara.Card("Model", margin=0, elevation=0):
             solara.Select("model", names, name, on_value=choose, dense=True)
             if problem:
                 solara.Error(problem, dense=True)
             if kind is not None:
-                ParameterForm(session, kind).key(name)
+                begins = name == first and not opened.current
+                ParameterForm(
+                    session,
+                    kind,
+                    given=given if name == opening else {},
+                    start=start.texts if begins else {},
+                    on_made=set_texts,
+                ).key(name)
         with solara.Card("Behaviours", margin=0, elevation=0):
             BehaviourControls(session)
+    _Address(session, name, texts)
     solara.Style(STYLE)
     with solara.lab.Tabs():
         with solara.lab.Tab("Simulation"):
@@ -70,17 +104,25 @@ def Dashboard(model: str | type[PedestrianModel] = DEFAULT_MODEL) -> None:
 
 @solara.component
 def _Simulation(session: Session) -> None:
-    TimeControls(session)
+    with solara.Div(classes=["mm-time"]):
+        TimeControls(session)
     _Problem(session)
     with solara.Div(classes=["mm-halves"]):
         with solara.Div(classes=["mm-left"]):
             _Crowd(session)
         with solara.Div(classes=["mm-right"]):
             _Decision(session)
-    _Charts(session)
+            # Beside the crowd, where they are seen without scrolling until a decision is shown.
+            _Charts(session)
 
 
-# Components of their own, so that only what has changed is worked out anew.
+# Separate components, so that only what has changed is rendered again.
+
+
+@solara.component
+def _Address(session: Session, name: str, texts: Mapping[str, str]) -> None:
+    behaviours, choice = session.set_behaviours.value, session.set_choice.value
+    Address(write(Start(session.key.value, name, texts, behaviours, choice)))
 
 
 @solara.component
@@ -100,7 +142,9 @@ STYLE = (
     ".mm-left { flex: 3 1 480px; min-width: 0; } .mm-right { flex: 2 1 380px; min-width: 0; }"
     ".mm-table { font-size: 13px; border-spacing: 0; padding: 6px 0; }"
     ".mm-table th { text-align: left; } .mm-table td, .mm-table th { padding: 1px 12px 1px 0;"
-    " vertical-align: top; border-bottom: 1px solid #eee; overflow-wrap: anywhere; }"
+    " vertical-align: top; border-bottom: 1px solid #8884; overflow-wrap: anywhere; }"
+    # Labels of lists stand above them, and need that room where the row is wrapped.
+    ".mm-time > div { row-gap: 20px; }"
 )
 """Look of what is drawn with HTML."""
 
@@ -119,14 +163,17 @@ def _Crowd(session: Session) -> None:
         else:
             session.toggle_obstacle(int(str(what["obstacle"])))
 
-    canvas = CrowdCanvas(
+    Fed(
+        session.frame,
+        CrowdCanvas,
         floor=session.floor.value,
         selected=session.selected.value,
         event_seen=session.seen,
         event_pick=session.select,
         event_toggle=toggle,
+        event_play=lambda _: session.play(session.status.peek().state != "playing"),
+        shortcuts=True,
     )
-    use_feed(canvas, session.frame)
 
 
 @solara.component
@@ -145,7 +192,7 @@ def _Decision(session: Session) -> None:
         solara.Button(
             "To its next decision", small=True, on_click=session.play_to_decision, disabled=nobody
         )
-    use_feed(DecisionCanvas(floor=session.floor.value), session.decision)
+    Fed(session.decision, DecisionCanvas, floor=session.floor.value)
 
 
 @solara.component

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import solara
 
+from mesa_mobility import PedestrianModel
 from mesa_mobility.dashboard.app import Dashboard
 
-opening = "doorway"
+opening: str | type[PedestrianModel] = "doorway"
+given: Mapping[str, Any] = {}
 
 
 @solara.component
 def Page() -> None:
     """The dashboard, on the model that the command named."""
-    Dashboard(opening)
+    Dashboard(opening, given)

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import os
+import secrets
 import socket
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from mesa_mobility._startup import nothing_collected
+from mesa_mobility.dashboard.guard import Guard, is_loopback
 from mesa_mobility.errors import MobilityError
-from mesa_mobility.garbage import nothing_collected
 from mesa_mobility.mobility import MobilityMap
-from mesa_mobility.registry import load_model
+from mesa_mobility.plugins.model_files import is_model_file, load_model_file
+from mesa_mobility.plugins.registry import load_model
 
 if TYPE_CHECKING:
     from mesa_mobility import PedestrianModel
@@ -28,22 +31,30 @@ SETTINGS = {
     "SOLARA_THEME_TITLE": "mesa-mobility",
     "SOLARA_SERVER_HTTP_GZIP": "false",
 }
-"""What Solara reads when it is imported: the page is ours, and nobody is told of its use.
+"""Solara's settings, read when it is imported: which page to serve, and no telemetry.
 
-Nothing is compressed: to pack four megabytes takes longer than to hand them to a browser on this
-machine or in this house.
+Nothing is compressed: packing four megabytes takes longer than sending them over a local network.
 """
 
 
-def serve(model: str, host: str, port: int, ready: Callable[[str], None]) -> None:
+def serve(
+    model: str,
+    host: str,
+    port: int,
+    ready: Callable[[str], None],
+    given: Mapping[str, Any] | None = None,
+) -> None:
     """Serve the dashboard until interrupted.
 
+    If other machines reach it, its address holds a token, without which every request is refused.
+
     Args:
-        model: name of the installed model to open on.
+        model: name of the installed model to open on, or a Python file with one.
         host: address to listen on.
         port: to listen on.
-        ready: called with the page's address when it can be opened; until all is imported, a
-            browser waits there for its answer.
+        ready: called with the page's address when it can be opened; a browser waits for its answer
+            until everything is imported.
+        given: values of model parameters that the page does not set, by name.
 
     Raises:
         MobilityError: the address cannot be listened on, or there is no such model.
@@ -53,29 +64,40 @@ def serve(model: str, host: str, port: int, ready: Callable[[str], None]) -> Non
     loaded: Future[type[PedestrianModel]] = Future()
     serving = threading.Event()
     threading.Thread(
-        target=_prepare, args=(loaded, serving), name="mesa-mobility start", daemon=True
+        target=_prepare,
+        args=(loaded, given or {}, serving),
+        name="mesa-mobility start",
+        daemon=True,
     ).start()
-    loaded.set_result(load_model(model))
-    name = f"[{host}]" if ":" in host else host
-    # A browser takes a while itself, which it may as well do while Solara is imported.
+    own = is_model_file(model)
+    kind = load_model_file(model) if own else load_model(model)
+    loaded.set_result(kind)
+    # A server on all addresses is reached by the machine's name, not by that address.
+    named = socket.gethostname() if host in ("0.0.0.0", "::") else host
+    name = f"[{named}]" if ":" in named else named
+    token = "" if is_loopback(host) else secrets.token_urlsafe(24)
+    # A browser takes a while to start, which it can do while Solara is imported.
     listening.listen()
-    ready(f"http://{name}:{listening.getsockname()[1]}/")
+    port = listening.getsockname()[1]
+    ready(f"http://{name}:{port}/{f'?token={token}' if token else ''}")
 
-    # Of a page in a page, which ours is not.
+    # It concerns pages in frames, which this one is not.
     warnings.filterwarnings("ignore", "Cookies with samesite=none", UserWarning)
     import uvicorn
     from solara.server.starlette import app
 
     from mesa_mobility.dashboard import page
 
-    page.opening = model
+    page.opening = kind if own else model
+    page.given = given or {}
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
             serving.set()
 
-    config = uvicorn.Config(app, log_level="warning", ws_per_message_deflate=False)
+    guarded = Guard(app, host, port, token)
+    config = uvicorn.Config(guarded, log_level="warning", ws_per_message_deflate=False)
     Server(config).run(sockets=[listening])
 
 
@@ -95,20 +117,22 @@ def _listen(host: str, port: int) -> socket.socket:
     return listening
 
 
-def _prepare(loaded: Future[type[PedestrianModel]], serving: threading.Event) -> None:
-    """Make the model once, before a page asks for it: what it reads, lays out and compiles stays.
+def _prepare(
+    loaded: Future[type[PedestrianModel]], given: Mapping[str, Any], serving: threading.Event
+) -> None:
+    """Make the model once before a page asks for it, to fill the caches.
 
-    The map is read while Mesa is imported, the rest is done while the browser gets what the page is
-    made of: both would only hold up the imports before.
+    The map is read while Mesa is imported. The rest is done while the browser loads the page:
+    earlier it would only hold up the imports.
     """
-    # Some hundred thousand objects are made until the model is there, and all stay.
+    # Making the model creates some hundred thousand objects, which all stay.
     with nothing_collected():
-        # What is wrong with map or model, whoever needs it says: the command, or the page.
+        # An unusable map or model is reported where it is needed: by the command or the page.
         with suppress(MobilityError):
             MobilityMap.load()
         kind = loaded.result()
         serving.wait()
-        from mesa_mobility.dashboard.recipe import Recipe
+        from mesa_mobility.dashboard.session.run_config import Recipe
 
         with suppress(Exception):
-            Recipe(kind).make()
+            Recipe(kind, given).make()

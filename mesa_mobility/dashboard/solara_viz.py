@@ -8,10 +8,13 @@ import solara
 from mesa.visualization.utils import update_counter
 
 from mesa_mobility import PedestrianModel
-from mesa_mobility.dashboard import wire
-from mesa_mobility.dashboard.colouring import colouring_named
-from mesa_mobility.dashboard.crowd_view import CrowdCanvas
-from mesa_mobility.dashboard.observer import Observer
+from mesa_mobility.dashboard.quiet import keep_quiet
+from mesa_mobility.dashboard.session import serialization
+from mesa_mobility.dashboard.session.colouring import colouring_named
+from mesa_mobility.dashboard.session.observer import Observer
+from mesa_mobility.dashboard.views.crowd_view import CrowdCanvas
+
+keep_quiet()
 
 
 def make_crowd_view(
@@ -36,8 +39,8 @@ def make_crowd_view(
         observer = solara.use_memo(lambda: Observer(model), [model])
         observer.after_step()
         plan = model.floor_plan
-        floor = solara.use_memo(lambda: wire.floor(plan), [plan, plan.version])
-        frame = wire.frame(model, colouring, observer, run=id(model), number=model.frame)
+        floor = solara.use_memo(lambda: serialization.floor(plan), [plan, plan.version])
+        frame = serialization.frame(model, colouring, observer, run=id(model), number=model.frame)
         CrowdCanvas(frame=frame, floor=floor, height=height)
 
     return CrowdView

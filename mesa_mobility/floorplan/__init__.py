@@ -2,9 +2,9 @@
 
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.plan import FloorPlan
-from mesa_mobility.floorplan.router import Router, Targets
-from mesa_mobility.floorplan.sight import line_of_sight, lines_of_sight
-from mesa_mobility.floorplan.walls import CellTable, WallIndex
+from mesa_mobility.floorplan.routing.router import Router, Targets
+from mesa_mobility.floorplan.walls.line_of_sight import line_of_sight, lines_of_sight
+from mesa_mobility.floorplan.walls.wall_index import CellTable, WallIndex
 from mesa_mobility.floorplan.zones import SpeedZone
 
 __all__ = [

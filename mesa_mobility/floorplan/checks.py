@@ -1,5 +1,6 @@
-"""What a floor plan must satisfy; each check raises FloorPlanError with one line."""
+"""Checks of floor plans; each raises FloorPlanError with one line."""
 
+import re
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -8,6 +9,7 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.extent import check_coordinates
 from mesa_mobility.floorplan.openings import Exit, Gate, Opening
 
 EDGE_TOLERANCE = 0.01
@@ -18,21 +20,19 @@ STANDING_ROOM = 0.1
 
 _CONTACT = 0.1
 
+_WKT_TYPE = re.compile(r"\s*([A-Za-z]+?)(?:ZM|Z|M)?\b")
+_WKT_TYPES = (
+    "POINT", "LINESTRING", "LINEARRING", "POLYGON",
+    "MULTIPOINT", "MULTILINESTRING", "MULTIPOLYGON",
+)  # fmt: skip
+
 
 def read_polygon(value: Polygon | str, what: str) -> Polygon:
     """`value` (shapely polygon or WKT) as a valid, finite, non-empty 2D polygon.
 
     `what` names it in error messages.
     """
-    geometry = value
-    if isinstance(value, str):
-        try:
-            # Shapely warns of what is an error here: coordinates that are not finite.
-            with np.errstate(invalid="ignore"):
-                geometry = shapely.from_wkt(value)
-        except shapely.errors.GEOSException as error:
-            text = " ".join(str(error).split())
-            raise FloorPlanError(f"{what}: the WKT cannot be read ({text})") from None
+    geometry = _from_wkt(value, what) if isinstance(value, str) else value
     if not isinstance(geometry, BaseGeometry):
         raise FloorPlanError(
             f"{what} must be a shapely Polygon or its WKT, found {type(value).__name__}"
@@ -45,8 +45,7 @@ def read_polygon(value: Polygon | str, what: str) -> Polygon:
         raise FloorPlanError(f"{what} must be a Polygon, found a {geometry.geom_type}")
     if geometry.is_empty:
         raise FloorPlanError(f"{what} is empty")
-    if not np.isfinite(shapely.get_coordinates(geometry)).all():
-        raise FloorPlanError(f"{what} has coordinates that are not finite")
+    check_coordinates(shapely.get_coordinates(geometry), what)
     geometry = shapely.force_2d(geometry)
     if not geometry.is_valid:
         raise FloorPlanError(f"{what} is not valid: {shapely.is_valid_reason(geometry)}")
@@ -55,8 +54,23 @@ def read_polygon(value: Polygon | str, what: str) -> Polygon:
     return geometry
 
 
+def _from_wkt(text: str, what: str) -> BaseGeometry:
+    # GEOS reads nested shapes recursively, and ends the process where they nest too deeply.
+    word = _WKT_TYPE.match(text)
+    if word is None or word[1].upper() not in _WKT_TYPES:
+        begin = ascii(text.strip()[:20])
+        raise FloorPlanError(f"{what}: the WKT cannot be read ({begin}, expected POLYGON)")
+    try:
+        # Coordinates that are not finite are an error here, and need no warning of shapely's.
+        with np.errstate(invalid="ignore", over="ignore"):
+            return shapely.from_wkt(text)
+    except (shapely.errors.GEOSException, NotImplementedError) as error:
+        reason = " ".join(str(error).split())[:100]
+        raise FloorPlanError(f"{what}: the WKT cannot be read ({reason})") from None
+
+
 def check_names(openings: Sequence[Opening]) -> None:
-    """Gates and exits must have different names, for they are opened and closed by name."""
+    """Gates and exits must have different names, by which they are opened and closed."""
     seen: set[str] = set()
     for opening in openings:
         if opening.name in seen:
@@ -109,10 +123,9 @@ def free_area(
 ) -> BaseGeometry:
     """Walkable area minus obstacles, without pockets that can hold nobody.
 
-    Raises
-    ------
-    FloorPlanError
-        Nothing is left, or a piece that is left touches no exit; in a plan without exits, no gate.
+    Raises:
+        FloorPlanError: nothing is left, or a piece that is left touches no exit; in a plan without
+            exits, no gate.
     """
     free = walkable.difference(shapely.union_all(list(obstacles)))
     pieces = [

@@ -1,4 +1,4 @@
-"""Places to come in at: anywhere in an area, or along a line."""
+"""Random places to enter at, in an area or along a line."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
 
 _THROWS = 8
-"""Points thrown at the bounds of an area for each that is wanted."""
+"""Points thrown within the bounds of an area for each place wanted."""
 
 
 def read_entrance(value: BaseGeometry | str) -> BaseGeometry:
@@ -37,7 +37,7 @@ def read_entrance(value: BaseGeometry | str) -> BaseGeometry:
 
 
 class Entrance:
-    """Draws random places with room between walls for a body, as the plan is now.
+    """Draws random places with room for a body between the plan's current walls.
 
     Args:
         plan: the floor plan.
@@ -57,7 +57,7 @@ class Entrance:
 
     @property
     def room(self) -> BaseGeometry:
-        """Where the middle of a body can be: (multi)polygon or (multi)line, or empty."""
+        """Possible centres of a body: (multi)polygon or (multi)line, or empty."""
         if self._version != self._plan.version:
             self._version = self._plan.version
             free = self._plan.free.buffer(-self._clearance, quad_segs=32)
@@ -68,7 +68,7 @@ class Entrance:
         return self._room
 
     def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """(k, 2) up to n places, metres; fewer, or none, where there is little room."""
+        """(k, 2) up to n places, metres; fewer or none if there is little room."""
         room = self.room
         if room.is_empty:
             return np.empty((0, 2))

@@ -13,6 +13,7 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.extent import check_coordinates
 from mesa_mobility.floorplan.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.zones import SpeedZone
 
@@ -20,12 +21,12 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
 
 KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
-"""What the property `kind` of a feature can be."""
+"""Values of the property `kind` of a feature."""
 
 
 @dataclass
 class Content:
-    """What a FeatureCollection says, before the geometry is checked as a floor plan."""
+    """Content of a FeatureCollection, before it is checked as a floor plan."""
 
     walkable: Polygon
     name: str
@@ -55,7 +56,7 @@ def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
 
 
 def write(collection: Mapping[str, Any], path: "str | os.PathLike[str]") -> None:
-    """Write a FeatureCollection to `path` by way of a temporary file beside it."""
+    """Write a FeatureCollection to `path` through a temporary file beside it."""
     target = Path(path)
     temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
@@ -68,18 +69,16 @@ def write(collection: Mapping[str, Any], path: "str | os.PathLike[str]") -> None
 
 
 def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:
-    """What to call a source in an error message: its path."""
+    """Name of a source in an error message: its path."""
     return "GeoJSON" if isinstance(source, Mapping) else str(source)
 
 
 def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
     """Read a FeatureCollection from a file or a mapping.
 
-    Raises
-    ------
-    FloorPlanError
-        The file cannot be read, is not JSON or not a FeatureCollection, or a feature
-        has an unknown kind or the wrong geometry; the message names file and feature.
+    Raises:
+        FloorPlanError: the file cannot be read, is not JSON or not a FeatureCollection, or a
+            feature has an unknown kind or the wrong geometry; the message names file and feature.
     """
     if isinstance(source, Mapping):
         return _content(source, label(source))
@@ -95,6 +94,8 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
         raise FloorPlanError(f"{source}: is not JSON (line {error.lineno}: {error.msg})") from None
     except RecursionError:
         raise FloorPlanError(f"{source}: is not a floor plan (nested too deeply)") from None
+    except ValueError:  # Python refuses integers of thousands of digits
+        raise FloorPlanError(f"{source}: has a number of thousands of digits") from None
     return _content(data, label(source))
 
 
@@ -117,7 +118,10 @@ def _content(data: object, where: str) -> Content:
         elif kind in ("gate", "exit"):
             opening = _opening(Gate if kind == "gate" else Exit, name, geometry, at)
             (content.gates if kind == "gate" else content.exits).append(opening)
-            if properties.get("closed") is True:
+            closed = properties.get("closed", False)
+            if not isinstance(closed, bool):
+                raise FloorPlanError(f"{at}: closed must be true or false, found {closed!r:.60}")
+            if closed:
                 content.closed.append(name)
         elif kind == "zone":
             try:
@@ -149,6 +153,10 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, Mapping[st
     except Exception as error:  # shapely raises whatever the malformed mapping led it into
         text = " ".join(str(error).split())
         raise FloorPlanError(f"{at}: the geometry cannot be read ({text})") from None
+    try:
+        check_coordinates(shapely.get_coordinates(geometry), kind)
+    except FloorPlanError as error:
+        raise FloorPlanError(f"{at}: {error}") from None
     expected = "Polygon" if kind in ("walkable", "obstacle", "zone") else "LineString"
     if geometry.geom_type != expected:
         raise FloorPlanError(f"{at}: {kind} must be a {expected}, found {geometry.geom_type}")

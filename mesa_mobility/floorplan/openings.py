@@ -56,7 +56,7 @@ class Opening:
     def _point(self, end: str, value: Sequence[float]) -> tuple[float, float]:
         try:
             x, y = (float(coordinate) for coordinate in value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise FloorPlanError(
                 f"{self.kind} {self.name!r}: {end} must be two numbers (x, y), found {value!r}"
             ) from None

@@ -1,4 +1,4 @@
-"""The floor plan: where people can walk, what is in the way and where they leave."""
+"""The floor plan: walkable area, obstacles, gates and exits."""
 
 import os
 from collections.abc import Iterable
@@ -11,41 +11,54 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import checks, edges, geojson, placement, reach
+from mesa_mobility.floorplan import (
+    checks,
+    extent,
+    geojson,
+    occupants,
+    reachability,
+    sampling,
+)
 from mesa_mobility.floorplan.openings import Exit, Gate
-from mesa_mobility.floorplan.walls import WallIndex
+from mesa_mobility.floorplan.walls import boundaries
+from mesa_mobility.floorplan.walls.wall_index import WallIndex
 from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
 
 
 class FloorPlan:
     """A walkable polygon with exits, gates and obstacles.
 
-    Parameters
-    ----------
-    walkable
-        One connected polygon, holes allowed; shapely or WKT, metres.
-    exits
-        Lines on the edge of the walkable area (within 1 cm); at least one, unless there are
-        gates for people to walk to and fro or round between.
-    gates
-        Doors, and other lines to cross, inside the walkable area.
-    obstacles
-        Polygons (shapely or WKT) to subtract; their ids are 0, 1, 2, ...
-    zones
-        Parts of the floor where people walk more slowly.
-    name
-        For titles and files.
+    Args:
+        walkable: one connected polygon, holes allowed; shapely or WKT, metres.
+        exits: lines on the edge of the walkable area (within 1 cm); at least one, unless there are
+            gates between which people walk to and fro or round.
+        gates: doors, and other lines to cross, inside the walkable area.
+        obstacles: polygons (shapely or WKT) to subtract; their ids are 0, 1, 2, ...
+        zones: parts of the floor where people walk more slowly.
+        name: for titles and files.
 
-    Raises
-    ------
-    FloorPlanError
-        Geometry that is empty, not valid, not finite or in several pieces; an exit
-        off the edge; a gate or a zone outside; a name used twice; free area without an exit.
+    Raises:
+        FloorPlanError: geometry that is empty, not valid, not finite or in several pieces; a
+            walkable area of more than 20 km or less than 0.2 m; an exit off the edge; a gate or a
+            zone outside; a name used twice; free area without an exit.
 
-    Attributes
-    ----------
-    version
-        Grows by one with every change of obstacles, gates or exits.
+    Attributes:
+        version: grows by one with every change of obstacles, gates or exits.
+
+    Examples:
+        >>> from mesa_mobility import Exit, FloorPlan
+        >>> plan = FloorPlan(
+        ...     "POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))",
+        ...     exits=[Exit("door", (6, 1.5), (6, 2.5))],
+        ...     obstacles=["POLYGON ((2 1, 3 1, 3 3, 2 3, 2 1))"],
+        ... )
+        >>> plan.area
+        22.0
+        >>> plan.contains([(1, 2), (2.5, 2)])
+        array([ True, False])
+        >>> plan.close_gate("door")
+        >>> plan.is_open("door"), plan.version
+        (False, 1)
     """
 
     def __init__(
@@ -61,6 +74,7 @@ class FloorPlan:
         self.name = name
         self.version = 0
         self._walkable = checks.read_polygon(walkable, "walkable area")
+        extent.check_extent(self._walkable)
         self._exits = tuple(exits)
         self._gates = tuple(gates)
         self._closed: set[str] = set()
@@ -75,7 +89,7 @@ class FloorPlan:
         check_zones(self._walkable, self._zones)
         checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
-        self._set_free(self._obstacles)
+        self._set_free(self._obstacles, self._without(self._obstacles))
         self._set_walls()
 
     @classmethod
@@ -89,15 +103,20 @@ class FloorPlan:
         zones: Iterable[SpeedZone] = (),
         name: str = "",
     ) -> "FloorPlan":
-        """A floor plan whose walkable area is given as the WKT of a POLYGON, in metres."""
-        return cls(wkt, exits=exits, gates=gates, obstacles=obstacles, zones=zones, name=name)
+        """A floor plan whose walkable area is given as the WKT of a POLYGON, in metres.
+
+        Warns of coordinates that look like millimetres.
+        """
+        plan = cls(wkt, exits=exits, gates=gates, obstacles=obstacles, zones=zones, name=name)
+        extent.warn_of_millimetres(plan.walkable, plan.openings())
+        return plan
 
     @classmethod
     def from_geojson(cls, source: "str | os.PathLike[str] | dict[str, Any]") -> "FloorPlan":
         """Read a plan from a GeoJSON file, or from the FeatureCollection itself.
 
         See `to_geojson` for what it holds. Raises FloorPlanError naming the file
-        and the feature.
+        and the feature; warns of coordinates that look like millimetres.
         """
         content = geojson.read(source)
         try:
@@ -114,6 +133,7 @@ class FloorPlan:
         for closed in content.closed:
             plan.close_gate(closed)
         plan.version = 0
+        extent.warn_of_millimetres(plan.walkable, plan.openings())
         return plan
 
     def to_geojson(self) -> dict[str, Any]:
@@ -141,12 +161,12 @@ class FloorPlan:
 
     @property
     def walls(self) -> NDArray[np.float64]:
-        """(m, 4) x1, y1, x2, y2 in metres: the edge of `free` less open exits, and closed gates."""
+        """(m, 4) x1, y1, x2, y2 in metres: edge of `free` without open exits, and closed gates."""
         return self._walls.copy()
 
     @property
     def wall_index(self) -> WallIndex:
-        """An R-tree of the walls, which follows every change; it has its own order of them."""
+        """An R-tree of the walls, in an order of its own, which follows every change."""
         return self._wall_index
 
     @property
@@ -170,7 +190,7 @@ class FloorPlan:
         return self._zones
 
     def speed_factors(self, points: ArrayLike) -> NDArray[np.float64]:
-        """(n,) share of their preferred speed at which people walk at (n, 2) points, metres."""
+        """(n,) share of the preferred speed at (n, 2) points, metres."""
         return speed_factors(self._zones, np.asarray(points, dtype=np.float64).reshape(-1, 2))
 
     @property
@@ -184,11 +204,11 @@ class FloorPlan:
         return self._free.area
 
     def openings(self) -> tuple[Gate | Exit, ...]:
-        """Gates, then exits: the order in which `Targets.gates` counts them."""
+        """Gates, then exits: the numbering of `Targets.gates`."""
         return (*self._gates, *self._exits)
 
     def gate(self, name: str) -> Gate | Exit:
-        """The gate or exit of this name; FloorPlanError lists the names there are."""
+        """The gate or exit of this name; a FloorPlanError lists the known names."""
         for opening in self.openings():
             if opening.name == name:
                 return opening
@@ -214,24 +234,29 @@ class FloorPlan:
     def add_obstacle(self, polygon: Polygon | str) -> int:
         """Put an obstacle (shapely or WKT, metres) in the way and return its id.
 
-        Raises FloorPlanError, the plan unchanged, where the polygon is not valid or
-        would cut a piece of the free area off from every exit.
+        Raises FloorPlanError, and leaves the plan unchanged, if the polygon is not valid, would
+        cut a piece of the free area off from every exit, or would touch somebody in any model
+        of the plan (`occupants` says why).
         """
         number = self._next_obstacle
-        self._set_free(
-            {**self._obstacles, number: checks.read_polygon(polygon, f"obstacle {number}")}
-        )
+        name = f"obstacle {number}"
+        obstacle = checks.read_polygon(polygon, name)
+        obstacles = {**self._obstacles, number: obstacle}
+        free = self._without(obstacles)
+        occupants.check_vacant(self, obstacle, name, free)
+        self._set_free(obstacles, free)
         self._next_obstacle += 1
         self._changed()
         return number
 
     def remove_obstacle(self, obstacle: int) -> None:
-        """Take away the obstacle with this id; FloorPlanError where there is none."""
+        """Remove the obstacle with this id; FloorPlanError if there is none."""
         if obstacle not in self._obstacles:
             raise FloorPlanError(
                 f"there is no obstacle {obstacle}; there are {list(self._obstacles)}"
             )
-        self._set_free({i: p for i, p in self._obstacles.items() if i != obstacle})
+        obstacles = {i: p for i, p in self._obstacles.items() if i != obstacle}
+        self._set_free(obstacles, self._without(obstacles))
         self._changed()
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
@@ -252,11 +277,11 @@ class FloorPlan:
         return tuple(g for g in self._gates if g.name in self._closed)
 
     def check_reachable(self, points: ArrayLike, clearance: float) -> None:
-        """Raise FloorPlanError where a body of radius `clearance` metres cannot reach an open exit.
+        """Raise FloorPlanError if a body of radius `clearance` metres cannot reach an open exit.
 
         `points` is (n, 2) in metres.
         """
-        reach.check_reachable(self, points, clearance)
+        reachability.check_reachable(self, points, clearance)
 
     def random_points(
         self,
@@ -273,27 +298,26 @@ class FloorPlan:
         Every point is at least `clearance` from walls and exits and at least `spacing` from
         the other points and from the (k, 2) points of `avoid`. The points are the
         same for the same state of `rng`. Points thrown one by one (random sequential
-        placement) are tried first, a shaken hexagonal lattice where that fills up.
+        placement) are tried first, then a jittered hexagonal lattice.
 
-        Raises
-        ------
-        FloorPlanError
-            There is room for fewer than n, saying for how many.
+        Raises:
+            FloorPlanError: there is room for fewer than n points; the message says for how many.
         """
-        return placement.random_points(
+        return sampling.random_points(
             self, n, rng, within=within, spacing=spacing, clearance=clearance, avoid=avoid
         )
 
-    def _set_free(self, obstacles: dict[int, Polygon]) -> None:
-        self._free = checks.free_area(
-            self._walkable, list(obstacles.values()), self._exits, self._gates
-        )
-        self._obstacles = obstacles
-        shapely.prepare(self._free)
+    def _without(self, obstacles: dict[int, Polygon]) -> BaseGeometry:
+        free = checks.free_area(self._walkable, list(obstacles.values()), self._exits, self._gates)
+        shapely.prepare(free)
+        return free
+
+    def _set_free(self, obstacles: dict[int, Polygon], free: BaseGeometry) -> None:
+        self._obstacles, self._free = obstacles, free
 
     def _set_walls(self) -> None:
-        edge = edges.cut_out(edges.boundary_segments(self._free), self.open_exits())
-        self._walls = np.concatenate([edge, edges.opening_segments(self.closed_gates())])
+        edge = boundaries.cut_out(boundaries.boundary_segments(self._free), self.open_exits())
+        self._walls = np.concatenate([edge, boundaries.opening_segments(self.closed_gates())])
         self._wall_index.replace(self._walls)
 
     def _changed(self) -> None:

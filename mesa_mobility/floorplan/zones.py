@@ -17,23 +17,17 @@ from mesa_mobility.floorplan.checks import read_polygon
 class SpeedZone:
     """Part of the floor where people walk at a share of their preferred speed.
 
-    The factor holds for decisions that are taken in the zone, its edge included, and for the whole
-    of the movement decided on: up to 1.5 s later for those who come in, and as much longer for
-    those who go out. Where zones overlap their factors multiply.
+    The factor holds for decisions taken in the zone, its edge included, and for the whole movement
+    decided on. So it takes effect up to 1.5 s after people come in, and ends up to 1.5 s after they
+    leave. Where zones overlap, their factors multiply.
 
-    Parameters
-    ----------
-    polygon
-        shapely or WKT, metres.
-    factor
-        More than 0, at most 1.
-    name
-        For files and pictures.
+    Args:
+        polygon: shapely or WKT, metres.
+        factor: more than 0, at most 1.
+        name: for files and pictures.
 
-    Raises
-    ------
-    FloorPlanError
-        A polygon that is none, or a factor out of range.
+    Raises:
+        FloorPlanError: not a polygon, or a factor out of range.
     """
 
     polygon: Polygon | str
@@ -55,7 +49,7 @@ class SpeedZone:
 
 
 def check_zones(walkable: Polygon, zones: Sequence[SpeedZone]) -> None:
-    """Zones must be SpeedZone objects that have floor in them; FloorPlanError otherwise."""
+    """Zones must be SpeedZone objects that cover some floor; FloorPlanError otherwise."""
     for number, zone in enumerate(zones):
         if not isinstance(zone, SpeedZone):
             raise FloorPlanError(f"zones must be SpeedZone objects, found {type(zone).__name__}")

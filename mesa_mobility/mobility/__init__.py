@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesa_mobility.lazily import names_of
+from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.apsp import ShortestPaths, shortest_paths

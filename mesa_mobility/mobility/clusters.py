@@ -16,9 +16,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
 
+from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.graph import MotionGraph
 
@@ -75,12 +76,17 @@ def cluster_poses(
     poses = graph.poses
     standing = graph.kept & poses.is_standing()
     moving = np.flatnonzero(graph.kept & ~standing)
-    if len(moving) == 0 or not standing.any():
-        what = "moving" if len(moving) == 0 else "standing"
-        raise MapError(
-            f"no {what} poses among the {int(graph.kept.sum())} in the graph's component: "
-            "expected recordings that show people both standing and walking"
-        )
+    for what, here, anywhere in (
+        ("moving", len(moving), int((~poses.is_standing()).sum())),
+        ("standing", int(standing.sum()), int(poses.is_standing().sum())),
+    ):
+        if not here:
+            among = f"the {int(graph.kept.sum())} that lead to each other and back"
+            found = f"; {anywhere} others are not connected with these" if anywhere else ""
+            raise MapError(
+                f"no {what} poses among {among}{found}: expected recordings that show people both "
+                "standing and walking, and going from one to the other"
+            )
     wanted = min(clusters - 1, len(moving))
     features = poses.features[moving]
     columns = np.ascontiguousarray(features.T)
@@ -132,7 +138,7 @@ def nearest_centre(
     return _nearest(np.ascontiguousarray(features), np.ascontiguousarray(centres.T))
 
 
-@njit(cache=True, parallel=True)
+@kept(parallel=True)
 def _nearest(features: NDArray[np.float32], columns: NDArray[np.float32]) -> NDArray[np.int32]:
     dims, k = columns.shape
     nearest = np.empty(len(features), np.int32)
@@ -147,7 +153,7 @@ def _nearest(features: NDArray[np.float32], columns: NDArray[np.float32]) -> NDA
     return nearest
 
 
-@njit(cache=True, parallel=True)
+@kept(parallel=True)
 def _potentials(columns: NDArray[np.float32], alpha: np.float32) -> NDArray[np.float64]:
     """Sum over all poses of exp(-alpha d^2); terms below exp(-16), 1e-7, are left out."""
     dims, n = columns.shape
@@ -172,7 +178,7 @@ def _potentials(columns: NDArray[np.float32], alpha: np.float32) -> NDArray[np.f
     return potential
 
 
-@njit(cache=True, parallel=True)
+@kept(parallel=True)
 def _subtract(
     columns: NDArray[np.float32], centre: int, beta: np.float32, potential: NDArray[np.float64]
 ) -> None:

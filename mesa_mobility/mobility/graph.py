@@ -13,9 +13,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
 
+from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.poses import PoseTable
 
@@ -33,6 +34,9 @@ MAX_TRANSITIONS = 10
 
 THRESHOLD_RATIO = 1.4
 """Threshold of a transition, as a multiple of the median distance of consecutive frames."""
+
+STILL = 1e-6
+"""Distance of consecutive poses, in feature units, up to which the legs do not move."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +117,11 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
     last[poses.first[1:] - 1] = True
     natural = np.flatnonzero(~last)
     gaps = np.linalg.norm(poses.features[natural + 1] - poses.features[natural], axis=1)
+    if not (gaps > STILL).any():
+        raise MapError(
+            f"nobody moves in the {n} poses of {len(poses.clip_names)} clips: "
+            "expected recordings of people who walk"
+        )
     threshold = THRESHOLD_RATIO * float(np.median(gaps))
 
     columns = np.ascontiguousarray(poses.features.T)
@@ -157,7 +166,7 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
 def _strong_labels(
     n: int, source: NDArray[np.int64], successor: NDArray[np.int64]
 ) -> NDArray[np.int32]:
-    # Whoever only reads a map imports this module as well, and does without them.
+    # Imported here, since reading a map imports this module but does not need them.
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
 
@@ -165,7 +174,7 @@ def _strong_labels(
     return connected_components(matrix, directed=True, connection="strong")[1]
 
 
-@njit(cache=True, parallel=True)
+@kept(parallel=True)
 def _best_matches(
     columns: NDArray[np.float32],
     clip: NDArray[np.int32],

@@ -27,12 +27,6 @@ CORE_RADIUS = 0.14
 In real queues the closest twentieth of neighbours stand 0.27 to 0.30 m apart: half of that.
 """
 
-POSITION_STEP = 0.0005
-"""Paths are stored in steps of half a millimetre ..."""
-
-HEADING_STEP = 0.0002
-"""... and of 0.2 milliradians, an eightieth of a degree."""
-
 
 @dataclass(frozen=True, eq=False)
 class MobilityMap:
@@ -55,6 +49,15 @@ class MobilityMap:
         sizes: (k,) int64; poses behind each cluster.
         mean_speeds: (k,) float32; mean root speed of these poses, m/s.
         metadata: type, body, build parameters and the provenance of every clip.
+
+    Examples:
+        >>> from mesa_mobility import MobilityMap
+        >>> able_bodied = MobilityMap.load()
+        >>> able_bodied.n_clusters, able_bodied.n_options
+        (350, 204652)
+        >>> first, after = able_bodied.offsets[able_bodied.standing :][:2]
+        >>> sorted(set(able_bodied.durations[first:after].tolist()))
+        [12, 24, 45]
     """
 
     offsets: NDArray[np.int64]
@@ -79,6 +82,10 @@ class MobilityMap:
                 view = array.view()
                 view.setflags(write=False)
                 object.__setattr__(self, name, view)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> MobilityMap:
+        """Itself: nothing of it can be written to."""
+        return self
 
     @property
     def n_clusters(self) -> int:
@@ -150,7 +157,7 @@ class MobilityMap:
         """
         from mesa_mobility.mobility.mapfile import read_map_once, shipped_map_path
 
-        return read_map_once(shipped_map_path("able_bodied") if path is None else path)
+        return read_map_once(shipped_map_path("able_bodied") if path is None else path, cls)
 
 
 def check_map(map_: MobilityMap) -> None:

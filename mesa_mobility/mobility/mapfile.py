@@ -10,24 +10,42 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import zipfile
 import zlib
-from functools import lru_cache
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility._once import cached_once
 from mesa_mobility.errors import MapError
-from mesa_mobility.mobility.map import HEADING_STEP, POSITION_STEP, MobilityMap
+from mesa_mobility.interrupts import cleaning_up
+
+if TYPE_CHECKING:
+    from mesa_mobility.mobility.map import MobilityMap
+
+Map = TypeVar("Map")
+"""What is made of the arrays of a file."""
+
+POSITION_STEP = 0.0005
+"""Paths are stored in steps of half a millimetre ..."""
+
+HEADING_STEP = 0.0002
+"""... and of 0.2 milliradians, an eightieth of a degree."""
 
 FORMAT_VERSION = 1
 
 COST_STEP = 1e-4
 
+LARGEST_SIZE = 100_000_000
+"""Bytes of all arrays in a file, uncompressed; the map that ships has 25 million."""
+
+_INT16 = np.iinfo(np.int16).max
 _STEPS = np.array([POSITION_STEP, POSITION_STEP, HEADING_STEP])
 _PLAIN = ("offsets", "durations", "path_clusters", "mean_poses", "centres", "sizes", "mean_speeds")
 _DTYPES: dict[str, str] = {
@@ -83,8 +101,10 @@ def write_map(map_: MobilityMap, path: str | Path) -> None:
     steps = np.diff(whole, axis=0, prepend=0.0)
     steps[starts] = whole[starts]
     ends = whole[map_.path_offsets[1:] - 1]
-    if max(np.abs(steps).max(), np.abs(ends).max()) > np.iinfo(np.int16).max:
-        raise MapError(f"{path}: an option leads further than 16 m, expected a person's movement")
+    far = (np.maximum(np.abs(steps).max(axis=0), np.abs(ends).max(axis=0)) > _INT16).tolist()
+    if any(far):
+        what = "leads further than 16 m" if far[0] or far[1] else "turns by more than 6.5 rad"
+        raise MapError(f"{path}: an option {what}, expected a person's movement")
     metadata = {"format_version": FORMAT_VERSION, **map_.metadata}
     arrays: dict[str, NDArray[Any]] = {name: getattr(map_, name) for name in _PLAIN}
     arrays["costs"] = np.rint(map_.costs.astype(np.float64) / COST_STEP)
@@ -97,24 +117,31 @@ def write_map(map_: MobilityMap, path: str | Path) -> None:
 
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        with zipfile.ZipFile(temporary, "w") as archive:
-            for name, dtype in _DTYPES.items():
-                buffer = io.BytesIO()
-                np.lib.format.write_array(
-                    buffer, np.ascontiguousarray(arrays[name].astype(dtype)), allow_pickle=False
-                )
-                # A fixed date: the same map gives the same bytes on any day.
-                entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-                archive.writestr(entry, buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=9)
-        os.replace(temporary, path)
+        with cleaning_up(lambda: temporary.unlink(missing_ok=True)):
+            with zipfile.ZipFile(temporary, "w") as archive:
+                for name, dtype in _DTYPES.items():
+                    _write_array(archive, name, arrays[name].astype(dtype))
+            os.replace(temporary, path)
     except OSError as error:
         raise MapError(f"{path}: cannot be written ({error.strerror or error})") from error
     finally:
         temporary.unlink(missing_ok=True)
 
 
-def read_map_once(path: str | Path) -> MobilityMap:
+def _write_array(archive: zipfile.ZipFile, name: str, array: NDArray[Any]) -> None:
+    buffer = io.BytesIO()
+    np.lib.format.write_array(buffer, np.ascontiguousarray(array), allow_pickle=False)
+    # A fixed date: the same map gives the same bytes on any day.
+    entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+    archive.writestr(entry, buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=9)
+
+
+def read_map_once(path: str | Path, make: Callable[..., Map]) -> Map:
     """Read a map file, or give the map that was read from it before if it has not changed.
+
+    Args:
+        path: the file.
+        make: makes the map of its fields, given by name.
 
     Raises:
         MapError: as ``read_map``.
@@ -123,31 +150,32 @@ def read_map_once(path: str | Path) -> MobilityMap:
     try:
         status = path.stat()
     except OSError:
-        return read_map(path)  # which says what is wrong
-    return _read_version(path.resolve(), status.st_mtime_ns, status.st_size)
+        return read_map(path, make)  # which says what is wrong
+    return _read_version(path.resolve(), status.st_mtime_ns, status.st_size, make)
 
 
-@lru_cache(maxsize=4)
-def _read_version(path: Path, changed: int, size: int) -> MobilityMap:
-    return read_map(path)
+@cached_once(maxsize=4)
+def _read_version(path: Path, changed: int, size: int, make: Callable[..., Map]) -> Map:
+    return read_map(path, make)
 
 
-def read_map(path: str | Path) -> MobilityMap:
+def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
     """Read and check a map file.
+
+    Args:
+        path: the file.
+        make: makes the map of its fields, given by name.
 
     Raises:
         MapError: naming the file and what is wrong with it.
     """
     path = Path(path)
     try:
-        archive = np.load(path, allow_pickle=False)
-        if not isinstance(archive, np.lib.npyio.NpzFile):
-            raise MapError(f"{path}: a single array, expected a mobility map (.npz)")
-        with archive:
-            missing = sorted(set(_DTYPES) - set(archive.files))
-            if missing:
-                raise MapError(f"{path}: not a mobility map, arrays missing: {', '.join(missing)}")
-            arrays = {name: archive[name] for name in _DTYPES}
+        with path.open("rb") as file:
+            if file.read(len(np.lib.format.MAGIC_PREFIX)) == np.lib.format.MAGIC_PREFIX:
+                raise MapError(f"{path}: a single array, expected a mobility map (.npz)")
+            with zipfile.ZipFile(file) as archive:
+                arrays = _read_arrays(archive, path)
     except MapError:
         raise
     except FileNotFoundError:
@@ -156,15 +184,53 @@ def read_map(path: str | Path) -> MobilityMap:
         raise MapError(f"{path}: cannot be read ({error.strerror or error})") from error
     except (ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
             RuntimeError, MemoryError, TypeError, SyntaxError) as error:  # fmt: skip
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        reason = next(iter(str(error).splitlines()), type(error).__name__)[:200]
         raise MapError(f"{path}: not a readable mobility map ({reason})") from error
     try:
-        return _decode(arrays)
+        return make(**_decode(arrays))
     except MapError as error:
         raise MapError(f"{path}: {error}") from None
 
 
-def _decode(arrays: dict[str, NDArray[Any]]) -> MobilityMap:
+def _read_arrays(archive: zipfile.ZipFile, path: Path) -> dict[str, NDArray[Any]]:
+    entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+    missing = sorted(set(_DTYPES) - set(entries))
+    if missing:
+        raise MapError(f"{path}: not a mobility map, arrays missing: {', '.join(missing)}")
+    total = sum(entries[name].file_size for name in _DTYPES)
+    if total > LARGEST_SIZE:
+        raise MapError(
+            f"{path}: arrays of {total / 1e6:.0f} MB, expected at most {LARGEST_SIZE / 1e6:.0f} MB"
+        )
+    arrays = {}
+    for name in _DTYPES:
+        entry = entries[name]
+        what = f"{path}: array {name!r}"
+        # Other methods unpack all that they are given at once, however much that becomes.
+        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise MapError(f"{what}: compressed by method {entry.compress_type}, expected deflate")
+        with archive.open(entry) as stream:
+            # To ask for one byte more reaches the end, where the checksum is compared.
+            arrays[name] = _read_array(io.BytesIO(stream.read(entry.file_size + 1)), what)
+    return arrays
+
+
+def _read_array(file: io.BytesIO, what: str) -> NDArray[Any]:
+    version = np.lib.format.read_magic(file)
+    if version != (1, 0):
+        raise MapError(f"{what}: npy format {version}, expected (1, 0)")
+    shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
+    content = file.read()
+    # The sizes are compared before anything of the size that the header asks for is made.
+    if dtype.hasobject or fortran_order or math.prod(shape) * dtype.itemsize != len(content):
+        raise MapError(
+            f"{what}: its header says {dtype} in shape {shape}, but {len(content)} bytes follow"
+        )
+    return np.frombuffer(content, dtype=dtype).reshape(shape)
+
+
+def _decode(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
+    """The fields of a map."""
     for name, dtype in _DTYPES.items():
         if arrays[name].dtype != np.dtype(dtype):
             raise MapError(f"array {name!r}: type {arrays[name].dtype}, expected {dtype}")
@@ -201,13 +267,13 @@ def _decode(arrays: dict[str, NDArray[Any]]) -> MobilityMap:
         wrong = arrays["path_clusters"][last] != arrays["end_clusters"]
         if wrong.any():
             raise MapError(f"option {int(np.argmax(wrong))}: its path ends in another cluster")
-    return MobilityMap(
-        costs=(arrays["costs"] * COST_STEP).astype(np.float32),
-        path_offsets=path_offsets,
-        paths=np.multiply(whole, _STEPS, dtype=np.float64).astype(np.float32),
-        metadata=metadata,
+    return {
+        "costs": (arrays["costs"] * COST_STEP).astype(np.float32),
+        "path_offsets": path_offsets,
+        "paths": np.multiply(whole, _STEPS, dtype=np.float64).astype(np.float32),
+        "metadata": metadata,
         **{name: arrays[name] for name in _PLAIN},
-    )
+    }
 
 
 def _decode_metadata(raw: NDArray[np.uint8]) -> dict[str, Any]:

@@ -14,15 +14,16 @@ and end heading, the cheapest kept.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.compiled.threads import THREADS
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.clusters import Clusters
@@ -100,8 +101,8 @@ def reachable_options(
 
     found: list[list[tuple[NDArray, ...]]] = [[] for _ in range(len(clusters))]
     done = 0
-    # One worker a processor; results are taken in order, so their number changes nothing.
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    # Results are taken in order, so their number changes nothing.
+    with ThreadPoolExecutor(THREADS) as pool:
         for (cluster, chunk), result in zip(
             chunks, pool.map(collect, (c for _, c in chunks)), strict=True
         ):
@@ -134,7 +135,7 @@ def _merge(parts: list[tuple[NDArray, ...]]) -> tuple[NDArray, ...]:
     return layers[order], costs[order], paths[order], path_clusters[order]
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _collect(
     sources: NDArray[np.int32],
     offsets: NDArray[np.int64],

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.errors import MapError
+from mesa_mobility.errors import CaptureError, MapError
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import Recording
@@ -110,7 +110,7 @@ def pose_table(
 
     Raises:
         MapError: no recording, or one that is not at 30 Hz.
-        CaptureError: a skeleton whose legs cannot be found.
+        CaptureError: a skeleton whose legs cannot be found, or a clip that jumps.
     """
     if not recordings:
         raise MapError("no recordings: at least one clip of 45 frames is needed for a mobility map")
@@ -141,14 +141,17 @@ def pose_table(
 
 
 def _clip_poses(recording: Recording) -> tuple[NDArray[np.float64], ...]:
-    # Whoever only reads a map imports this module as well, and does without them.
+    # Imported here, since reading a map imports this module but does not need them.
     from scipy.ndimage import gaussian_filter1d
 
-    from mesa_mobility.capture import leg_joints
+    from mesa_mobility.capture import find_jumps, leg_joints
 
     legs = leg_joints(recording.skeleton)
     world = recording.positions()
     chain = world[:, [*legs.left, *legs.right]]
+    jumps = find_jumps(chain)
+    if jumps.reason:
+        raise CaptureError(f"{recording.name}: jumps at frame {jumps.frames[0]}, {jumps.reason}")
     pelvis_heading = _hip_heading(chain[:, 0], chain[:, 4])
     root = 0.5 * (chain[:, 0, :2] + chain[:, 4, :2])
     facing = gaussian_filter1d(pelvis_heading, FACING_SMOOTHING * FRAME_RATE, mode="nearest")

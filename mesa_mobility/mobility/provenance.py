@@ -1,4 +1,4 @@
-"""Where the clips behind a map came from, and whom to thank for them."""
+"""Provenance of the clips behind a map, and acknowledgements."""
 
 from __future__ import annotations
 

@@ -12,10 +12,11 @@ import shapely
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.files import replacing
-from mesa_mobility.results.trajectories import Trajectories
 
 if TYPE_CHECKING:
     import pedpy
+
+    from mesa_mobility.results.trajectories import Trajectories
 
 JUPEDSIM_VERSION = 2
 # Rows handed over together: bounds the Python objects alive at a time.

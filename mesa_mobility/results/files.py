@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.interrupts import cleaning_up, putting_in_place
 
 
 @contextmanager
@@ -26,8 +28,9 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     # The suffix stays last: writers of pictures choose the format by it.
     temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
     try:
-        yield temporary
-        os.replace(temporary, target)
+        with cleaning_up(lambda: temporary.unlink(missing_ok=True)):
+            yield temporary
+            os.replace(temporary, target)
     except OSError as error:
         raise ResultsError(f"{target}: cannot be written: {error.strerror or error}") from error
     finally:
@@ -35,11 +38,41 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
             temporary.unlink()
 
 
-def check_writable(directory: str | os.PathLike[str]) -> Path:
-    """Create the folder if need be and make sure that files can be made in it.
+@contextmanager
+def all_or_none(directory: str | os.PathLike[str], files: Sequence[str]) -> Iterator[Path]:
+    """Give a temporary folder for these files; on success they go to `directory`, else none does.
+
+    Args:
+        directory: folder that the files go to, created if need be.
+        files: their names; those that are not in the temporary folder at the end are left out.
 
     Raises:
-        ResultsError: it is a file, or it cannot be created or written.
+        ResultsError: the folder or a file cannot be written, or the disk is full.
+    """
+    folder = check_writable(directory, files)
+    try:
+        with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder) as name:
+            temporary = Path(name)
+            with cleaning_up(lambda: shutil.rmtree(temporary, ignore_errors=True)):
+                yield temporary
+                check_writable(folder, files)
+                with putting_in_place():
+                    for file in files:
+                        if (temporary / file).exists():
+                            os.replace(temporary / file, folder / file)
+    except OSError as error:
+        raise ResultsError(f"{folder}: cannot be written: {error.strerror or error}") from error
+
+
+def check_writable(directory: str | os.PathLike[str], files: Sequence[str] = ()) -> Path:
+    """Create the folder if need be and make sure that files can be made in it.
+
+    Args:
+        directory: the folder.
+        files: names of files that will be written to it; a folder may have none of them.
+
+    Raises:
+        ResultsError: it is a file, or it cannot be created or written, or a file's name is taken.
     """
     folder = Path(directory)
     try:
@@ -50,6 +83,9 @@ def check_writable(directory: str | os.PathLike[str]) -> Path:
         raise ResultsError(f"{folder}: is not a folder, nothing can be written there") from error
     except OSError as error:
         raise ResultsError(f"{folder}: cannot be written: {error.strerror or error}") from error
+    for file in files:
+        if (folder / file).is_dir():
+            raise ResultsError(f"{folder / file}: is a folder, expected a file or nothing there")
     return folder
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -12,9 +13,12 @@ import pyarrow.parquet as pq
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.files import replacing
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.seal import FIELD, UNSEALED, check_seal, seal
 
-FORMAT_VERSION = 1
+if TYPE_CHECKING:
+    from mesa_mobility.results.trajectories import Trajectories
+
+FORMAT_VERSION = 2
 METADATA_KEY = b"mesa_mobility"
 SCHEMA = pa.schema(
     [
@@ -31,7 +35,9 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
     """Write columns frame, person, x (m), y (m), heading (rad), compressed with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
-    last_frame, core_radius by person, inside_at_end. Equal trajectories give equal bytes.
+    last_frame, core_radius by person, inside_at_end, and the sha256 of the file (see
+    ``mesa_mobility.results.seal``). Pages have checksums as well, which other readers can
+    check. Equal trajectories give equal bytes.
 
     Raises:
         ResultsError: the file cannot be written.
@@ -42,34 +48,41 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
         "last_frame": trajectories.frames - 1,
         "core_radius": trajectories.radii.tolist(),
         "inside_at_end": trajectories.remaining.tolist(),
+        FIELD: UNSEALED,
     }
-    schema = SCHEMA.with_metadata({METADATA_KEY: json.dumps(metadata, sort_keys=True).encode()})
-    table = pa.table([getattr(trajectories, name) for name in SCHEMA.names], schema=schema)
+    table = pa.table([getattr(trajectories, name) for name in SCHEMA.names], schema=SCHEMA)
     with replacing(path) as temporary:
-        # Neighbouring values of a double share their high bytes: split, they compress better.
-        pq.write_table(
-            table,
+        with pq.ParquetWriter(
             temporary,
+            SCHEMA,
             compression="zstd",
             use_dictionary=["frame", "person"],
+            # Neighbouring values of a double share their high bytes: split, they compress better.
             use_byte_stream_split=["x", "y", "heading"],
-        )
+            write_page_checksum=True,
+            # Arrow's own copy of the schema would repeat the metadata in another encoding.
+            store_schema=False,
+        ) as writer:
+            writer.write_table(table)
+            writer.add_key_value_metadata({METADATA_KEY: json.dumps(metadata, sort_keys=True)})
+        seal(temporary)
 
 
-def read_parquet(path: str | os.PathLike[str]) -> Trajectories:
-    """Read what :func:`write_parquet` wrote.
+def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read what :func:`write_parquet` wrote: the fields of ``Trajectories`` by name.
 
     Raises:
-        ResultsError: no such file, not a Parquet file, columns or metadata missing, or rows that
-            are not trajectories.
+        ResultsError: no such file, not a Parquet file, any byte of it changed, columns or
+            metadata missing.
     """
     source = Path(path)
     try:
-        table = pq.read_table(source)
+        check_seal(source)
+        table = pq.read_table(source, page_checksum_verification=True)
     except FileNotFoundError as error:
         raise ResultsError(f"{source}: no such file") from error
     except (OSError, pa.ArrowException) as error:
-        reason = str(error).splitlines()[0]
+        reason = next(iter(str(error).splitlines()), type(error).__name__)
         raise ResultsError(f"{source}: not a readable Parquet file: {reason}") from error
     missing = [name for name in SCHEMA.names if name not in table.column_names]
     if missing:
@@ -83,16 +96,15 @@ def read_parquet(path: str | os.PathLike[str]) -> Trajectories:
         if version != FORMAT_VERSION:
             raise ResultsError(f"{source}: format version {version}, expected {FORMAT_VERSION}")
         columns = table.select(SCHEMA.names).cast(SCHEMA)
-        return Trajectories(
+        return {
             **{name: columns[name].to_numpy() for name in SCHEMA.names},
-            frame_rate=float(values["frame_rate"]),
-            core_radius=np.asarray(values["core_radius"], dtype=np.float64),
-            last_frame=int(values["last_frame"]),
-            inside_at_end=np.asarray(values["inside_at_end"], dtype=np.int64),
-        )
-    except (KeyError, TypeError, ValueError, pa.ArrowException) as error:
-        raise ResultsError(f"{source}: damaged trajectories: {error}") from error
-    except ResultsError as error:
-        if str(error).startswith(str(source)):
-            raise
-        raise ResultsError(f"{source}: {error}") from error
+            "frame_rate": float(values["frame_rate"]),
+            "core_radius": np.asarray(values["core_radius"], dtype=np.float64),
+            "last_frame": int(values["last_frame"]),
+            "inside_at_end": np.asarray(values["inside_at_end"], dtype=np.int64),
+        }
+    except (
+        KeyError, TypeError, ValueError, OverflowError, RecursionError, pa.ArrowException
+    ) as error:  # fmt: skip
+        reason = " ".join(str(error).split())
+        raise ResultsError(f"{source}: damaged trajectories: {reason}") from error

@@ -28,7 +28,7 @@ from mesa_mobility.results.trajectories import Trajectories
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
-# Pieces of track in one picture: more cannot be told apart and take long to draw.
+# Most pieces of track in one picture: more cannot be distinguished and take long to draw.
 MOST_PIECES = 250_000
 PAPER = "paper (Casburn et al. 2005, Fig. 7)"
 # Without the green of exits, the blue of doors and the pale yellow that is lost on white.

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.files import check_writable, json_text
+from mesa_mobility.results.files import all_or_none, json_text
 from mesa_mobility.results.measures import egress_time, occupancy
 from mesa_mobility.results.trajectories import Trajectories
 
@@ -35,8 +32,7 @@ def write_run(
 ) -> None:
     """Write summary.json, trajectories.parquet, floorplan.geojson and two pictures.
 
-    Everything is first written to a temporary folder inside `directory` and moved to its place
-    when all of it is complete.
+    Either all of them are written or none is.
 
     Args:
         directory: folder to write to, created if need be.
@@ -51,26 +47,19 @@ def write_run(
     # Matplotlib takes half a second to load, and is for those alone who ask for pictures.
     from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 
-    folder = check_writable(directory)
     title = _title(summary, trajectories)
-    try:
-        with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder) as name:
-            temporary = Path(name)
-            text = json_text(summary, indent=2) + "\n"
-            (temporary / "summary.json").write_text(text, encoding="utf-8")
-            trajectories.to_parquet(temporary / "trajectories.parquet")
-            plan.write_geojson(temporary / "floorplan.geojson")
-            plot_occupancy(
-                _curve(trajectories),
-                temporary / "occupancy.png",
-                reference=reference_occupancy,
-                title=title,
-            )
-            plot_trajectories(trajectories, plan, temporary / "trajectories.png", title=title)
-            for file in RUN_FILES:
-                os.replace(temporary / file, folder / file)
-    except OSError as error:
-        raise ResultsError(f"{folder}: cannot be written: {error.strerror or error}") from error
+    with all_or_none(directory, RUN_FILES) as temporary:
+        text = json_text(summary, indent=2) + "\n"
+        (temporary / "summary.json").write_text(text, encoding="utf-8")
+        trajectories.to_parquet(temporary / "trajectories.parquet")
+        plan.write_geojson(temporary / "floorplan.geojson")
+        plot_occupancy(
+            _curve(trajectories),
+            temporary / "occupancy.png",
+            reference=reference_occupancy,
+            title=title,
+        )
+        plot_trajectories(trajectories, plan, temporary / "trajectories.png", title=title)
 
 
 def _curve(trajectories: Trajectories) -> list[list[float]]:

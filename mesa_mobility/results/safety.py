@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
+from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.trajectories import Trajectories
@@ -22,6 +23,10 @@ TOLERANCE_M = 1e-5
 NAMED = 10
 # Least width of the squares by which steps near walls are found, metres.
 SQUARE_M = 0.25
+# An exit may lie 1 cm off the edge of the floor, and people beyond that edge before they cross it.
+EXIT_OFF_M = 0.02
+# Squares along either side of the floor at most: memory does not go by area.
+MOST_SQUARES = 4000
 # Steps looked at together: bounds the memory that shapely's objects take.
 CHUNK = 200_000
 
@@ -56,6 +61,8 @@ class SafetyReport:
             None when two people were never inside together.
         wall_crossings: steps between consecutive frames that meet a wall.
         crossings: the first few of them.
+        off_floor: frames that people spent off the floor, in an obstacle or outside the walkable
+            area, summed over all of them; None where no floor was given.
     """
 
     overlaps: int
@@ -63,19 +70,24 @@ class SafetyReport:
     min_distance_m: float | None
     wall_crossings: int
     crossings: tuple[WallCrossing, ...]
+    off_floor: int | None = None
 
     @property
     def passed(self) -> bool:
-        """True without a single overlap or wall crossing."""
-        return self.overlaps == 0 and self.wall_crossings == 0
+        """True without a single overlap, wall crossing or, if counted, place off the floor."""
+        return self.overlaps == 0 and self.wall_crossings == 0 and not self.off_floor
 
 
-def check_safety(trajectories: Trajectories, walls: ArrayLike) -> SafetyReport:
-    """Count overlapping bodies and steps through walls.
+def check_safety(
+    trajectories: Trajectories, walls: ArrayLike, floor: BaseGeometry | None = None
+) -> SafetyReport:
+    """Count overlapping bodies, steps through walls and places off the floor.
 
     Args:
         trajectories: the run; its `core_radius` says how close two people may come.
         walls: (m, 4) segments x1, y1, x2, y2 in metres (`FloorPlan.walls`), open exits cut out.
+        floor: where people may be (`FloorPlan.free`), metres; without it nobody is counted as off
+            the floor.
 
     Returns:
         A report. Distances below the sum of two core radii by less than 1e-5 m are rounding.
@@ -96,7 +108,21 @@ def check_safety(trajectories: Trajectories, walls: ArrayLike) -> SafetyReport:
         min_distance_m=nearest,
         wall_crossings=count,
         crossings=tuple(crossings),
+        off_floor=None if floor is None else _off_floor(trajectories, floor),
     )
+
+
+def _off_floor(trajectories: Trajectories, floor: BaseGeometry) -> int:
+    """Rows that lie off the floor, but for the last one of people who left: it lies beyond their
+    exit."""
+    ours = np.ones(len(trajectories.person), dtype=np.bool_)
+    people, last = np.unique(trajectories.person[::-1], return_index=True)
+    left = ~np.isin(people, trajectories.remaining)
+    ours[len(ours) - 1 - last[left]] = False
+    x, y = trajectories.x[ours], trajectories.y[ours]
+    shapely.prepare(floor)
+    off = ~shapely.intersects_xy(floor, x, y)
+    return int((shapely.distance(shapely.points(x[off], y[off]), floor) > EXIT_OFF_M).sum())
 
 
 def _overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | None]:
@@ -170,7 +196,10 @@ def _near_walls(
     """
     x, y = trajectories.x, trajectories.y
     longest = float(np.hypot(x[end] - x[start], y[end] - y[start]).max())
-    side = max(SQUARE_M, 1.01 * longest)
+    ends = walls.reshape(-1, 2)
+    low = np.minimum(ends.min(axis=0), (x.min(), y.min()))
+    high = np.maximum(ends.max(axis=0), (x.max(), y.max()))
+    side = max(SQUARE_M, 1.01 * longest, float((high - low).max()) / MOST_SQUARES)
     # Places on the walls, no farther than half a square from one to the next.
     lengths = np.hypot(walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1])
     pieces = np.ceil(2.0 * lengths / side).astype(np.int64) + 1
@@ -178,8 +207,7 @@ def _near_walls(
     first = np.repeat(np.cumsum(pieces) - pieces, pieces)
     share = (np.arange(len(wall)) - first) / (pieces[wall] - 1).clip(1)
     on_walls = walls[wall, :2] + share[:, None] * (walls[wall, 2:] - walls[wall, :2])
-    low = np.minimum(on_walls.min(axis=0), (x.min(), y.min())) - 2.0 * side
-    high = np.maximum(on_walls.max(axis=0), (x.max(), y.max())) + 2.0 * side
+    low, high = low - 2.0 * side, high + 2.0 * side
     columns, rows = (np.ceil((high - low) / side).astype(np.int64) + 1).tolist()
     held = np.zeros((columns, rows), dtype=np.bool_)
     i, j = np.floor((on_walls - low) / side).astype(np.int64).T

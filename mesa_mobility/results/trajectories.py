@@ -84,6 +84,11 @@ class Trajectories:
             raise ResultsError(
                 f"trajectories: last_frame is {self.last_frame}, but there are rows of frame {last}"
             )
+        elif self.last_frame > np.iinfo(np.int32).max:
+            raise ResultsError(
+                f"trajectories: last_frame is {self.last_frame}, expected at most "
+                f"{np.iinfo(np.int32).max}"
+            )
         present = self.person[self.frame == self.last_frame]
         if self.inside_at_end is None:
             object.__setattr__(self, "inside_at_end", present)
@@ -106,13 +111,16 @@ class Trajectories:
                 ``rows`` (the people inside now).
 
         Raises:
-            ResultsError: the model was not recording.
+            ResultsError: the model was not recording, or has taken no step.
         """
         recorder = getattr(model, "recorder", None)
         if recorder is None:
             raise ResultsError("the model has recorded nothing: create it with record=True")
+        rows = recorder.arrays()
+        if len(model.rows) and not len(rows["frame"]):
+            raise ResultsError("the model has recorded nothing: expected a step before")
         return cls(
-            **recorder.arrays(),
+            **rows,
             frame_rate=float(model.frame_rate),
             core_radius=np.asarray(model.core_radii, dtype=np.float64),
             last_frame=round(model.elapsed * model.frame_rate),
@@ -192,16 +200,32 @@ class Trajectories:
         return start[same], end[same]
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
-        """Write a Parquet file: see :func:`mesa_mobility.results.parquet.write_parquet`."""
+        """Write a Parquet file: see :func:`mesa_mobility.results.write_parquet`."""
         from mesa_mobility.results.parquet import write_parquet
 
         write_parquet(self, path)
 
     def to_pedpy(self) -> pedpy.TrajectoryData:
-        """As PedPy's trajectory data: see :func:`mesa_mobility.results.export.to_pedpy`."""
+        """As PedPy's trajectory data: see :func:`mesa_mobility.results.to_pedpy`."""
         from mesa_mobility.results.export import to_pedpy
 
         return to_pedpy(self)
+
+
+def read_parquet(path: str | os.PathLike[str]) -> Trajectories:
+    """Read a file that ``Trajectories.to_parquet`` wrote.
+
+    Raises:
+        ResultsError: no such file, not a Parquet file, any byte of it changed, columns or
+            metadata missing, or rows that are not trajectories.
+    """
+    from mesa_mobility.results.parquet import read_columns
+
+    fields = read_columns(path)
+    try:
+        return Trajectories(**fields)
+    except ResultsError as error:
+        raise ResultsError(f"{path}: {error}") from error
 
 
 def _whole_numbers(name: str, values: ArrayLike) -> NDArray[np.int32]:

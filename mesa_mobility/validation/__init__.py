@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.registry import did_you_mean
+from mesa_mobility.plugins.registry import did_you_mean
 from mesa_mobility.validation import (
     bidirectional,
     bottleneck,

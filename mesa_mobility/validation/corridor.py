@@ -22,7 +22,7 @@ from mesa_mobility.verification import Verdict, case
 from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.checks import Check, falling, within
 from mesa_mobility.verification.references import corridor_band
-from mesa_mobility.verification.scenarios.track import DENSITY_BIN, binned, track
+from mesa_mobility.verification.scenarios.tracks.track import DENSITY_BIN, binned, track
 
 DENSITIES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
 ASKED = (0.5, 1.125, 1.625, 2.125, 3.125)

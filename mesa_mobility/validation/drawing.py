@@ -1,4 +1,4 @@
-"""Pictures in which measured and simulated figures are told apart at a glance."""
+"""Pictures that show measured and simulated figures in different styles."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict
 from mesa_mobility.verification.judging import single_file_bins, single_file_share
 from mesa_mobility.verification.references import published
-from mesa_mobility.verification.scenarios.single_file import CASES
+from mesa_mobility.verification.scenarios.tracks.single_file import CASES
 
 
 def judge(runs: Runs) -> Verdict:

@@ -24,7 +24,7 @@ WIDTH = 0.8
 CLOSES_S, SETTLE_S, MEASURE_S = 20.0, 5.0, 30.0
 WINDOW_S = 1.5
 STANDS_M = 0.1
-"""Whoever stays this near to one place for 1.5 s stands, metres."""
+"""A person who stays this near to one place for 1.5 s stands, metres."""
 STEP_S = 0.1
 """Time over which the pelvis's speed is taken."""
 MOST_SPEED, MOST_TURN_DEG = 0.1, 5.0

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process, resource_tracker
 from typing import Any, TypeAlias
+
+from mesa_mobility.interrupts import deaf_children
 
 Figures: TypeAlias = dict[str, Any]
 Scenario: TypeAlias = Callable[..., Figures]
@@ -59,7 +62,7 @@ def run_cases(
         cases: what to run; a case that comes twice is run once.
         seeds: one run each.
         jobs: processes.
-        progress: told what has just been done, how much effort that makes, and of how much.
+        progress: called with the run just done, the effort so far, and the total effort.
     """
     todo = [(each, seed) for each in dict.fromkeys(cases) for seed in seeds]
     todo.sort(key=lambda unit: -unit[0].effort)
@@ -81,7 +84,9 @@ def run_units(units: Iterable[tuple[Case, int]], jobs: int) -> Iterator[tuple[Ca
     """
     ahead = iter(units)
     with _one_thread_each(), _pool(jobs) as pool:
-        waiting = {pool.submit(_run, *unit): unit for unit in islice(ahead, jobs)}
+        # Processes are started when a unit is handed over.
+        with deaf_children():
+            waiting = {pool.submit(_run, *unit): unit for unit in islice(ahead, jobs)}
         while waiting:
             done, _ = wait(waiting, return_when=FIRST_COMPLETED)
             for future in done:
@@ -99,9 +104,25 @@ def _run(each: Case, seed: int) -> Figures:
         return {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
 
 
+def _end_with_parent() -> None:
+    """End this process when the one that has started it ends, however it does."""
+    parent = parent_process()
+    assert parent is not None
+
+    def follow() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=follow, name="mesa-mobility parent", daemon=True).start()
+
+
 @contextmanager
 def _pool(jobs: int) -> Iterator[ProcessPoolExecutor]:
-    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=get_context("spawn"))
+    # Python's own helper for such processes lets Ctrl-C through again when it is started.
+    resource_tracker.ensure_running()
+    pool = ProcessPoolExecutor(
+        max_workers=jobs, mp_context=get_context("spawn"), initializer=_end_with_parent
+    )
     try:
         yield pool
     finally:

@@ -9,7 +9,7 @@ from functools import cache
 from importlib.resources import files
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.registry import did_you_mean
+from mesa_mobility.plugins.registry import did_you_mean
 from mesa_mobility.verification.suite import VerificationTest
 
 

@@ -81,7 +81,7 @@ def other_exit(runs: Sequence[Figures]) -> Verdict:
 def social_influence(seeds: Sequence[Sequence[Figures]]) -> Verdict:
     """On its own a person takes either exit as often; with another bound for exit 2, that more."""
     alone, other, trials = _shares(seeds)
-    # What 99 of 100 fair coins show in so many throws.
+    # The range of 99 of 100 fair coins in as many throws.
     spread = 2.576 * (0.25 / trials) ** 0.5
     return Verdict(
         (

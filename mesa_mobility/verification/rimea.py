@@ -25,8 +25,8 @@ from mesa_mobility.verification.checks import (
 )
 from mesa_mobility.verification.references import bottleneck_envelope, corridor_band
 from mesa_mobility.verification.scenarios import cabins, halls, necks, premovement, rooms, walks
-from mesa_mobility.verification.scenarios.single_file import CASES as SINGLE_FILE
-from mesa_mobility.verification.scenarios.track import DENSITY_BIN, binned, track
+from mesa_mobility.verification.scenarios.tracks.single_file import CASES as SINGLE_FILE
+from mesa_mobility.verification.scenarios.tracks.track import DENSITY_BIN, binned, track
 from mesa_mobility.verification.suite import VerificationTest
 
 DENSITIES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)

@@ -49,8 +49,8 @@ class Run:
         return Trajectories.of(self.model)
 
     def figures(self) -> dict[str, Any]:
-        """What is told of every run; bodies and walls are counted on the trajectories alone."""
-        safety = check_safety(self.trajectories, self.walls)
+        """Figures of a run; overlaps and wall crossings are counted on its trajectories."""
+        safety = check_safety(self.trajectories, self.walls, self.model.floor_plan.free)
         summary = self.model.summary()
         kept = (
             "pedestrians", "simulated_s", "egress_s", "left_inside", "stalled",
@@ -61,6 +61,7 @@ class Run:
             "person_s": float(self.model.crowd.active_frames.sum()) / self.model.frame_rate,
             "overlaps": safety.overlaps,
             "wall_crossings": safety.wall_crossings,
+            "off_floor": safety.off_floor,
             "min_distance_m": safety.min_distance_m,
         }
 

@@ -75,7 +75,7 @@ def verify(
         seeds: each test runs once for each.
         jobs: processes.
         caps: ids of tests whose reported figures are design caps of the standard.
-        progress: told how far the runs have come.
+        progress: called with the progress of the runs.
     """
     cases = [each for test in tests.values() for each in test.cases]
     results = run_cases(cases, seeds, jobs, progress)

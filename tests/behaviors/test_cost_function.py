@@ -23,7 +23,7 @@ from mesa_mobility.behaviors import (
 
 from mesa_mobility import CostTerm
 from mesa_mobility.errors import ModelError
-from mesa_mobility.registry import load_behavior
+from mesa_mobility.plugins.registry import load_behavior
 from tests.fixtures.options import Ending, crowded, one_option
 
 TERMS = [
@@ -95,7 +95,7 @@ def test_registered_under_its_name(term):
 
 
 def test_nearest_exit_is_a_behaviour_like_any_other():
-    from mesa_mobility.registry import behaviors as registered
+    from mesa_mobility.plugins.registry import behaviors as registered
 
     assert [name for name in registered() if "exit" in name]
 

@@ -48,7 +48,7 @@ def test_walk_and_queue_are_weighed(queue, expected):
     choice = QuickestExit()
     model = model_of(hall(), [strider(), statues()], target_choice=choice)
     model.add_pedestrians([(0.5 + 0.4 * (k // 14), 0.3 + 0.4 * (k % 14)) for k in range(queue)],
-                          exits=["left"], kind=1)  # fmt: skip
+                          exits=["left"], type_index=1)  # fmt: skip
     person = put(model, 8.0, 3.0, preferred_speeds=[1.0])
     assert heads_for(choice, [person]) == [expected]
 
@@ -57,7 +57,7 @@ def test_those_behind_do_not_count():
     choice = QuickestExit()
     model = model_of(hall(), [strider(), statues()], target_choice=choice)
     model.add_pedestrians([(9.0 + 0.4 * (k // 14), 0.3 + 0.4 * (k % 14)) for k in range(30)],
-                          exits=["left"], kind=1)  # fmt: skip
+                          exits=["left"], type_index=1)  # fmt: skip
     assert heads_for(choice, [put(model, 8.0, 3.0, preferred_speeds=[1.0])]) == [0]
 
 
@@ -68,7 +68,7 @@ def test_only_a_gain_of_a_tenth_turns_people_round(queue, turns):
     choice = QuickestExit(interval=0.01)
     model = model_of(hall(), [statues(), statues()], target_choice=choice, rng=1)
     person = put(model, 10.0, 3.0, preferred_speeds=[1.0])
-    model.add_pedestrians([(1.0, 0.5 + k) for k in range(queue)], exits=["left"], kind=1)
+    model.add_pedestrians([(1.0, 0.5 + k) for k in range(queue)], exits=["left"], type_index=1)
     advance(model, 12)
     assert heads_for(choice, [person]) == [0]
     advance(model, 1)  # its second decision, and the first with time to think again
@@ -86,7 +86,7 @@ def test_the_longer_people_have_been_under_way_the_more_they_must_gain(queue, tu
     model.add_pedestrians(
         [(1.0 + 0.5 * (k // 10), 0.5 + 0.5 * (k % 10)) for k in range(queue)],
         exits=["left"],
-        kind=1,
+        type_index=1,
     )
     advance(model, 13)
     assert heads_for(choice, [person]) == [int(turns)]
@@ -165,7 +165,7 @@ def test_exits_unknown_to_the_plan():
 
 def bound(model, n: int, y: float = 3.0) -> None:
     model.add_pedestrians(
-        [(13.0, y - 0.2 * n + 0.4 * k) for k in range(n)], exits=["right"], kind=1
+        [(13.0, y - 0.2 * n + 0.4 * k) for k in range(n)], exits=["right"], type_index=1
     )
 
 
@@ -178,7 +178,7 @@ def test_the_share_of_those_in_view_counts(influence, expected):
     choice = SocialInfluence(influence=influence, scale=0.0)
     model = model_of(hall(), [strider(), statues()], target_choice=choice)
     bound(model, 2)
-    model.add_pedestrians([(6.0, 3.0)], exits=["left"], kind=1)
+    model.add_pedestrians([(6.0, 3.0)], exits=["left"], type_index=1)
     # 2/3 - 1/3 of 12 m are 4 m.
     assert heads_for(choice, [put(model, 8.0, 3.0)]) == [expected]
 

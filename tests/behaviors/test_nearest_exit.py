@@ -5,7 +5,7 @@ from mesa_mobility.behaviors import NearestExit
 from shapely import LineString, Point
 
 from mesa_mobility.crowd import PRESETS, TargetChoice
-from mesa_mobility.registry import load_behavior
+from mesa_mobility.plugins.registry import load_behavior
 from tests.fixtures.maps import strider
 from tests.fixtures.scenes import advance, corridor, model_of, put, two_doors
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from mesa_mobility.behaviors import PreferredVelocity
 
 from mesa_mobility import MobilityMap
-from mesa_mobility.crowd.groups import (
+from mesa_mobility.crowd.options.option_groups import (
     DURATION,
     FASTEST,
     RADIUS,
@@ -18,8 +18,8 @@ from mesa_mobility.crowd.groups import (
     X,
     Y,
 )
+from mesa_mobility.crowd.options.repertoire import repertoire
 from mesa_mobility.crowd.presets import preset_named
-from mesa_mobility.crowd.repertoire import repertoire
 from tests.fixtures.options import (
     Chooser,
     Ending,

@@ -5,7 +5,7 @@ import pytest
 from mesa_mobility.behaviors import WalkTogether
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan, Pace
+from mesa_mobility import Exit, FloorPlan, SpeedRule
 from mesa_mobility.errors import ModelError
 from tests.fixtures.counting import overlaps, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
@@ -96,30 +96,30 @@ def test_groups_that_cannot_be():
     model = model_of(corridor(), strider())
     with pytest.raises(ModelError, match="group"):
         put(model, 2.0, 2.0, group=["a", "b"])
-    assert model.paces == []
+    assert model.speed_rules == []
 
 
 def test_a_pace_must_give_speeds():
-    class Backwards(Pace):
+    class Backwards(SpeedRule):
         name = "backwards"
 
         def speeds(self, deciding, speeds):
             return -speeds
 
     model = model_of(corridor(), strider())
-    model.paces.append(Backwards())
+    model.speed_rules.append(Backwards())
     with pytest.raises(ModelError, match="'backwards'"):
         put(model, 2.0, 2.0)
 
 
 def test_the_paces_of_a_model_are_asked_in_turn():
-    class Half(Pace):
+    class Half(SpeedRule):
         name = "half"
 
         def speeds(self, deciding, speeds):
             return 0.5 * speeds
 
     model = model_of(corridor(), strider())
-    model.paces += [Half(), Half(), WalkTogether()]
+    model.speed_rules += [Half(), Half(), WalkTogether()]
     person = put(model, 2.0, 2.0, preferred_speeds=[1.2])
     assert wishes(model, [person]) == pytest.approx([0.3])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mesa_mobility.capture import read_bvh, read_recording
+from mesa_mobility.capture import read_bvh, read_recording, text
 from mesa_mobility.capture.bvh import parse_bvh
 from mesa_mobility.errors import CaptureError
 
@@ -62,7 +62,7 @@ BAD = [
     ("Frames: 2", "Frames: -2", "line 17: -2 frames, expected at least one"),
     ("Frames: 2\n", "", "line 17: 'Frame Time: 0.0333333', expected Frames:"),
     ("Frame Time: 0.0333333\n", "", "line 18: '1 2 3 4 5 6 7 8 9', expected Frame Time:"),
-    ("Time: 0.0333333", "Time: 0", "line 18: frame time 0 s, expected 1e-05 to 10 s"),
+    ("Time: 0.0333333", "Time: 0", "line 18: frame time 0 s, expected 1e-05 to 0.0833333 s"),
     ("Time: 0.0333333", "Time: -0.03", "line 18: frame time -0.03 s, expected"),
     ("Time: 0.0333333", "Time: 5e-324", "line 18: frame time 4.94066e-324 s, expected"),
     ("Time: 0.0333333", "Time: inf", "line 18, Frame Time: 'inf', expected a finite number"),
@@ -72,6 +72,8 @@ BAD = [
     ("8 9\n1 2 3 4 5", "8 9\n1 2 3 4 nan", "line 20: 'nan', expected a finite number"),
     ("8 9\n1 2 3 4 5", "8 9\n1 2 3 4 -inf", "line 20: '-inf', expected a finite number"),
     ("8 9\n1 2 3 4 5", "8 9\n1 2 3 4 1.#IND", "line 20: '1.#IND', expected a finite number"),
+    ("8 9\n1 2 3 4 5", "8 9\n1 2 3 4 5_5", "line 20: '5_5', expected a finite number"),
+    ("Frames: 2", "Frames: 0_2", "line 17, Frames: '0_2', expected a whole number"),
     ("8 9\n1 2 3 4 5", "8 9\n1 2 3 4 5,5", "line 20: '5,5', expected a finite number"),
     ("Frames: 2", "Frames: 1", "line 20: 2 rows of motion, expected 1"),
     ("Frames: 2", "Frames: 9", "ends at line 20 after 2 rows of motion, expected 9 (truncated?)"),
@@ -137,6 +139,46 @@ def test_a_missing_file_and_a_folder_are_named(tmp_path):
 def test_units_must_be_positive(write, unit):
     with pytest.raises(CaptureError, match="expected a positive length"):
         read_bvh(write("a.bvh", GOOD), unit_to_m=unit)
+
+
+def test_a_small_file_that_unpacks_to_a_large_one_is_not_unpacked(write, monkeypatch):
+    monkeypatch.setattr(text, "LARGEST_FILE", 100_000)
+    packed = lzma.compress(b"0 " * 10_000_000, preset=0)
+    path = write("a.bvh.xz", packed + bytes(4) + packed)
+    unpacked: list[int] = []
+    monkeypatch.setattr(text, "_unpack", lambda data, f=text._unpack: counted(f(data), unpacked))
+    with pytest.raises(CaptureError, match="MB of text, expected a shorter recording"):
+        read_recording(path, unit_to_m=0.01)
+    assert unpacked == [100_001]
+
+
+def counted(data, lengths):
+    lengths.append(len(data))
+    return data
+
+
+def test_xz_files_may_have_several_streams_but_nothing_else(write):
+    streams = [lzma.compress(part.encode()) for part in (GOOD[:100], GOOD[100:])]
+    path = write("a.bvh.xz", streams[0] + bytes(8) + streams[1])
+    assert read_recording(path, unit_to_m=0.01).frames == 2
+    write("a.bvh.xz", streams[0] + streams[1] + b"rest")
+    with pytest.raises(CaptureError, match="not a complete xz file"):
+        read_recording(path, unit_to_m=0.01)
+
+
+def test_files_of_absurd_size_are_refused_before_they_are_read(write, monkeypatch):
+    with pytest.raises(CaptureError, match="line 17: 9999999999 frames of 3 joints, expected at "):
+        parse(GOOD.replace("Frames: 2", "Frames: 9999999999"))
+    deep = "JOINT {}\n{{\nOFFSET 0 0 0\nCHANNELS 0\n"
+    with pytest.raises(CaptureError, match="more than 500 joints, expected a body"):
+        parse("HIERARCHY\nROOT a\n" + deep[9:].format() + "".join(map(deep.format, range(600))))
+    monkeypatch.setattr(text, "MOST_LINES", 15)
+    with pytest.raises(CaptureError, match="more than 15 lines, expected a shorter recording"):
+        parse(GOOD)
+
+
+def parse(content):
+    return parse_bvh(content.encode(), Path("a.bvh"), unit_to_m=0.01)
 
 
 def test_a_file_cut_off_anywhere_is_refused():

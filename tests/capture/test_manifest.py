@@ -141,7 +141,7 @@ def test_another_sha256_is_refused_with_what_was_found_and_expected(manifest, wa
         ({"file": ""}, "line 2: column file is empty"),
         ({"clip": ""}, "line 2: column clip is empty"),
         ({"sha256": " "}, "line 2: column sha256 is empty"),
-        ({"native_fps": "0"}, "line 2: native_fps 0, expected 0.1 to 100000 Hz"),
+        ({"native_fps": "0"}, "line 2: native_fps 0, expected 12 to 100000 Hz"),
         ({"native_fps": "fast"}, "line 2, native_fps: 'fast', expected a finite number"),
         ({"unit_to_m": "-1"}, "line 2, unit_to_m: unit of -1.0 m, expected a positive length"),
         ({"unit_to_m": "nan"}, "line 2, unit_to_m: 'nan', expected a finite number"),
@@ -198,6 +198,24 @@ def test_rows_that_contradict_their_file_are_refused(manifest, walk, changes, me
         load_clips(read_manifest(path))
 
 
+def test_a_unit_that_makes_legs_of_no_human_is_refused(manifest, walk):
+    # Legs of 45 + 40 units: 2.55 m in units of 3 cm.
+    path = manifest(row("a.bvh", walk, unit_to_m="0.03"), files={"a.bvh": walk})
+    with pytest.raises(CaptureError) as error:
+        load_clips(read_manifest(path))
+    assert str(error.value) == (
+        f"{path}, line 2: a.bvh has legs of 2.55 m with unit_to_m 0.03, expected 0.25 to 1.3 m"
+    )
+
+
+def test_feet_of_no_human_are_refused(manifest, walk):
+    # A toe 120 units ahead of the ankle, and 80 below: 1.44 m.
+    long = walk.replace(b"OFFSET 0 -8 12", b"OFFSET 0 -80 120")
+    path = manifest(row("a.bvh", long), files={"a.bvh": long})
+    with pytest.raises(CaptureError, match=r"a\.bvh has hips or feet 1\.44 m long, expected at"):
+        load_clips(read_manifest(path))
+
+
 def test_a_recording_without_legs_is_named(manifest, walk):
     legless = walk.replace(b"UpLeg", b"Wing")
     path = manifest(row("a.bvh", legless), files={"a.bvh": legless})
@@ -230,7 +248,11 @@ def test_a_folder_gives_its_recordings_by_name(write, walk):
 
 def test_a_folder_without_recordings_and_legs_of_no_plausible_length_are_refused(write, walk):
     folder = write("readme.txt", "not a recording").parent
-    with pytest.raises(CaptureError, match=r"no recordings, expected files named \.bvh"):
+    with pytest.raises(CaptureError, match=r"no recordings, expected .* \.amc$"):
+        read_folder(folder)
+    write("more/deep/b.bvh", walk)
+    write("more/a.bvh", walk)
+    with pytest.raises(CaptureError, match=r"some below it in more, more/deep: give one of these"):
         read_folder(folder)
     write("giant.bvh", walk.replace(b" -45 ", b" -450 "))
     with pytest.raises(CaptureError, match=r"giant\.bvh: legs 490 units long, expected 0\.6 to"):

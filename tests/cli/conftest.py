@@ -1,5 +1,5 @@
-import math
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from mesa_mobility.cli import main
+from tests.fixtures.walker import walker_bvh
 
 PLUGIN = Path(__file__).parents[1] / "fixtures" / "plugin" / "corridor_plugin.py"
 ENTRY_POINTS = """\
@@ -62,43 +63,17 @@ def command(monkeypatch, capfd) -> Callable[..., Outcome]:
 
     def call(*arguments: object) -> Outcome:
         monkeypatch.setattr(sys, "argv", ["mesa-mobility", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
+        before = signal.getsignal(signal.SIGINT)
+        try:
+            with pytest.raises(SystemExit) as ended:
+                main()
+        finally:
+            signal.signal(signal.SIGINT, before)
         code = ended.value.code
         output = capfd.readouterr()
         return Outcome(0 if code is None else int(code), output.out, output.err)
 
     return call
-
-
-BONES = ("UpLeg", "Leg", "Foot", "ToeBase")
-LENGTHS = (0.0, 0.42, 0.42, 0.12)
-
-
-def walker_bvh(walking: int, stride: float) -> str:
-    """A stick figure in metres at 30 Hz: it stands 2 s, walks, stands 2 s; the legs swing."""
-    lines = ["HIERARCHY", "ROOT Hips", "{", "OFFSET 0 0 0"]
-    lines.append("CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation")
-    for side, x in (("Left", 0.1), ("Right", -0.1)):
-        for bone, length in zip(BONES, LENGTHS, strict=True):
-            offset = f"{x} 0 0" if bone == "UpLeg" else f"0 {-length} 0"
-            lines += [f"JOINT {side}{bone}", "{", f"OFFSET {offset}"]
-            lines.append("CHANNELS 3 Zrotation Xrotation Yrotation")
-        lines += ["End Site", "{", "OFFSET 0 0 0.05", "}"] + ["}"] * len(BONES)
-    frames, travelled = [], 0.0
-    for frame in range(120 + walking):
-        # Starting and stopping take half a second.
-        ease = min(max(frame - 60, 0), max(60 + walking - frame, 0), 15) / 15
-        travelled += ease * stride / 30
-        phase = 2 * math.pi * travelled / (1.1 * stride)
-        angles = [0.0, 0.0, 0.0]
-        for turn in (0.0, math.pi):
-            swing = 22 * ease * math.sin(phase + turn)
-            bend = 30 * ease * max(0.0, math.cos(phase + turn))
-            angles += [0, swing, 0, 0, bend, 0, 0, -0.3 * swing, 0, 0, 0, 0]
-        frames.append(f"0 0.9 {travelled:.5f} " + " ".join(f"{angle:.4f}" for angle in angles))
-    lines += ["}", "MOTION", f"Frames: {len(frames)}", f"Frame Time: {1 / 30:.7f}", *frames]
-    return "\n".join(lines) + "\n"
 
 
 @pytest.fixture(scope="session")

@@ -1,14 +1,17 @@
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, Optional
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, Optional
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesa_mobility.commands.parameters import chosen, descriptions, parameters
+from mesa_mobility import Files, Range
 from mesa_mobility.distributions import Distribution, LogNormal
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins.parameters import chosen, descriptions, parameters
 
 if TYPE_CHECKING:
     from somewhere import FloorPlan
@@ -66,7 +69,7 @@ def value(setting):
         ("either=7", 7),
         ("either=seven", "seven"),
         ("plan=hall.geojson", "hall.geojson"),
-        ("free=text", "text"),
+        ("free=7", 7),
         (" people =5", 5),
         ("name= a ", " a "),
     ],
@@ -90,16 +93,16 @@ def test_every_number_arrives(number):
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("people=many", r"people=many is not int \(parameter people: int = 60\)"),
-        ("people=1.5", "is not int"),
-        ("people=", "is not int"),
-        ("people=none", "is not int"),
-        ("width=nan", "is not float"),
-        ("width=inf", "is not float"),
-        ("quiet=perhaps", "is not bool"),
-        ("door=middle", "is not left or right or 3"),
-        ("limit=soon", "is not float or none"),
-        ("only_python=x", "is not none"),
+        ("people=many", "model hall: people: got 'many', expected a whole number$"),
+        ("people=1.5", "people: got '1.5', expected a whole number$"),
+        ("people=", "people: got nothing, expected a whole number$"),
+        ("people=none", "got 'none', expected a whole number$"),
+        ("width=nan", "expected a number$"),
+        ("width=inf", "expected a number$"),
+        ("quiet=perhaps", "expected yes or no$"),
+        ("door=middle", "expected left or right or 3$"),
+        ("limit=soon", "limit: got 'soon', expected a number or none$"),
+        ("only_python=x", "expected none$"),
         ("people", "--set people: expected NAME=VALUE"),
         ("rng=1", "--set rng=1: use --seed"),
         ("preset=paper", "--set preset=paper: use --preset"),
@@ -154,3 +157,83 @@ def test_descriptions_come_from_the_docstring():
         "width": "of the door, metres: 0.6 or more.",
     }
     assert descriptions(Model) == {}
+
+
+class Plain:
+    """Nothing is annotated: defaults tell the types."""
+
+    def __init__(
+        self,
+        people=40,
+        width=1.5,
+        quiet=False,
+        name="hall",
+        limit=None,
+        delay=LogNormal(3.44, 0.94),  # noqa: B008
+        file=Path("hall.geojson"),
+        places=((1.0, 2.0),),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("setting", "expected"),
+    [
+        ("people=12", 12),
+        ("width=2", 2.0),
+        ("quiet=yes", True),
+        ("name=12", "12"),
+        ("limit=none", None),
+        ("limit=3", 3),
+        ("limit=2.5", 2.5),
+        ("limit=near", "near"),
+        ("delay=2", 2.0),
+        ("delay=lognormal(3.44, 0.94)", LogNormal(3.44, 0.94)),
+        ("file=a.geojson", Path("a.geojson")),
+    ],
+)
+def test_a_default_tells_the_type_where_nothing_is_annotated(setting, expected):
+    (found,) = chosen(Plain, "plain", [setting]).values()
+    assert found == expected
+    assert type(found) is type(expected)
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("people=many", "people: got 'many', expected a whole number$"),
+        ("people=" + "9" * 5000, f"people: got '{'9' * 40}...', expected a whole number$"),
+        ("people=1\n2", r"people: got '1\\n2', expected a whole number$"),
+        ("file=", "file: got nothing, expected a file$"),
+        ("places=1", "places: got '1', expected a value that only Python can give$"),
+    ],
+)
+def test_what_does_not_fit_a_default_is_refused(setting, message):
+    with pytest.raises(ModelError, match=message):
+        chosen(Plain, "plain", [setting])
+
+
+def test_ranges_and_files_stand_beside_the_type():
+    class Hall:
+        def __init__(
+            self,
+            people: Annotated[int, Range(1, 500)] = 60,
+            width: Annotated[float, Range(0.5, 2)] | None = None,
+            plan: Annotated[Path | None, Files("*.geojson")] = None,
+            free: int = 1,
+        ):
+            pass
+
+    found = parameters(Hall)
+    assert found["people"].range == Range(1, 500)
+    assert found["width"].range == Range(0.5, 2)
+    assert found["width"].kinds == (float, type(None))
+    assert found["plan"].files == Files("*.geojson")
+    assert found["free"].range is None
+    assert found["free"].files is None
+
+
+@pytest.mark.parametrize("ends", [(1, 1), (2, 1), (0, math.inf), (math.nan, 1)])
+def test_a_range_has_two_ends(ends):
+    with pytest.raises(ModelError, match=r"Range: got .*, expected a low and a high end"):
+        Range(*ends)

@@ -1,7 +1,7 @@
 import pytest
 
-from mesa_mobility import registry
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins import registry
 
 SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium"}
 SHIPPED_BEHAVIORS = {

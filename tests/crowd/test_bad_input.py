@@ -118,7 +118,9 @@ def test_places_from_where_no_exit_can_be_reached(model):
 
 @pytest.mark.parametrize("kind", [1, 7, -1])
 def test_types_that_there_are_not(model, kind):
-    refuses(ModelError, f"kind.*{kind}", lambda: model.add_pedestrians([(1, 1)], kind=kind))
+    refuses(
+        ModelError, f"type_index.*{kind}", lambda: model.add_pedestrians([(1, 1)], type_index=kind)
+    )
 
 
 def test_more_people_than_fit(model):

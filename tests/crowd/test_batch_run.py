@@ -1,12 +1,15 @@
 """Mesa's ``batch_run`` over the models, whichever way this Mesa takes seeds, and ours."""
 
 import inspect
+import subprocess
+import sys
 
 import mesa
 import pytest
 from mesa_mobility.models import OpenSpace, StraightWalk
 
 import mesa_mobility
+from mesa_mobility.errors import ModelError
 
 
 def batch(model, parameters, seeds, **keywords):
@@ -87,3 +90,58 @@ def test_one_call_for_every_mesa_collects_along_the_way():
     assert max(elapsed) == pytest.approx(2.0, abs=0.11)
     assert len(rows) >= 40
     assert len({(row["elapsed"], row["mean_speed"]) for row in rows}) > 22
+
+
+def test_seeds_among_the_parameters_are_refused():
+    with pytest.raises(ModelError, match=r"rng is among the parameters, expected seeds as rng="):
+        mesa_mobility.batch_run(StraightWalk, {**WALKS, "rng": [1]}, display_progress=False)
+
+
+NOTEBOOK = """
+import mesa_mobility
+from mesa_mobility.errors import ModelError
+from mesa_mobility.models import StraightWalk
+
+class Walk(StraightWalk):
+    pass
+"""
+CALL = """
+rows = mesa_mobility.batch_run(
+    Walk, {"pedestrians": 2, "length": 6.0}, rng=[1, 2], number_processes=2,
+    display_progress=False,
+)
+print(len(rows))
+"""
+
+
+def script(tmp_path, *, source, as_file):
+    path = tmp_path / "script.py"
+    path.write_text(source)
+    given = [str(path)] if as_file else ["-c", source]
+    return subprocess.run([sys.executable, *given], capture_output=True, text=True, timeout=300)
+
+
+@pytest.mark.parametrize(
+    ("source", "as_file", "reason"),
+    [
+        (NOTEBOOK + CALL, False, "it is defined in a notebook or at a prompt"),
+        (NOTEBOOK + CALL, True, "its script calls batch_run when it is imported, not below"),
+        (
+            "def f():\n" + (NOTEBOOK + CALL).replace("\n", "\n    ") + "\nf()",
+            True,
+            "it is defined within a function",
+        ),
+    ],
+)
+def test_what_other_processes_cannot_import_is_refused_at_once(tmp_path, source, as_file, reason):
+    done = script(tmp_path, source=source, as_file=as_file)
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith("mesa_mobility.errors.ModelError: batch_run: other processes cannot")
+    assert reason in last
+    assert done.stderr.count("Traceback") == 1
+
+
+def test_a_script_as_it_should_be(tmp_path):
+    source = NOTEBOOK + "if __name__ == '__main__':" + CALL.replace("\n", "\n    ")
+    done = script(tmp_path, source=source, as_file=True)
+    assert done.stdout == "2\n", done.stderr

@@ -81,8 +81,8 @@ def test_held_back_in_order_until_there_is_room():
     # 0.3 m at 1.25 m/s are 7.2 frames.
     advance(model, 9)
     assert inflow.waiting == 1
-    blocked = model.add_source(Source(area=box(9.98, 1.98, 10.0, 2.0), times=[0.0], kind=0))
-    put(model, 10.0, 2.0, kind=1)
+    blocked = model.add_source(Source(area=box(9.98, 1.98, 10.0, 2.0), times=[0.0], type_index=0))
+    put(model, 10.0, 2.0, type_index=1)
     advance(model, 120)
     assert blocked.waiting == 1
     assert inflow.finished
@@ -173,7 +173,13 @@ def test_nobody_appears_beside_whoever_is_just_crossing_the_exit():
     "keywords",
     [{}, {"rate": 1.0, "times": [1.0]}, {"rate": 0.0}, {"rate": np.inf}, {"times": [-1.0]},
      {"times": "soon"}, {"times": [[1.0]]}, {"rate": 1.0, "start": 5.0, "until": 4.0},
-     {"rate": 1.0, "number": -1}, {"rate": 1.0, "number": 1.5}],
+     {"rate": 1.0, "number": -1}, {"rate": 1.0, "number": 1.5}, {"rate": 1e300},
+     {"rate": np.nan}, {"rate": "many"}, {"rate": 1.0, "number": 10**30}, {"times": [1e300]},
+     {"times": [np.nan]}, {"rate": 1.0, "start": 1e300}, {"rate": 1.0, "start": "now"},
+     {"rate": 1.0, "until": np.nan}, {"rate": 1.0, "preferred_speeds": 1e300},
+     {"rate": 1.0, "preferred_speeds": -1.0}, {"rate": 1.0, "preferred_speeds": [1.0]},
+     {"rate": 1.0, "pre_movement": -1.0}, {"rate": 1.0, "pre_movement": np.nan},
+     {"rate": 1.0, "pre_movement": 1e300}],
 )  # fmt: skip
 def test_sources_that_cannot_be(keywords):
     with pytest.raises(ModelError, match="source") as refused:
@@ -190,7 +196,8 @@ def test_sources_that_cannot_be(keywords):
         ({"area": 5}, FloorPlanError, "found a int"),
         ({"area": WEST, "exits": ["north"]}, FloorPlanError, "'north'"),
         ({"area": WEST, "exits": "east"}, ModelError, "exits"),
-        ({"area": WEST, "kind": 3}, ModelError, "kind"),
+        ({"area": WEST, "type_index": 3}, ModelError, "type_index"),
+        ({"area": WEST, "type_index": 0.5}, ModelError, "type_index"),
         ({"area": WEST, "loop": True}, ModelError, "loop"),
     ],
 )
@@ -199,6 +206,30 @@ def test_sources_that_do_not_fit_the_model(keywords, error, match):
     with pytest.raises(error, match=match):
         model.add_source(Source(times=[1.0], **keywords))
     assert not model.expecting
+
+
+def test_people_who_come_almost_for_ever_want_an_end_too():
+    model = model_of(corridor(), strider())
+    model.add_source(Source(area=WEST, rate=1.0, until=1e300))
+    with pytest.raises(ModelError, match="max_seconds"):
+        model.run()
+
+
+def test_the_highest_rate_fills_what_room_there_is():
+    model = model_of(corridor(), statues(), record=False)
+    inflow = model.add_source(Source(area=WEST, rate=1000.0))
+    advance(model, 30)
+    assert inflow.entered + inflow.waiting == inflow.arrived
+    # 1,000 expected, give or take four times their root; 2.5 m x 3 m hold no more than 140.
+    assert inflow.arrived == pytest.approx(1000, abs=127)
+    assert 30 < inflow.entered < 140
+
+
+def test_a_hundred_thousand_in_one_place_are_refused_at_once():
+    model = model_of(corridor(), strider())
+    with pytest.raises(ModelError, match=r"pedestrian 1 at \[5.0, 2.0\]: too close to another"):
+        model.add_pedestrians(np.tile((5.0, 2.0), (100_000, 1)))
+    assert model.inside == 0
 
 
 def test_people_who_come_for_ever_want_an_end():

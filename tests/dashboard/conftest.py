@@ -5,14 +5,17 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import threading
 import time
+import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -77,7 +80,10 @@ class Server:
         end = time.monotonic() + 60.0
         while True:
             try:
-                urllib.request.urlopen(f"{self.address.rstrip('/')}/readyz", timeout=5.0).close()
+                place = urlsplit(self.address)
+                urllib.request.urlopen(f"{place.scheme}://{place.netloc}/readyz", timeout=5).close()
+                return
+            except urllib.error.HTTPError:
                 return
             except OSError:
                 assert time.monotonic() < end, "".join(self.lines)
@@ -105,16 +111,32 @@ class Server:
             self.process.kill()
 
 
-@pytest.fixture(scope="session")
-def server(browser: Any) -> Iterator[Server]:
-    """The dashboard on a free port, for all tests."""
-    import socket
+@pytest.fixture(scope="module")
+def start_dashboard() -> Iterator[Callable[..., Server]]:
+    """Starts `mesa-mobility dashboard ARGUMENTS...` on a free port."""
+    running: list[Server] = []
 
+    def make(*arguments: object, **keywords: Any) -> Server:
+        running.append(dashboard_server(*arguments, **keywords))
+        return running[-1]
+
+    yield make
+    for each in running:
+        each.stop()
+
+
+def dashboard_server(*arguments: object, **keywords: Any) -> Server:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "mesa_mobility", "dashboard", "doorway", "--port", str(port)]
-    running = Server(command)
+    command = [sys.executable, "-m", "mesa_mobility", "dashboard", *map(str, arguments)]
+    return Server([*command, "--port", str(port)], **keywords)
+
+
+@pytest.fixture(scope="session")
+def server(browser: Any) -> Iterator[Server]:
+    """The dashboard on a free port, for all tests."""
+    running = dashboard_server("doorway")
     yield running
     running.stop()
 
@@ -130,7 +152,8 @@ class Dashboard:
         page.on("pageerror", lambda error: self.trouble.append(f"page: {error}"))
         page.on("requestfailed", lambda request: self.trouble.append(f"failed: {request.url}"))
         page.on("response", self._response)
-        page.on("request", lambda request: self._request(request, address))
+        here = f"http://{urlsplit(address).netloc}/"
+        page.on("request", lambda request: self._request(request, here))
         page.set_default_timeout(PATIENCE_MS)
         page.goto(address)
         self.wait(f"() => {CANVAS}?.shown?.().drawn > 0")
@@ -144,8 +167,8 @@ class Dashboard:
         if response.status >= 400:
             self.trouble.append(f"{response.status}: {response.url}")
 
-    def _request(self, request: Any, address: str) -> None:
-        if not request.url.startswith((address, "data:", "blob:")):
+    def _request(self, request: Any, here: str) -> None:
+        if not request.url.startswith((here, "data:", "blob:")):
             self.trouble.append(f"leaves this machine: {request.url}")
 
     def wait(self, condition: str, argument: Any = None) -> None:
@@ -195,6 +218,11 @@ class Dashboard:
         field.fill(text)
         field.press("Enter")
 
+    def message(self, name: str) -> str:
+        """What stands below the field of a parameter."""
+        field = self.page.locator(".v-input", has=self.page.get_by_label(name, exact=True))
+        return str(field.locator(".v-messages").inner_text())
+
     def choose(self, name: str, option: str) -> None:
         """Pick from a list."""
         self.page.locator(".v-select", has=self.page.get_by_label(name, exact=True)).click()
@@ -203,8 +231,16 @@ class Dashboard:
         ).click()
 
     def click_at(self, x: float, y: float) -> None:
-        """Click a place on the floor, metres."""
-        self.page.mouse.click(*self.page.evaluate(f"([x, y]) => {CANVAS}.onPage(x, y)", [x, y]))
+        """Click a place on the floor, metres, once it stays where it is on the page."""
+        before, at = None, self._on_page(x, y)
+        while at != before:
+            self.page.wait_for_timeout(80)
+            before, at = at, self._on_page(x, y)
+        self.page.mouse.click(*at)
+
+    def _on_page(self, x: float, y: float) -> list[float]:
+        found: list[float] = self.page.evaluate(f"([x, y]) => {CANVAS}.onPage(x, y)", [x, y])
+        return found
 
     def click_person(self, row: int) -> None:
         person = next(each for each in self.people() if each[0] == row)
@@ -218,8 +254,12 @@ def open_tab(browser: Any, server: Server) -> Iterator[Callable[..., Dashboard]]
     tabs: list[Dashboard] = []
     said = len(server.lines)
 
-    def make(address: str | None = None) -> Dashboard:
-        page = browser.new_page(viewport={"width": 1440, "height": 1000}, accept_downloads=True)
+    def make(
+        address: str | None = None, width: int = 1440, height: int = 1000, **context: Any
+    ) -> Dashboard:
+        page = browser.new_page(
+            viewport={"width": width, "height": height}, accept_downloads=True, **context
+        )
         tabs.append(Dashboard(page, address or server.address, server))
         return tabs[-1]
 
@@ -241,10 +281,13 @@ def start_server(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Server]
     """Starts `solara run FILE` in a folder of its own."""
     running: list[Server] = []
 
-    def make(text: str) -> Server:
+    def make(text: str, **beside: str) -> Server:
         (tmp_path / "page.py").write_text(text)
+        for name, own in beside.items():
+            (tmp_path / f"{name}.py").write_text(own)
         solara = str(Path(sys.executable).parent / "solara")
-        environment = {**os.environ, "SOLARA_TELEMETRY_MIXPANEL_ENABLE": "false"}
+        # A home of its own: Solara's first page on a machine is another than those after it.
+        environment = {**os.environ, "SOLARA_HOME": str(tmp_path / "home")}
         running.append(
             Server(
                 [solara, "run", "page.py", "--no-open", "--port", "0", "--no-check-version"],

@@ -7,8 +7,8 @@ import pytest
 
 pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
 
-from mesa_mobility.dashboard.colouring import COLOURINGS, colouring_named
-from mesa_mobility.dashboard.observer import Observer, densities
+from mesa_mobility.dashboard.session.colouring import COLOURINGS, colouring_named
+from mesa_mobility.dashboard.session.observer import Observer, densities
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import strider
 from tests.fixtures.scenes import advance, corridor, model_of, put, statues
@@ -28,7 +28,7 @@ def test_densities_count_who_is_within_a_metre():
 def test_waiting_is_time_spent_slower_than_a_fifth_of_a_metre_a_second():
     model = model_of(corridor(), [strider(), statues()])
     put(model, 2.0, 1.0)
-    put(model, 2.0, 3.0, kind=1)
+    put(model, 2.0, 3.0, type_index=1)
     observer = Observer(model)
     for _ in range(30):
         advance(model, 1)

@@ -86,7 +86,10 @@ def test_another_model_and_another_preset(tab):
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("many", "pedestrians=many is not int"), ("-3", "pedestrians: got -3, expected 1 or more")],
+    [
+        ("many", "pedestrians: got 'many', expected a whole number"),
+        ("-3", "pedestrians: got -3, expected 1 or more"),
+    ],
 )
 def test_bad_input_is_told_beside_its_control_and_the_run_goes_on(tab, text, message):
     tab.play()
@@ -133,6 +136,28 @@ def test_a_click_opens_the_decision_with_its_numbers(tab):
         )
     total = table.get_by_role("row", name=re.compile("^total")).inner_text().split()[-1]
     assert total == f"{told.totals[pointed]:.3f}"
+
+
+def test_one_pedestrian_is_clicked_after_another(tab):
+    tab.step(1)
+    for row in (23, 11, 23, 7):
+        tab.click_person(row)
+        assert tab.shown()["selected"] == row
+    # A decision that is open outlasts the other tab, and goes with another run.
+    tab.page.get_by_role("tab", name="Mobility map").click()
+    tab.page.get_by_role("tab", name="Simulation").click()
+    tab.click_person(11)
+    tab.button("if it decided now").click()
+    tab.click_person(7)
+    tab.button("Reset").click()
+    tab.at_rest(0.0)
+    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().selected === -1")
+    tab.click_person(11)
+    tab.click_person(23)
+    tab.choose("model", "straight_walk")
+    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 50")
+    tab.click_person(3)
+    tab.click_person(4)
 
 
 def test_the_decision_shown_is_the_one_the_engine_takes(tab):

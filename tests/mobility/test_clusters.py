@@ -1,5 +1,7 @@
 """Subtractive clustering against the textbook, written out in NumPy."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -65,4 +67,16 @@ def test_recordings_without_anybody_standing_are_refused():
     poses = random_poses(np.random.default_rng(2))
     poses.speed[:] = 1.2
     with pytest.raises(MapError, match="no standing poses"):
+        cluster_poses(motion_graph(poses), 5)
+
+
+def test_standing_poses_that_are_not_connected_are_counted():
+    poses = random_poses(np.random.default_rng(2), clips=3, length=60)
+    # The third clip alone stands, in poses unlike all others, and drifts so that none recurs.
+    features = poses.features.copy()
+    features[120:] = 50.0 + 0.01 * np.arange(60)[:, None]
+    poses = dataclasses.replace(poses, features=features)
+    poses.speed[:120] = 1.2
+    poses.speed[120:] = 0.0
+    with pytest.raises(MapError, match=r"no standing .*; 60 others are not connected with these"):
         cluster_poses(motion_graph(poses), 5)

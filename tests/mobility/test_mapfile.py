@@ -2,7 +2,9 @@
 
 import contextlib
 import dataclasses
+import io
 import json
+import tracemalloc
 import zipfile
 
 import numpy as np
@@ -133,7 +135,63 @@ def test_a_file_that_contradicts_itself_is_refused(saved, name, array, message):
 
 def test_object_arrays_are_refused(saved):
     rewrite(saved, "costs", np.array([{}, None, 1], dtype=object), allow_pickle=True)
-    with pytest.raises(MapError, match="not a readable mobility map"):
+    with pytest.raises(MapError, match=r"array 'costs': its header says object in shape \(3,\)"):
+        MobilityMap.load(saved)
+
+
+def replace_entry(path, name, content, method=zipfile.ZIP_DEFLATED):
+    with zipfile.ZipFile(path) as archive:
+        entries = {each: archive.read(each) for each in archive.namelist()}
+    entries[f"{name}.npy"] = content
+    with zipfile.ZipFile(path, "w", method) as archive:
+        for each, data in entries.items():
+            archive.writestr(each, data)
+
+
+def npy_header(shape, dtype="<i2"):
+    buffer = io.BytesIO()
+    np.lib.format.write_array_header_1_0(
+        buffer, {"descr": dtype, "fortran_order": False, "shape": shape}
+    )
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize(
+    "shape", [(2**33,), (3, 2**40), (2**62, 2**62), (-1, -16), (16,), (0,), (1000, 0)]
+)
+def test_a_header_that_says_more_than_there_is_is_refused(saved, shape):
+    replace_entry(saved, "path_steps", npy_header(shape) + bytes(36))
+    with pytest.raises(MapError, match=r"'path_steps': .*, but 36 bytes follow|not a readable"):
+        MobilityMap.load(saved)
+
+
+def test_a_small_file_with_large_arrays_is_refused_before_they_are_read(saved, monkeypatch):
+    replace_entry(saved, "path_steps", npy_header((3, 20_000_000)) + bytes(120_000_000))
+    assert saved.stat().st_size < 1_000_000
+    monkeypatch.setattr(zipfile.ZipFile, "open", None)
+    with pytest.raises(MapError, match="arrays of 120 MB, expected at most 100 MB"):
+        MobilityMap.load(saved)
+
+
+def test_a_directory_that_says_less_than_there_is_does_not_unpack_more(saved):
+    replace_entry(saved, "costs", npy_header((3,)) + bytes(50_000_000))
+    content = bytearray(saved.read_bytes())
+    size = len(npy_header((3,)) + bytes(50_000_000)).to_bytes(4, "little")
+    at = content.rindex(size)
+    content[at : at + 4] = (134).to_bytes(4, "little")
+    saved.write_bytes(content)
+    tracemalloc.start()
+    with pytest.raises(MapError):
+        MobilityMap.load(saved)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 5_000_000
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_other_compressions_are_refused(saved, method):
+    replace_entry(saved, "costs", b"", method)
+    with pytest.raises(MapError, match=r"compressed by method 1[24], expected deflate"):
         MobilityMap.load(saved)
 
 
@@ -181,6 +239,9 @@ def test_a_map_that_cannot_be_written_leaves_nothing(small_map, tmp_path):
     with pytest.raises(MapError, match="cannot be written"):
         small_map.save(tmp_path / "missing" / "map.npz")
     far = dataclasses.replace(small_map, paths=np.full((16, 3), 20.0, dtype=np.float32))
+    turning = dataclasses.replace(small_map, paths=small_map.paths + np.float32([0, 0, 7]))
+    with pytest.raises(MapError, match=r"an option turns by more than 6\.5 rad"):
+        turning.save(tmp_path / "turning.npz")
     with pytest.raises(MapError, match="further than 16 m"):
         far.save(tmp_path / "far.npz")
     assert list(tmp_path.iterdir()) == []

@@ -8,7 +8,7 @@ from mesa_mobility.models import Auditorium, Doorway, OpenSpace, StraightWalk
 
 from mesa_mobility import FloorPlan, PedestrianModel
 from mesa_mobility.errors import FloorPlanError, MapError, MobilityError, ModelError
-from mesa_mobility.registry import load_model
+from mesa_mobility.plugins.registry import load_model
 from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.scenes import same_rows
 

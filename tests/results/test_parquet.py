@@ -1,3 +1,4 @@
+import hashlib
 import json
 
 import numpy as np
@@ -10,13 +11,16 @@ from hypothesis.extra.numpy import arrays
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories, read_parquet
+from mesa_mobility.results.seal import UNSEALED, seal
 
 COLUMNS = ("frame", "person", "x", "y", "heading")
 number = st.floats(allow_nan=False, allow_infinity=False)
 
 
 @given(values=arrays(np.float64, (3, 6), elements=number), rate=st.floats(0.1, 240.0))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50, deadline=None
+)
 def test_reading_back_gives_every_bit(values, rate, tmp_path):
     run = Trajectories(
         frame=[0, 0, 1, 1, 2, 2],
@@ -46,8 +50,12 @@ def test_other_programs_find_columns_units_and_compression(two_leave_one_stays, 
         ("frame", "int32"), ("person", "int32"), ("x", "double"), ("y", "double"),
         ("heading", "double"),
     ]  # fmt: skip
-    assert json.loads(schema.metadata[b"mesa_mobility"]) == {
-        "format_version": 1,
+    metadata = json.loads(schema.metadata[b"mesa_mobility"])
+    content = (tmp_path / "run.parquet").read_bytes()
+    zeros = content.replace(metadata["sha256"].encode(), b"0" * 64)
+    assert metadata.pop("sha256") == hashlib.sha256(zeros).hexdigest()
+    assert metadata == {
+        "format_version": 2,
         "frame_rate": 2.0,
         "last_frame": 4,
         "core_radius": [0.15, 0.15, 0.15],
@@ -85,13 +93,71 @@ def test_damaged_files_are_refused(two_leave_one_stays, tmp_path, damage, messag
     assert "\n" not in str(caught.value)
 
 
+def flipped(content, bit):
+    damaged = bytearray(content)
+    damaged[bit // 8] ^= 1 << bit % 8
+    return bytes(damaged)
+
+
+@pytest.fixture
+def written(two_leave_one_stays, tmp_path):
+    path = tmp_path / "run.parquet"
+    two_leave_one_stays.to_parquet(path)
+    return path
+
+
+def test_a_single_bit_flipped_anywhere_is_noticed(written):
+    content = written.read_bytes()
+    step = max(1, 8 * len(content) // 400)
+    for bit in range(0, 8 * len(content), step):
+        written.write_bytes(flipped(content, bit))
+        with pytest.raises(ResultsError, match=r"run\.parquet: ") as caught:
+            read_parquet(written)
+        assert "\n" not in str(caught.value)
+
+
+@pytest.mark.slow
+def test_every_single_bit_flipped_is_noticed(written):
+    content = written.read_bytes()
+    for bit in range(8 * len(content)):
+        written.write_bytes(flipped(content, bit))
+        with pytest.raises(ResultsError):
+            read_parquet(written)
+
+
+def test_bytes_added_removed_or_moved_are_noticed(written):
+    content = written.read_bytes()
+    for other in (
+        content + b"\0",
+        b"\0" + content,
+        content[:40] + content[41:],
+        content[:40] + content[39:],
+        content[4:20] + content[:4] + content[20:],
+        content + content,
+    ):
+        written.write_bytes(other)
+        with pytest.raises(ResultsError, match=r"run\.parquet: "):
+            read_parquet(written)
+
+
+def test_other_readers_can_check_the_pages(written):
+    content = written.read_bytes()
+    column = pq.ParquetFile(written).metadata.row_group(0).column(2)
+    # The last byte of the only page of x.
+    at = column.data_page_offset + column.total_compressed_size - 1
+    written.write_bytes(flipped(content, 8 * at))
+    with pytest.raises(OSError, match="CRC checksum"):
+        pq.read_table(written, page_checksum_verification=True)
+
+
 def test_missing_file_is_named(tmp_path):
     with pytest.raises(ResultsError, match=r"run\.parquet: no such file"):
         read_parquet(tmp_path / "run.parquet")
 
 
 GOOD = {
-    "format_version": 1,
+    "format_version": 2,
+    "sha256": UNSEALED,
     "frame_rate": 30.0,
     "last_frame": 1,
     "core_radius": [0.15],
@@ -99,13 +165,25 @@ GOOD = {
 }
 
 
+def write(table, path, metadata):
+    table = table.replace_schema_metadata(None)
+    with pq.ParquetWriter(path, table.schema, store_schema=False) as writer:
+        writer.write_table(table)
+        if metadata is not None:
+            writer.add_key_value_metadata({"mesa_mobility": metadata})
+
+
 @pytest.mark.parametrize(
     ("columns", "metadata", "message"),
     [
         ({"y": None}, GOOD, "no column y"),
-        ({}, None, "no mesa_mobility metadata"),
-        ({}, GOOD | {"format_version": 2}, "format version 2, expected 1"),
-        ({}, {"format_version": 1}, "damaged trajectories: 'frame_rate'"),
+        ({}, None, "no sha256 in mesa_mobility metadata, expected trajectories of this format"),
+        ({}, {"format_version": 1}, "no sha256 in mesa_mobility metadata"),
+        ({}, GOOD | {"format_version": 1}, "format version 1, expected 2"),
+        ({}, {"format_version": 2, "sha256": UNSEALED}, "damaged trajectories: 'frame_rate'"),
+        ({}, GOOD | {"last_frame": 1e999}, "damaged trajectories: cannot convert float infinity"),
+        ({}, GOOD | {"last_frame": 10**12}, "last_frame is 1000000000000, expected at most"),
+        ({}, GOOD | {"inside_at_end": [10**30]}, "damaged trajectories: "),
         ({}, GOOD | {"frame_rate": "fast"}, "damaged trajectories"),
         ({}, GOOD | {"core_radius": []}, "core_radius has shape"),
         ({"x": [0.0, float("nan")]}, GOOD, "x of row 1 is nan"),
@@ -117,12 +195,22 @@ def test_parquet_of_something_else_is_refused(tmp_path, columns, metadata, messa
     values = {"frame": [0, 1], "person": [0, 0], "x": [0.0, 1.0], "y": [0.0, 0.0]}
     values |= {"heading": [0.0, 0.0]} | columns
     table = pa.table({name: column for name, column in values.items() if column is not None})
-    if metadata is not None:
-        table = table.replace_schema_metadata({"mesa_mobility": json.dumps(metadata)})
-    pq.write_table(table, tmp_path / "other.parquet")
+    write(table, tmp_path / "other.parquet", metadata and json.dumps(metadata))
+    if metadata is not None and "sha256" in metadata:
+        seal(tmp_path / "other.parquet")
     with pytest.raises(ResultsError, match=r"other\.parquet: ") as caught:
         read_parquet(tmp_path / "other.parquet")
     assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_metadata_nested_too_deeply_are_refused(written):
+    deep = "[" * 100_000 + "]" * 100_000
+    metadata = f'{{"sha256": "{UNSEALED}", "format_version": {deep}}}'
+    write(pq.read_table(written), written, metadata)
+    seal(written)
+    with pytest.raises(ResultsError, match=r"run\.parquet: ") as caught:
+        read_parquet(written)
     assert "\n" not in str(caught.value)
 
 

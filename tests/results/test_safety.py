@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import LineString
+from shapely import LineString, Point, box
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Overlap, Trajectories, WallCrossing, check_safety, safety
@@ -112,6 +112,57 @@ def test_only_the_first_few_are_named(walk):
 def test_walls_of_another_shape_are_refused(walk, walls):
     with pytest.raises(ResultsError, match="walls have shape"):
         check_safety(walk({0: (0, [(0.0, 0.0)])}), walls)
+
+
+ROOM = box(0, 0, 4, 4).difference(box(1, 1, 2, 2))
+
+
+@pytest.mark.parametrize(
+    ("track", "inside", "off"),
+    [
+        ([(0.5, 0.5), (3.0, 3.0)], True, 0),
+        ([(0.5, 0.5), (1.5, 1.5), (1.5, 1.6), (3.0, 3.0)], True, 2),  # in an obstacle
+        ([(3.5, 0.5), (4.5, 0.5), (4.6, 0.5)], True, 2),  # out of the building
+        ([(3.5, 0.5), (4.5, 0.5), (4.6, 0.5)], False, 1),  # the last place is beyond an exit
+        ([(3.9, 0.5), (4.01, 0.5), (4.015, 0.5)], True, 0),  # an exit may be beside the edge
+        ([(1.0, 0.5), (1.0, 1.0)], True, 0),  # on the edge
+    ],
+)
+def test_places_off_the_floor(walk, track, inside, off):
+    run = walk({3: (2, track)}, inside_at_end=np.array([3] if inside else [], dtype=np.int32))
+    report = check_safety(run, NO_WALLS, ROOM)
+    assert report.off_floor == off
+    assert report.passed is (off == 0)
+
+
+def test_off_the_floor_is_counted_only_with_a_floor(walk):
+    report = check_safety(walk({0: (0, [(9.0, 9.0)])}), NO_WALLS)
+    assert (report.off_floor, report.passed) == (None, True)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**31), st.integers(1, 12))
+def test_places_off_the_floor_are_those_of_each_person(seed, people):
+    rng = np.random.default_rng(seed)
+    tracks = {p: (int(rng.integers(4)), rng.uniform(-1, 5, (int(rng.integers(1, 6)), 2)).tolist())
+              for p in range(people)}  # fmt: skip
+    end = max(first + len(track) - 1 for first, track in tracks.values())
+    there = [p for p, (first, track) in tracks.items() if first + len(track) - 1 == end]
+    stay = [p for p in there if rng.random() < 0.5]
+    run = Trajectories(
+        frame=[f + k for f, t in tracks.values() for k in range(len(t))],
+        person=[p for p, (_, t) in tracks.items() for _ in t],
+        x=[x for _, t in tracks.values() for x, _ in t],
+        y=[y for _, t in tracks.values() for _, y in t],
+        heading=np.zeros(sum(len(t) for _, t in tracks.values())),
+        inside_at_end=np.array(stay, dtype=np.int32),
+    )
+    expected = sum(
+        ROOM.distance(Point(place)) > 0.02
+        for p, (_, t) in tracks.items()
+        for place in (t if p in stay else t[:-1])
+    )
+    assert check_safety(run, NO_WALLS, ROOM).off_floor == expected
 
 
 cell = st.integers(0, 6)

@@ -16,7 +16,7 @@ from mesa_mobility.verification.scenarios import (
     rooms,
     walks,
 )
-from mesa_mobility.verification.scenarios.oval import Oval
+from mesa_mobility.verification.scenarios.tracks.oval import Oval
 
 
 def area_of(text: str) -> Polygon:
@@ -110,7 +110,7 @@ def test_the_larger_body_takes_more_than_half_of_the_passage():
 
 
 def test_the_single_file_track_is_rimeas():
-    from mesa_mobility.verification.scenarios.single_file import OVAL
+    from mesa_mobility.verification.scenarios.tracks.single_file import OVAL
 
     assert Oval(straight=4.0, radius=3.0, width=0.8) == OVAL
     assert OVAL.length == pytest.approx(26.85, abs=0.005)
@@ -118,7 +118,7 @@ def test_the_single_file_track_is_rimeas():
 
 def test_the_tracks_of_rimea_4_have_their_densities():
     from mesa_mobility.verification import rimea
-    from mesa_mobility.verification.scenarios import track
+    from mesa_mobility.verification.scenarios.tracks import track
 
     numbers = [dict(each.numbers) for each in rimea.TRACKS]
     assert [each["density"] for each in numbers] == [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Point
 
-from mesa_mobility.verification.scenarios.oval import Oval
-from mesa_mobility.verification.scenarios.single_file import InLine
+from mesa_mobility.verification.scenarios.tracks.oval import Oval
+from mesa_mobility.verification.scenarios.tracks.single_file import InLine
 from tests.fixtures.options import Ending, one_option
 
 OVAL = Oval(straight=4.0, radius=3.0, width=0.8)
@@ -42,7 +42,7 @@ def test_no_option_of_a_group_costs_less_than_its_bound(x, y, radius, angle, out
 
 
 def test_people_in_a_jam_walk_one_behind_the_other():
-    from mesa_mobility.verification.scenarios.oval import oval_model
+    from mesa_mobility.verification.scenarios.tracks.oval import oval_model
 
     model = oval_model(OVAL, 30, 1, speed=1.2, spacing=0.34, clearance=0.18)
     model.terms.append(InLine(OVAL))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesa_mobility.verification.scenarios.oval import Oval
+from mesa_mobility.verification.scenarios.tracks.oval import Oval
 
 OVAL = Oval(straight=15.0, radius=3.0, width=1.8)
 

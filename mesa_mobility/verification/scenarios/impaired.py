@@ -52,7 +52,7 @@ def passage(seed: int, *, width: float, impaired: bool) -> dict[str, Any]:
     model.add_pedestrians(
         [[ROOM - 0.5, ROOM / 2]],
         preferred_speeds=SLOWER if impaired else SPEED,
-        kind=int(impaired),
+        type_index=int(impaired),
     )
     places = plan.random_points(
         OTHERS,

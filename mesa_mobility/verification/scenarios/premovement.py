@@ -13,7 +13,7 @@ from mesa_mobility.verification.runs import CLEARANCE, Run, crowd_model, evacuat
 from mesa_mobility.verification.scenarios.rooms import SMALL_ROOM, SMALL_ROOM_DOOR
 
 MOVED_M = 0.05
-"""Whoever is this far from where it stood has started, metres."""
+"""A person this far from its initial position has started, metres."""
 
 ROOM_TO_STAND = 1.0
 """Metres between people at the start: nobody has to wait for another to get going."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mesa_mobility.registry import load_model
+from mesa_mobility.plugins.registry import load_model
 from mesa_mobility.verification.runs import evacuate
 
 LIMIT_S = 900.0

@@ -1,0 +1,33 @@
+"""The commands of the command line, put together.
+
+Whatever is slow to import is imported where it is used, so that help and errors come at once.
+"""
+
+from __future__ import annotations
+
+import typer
+
+from mesa_mobility.commands import mobility_map, plugins
+from mesa_mobility.commands.dashboard import dashboard
+from mesa_mobility.commands.run import run
+from mesa_mobility.commands.validate import validate
+from mesa_mobility.commands.verify import verify
+
+# Some versions of Typer bring a Click of their own: theirs is known by what it derives from it.
+UsageError: type[Exception] = typer.BadParameter.__bases__[0]
+"""What wrong usage of the command line raises."""
+
+app = typer.Typer(
+    name="mesa-mobility",
+    help="Pedestrian crowds driven by recorded human movement.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command("run")(run)
+app.command("verify")(verify)
+app.command("validate")(validate)
+app.command("dashboard")(dashboard)
+app.add_typer(mobility_map.app, name="map")
+app.command("models")(plugins.models)
+app.command("behaviors")(plugins.behaviors)

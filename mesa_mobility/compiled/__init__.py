@@ -1,0 +1,1 @@
+"""How the hot path is compiled; nothing here knows about people."""

@@ -1,0 +1,165 @@
+"""Options and movements under way laid out where they lead, several numbers at once."""
+
+# Intrinsics take their arguments by name and give Numba types.
+# mypy: disable-error-code="no-untyped-def"
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.simd import LANES, SAMPLES
+from mesa_mobility.compiled.twins import with_twin
+from mesa_mobility.compiled.vectors import (
+    DOUBLE,
+    FLOAT,
+    LONG,
+    load,
+    load_one,
+    same,
+    spread,
+    start_of,
+    store,
+    whole,
+)
+
+
+def _plain_lanes_to_world(
+    lanes: NDArray[np.float32],
+    group: int,
+    ends: NDArray[np.float64],
+    at: int,
+    c: float,
+    s: float,
+    px: float,
+    py: float,
+    seconds: float,
+) -> None:
+    for lane in range(LANES):
+        x, y = np.float64(lanes[group, 0, lane]), np.float64(lanes[group, 1, lane])
+        ux, uy = np.float64(lanes[group, 2, lane]), np.float64(lanes[group, 3, lane])
+        k = at + lane
+        ends[0, k], ends[1, k] = px + c * x - s * y, py + s * x + c * y
+        ends[2, k], ends[3, k] = c * ux - s * uy, s * ux + c * uy
+        ends[4, k], ends[5, k] = seconds, lanes[group, 4, lane]
+
+
+@with_twin(_plain_lanes_to_world)
+def lanes_to_world(typingctx, lanes, group, ends, at, c, s, px, py, seconds):
+    """Write where the 8 options of a group end, in the world, from column ``at`` of ``ends`` on.
+
+    ``lanes`` (groups, fields, 8), C-contiguous, with the fields x, y, ux, uy and speed first;
+    ``ends`` (6, n), C-contiguous, gets x, y, ux, uy, the seconds that they all take and the speed.
+    """
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        begin = start_of(context, builder, sig.args[0], args[0])
+        to = start_of(context, builder, sig.args[2], args[2])
+        shape = cgutils.create_struct_proxy(sig.args[0])(context, builder, args[0]).shape
+        width = cgutils.create_struct_proxy(sig.args[2])(context, builder, args[2]).shape
+        per_group = builder.mul(builder.extract_value(shape, 1), builder.extract_value(shape, 2))
+        of = builder.mul(per_group, whole(context, builder, sig.args[1], args[1]))
+        row, at = builder.extract_value(width, 1), whole(context, builder, sig.args[3], args[3])
+        fields = []
+        for _ in range(5):
+            field = load(builder, begin, of, LANES)
+            fields.append(builder.fpext(field, ir.VectorType(DOUBLE, LANES)))
+            of = builder.add(of, ir.Constant(LONG, LANES))
+        x, y, ux, uy, speed = fields
+        c, s, px, py, seconds = (spread(builder, args[k], LANES) for k in range(4, 9))
+        add, sub, mul = builder.fadd, builder.fsub, builder.fmul
+        rows = (
+            sub(add(px, mul(c, x)), mul(s, y)),
+            add(add(py, mul(s, x)), mul(c, y)),
+            sub(mul(c, ux), mul(s, uy)),
+            add(mul(s, ux), mul(c, uy)),
+            seconds,
+            speed,
+        )
+        for value in rows:
+            store(builder, value, to, at)
+            at = builder.add(at, row)
+        return context.get_dummy_value()
+
+    return types.void(lanes, group, ends, at, *[types.float64] * 5), codegen
+
+
+def _plain_samples_to_ego(
+    paths: NDArray[np.float32],
+    path: int,
+    first: int,
+    share: float,
+    c: float,
+    s: float,
+    x: float,
+    y: float,
+    to: NDArray[np.float32],
+    at: int,
+    row: int,
+) -> None:
+    target = to.flat
+    along, cosine, sine = np.float32(share), np.float32(c), np.float32(s)
+    from_x, from_y = np.float32(x), np.float32(y)
+    for k in range(SAMPLES):
+        here, there = min(first + k, SAMPLES - 1), min(first + k + 1, SAMPLES - 1)
+        px, py = paths[path, 0, here], paths[path, 1, here]
+        own_x = px + along * (paths[path, 0, there] - px)
+        own_y = py + along * (paths[path, 1, there] - py)
+        target[at + k] = from_x + (cosine * own_x - sine * own_y)
+        target[at + row + k] = from_y + (sine * own_x + cosine * own_y)
+
+
+@with_twin(_plain_samples_to_ego)
+def samples_to_ego(typingctx, paths, path, first, share, c, s, x, y, to, at, row):
+    """Write where somebody on a path is at the sample times to come, 16 of them.
+
+    Args:
+        paths: (n, 3, 16), C-contiguous: x, y and something else at the samples, the last ones at
+            the end.
+        path: which one.
+        first: sample that comes before now, 15 at most.
+        share: how much of the way from there to the next one is behind, 0 to 1.
+        c: cosine of what the path is turned by.
+        s: its sine.
+        x: where it begins, metres.
+        y: where it begins, metres.
+        to: C-contiguous; gets x from place ``at`` on and y ``row`` places farther on.
+        at: place.
+        row: places.
+    """
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        begin = start_of(context, builder, sig.args[0], args[0])
+        target = start_of(context, builder, sig.args[8], args[8])
+        path, first = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
+        at, row = (whole(context, builder, sig.args[k], args[k]) for k in (9, 10))
+        share, c, s, x, y = (
+            spread(builder, builder.fptrunc(args[k], FLOAT), SAMPLES) for k in range(3, 8)
+        )
+        add, sub, mul = builder.fadd, builder.fsub, builder.fmul
+        # Where the samples end, those of the next row follow: the last one stands for them.
+        numbers = ir.Constant(ir.VectorType(LONG, SAMPLES), list(range(SAMPLES)))
+        beyond = builder.add(spread(builder, first, SAMPLES), numbers)
+        ended = builder.icmp_signed(">=", beyond, same(LONG, SAMPLES, SAMPLES - 1))
+        own = []
+        for k in range(2):
+            of = builder.mul(path, ir.Constant(LONG, 3 * SAMPLES))
+            of = builder.add(of, ir.Constant(LONG, SAMPLES * k))
+            end = load_one(builder, begin, builder.add(of, ir.Constant(LONG, SAMPLES - 1)))
+            of = builder.add(of, first)
+            here = load(builder, begin, of, SAMPLES)
+            there = load(builder, begin, builder.add(of, ir.Constant(LONG, 1)), SAMPLES)
+            between = add(here, mul(share, sub(there, here)))
+            own.append(builder.select(ended, spread(builder, end, SAMPLES), between))
+        store(builder, add(x, sub(mul(c, own[0]), mul(s, own[1]))), target, at)
+        place = builder.add(at, row)
+        store(builder, add(y, add(mul(s, own[0]), mul(c, own[1]))), target, place)
+        return context.get_dummy_value()
+
+    given = [types.float64] * 5
+    return types.void(paths, path, first, *given, to, at, row), codegen

@@ -1,0 +1,1 @@
+"""What a cost term is made of."""

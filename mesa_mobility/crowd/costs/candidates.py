@@ -1,0 +1,93 @@
+"""Movement options of deciding pedestrians, as flat arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Movement options of a batch of pedestrians, one row an option.
+
+    n options of b pedestrians with q neighbours between them.  All arrays are
+    read-only to a cost term; the batch may hold any number of pedestrians, one included.
+
+    Attributes:
+        points: (n, 2) mobility points: where each option ends, metres.
+        headings: (n,) facing there, radians, counter-clockwise from +x.
+        displacements: (n,) straight distance from the pedestrian's position, metres.
+        durations: (n,) seconds the option takes.
+        speeds: (n,) displacement over duration, m/s.
+        options: (n,) row of the option in the capability's table.
+        owner: (n,) index in the batch (0 to b - 1) of the option's pedestrian.
+        offsets: (b + 1,) options of pedestrian i are rows ``offsets[i]:offsets[i + 1]``.
+        pedestrians: (b,) rows of the pedestrians in the crowd (``Pedestrian.row``).
+        positions: (b, 2) metres.
+        facings: (b,) headings, radians.
+        targets: (b, 2) metres.
+        preferred_speeds: (b,) m/s; 0 for somebody without a route.
+        types: (b,) index of the pedestrian type in ``model.pedestrian_types``.
+        neighbour_offsets: (b + 1,) neighbours of pedestrian i are rows
+            ``neighbour_offsets[i]:neighbour_offsets[i + 1]`` of the arrays below.
+        neighbours: (q,) rows of the neighbours in the crowd.
+        neighbour_positions: (q, 2) metres.
+        neighbour_velocities: (q, 2) mean velocity of their movement under way, m/s.
+        neighbour_directions: (q, 2) unit vector to their target; (0, 0) at the target.
+        leads: (q,) metres by which their route is shorter than the pedestrian's; not a number if
+            neither has a route.
+    """
+
+    points: NDArray[np.float64]
+    headings: NDArray[np.float64]
+    displacements: NDArray[np.float64]
+    durations: NDArray[np.float64]
+    speeds: NDArray[np.float64]
+    options: NDArray[np.int64]
+    owner: NDArray[np.int64]
+    offsets: NDArray[np.int64]
+    pedestrians: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    facings: NDArray[np.float64]
+    targets: NDArray[np.float64]
+    preferred_speeds: NDArray[np.float64]
+    types: NDArray[np.int64]
+    neighbour_offsets: NDArray[np.int64]
+    neighbours: NDArray[np.int64]
+    neighbour_positions: NDArray[np.float64]
+    neighbour_velocities: NDArray[np.float64]
+    neighbour_directions: NDArray[np.float64]
+    leads: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.owner)
+
+    def pairs(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """All pairs of an option and a neighbour of its owner.
+
+        Returns:
+            (r,) rows of options and (r,) rows of the neighbour arrays.  Sum a cost over pairs
+            back to options with ``np.bincount(rows, weights=cost, minlength=len(candidates))``.
+        """
+        counts = np.diff(self.neighbour_offsets)[self.owner]
+        rows = np.repeat(np.arange(len(self), dtype=np.int64), counts)
+        within = np.arange(len(rows), dtype=np.int64) - np.repeat(
+            np.cumsum(counts) - counts, counts
+        )
+        return rows, self.neighbour_offsets[self.owner[rows]] + within
+
+    def predicted(
+        self, rows: NDArray[np.int64], neighbours: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """(r, 2) position of each pair's neighbour when the option ends, metres.
+
+        The neighbour is taken to keep its velocity.
+        """
+        velocity = self.neighbour_velocities[neighbours]
+        return self.neighbour_positions[neighbours] + velocity * self.durations[rows, None]

@@ -1,0 +1,191 @@
+"""Cost terms: behaviours that rank movement options.
+
+The cost of a movement option is the weighted sum of its terms (equation 1 of the paper).  A
+behaviour is one more term.  A term gets all options of all deciding pedestrians and returns one
+number for each.  Terms are independent of one another, so their order does not matter.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.kernels import (
+    BoundKernel,
+    CostKernel,
+    PairKernel,
+    call_option_loop,
+    call_pair_loop,
+)
+from mesa_mobility.crowd.costs.layout import (
+    COST,
+    END_UX,
+    END_UY,
+    END_X,
+    END_Y,
+    LEAD,
+    OTHER_EX,
+    OTHER_EY,
+    OTHER_VX,
+    OTHER_VY,
+    OTHER_X,
+    OTHER_Y,
+    SECONDS,
+    SPEED,
+)
+from mesa_mobility.errors import ModelError
+
+
+class CostTerm(ABC):
+    """One additive term of the cost of a movement option.
+
+    Subclasses set ``name`` and define ``cost``.  The engine multiplies by ``weight``.
+
+    Attributes:
+        name: unique name of the term, as it is registered and shown.
+        weight: factor of the term in the sum; may be changed while a model runs.
+
+    Examples:
+        >>> import numpy as np
+        >>> from mesa_mobility import CostTerm
+        >>> class StraightOn(CostTerm):
+        ...     name = "straight_on"
+        ...
+        ...     def cost(self, candidates):
+        ...         turn = candidates.headings - candidates.facings[candidates.owner]
+        ...         return np.abs(np.angle(np.exp(1j * turn)))
+        >>> term = StraightOn(weight=0.5)
+        >>> term.name, term.weight
+        ('straight_on', 0.5)
+    """
+
+    name: ClassVar[str]
+    default_weight: ClassVar[float] = 1.0
+
+    def __init__(self, weight: float | None = None) -> None:
+        self.weight = self.default_weight if weight is None else weight
+
+    @property
+    def weight(self) -> float:
+        """Factor of this term in the sum."""
+        return self._weight
+
+    @weight.setter
+    def weight(self, value: float) -> None:
+        if not np.isfinite(value):
+            raise ModelError(f"weight of {self.name!r}: got {value}, expected a finite number")
+        self._weight = float(value)
+
+    @abstractmethod
+    def cost(self, candidates: Candidates) -> NDArray[np.float64]:
+        """Cost of each option, without the weight.
+
+        Args:
+            candidates: options of any number of pedestrians.
+
+        Returns:
+            (n,) one finite number per option.
+        """
+
+
+class CompiledTerm(CostTerm):
+    """A term given as a kernel, evaluated inside the compiled search.
+
+    Attributes:
+        kernel: an ``option_kernel``, or a ``pair_kernel`` that is summed over the neighbours.
+            A pair kernel must never be negative: the other terms are then a lower bound of
+            the sum, and pairs are evaluated only for options that can still win.
+        bound: a ``bound_kernel`` of an option kernel, or None.  Without a bound, this and
+            every other term is evaluated for all options, not only for those that can still win.
+    """
+
+    kernel: ClassVar[CostKernel]
+    bound: ClassVar[BoundKernel | None] = None
+
+    def parameters(self) -> tuple[float, ...]:
+        """Numbers that the kernel reads as ``parameters[0]``, ``parameters[1]``, ..."""
+        return ()
+
+    def cost(self, candidates: Candidates) -> NDArray[np.float64]:
+        """Cost of each option, by calling the kernel on each row."""
+        numbers = np.array(self.parameters() or (0.0,), dtype=np.float64)
+        ends = np.array(
+            [
+                *candidates.points.T,
+                np.cos(candidates.headings),
+                np.sin(candidates.headings),
+                candidates.durations,
+                candidates.speeds,
+            ]
+        )
+        if isinstance(self.kernel, PairKernel):
+            x, y = candidates.neighbour_positions.T
+            vx, vy = candidates.neighbour_velocities.T
+            ex, ey = candidates.neighbour_directions.T
+            return _each_pair(
+                self.kernel.address, candidates.owner, ends, candidates.positions,
+                candidates.targets, candidates.neighbour_offsets,
+                np.array([x, y, vx, vy, ex, ey, candidates.leads, np.empty_like(x)]),
+                numbers,
+            )  # fmt: skip
+        return _each_option(
+            self.kernel.address, candidates.offsets, ends, candidates.positions,
+            candidates.targets, candidates.preferred_speeds, numbers,
+        )  # fmt: skip
+
+
+@kept()
+def _each_option(
+    address: int,
+    offsets: NDArray[np.int64],
+    ends: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    targets: NDArray[np.float64],
+    preferred: NDArray[np.float64],
+    numbers: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    out = np.zeros(ends.shape[1])
+    for b in range(len(preferred)):
+        at = slice(offsets[b], offsets[b + 1])
+        call_option_loop(
+            address, offsets[b + 1] - offsets[b], ends[END_X, at], ends[END_Y, at],
+            ends[END_UX, at], ends[END_UY, at], ends[SECONDS, at], ends[SPEED, at],
+            starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1], preferred[b], numbers, 1.0,
+            out[at],
+        )  # fmt: skip
+    return out
+
+
+@kept()
+def _each_pair(
+    address: int,
+    owner: NDArray[np.int64],
+    ends: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    targets: NDArray[np.float64],
+    offsets: NDArray[np.int64],
+    others: NDArray[np.float64],
+    numbers: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    out = np.empty(len(owner))
+    for k in range(len(owner)):
+        b = owner[k]
+        at = slice(offsets[b], offsets[b + 1])
+        call_pair_loop(
+            address, offsets[b + 1] - offsets[b], ends[END_X, k], ends[END_Y, k],
+            ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k],
+            starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1],
+            others[OTHER_X, at], others[OTHER_Y, at], others[OTHER_VX, at], others[OTHER_VY, at],
+            others[OTHER_EX, at], others[OTHER_EY, at], others[LEAD, at],
+            numbers, others[COST, at],
+        )  # fmt: skip
+        summed = 0.0
+        for cost in others[COST, at]:
+            summed += cost
+        out[k] = summed
+    return out

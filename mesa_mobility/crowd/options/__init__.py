@@ -1,0 +1,1 @@
+"""The movement options of a body, laid out for the search."""

@@ -1,0 +1,92 @@
+"""Capability: the movement options of a pedestrian type.
+
+The component through which a pedestrian consults its type's mobility map
+(section 6 of the paper: behaviour chooses among what capability offers).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options.option_groups import alike, group
+from mesa_mobility.crowd.options.shortened import with_shortened
+from mesa_mobility.crowd.options.table import option_table, padded_paths
+from mesa_mobility.errors import ModelError
+from mesa_mobility.mobility import MobilityMap
+
+
+class Capability:
+    """Movement options of one pedestrian type, by cluster.
+
+    Args:
+        mobility_map: the type's clustered mobility map.
+        durations: option durations in frames to use; None for all that the map has.
+        shares: shortened copies of the shortest options to add, as shares of their ground.
+
+    Attributes:
+        table: the options.
+        parts: for each option, the map's option that it is taken from, and its share.
+
+    Raises:
+        ModelError: a cluster has no option of these durations.
+    """
+
+    def __init__(
+        self,
+        mobility_map: MobilityMap,
+        durations: Sequence[int] | None = None,
+        shares: Sequence[float] = (),
+    ) -> None:
+        self.map = mobility_map
+        used = np.ones(mobility_map.n_options, dtype=bool)
+        if durations is not None:
+            used = np.isin(mobility_map.durations, durations)
+        counts = np.add.reduceat(used.astype(np.int64), mobility_map.offsets[:-1])
+        if (counts == 0).any():
+            raise ModelError(
+                f"mobility map of {mobility_map.pedestrian_type!r}: cluster "
+                f"{int(np.argmin(counts))} has no option of {list(durations or ())} frames"
+            )
+        parts = with_shortened(mobility_map, np.flatnonzero(used), shares)
+        cluster = np.searchsorted(mobility_map.offsets, parts.rows, side="right") - 1
+        counts = np.bincount(cluster, minlength=mobility_map.n_clusters)
+        offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        features = alike(mobility_map, parts)
+        order, groups = _in_groups(mobility_map.durations[parts.rows], features, cluster)
+        self.parts = parts.taken(order)
+        path = padded_paths(mobility_map, self.parts)
+        self.table = option_table(mobility_map, self.parts, path, offsets, groups)
+
+    @property
+    def n_clusters(self) -> int:
+        """Number of clusters."""
+        return len(self.table.farthest)
+
+    @property
+    def standing(self) -> int:
+        """The standing cluster."""
+        return self.map.standing
+
+    @property
+    def longest_reach(self) -> float:
+        """Farthest that any option leads from its start, metres."""
+        return float(self.table.farthest.max())
+
+    def options(self, cluster: int) -> range:
+        """Rows in ``table`` of the options that a pose of this cluster has."""
+        return range(int(self.table.offsets[cluster]), int(self.table.offsets[cluster + 1]))
+
+
+def _in_groups(
+    frames: NDArray[np.integer], features: NDArray[np.float64], cluster: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The order of options by group, and the start of each group in it."""
+    sort = np.lexsort((frames, cluster))
+    cluster, frames = cluster[sort], frames[sort]
+    changes = (np.diff(cluster) != 0) | (np.diff(frames) != 0)
+    bounds = np.concatenate([[0], np.flatnonzero(changes) + 1, [len(sort)]])
+    order, starts = group(features[sort], bounds.astype(np.int64))
+    return sort[order], starts

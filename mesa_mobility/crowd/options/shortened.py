@@ -1,0 +1,56 @@
+"""Shortened options: a person that can take a step can also take a shorter one of the same kind.
+
+Recorded people walk or stand, and few of them creep. In a jam everybody does. So the shortest
+recorded options of each cluster are also offered in part, with a share of their ground and of their
+turn. A share of 0 stands on the spot and turns as the whole step does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options.table import FRAME_SECONDS, Parts
+from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility.paths import CELL
+from mesa_mobility.mobility.poses import STANDING_SPEED, STANDING_TURN_RATE
+
+
+def with_shortened(
+    mobility_map: MobilityMap, rows: NDArray[np.int64], shares: Sequence[float]
+) -> Parts:
+    """Options of a map, and shortened copies of the shortest options of each cluster.
+
+    A copy that is no faster than standing ends in the standing cluster.  Of the copies of one
+    cluster with similar ends, the one of least cost is kept, as the map's own options are thinned.
+
+    Args:
+        mobility_map: the map.
+        rows: its options in use.
+        shares: of the ground that a step covers, each from 0 to 1.
+    """
+    durations = mobility_map.durations[rows]
+    cluster = np.searchsorted(mobility_map.offsets, rows, side="right") - 1
+    least = np.full(mobility_map.n_clusters, durations.max())
+    np.minimum.at(least, cluster, durations)
+    shortest = durations == least[cluster]
+    short, cluster = rows[shortest], cluster[shortest]
+    seconds = least[cluster] * FRAME_SECONDS
+    x, y = mobility_map.end_points[short].astype(np.float64).T
+    turn = mobility_map.end_headings[short].astype(np.float64)
+    parts = [Parts(rows, np.ones(len(rows)), mobility_map.end_clusters[rows].astype(np.int64))]
+    for share in shares:
+        # Cells shrink with the steps, or those to the side and back would be lost among others.
+        cells = [x / CELL[0], y / CELL[1]] if share > 0.0 else []
+        cells = [np.floor(each + 0.5) for each in (*cells, turn / CELL[2])]
+        order = np.lexsort((short, mobility_map.costs[short], *cells, cluster))
+        key = np.column_stack([cluster, *cells])[order]
+        kept = np.sort(order[np.append(True, (np.diff(key, axis=0) != 0).any(axis=1))])
+        stands = (share * np.hypot(x, y) < STANDING_SPEED * seconds) & (
+            (share * abs(turn) < STANDING_TURN_RATE * seconds) | (share == 0.0)
+        )
+        ends_in = np.where(stands, mobility_map.standing, mobility_map.end_clusters[short])
+        parts.append(Parts(short[kept], np.full(len(kept), share), ends_in[kept].astype(np.int64)))
+    return Parts(*(np.concatenate(each) for each in zip(*parts, strict=True)))

@@ -1,0 +1,1 @@
+"""One decision, and all decisions of a frame."""

@@ -1,0 +1,126 @@
+"""Candidates of a batch of pedestrians, laid out from the crowd's arrays."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
+from mesa_mobility.crowd.planning.grid import Grid, people_within
+from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.state.records import Crowd, CrowdState
+
+
+def pairs_of(
+    rows: NDArray[np.int64], table: OptionTable, state: Crowd, grid: Grid, rules: Rules
+) -> NDArray[np.int64]:
+    """(len(rows),) options of each pedestrian times its neighbours: the size of its pair arrays."""
+    clusters = state.cluster[rows]
+    counts = table.offsets[clusters + 1] - table.offsets[clusters]
+    offsets, _ = _all_neighbours(rows, grid, state.x, state.y, rules.search_radius)
+    return counts * np.maximum(np.diff(offsets), 1)
+
+
+def make_candidates(
+    rows: NDArray[np.int64],
+    table: OptionTable,
+    state: Crowd,
+    grid: Grid,
+    rules: Rules,
+) -> Candidates:
+    """The options and neighbours of the pedestrians in ``rows``."""
+    clusters = state.cluster[rows]
+    counts = table.offsets[clusters + 1] - table.offsets[clusters]
+    offsets = np.concatenate([[0], np.cumsum(counts)])
+    owner = np.repeat(np.arange(len(rows), dtype=np.int64), counts)
+    options = (
+        np.arange(offsets[-1], dtype=np.int64) - offsets[owner] + table.offsets[clusters][owner]
+    )
+    x, y, heading = _lay_ends(rows, owner, options, table, state.records)
+    neighbour_offsets, neighbours = _all_neighbours(
+        rows, grid, state.x, state.y, rules.search_radius
+    )
+    durations = table.options.frames[options] * FRAME_SECONDS
+    speeds = table.options.speed[options].astype(np.float64)
+    return Candidates(
+        points=np.column_stack([x, y]),
+        headings=heading,
+        displacements=speeds * durations,
+        durations=durations,
+        speeds=speeds,
+        options=options - rules.first_option[state.type_index[rows]][owner],
+        owner=owner,
+        offsets=offsets,
+        pedestrians=rows.copy(),
+        positions=np.column_stack([state.x[rows], state.y[rows]]),
+        facings=state.heading[rows],
+        targets=np.column_stack([state.target_x[rows], state.target_y[rows]]),
+        preferred_speeds=np.where(np.isfinite(state.route[rows]), state.preferred[rows], 0.0),
+        types=state.type_index[rows].astype(np.int64),
+        neighbour_offsets=neighbour_offsets,
+        neighbours=neighbours,
+        neighbour_positions=np.column_stack([state.x[neighbours], state.y[neighbours]]),
+        neighbour_velocities=np.column_stack([state.vx[neighbours], state.vy[neighbours]]),
+        neighbour_directions=_directions(neighbours, state),
+        leads=_leads(np.repeat(rows, np.diff(neighbour_offsets)), neighbours, state),
+    )
+
+
+def _directions(rows: NDArray[np.int64], state: Crowd) -> NDArray[np.float64]:
+    to = np.column_stack(
+        [state.target_x[rows] - state.x[rows], state.target_y[rows] - state.y[rows]]
+    )
+    away = np.sqrt((to**2).sum(axis=1))[:, None]
+    return np.divide(to, away, out=np.zeros_like(to), where=away > 0.0)
+
+
+def _leads(
+    rows: NDArray[np.int64], neighbours: NDArray[np.int64], state: Crowd
+) -> NDArray[np.float64]:
+    with np.errstate(invalid="ignore"):  # neither has a way
+        return state.route[rows] - state.route[neighbours]
+
+
+@kept()
+def _lay_ends(
+    rows: NDArray[np.int64],
+    owner: NDArray[np.int64],
+    options: NDArray[np.int64],
+    table: OptionTable,
+    state: CrowdState,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    n = len(options)
+    x, y, heading = np.empty(n), np.empty(n), np.empty(n)
+    for k in range(n):
+        i, o = rows[owner[k]], options[k]
+        option = table.options[o]
+        c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+        x[k] = state.x[i] + c * option.x - s * option.y
+        y[k] = state.y[i] + s * option.x + c * option.y
+        heading[k] = state.heading[i] + table.heading[o]
+    return x, y, heading
+
+
+@kept()
+def _all_neighbours(
+    rows: NDArray[np.int64],
+    grid: Grid,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    radius: float,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    found = np.empty(len(grid.people), np.int64)
+    offsets = np.zeros(len(rows) + 1, np.int64)
+    for d in range(len(rows)):
+        offsets[d + 1] = offsets[d] + people_within(
+            grid, x[rows[d]], y[rows[d]], rows[d], radius, found
+        )
+    everyone = np.empty(offsets[-1], np.int64)
+    for d in range(len(rows)):
+        count = people_within(grid, x[rows[d]], y[rows[d]], rows[d], radius, found)
+        everyone[offsets[d] : offsets[d + 1]] = grid.people[found[:count]]
+    return offsets, everyone

@@ -1,0 +1,234 @@
+"""The decision: a pedestrian takes the cheapest option that hits nothing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import entry_point, inlined
+from mesa_mobility.compiled.intrinsics import store_release, take_number
+from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
+from mesa_mobility.crowd.collision.broad_phase import cull_groups
+from mesa_mobility.crowd.collision.exact import exit_distance, near_walls
+from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
+from mesa_mobility.crowd.collision.walls import walls_to_ego
+from mesa_mobility.crowd.costs.layout import LEAD
+from mesa_mobility.crowd.options.option_groups import OptionGroups
+from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.planning.branch_and_bound import (
+    CROWD,
+    FEW,
+    NONE,
+    NOT_A_NUMBER,
+    cheapest_free,
+)
+from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
+from mesa_mobility.crowd.planning.grid import Grid, cover_in, neighbours_within, place_in
+from mesa_mobility.crowd.planning.neighbour_costs import (
+    fill_lane,
+    least,
+    mark_relevant,
+    select_relevant,
+)
+from mesa_mobility.crowd.planning.option_costs import Terms, group_bounds
+from mesa_mobility.crowd.planning.work_queue import Queue, await_neighbours
+from mesa_mobility.crowd.planning.workspace import DecisionContext, Rules, Workspace
+from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
+from mesa_mobility.crowd.state.paths import commit, to_world
+from mesa_mobility.crowd.state.records import CrowdState
+
+
+@entry_point()
+def decide(
+    rows: NDArray[np.int64],
+    queue: Queue,
+    frame: int,
+    table: OptionTable,
+    groups: OptionGroups,
+    state: CrowdState,
+    grid: Grid,
+    around: Surroundings,
+    terms: Terms,
+    extra: NDArray[np.float64],
+    extra_offsets: NDArray[np.int64],
+    rules: Rules,
+    moving: NDArray[np.float64],
+    work: Workspace,
+) -> int:
+    """Decide for the pedestrians in ``rows``, one after the other, and commit them.
+
+    Costs see the crowd as it was when the frame began; collisions see what
+    those before have committed to.  Several threads may share the work: each takes the next
+    pedestrian, and waits for undecided predecessors within its search radius.
+
+    Args:
+        rows: pedestrians, in the order in which they decide.
+        queue: shared by all threads, new.
+        frame: now.
+        table: options of all capabilities.
+        groups: these options in groups, with the extent of each.
+        state: the crowd; targets must be set.
+        grid: grid of people in this frame.
+        around: walls and exits.
+        terms: compiled terms.
+        extra: weighted costs of the NumPy terms, options of each pedestrian in turn, or
+            empty.
+        extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
+        rules: the model's constants.
+        moving: (8, people) in the order of the grid.  Velocities, directions and route lengths
+            are those at the beginning of the frame, also of those who have just decided.  The
+            circles that people cover are kept up to date.
+        work: workspace of this thread.
+
+    Returns:
+        Index in ``rows`` of a pedestrian for whom a cost was not a number, or ``len(rows)``.  The
+        least over all threads is the first such pedestrian.
+    """
+    has_negative_pairs = least(terms.pair_weight) < 0.0
+    bounded = len(extra) == 0 and not has_negative_pairs
+    for address in terms.bound_address:
+        bounded = bounded and address != 0
+    n = len(rows)
+    before = np.int64(0)
+    while True:
+        d = take_number(queue.next, 0)
+        if d >= n:
+            return n
+        before = await_neighbours(d, before, rows, queue, state, rules.search_radius)
+        own_extra = extra
+        if len(extra) > 0:
+            own_extra = extra[extra_offsets[d] : extra_offsets[d + 1]]
+        fine = _decide_one(
+            rows[d], frame, table, groups, state, grid, around, terms, own_extra, rules, moving,
+            has_negative_pairs, bounded, work,
+        )  # fmt: skip
+        store_release(queue.done, d, 1)
+        if not fine:
+            store_release(queue.next, 0, n)
+            return d
+
+
+@inlined()
+def _decide_one(
+    i: int,
+    frame: int,
+    table: OptionTable,
+    groups: OptionGroups,
+    state: CrowdState,
+    grid: Grid,
+    around: Surroundings,
+    terms: Terms,
+    extra: NDArray[np.float64],
+    rules: Rules,
+    moving: NDArray[np.float64],
+    has_negative_pairs: bool,
+    bounded: bool,
+    work: Workspace,
+) -> bool:
+    """Decide for pedestrian i and commit it; False if a cost is not a number."""
+    cluster, destination = state.cluster[i], state.destination[i]
+    x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
+    me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core)
+    others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
+    count = neighbours_within(
+        grid, moving, x, y, place, rules.search_radius, work.near, others, sweeps
+    )
+    near = work.near[:count]
+    route, lead = state.route[i], others[LEAD]
+    for a in range(count):
+        lead[a] = route - lead[a]
+    fill_lane(count, others)
+    farthest = table.farthest[cluster]
+    walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
+    n_clear_walls = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
+    exits_from = exit_distance(around, x, y, destination)
+    # The box that the options and the fallback can reach.
+    aside = state.preferred[i] * FALLBACK_SECONDS
+    spanned = groups.clusters[cluster]
+    whole = spanned.whole
+    found, touching = broad_phase_neighbours(
+        me, near if rules.hard_bodies else near[:0], sweeps, min(whole[0], -aside),
+        min(whole[1], -aside), max(whole[2], aside), max(whole[3], aside), state, work.unsure,
+        work.dropped, work.close,
+    )  # fmt: skip
+    n = cull_groups(
+        me, frame, work.close, found, work.barriers, n_clear_walls, exits_from, table, groups,
+        state, work.bodies, work.fences, work.blocked,
+    )  # fmt: skip
+    option, gone = NONE, -1
+    if n > 0:
+        first, last = spanned.first, spanned.last
+        bounds, dropped = work.bounds[: last - first], work.blocked
+        bounds[:] = 0.0
+        if bounded:
+            group_bounds(me, first, last, groups, state, terms, work.ends, bounds)
+        bad = 0
+        for a in range(len(bounds)):
+            bad |= int(dropped[a] == 0) & int(not abs(bounds[a]) < np.inf)
+            bounds[a] = np.inf if dropped[a] != 0 else bounds[a]
+        if bad != 0:
+            return False
+        # Padding: bounds are read this many at a time.
+        work.bounds[len(bounds) : len(bounds) + AT_ONCE] = np.inf
+        lowest = bounds[place_of_least(work.bounds, len(bounds))]
+        foremost = 0
+        if not has_negative_pairs and len(terms.pair_address) > 0:
+            foremost = select_relevant(
+                me, others, count, state, work.unsure, work.dropped, work.foremost
+            )
+        approximate = bounded and mark_relevant(
+            me, first, bounds, lowest, work.ends, groups, foremost, work.foremost, state, terms,
+            work.picked, work.marks,
+        )  # fmt: skip
+        ranked = bounded and n > FEW
+        # In a jam most people stay where they are, or nearly so.
+        stay = spanned.stay if foremost >= CROWD else -1
+        setting = DecisionContext(
+            frame,
+            n_clear_walls,
+            stay,
+            found,
+            touching,
+            count,
+            foremost,
+            approximate,
+            exits_from,
+            has_negative_pairs,
+            ranked,
+        )
+        option, gone = cheapest_free(
+            me, setting, first, bounds, lowest, walls, extra, rules.hard_bodies, table, groups,
+            state, around, terms, work,
+        )  # fmt: skip
+        if option == NOT_A_NUMBER:
+            return False
+    state.decisions[i] += 1
+    if option >= 0:
+        pieces = to_world(i, option, me.c, me.s, table, state, work.path)
+        commit(
+            i,
+            option,
+            frame,
+            pieces,
+            np.int64(SAMPLE_FRAMES),
+            gone,
+            np.int32(table.options[option].cluster),
+            work.path,
+            state,
+        )
+    else:
+        standing = rules.standing[state.type_index[i]]
+        people, near = work.close.people, work.unsure
+        for a in range(found):
+            near[a] = people[a].who
+        for a in range(touching, len(people)):
+            near[found] = people[a].who
+            found += 1
+        fall_back(
+            i, frame, table, state, walls, around, near[:found], exits_from <= farthest,
+            rules.hard_bodies, standing, work.path,
+        )  # fmt: skip
+    cover_in(moving, place, i, state)
+    return True

@@ -1,0 +1,201 @@
+"""Why a pedestrian moves as it does: one decision, option by option.
+
+Costs come from the terms themselves and verdicts from the engine's own tests, so an explanation
+shows what the decision sees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.collision.exact import exit_distance, near_walls
+from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
+from mesa_mobility.crowd.planning.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
+from mesa_mobility.crowd.planning.grid import Grid
+from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.state.environment import Surroundings
+from mesa_mobility.crowd.state.paths import to_world
+from mesa_mobility.crowd.state.records import Crowd, CrowdState
+
+FREE, WALL, PERSON = 0, 1, 2
+"""Verdicts on an option: it hits nothing, a wall, or a person."""
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """One decision of one pedestrian; its n options are those of ``candidates``.
+
+    Attributes:
+        pedestrian: row in the crowd.
+        frame: when it was or would be taken.
+        taken: whether it was taken; if not, it is the decision that would be taken.
+        cluster: cluster of the pose it decides from, in the map of its type.
+        candidates: its options, of a batch of one.
+        terms: names of the terms.
+        weights: (terms,) their factors in the sum.
+        costs: (terms, n) cost of each option, without the weights.
+        verdicts: (n,) ``FREE``, ``WALL`` or ``PERSON``.
+        blockers: (n,) row of the person in the way, or -1.
+        paths: (n, 3, 16) x, y, heading in the world every 3 frames, from the start on.
+        knots: (n,) number of valid samples of each path; beyond them the end is repeated.
+        neighbour_ends: (q, 2) ends of the neighbours' committed movements, metres.
+        chosen: index of the option taken, or -1 for the fallback.
+    """
+
+    pedestrian: int
+    frame: int
+    taken: bool
+    cluster: int
+    candidates: Candidates
+    terms: tuple[str, ...]
+    weights: NDArray[np.float64]
+    costs: NDArray[np.float64]
+    verdicts: NDArray[np.int8]
+    blockers: NDArray[np.int64]
+    paths: NDArray[np.float64]
+    knots: NDArray[np.int64]
+    neighbour_ends: NDArray[np.float64]
+    chosen: int
+
+    @property
+    def totals(self) -> NDArray[np.float64]:
+        """(n,) cost of each option: the weighted sum of the terms."""
+        totals: NDArray[np.float64] = self.weights @ self.costs
+        return totals
+
+
+@dataclass
+class Watch:
+    """Keeps the last decision of one pedestrian, as it was taken.
+
+    Attributes:
+        pedestrian: row in the crowd.
+        decision: its last decision since it was watched, if any.
+    """
+
+    pedestrian: int
+    decision: Explanation | None = field(default=None, init=False)
+
+    def commits(self, crowd: Crowd, first_option: NDArray[np.int64]) -> None:
+        """Note which option the engine has committed the pedestrian to."""
+        if self.decision is not None:
+            option = int(crowd.option[self.pedestrian])
+            option -= int(first_option[crowd.type_index[self.pedestrian]])
+            at = np.flatnonzero(self.decision.candidates.options == option)
+            self.decision = replace(self.decision, taken=True, chosen=int(at[0]) if len(at) else -1)
+
+
+def weigh(
+    row: int,
+    frame: int,
+    table: OptionTable,
+    crowd: Crowd,
+    grid: Grid,
+    rules: Rules,
+    first_cluster: int,
+    terms: Sequence[CostTerm],
+) -> Explanation:
+    """What the options of the pedestrian in ``row`` cost; whether they are free is still open."""
+    candidates = make_candidates(np.array([row], dtype=np.int64), table, crowd, grid, rules)
+    n = len(candidates)
+    costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
+    return Explanation(
+        pedestrian=row,
+        frame=frame,
+        taken=False,
+        cluster=int(crowd.cluster[row]) - first_cluster,
+        candidates=candidates,
+        terms=tuple(term.name for term in terms),
+        weights=np.array([term.weight for term in terms]),
+        costs=np.array(costs).reshape(len(costs), n),
+        verdicts=np.zeros(n, dtype=np.int8),
+        blockers=np.full(n, -1, dtype=np.int64),
+        paths=np.empty((n, 3, SAMPLES)),
+        knots=np.empty(n, dtype=np.int64),
+        neighbour_ends=candidates.neighbour_positions,
+        chosen=-1,
+    )
+
+
+def judge(
+    weighed: Explanation,
+    table: OptionTable,
+    crowd: Crowd,
+    around: Surroundings,
+    rules: Rules,
+) -> Explanation:
+    """The same with verdicts, against walls and everybody's committed movement."""
+    row = weighed.pedestrian
+    options = weighed.candidates.options + rules.first_option[crowd.type_index[row]]
+    near = weighed.candidates.neighbours
+    verdicts, blockers = weighed.verdicts.copy(), weighed.blockers.copy()
+    walls = np.empty((len(around.segments) + len(around.exits), 5))
+    _judge(
+        row, options, weighed.frame, table, crowd.records, around, near, rules.hard_bodies,
+        walls, weighed.paths, weighed.knots, verdicts, blockers,
+    )  # fmt: skip
+    totals = np.where(verdicts == FREE, weighed.totals, np.inf)
+    # The cheapest; of several the one that turns least.
+    order = np.lexsort((np.abs(table.heading[options]), totals))
+    return replace(
+        weighed,
+        verdicts=verdicts,
+        blockers=blockers,
+        neighbour_ends=np.column_stack([crowd.to_x[near], crowd.to_y[near]]),
+        chosen=int(order[0]) if (verdicts == FREE).any() else -1,
+    )
+
+
+@entry_point()
+def _judge(
+    i: int,
+    options: NDArray[np.int64],
+    frame: int,
+    table: OptionTable,
+    state: CrowdState,
+    around: Surroundings,
+    near: NDArray[np.int64],
+    hard_bodies: bool,
+    walls: NDArray[np.float64],
+    paths: NDArray[np.float64],
+    knots: NDArray[np.int64],
+    verdicts: NDArray[np.int8],
+    blockers: NDArray[np.int64],
+) -> None:
+    x, y, destination = state.x[i], state.y[i], state.destination[i]
+    farthest = table.farthest[state.cluster[i]]
+    count = near_walls(around, x, y, destination, farthest + state.core[i] + 0.01, walls)
+    exits_from = exit_distance(around, x, y, destination)
+    spacing = np.int64(SAMPLE_FRAMES)
+    c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+    for k in range(len(options)):
+        o = options[k]
+        pieces = to_world(i, o, c, s, table, state, paths[k])
+        knots[k] = pieces + 1
+        reach = np.float64(table.options[o].reach)
+        exits_near = reach >= exits_from
+        gone = path_gone_or_blocked(
+            i, paths[k], pieces, spacing, reach, frame, table, state, walls[:count], around, near,
+            exits_near, hard_bodies,
+        )  # fmt: skip
+        if gone >= -1:
+            continue
+        verdicts[k] = WALL if gone == -3 else PERSON
+        if gone == -2:
+            for a in range(len(near)):
+                alone = path_gone_or_blocked(
+                    i, paths[k], pieces, spacing, reach, frame, table, state, walls[:count], around,
+                    near[a : a + 1], exits_near, hard_bodies,
+                )  # fmt: skip
+                if alone == -2:
+                    blockers[k] = near[a]
+                    break

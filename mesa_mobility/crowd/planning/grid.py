@@ -1,0 +1,213 @@
+"""Neighbours: a uniform grid over the crowd, rebuilt for each frame that has decisions."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import entry_point, force_inlined, internal, kept
+from mesa_mobility.compiled.simd import LANES, bits_set, compress
+from mesa_mobility.compiled.threads import by_blocks
+from mesa_mobility.crowd.collision.simd_tests import places_near
+from mesa_mobility.crowd.state.records import CrowdState
+
+CELL_SIZE = 1.5
+"""Side of a cell, metres, unless there would be too many."""
+
+MOST_CELLS = 1 << 18
+"""Most cells for a few people, who get larger cells when they are far apart: memory grows with
+people, not with area."""
+
+CELLS_A_PERSON = 8
+"""Most cells a person for many people."""
+
+COVERED = 5
+"""First of the rows of ``headways`` with the circle that people cover: x, y, radius.  Cost terms
+get the rows before, in addition to positions."""
+
+
+class Grid(NamedTuple):
+    """People by cell: cell c holds ``people[offsets[c]:offsets[c + 1]]``, in order of row.
+
+    Their ``x`` and ``y`` are copied in the same order, to be read in sequence.  ``size`` is the
+    side of a cell, metres.
+    """
+
+    x0: float
+    y0: float
+    nx: int
+    ny: int
+    size: float
+    offsets: NDArray[np.int64]
+    people: NDArray[np.int64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+
+
+@kept()
+def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.float64]) -> Grid:
+    """Sort the people in rows ``active`` of ``x`` and ``y`` into cells (counting sort)."""
+    x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
+    for i in active:
+        x0, x1 = min(x0, x[i]), max(x1, x[i])
+        y0, y1 = min(y0, y[i]), max(y1, y[i])
+    if len(active) == 0:
+        x0, y0, x1, y1 = 0.0, 0.0, 0.0, 0.0
+    size = CELL_SIZE
+    most = float(max(MOST_CELLS, CELLS_A_PERSON * len(active)))
+    while ((x1 - x0) / size + 1.0) * ((y1 - y0) / size + 1.0) > most:
+        size *= 2.0
+    nx = int((x1 - x0) / size) + 1
+    ny = int((y1 - y0) / size) + 1
+    offsets = np.zeros(nx * ny + 1, np.int64)
+    cell = np.empty(len(active), np.int64)
+    for a, i in enumerate(active):
+        cell[a] = int((y[i] - y0) / size) * nx + int((x[i] - x0) / size)
+        offsets[cell[a] + 1] += 1
+    for c in range(nx * ny):
+        offsets[c + 1] += offsets[c]
+    fill = offsets[:-1].copy()
+    # Padded, so that the last ones can be read 8 at a time.
+    n = len(active)
+    people = np.empty(n + LANES, np.int64)[:n]
+    their_x, their_y = np.empty(n + LANES)[:n], np.empty(n + LANES)[:n]
+    for a, i in enumerate(active):
+        at = fill[cell[a]]
+        people[at], their_x[at], their_y[at] = i, x[i], y[i]
+        fill[cell[a]] += 1
+    return Grid(x0, y0, nx, ny, size, offsets, people, their_x, their_y)
+
+
+@internal()
+def cover_in(moving: NDArray[np.float64], at: int, i: int, state: CrowdState) -> None:
+    """Write the circle that the path of pedestrian i, at index ``at`` of the grid, covers."""
+    x0, y0, x1, y1 = state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3]
+    moving[COVERED, at], moving[COVERED + 1, at] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+    radius = 0.5 * math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))
+    moving[COVERED + 2, at] = radius + state.core[i]
+
+
+def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
+    """(8, n) motion of the people in a grid, in its order.
+
+    Velocity in m/s, unit vector to the target (0, 0 at the target), route length in metres; x, y
+    and radius of a circle around their path, the body included. Beyond the last there is room to
+    read 8 values.
+    """
+    rows, n = COVERED + 3, len(grid.people)
+    found = np.empty(rows * n + LANES)[: rows * n].reshape(rows, n)
+
+    def block(first: int, last: int) -> None:
+        _write_headways(grid, state, first, last, found)
+
+    by_blocks(block, n)
+    return found
+
+
+@entry_point()
+def _write_headways(
+    grid: Grid, state: CrowdState, first: int, last: int, found: NDArray[np.float64]
+) -> None:
+    """Write ``headways`` of the people at indices ``first`` to ``last`` of the grid."""
+    for a in range(first, last):
+        i = grid.people[a]
+        found[0, a], found[1, a] = state.vx[i], state.vy[i]
+        dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
+        away = math.sqrt(dx * dx + dy * dy)
+        found[2, a], found[3, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
+        found[4, a] = state.route[i]
+        cover_in(found, a, i, state)
+
+
+@internal()
+def _cells_within(grid: Grid, px: float, py: float, radius: float) -> tuple[int, int, int, int]:
+    """First and last column, first and last row of cells within ``radius`` of (px, py).
+
+    If there are none, the first number is greater than the last.
+    """
+    return (
+        max(int((px - radius - grid.x0) / grid.size), 0),
+        min(int((px + radius - grid.x0) / grid.size), grid.nx - 1),
+        max(int((py - radius - grid.y0) / grid.size), 0),
+        min(int((py + radius - grid.y0) / grid.size), grid.ny - 1),
+    )
+
+
+@force_inlined()
+def people_within(
+    grid: Grid, px: float, py: float, but: int, radius: float, found: NDArray[np.int64]
+) -> int:
+    """Write the grid indices of people within ``radius`` of (px, py), except for ``but``.
+
+    ``found`` must have room for everybody: there is no cap on neighbours.  Returns their number.
+    """
+    cx0, cx1, cy0, cy1 = _cells_within(grid, px, py, radius)
+    count = 0
+    if cx0 > cx1:  # beyond the last column; beyond the last row the loop is empty
+        return count
+    for cy in range(cy0, cy1 + 1):
+        for a in range(grid.offsets[cy * grid.nx + cx0], grid.offsets[cy * grid.nx + cx1 + 1]):
+            dx, dy = grid.x[a] - px, grid.y[a] - py
+            found[count] = a
+            count += int(dx * dx + dy * dy <= radius * radius and grid.people[a] != but)
+    return count
+
+
+@force_inlined()
+def neighbours_within(
+    grid: Grid,
+    moving: NDArray[np.float64],
+    px: float,
+    py: float,
+    own: int,
+    radius: float,
+    near: NDArray[np.int64],
+    others: NDArray[np.float64],
+    sweeps: NDArray[np.float64],
+) -> int:
+    """Copy the data of people within ``radius`` of (px, py), except for the one at index ``own``.
+
+    They are those that ``people_within`` finds, read 8 at a time.
+
+    Args:
+        grid: the people.
+        moving: (8, people) as of ``headways``.
+        px, py: metres.
+        own: grid index of the person left out.
+        radius: metres.
+        near: gets their rows.
+        others: gets the rows that cost terms read.
+        sweeps: gets the circles around their paths.
+
+    Returns:
+        Their number; each array must have room for everybody and 8 more.
+    """
+    cx0, cx1, cy0, cy1 = _cells_within(grid, px, py, radius)
+    count = 0
+    for cy in range(cy0, cy1 + 1):
+        last = grid.offsets[cy * grid.nx + cx1 + 1]
+        for at in range(grid.offsets[cy * grid.nx + cx0], last, LANES):
+            bits = places_near(grid.x, grid.y, at, px, py, radius)
+            bits &= (1 << min(last - at, LANES)) - 1
+            if at <= own < at + LANES:
+                bits &= ~(1 << (own - at))
+            compress(grid.x, 0, at, bits, others, 0, count, 1)
+            compress(grid.y, 0, at, bits, others, 1, count, 1)
+            compress(moving, 0, at, bits, others, 2, count, COVERED)
+            compress(moving, COVERED, at, bits, sweeps, 0, count, 3)
+            compress(grid.people, 0, at, bits, near, 0, count, 1)
+            count += bits_set(bits)
+    return count
+
+
+@internal()
+def place_in(grid: Grid, x: float, y: float, who: int) -> int:
+    """Grid index of pedestrian ``who``, who is at (x, y)."""
+    cell = int((y - grid.y0) / grid.size) * grid.nx + int((x - grid.x0) / grid.size)
+    a = grid.offsets[cell]
+    while grid.people[a] != who:
+        a += 1
+    return int(a)

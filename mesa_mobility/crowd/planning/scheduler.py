@@ -1,0 +1,157 @@
+"""The decisions of a frame, for everybody whose movement has ended."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from copy import copy, deepcopy
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import Entry
+from mesa_mobility.compiled.threads import in_threads, threads_for
+from mesa_mobility.compiled.twins import PLAIN
+from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.planning.decision import decide
+from mesa_mobility.crowd.planning.explanation import Explanation, Watch, judge, weigh
+from mesa_mobility.crowd.planning.grid import Grid, build_grid, headways
+from mesa_mobility.crowd.planning.term_table import NO_EXTRA, CompiledTerms, extra_costs
+from mesa_mobility.crowd.planning.work_queue import new_queue
+from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
+from mesa_mobility.crowd.state.environment import Surroundings
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.errors import ModelError
+
+
+class DecisionScheduler:
+    """Takes the decisions of each frame.
+
+    Args:
+        repertoire: options of all pedestrian types.
+        rules: the model's constants.
+        least_core: smallest core radius in the crowd, metres.
+    """
+
+    def __init__(self, repertoire: Repertoire, rules: Rules, least_core: float) -> None:
+        self._repertoire = repertoire
+        self._rules = rules
+        # As many bodies as have room within the search radius.
+        room = (rules.search_radius / least_core + 1.0) ** 2
+        self._most_near = int(room) + 1 if rules.hard_bodies else sys.maxsize
+        self._make_room()
+
+    def _make_room(self) -> None:
+        self._compiled = CompiledTerms()
+        self._works: list[Workspace] = []
+        self._decide = Entry(decide)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> DecisionScheduler:
+        """A copy with workspaces of its own."""
+        other = copy(self)
+        other._rules = deepcopy(self._rules, memo)
+        other._make_room()
+        return other
+
+    def take(
+        self,
+        order: NDArray[np.int64],
+        frame: int,
+        rows: NDArray[np.int64],
+        crowd: Crowd,
+        around: Surroundings,
+        terms: Sequence[CostTerm],
+        watch: Watch | None = None,
+    ) -> None:
+        """Decide for the pedestrians in ``order``, one after the other, and commit them.
+
+        Args:
+            order: who decides, those first who go first.
+            frame: now.
+            rows: everybody inside.
+            crowd: the crowd; targets must be set.
+            around: walls and exits.
+            terms: cost terms.
+            watch: gets the decision of the pedestrian that it watches.
+
+        Raises:
+            ModelError: a cost is not a number, or a term does not give one for each option.
+        """
+        table, groups = self._repertoire.table, self._repertoire.groups
+        compiled, others = self._compiled(terms)
+        extra, extra_offsets = NO_EXTRA
+        grid = build_grid(rows, crowd.x, crowd.y)
+        if others:
+            extra, extra_offsets = extra_costs(others, order, table, crowd, grid, self._rules)
+        moving = headways(grid, crowd.records)
+        threads = 1 if PLAIN else threads_for(len(order))
+        works = self._works_for(threads, len(rows), around, len(terms))
+
+        def part(first: int, last: int) -> None:
+            people, offsets = order[first:last], extra_offsets[first : last + 1]
+            queue = new_queue(len(people))
+
+            def work_off(work: Workspace) -> int:
+                place: int = self._decide(
+                    people, queue, frame, table, groups, crowd.records, grid, around, compiled,
+                    extra, offsets, self._rules, moving, work,
+                )  # fmt: skip
+                return place
+
+            failed = min(in_threads(work_off, works))
+            if failed < len(people):
+                names = ", ".join(term.name for term in terms)
+                raise ModelError(
+                    f"cost of an option of pedestrian {people[failed]}: not a number, expected "
+                    f"finite numbers from each of the behaviours {names}"
+                )
+
+        if watch is None or watch.pedestrian not in order:
+            part(0, len(order))
+            return
+        # Costs see the crowd as it is before anybody decides, collisions what those before have
+        # committed to. To decide in two parts changes nothing.
+        weighed = self.weigh(watch.pedestrian, frame, grid, crowd, terms)
+        at = int(np.flatnonzero(order == watch.pedestrian)[0])
+        if at > 0:
+            part(0, at)
+        watch.decision = self.judge(weighed, crowd, around)
+        part(at, len(order))
+        watch.commits(crowd, self._rules.first_option)
+
+    def weigh(
+        self, row: int, frame: int, grid: Grid, crowd: Crowd, terms: Sequence[CostTerm]
+    ) -> Explanation:
+        """What the options of the pedestrian in ``row`` cost; see ``explain.weigh``."""
+        first_cluster = int(self._repertoire.first_cluster[crowd.type_index[row]])
+        table = self._repertoire.table
+        return weigh(row, frame, table, crowd, grid, self._rules, first_cluster, terms)
+
+    def judge(self, weighed: Explanation, crowd: Crowd, around: Surroundings) -> Explanation:
+        """Which of these options hit something now; see ``explain.judge``."""
+        return judge(weighed, self._repertoire.table, crowd, around, self._rules)
+
+    def _works_for(
+        self, threads: int, people: int, around: Surroundings, terms: int
+    ) -> list[Workspace]:
+        """A workspace for each thread."""
+        walls = len(around.segments) + len(around.exits)
+        people = min(people, self._most_near)
+        works = self._works
+        if works and (
+            people > len(works[0].marks)
+            or walls > len(works[0].walls)
+            or terms > len(works[0].sums)
+        ):
+            works.clear()
+        while len(works) < threads:
+            if works:
+                people, walls = len(works[0].marks), len(works[0].walls)
+                terms = len(works[0].sums)
+            options = int(np.diff(self._repertoire.table.offsets).max())
+            clusters = self._repertoire.groups.clusters
+            most = int((clusters["last"] - clusters["first"]).max())
+            works.append(make_workspace(people, walls, options, most, terms))
+        return works[:threads]

@@ -1,0 +1,128 @@
+"""Cost terms as the search needs them: kernels in a table, NumPy terms as costs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.costs.kernels import PairKernel
+from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
+from mesa_mobility.crowd.options.table import OptionTable
+from mesa_mobility.crowd.planning.candidate_batch import make_candidates, pairs_of
+from mesa_mobility.crowd.planning.grid import Grid
+from mesa_mobility.crowd.planning.option_costs import Terms
+from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.plugin_output import numbers_given
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.errors import ModelError
+
+NO_EXTRA = np.empty(0), np.zeros(1, dtype=np.int64)
+"""What ``extra_costs`` returns without NumPy terms."""
+
+BATCH_PAIRS = 2_000_000
+"""Pairs of an option and a neighbour laid out at once for terms in NumPy; bounds memory."""
+
+
+def compile_terms(terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
+    """Split terms into a table of compiled terms and a list of the others."""
+    option: list[CompiledTerm] = []
+    pair: list[CompiledTerm] = []
+    others: list[CostTerm] = []
+    for term in terms:
+        if not isinstance(term, CompiledTerm):
+            others.append(term)
+        elif isinstance(term.kernel, PairKernel):
+            pair.append(term)
+        else:
+            option.append(term)
+    # A negative weight turns a lower bound into an upper one.
+    bounds = [term.bound if term.weight >= 0.0 else None for term in option]
+    bound_address = [0 if bound is None else bound.address for bound in bounds]
+    pairs_address = [
+        term.kernel.pairs_address for term in pair if isinstance(term.kernel, PairKernel)
+    ]
+    compiled = Terms(
+        np.array(bound_address, dtype=np.int64),
+        *_table(option),
+        *_table(pair),
+        np.array(pairs_address, dtype=np.int64),
+    )
+    return compiled, others
+
+
+class CompiledTerms:
+    """``compile_terms``, cached until a term, a weight or a parameter changes."""
+
+    def __init__(self) -> None:
+        self._terms: list[CostTerm] = []
+        self._compiled: list[CompiledTerm] = []
+        self._key: object = None
+
+    def __call__(self, terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
+        """The table of the compiled terms, and the others."""
+        if self._terms != terms:
+            self._terms, self._key = list(terms), None
+            self._compiled = [term for term in terms if isinstance(term, CompiledTerm)]
+        key = (
+            [term.weight for term in self._terms],
+            [term.parameters() for term in self._compiled],
+        )
+        if key != self._key:
+            self._key = key
+            self._now = compile_terms(terms)
+        return self._now
+
+
+def _table(
+    terms: Sequence[CompiledTerm],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    width = max([1] + [len(term.parameters()) for term in terms])
+    parameters = np.zeros((len(terms), width))
+    for row, term in enumerate(terms):
+        own = term.parameters()
+        parameters[row, : len(own)] = numbers_given(
+            f"behaviour {term.name!r}", "parameters", own, (len(own),)
+        )
+    addresses = np.array([term.kernel.address for term in terms], dtype=np.int64)
+    return addresses, np.array([term.weight for term in terms], dtype=np.float64), parameters
+
+
+def extra_costs(
+    terms: Sequence[CostTerm],
+    rows: NDArray[np.int64],
+    table: OptionTable,
+    state: Crowd,
+    grid: Grid,
+    rules: Rules,
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Weighted sum of terms in NumPy over all options of the pedestrians in ``rows``.
+
+    Returns:
+        The costs, options of each pedestrian in turn, and (len(rows) + 1,) the start of each one's
+        part.
+
+    Raises:
+        ModelError: a term gives the wrong number of costs, or values that are not numbers.
+    """
+    parts = []
+    counts = []
+    batch = np.cumsum(pairs_of(rows, table, state, grid, rules)) // BATCH_PAIRS
+    for part in np.split(rows, np.flatnonzero(np.diff(batch)) + 1):
+        candidates = make_candidates(part, table, state, grid, rules)
+        total = np.zeros(len(candidates))
+        for term in terms:
+            giver = f"behaviour {term.name!r}"
+            cost = numbers_given(giver, "costs", term.cost(candidates), total.shape)
+            if not np.isfinite(cost).all():
+                option = int(np.argmin(np.isfinite(cost)))
+                raise ModelError(
+                    f"{giver}: gave a cost of {cost[option]} for option {option} of {len(cost)}, "
+                    "expected finite numbers"
+                )
+            total += term.weight * cost
+        parts.append(total)
+        counts.append(np.diff(candidates.offsets))
+    offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
+    return np.concatenate(parts), offsets

@@ -1,0 +1,162 @@
+"""Context and scratch arrays of a decision."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.simd import AT_ONCE, LANES, WIDE
+from mesa_mobility.crowd.collision.broad_phase import Bodies, Fences
+from mesa_mobility.crowd.collision.sampled import Close, make_close
+from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS
+from mesa_mobility.crowd.costs.layout import COST, SPEED
+from mesa_mobility.crowd.options.table import LEVELS, SAMPLES
+
+
+class DecisionContext(NamedTuple):
+    """What the search knows about one decision.
+
+    Attributes:
+        frame: now.
+        n_clear_walls: walls in ``Workspace.barriers`` that do not touch the body.
+        stay: the group to test first, or -1.
+        found: number of people at the start of ``Workspace.close``.
+        touching: index of the first of those at its end, who touch the body already.
+        neighbours: number of columns of ``Workspace.others``.
+        foremost: number of columns of ``Workspace.foremost``.
+        approximate: whether bounds count marked neighbours only.
+        exits_from: metres to the nearest open exit.
+        has_negative_pairs: whether pair terms may be negative, so that every option needs them.
+        ranked: whether groups are opened in rising order of their bounds.
+    """
+
+    frame: int
+    n_clear_walls: int
+    stay: int
+    found: int
+    touching: int
+    neighbours: int
+    foremost: int
+    approximate: bool
+    exits_from: float
+    has_negative_pairs: bool
+    ranked: bool
+
+
+class Workspace(NamedTuple):
+    """Scratch arrays of one thread, reused from decision to decision.
+
+    Attributes:
+        near: rows of the neighbours.
+        unsure: rows of people left to the exact test.
+        others: the neighbours as pair terms see them; rows as in ``costs.layout``.
+        sweeps: (3, n) circles around their paths.
+        foremost: the neighbours who are likely to cost most.
+        marks: for each of ``foremost``, bits of the pair terms that it matters to.
+        some: the marked columns of ``foremost``.
+        dropped: by neighbour, whether it is out of reach.
+        close: neighbours who may come in the way.
+        bodies: their positions at each level of time.
+        fences: the walls at each level.
+        walls: walls in reach.
+        barriers: the same in the pedestrian's coordinates.
+        bounds: lower bound of the cost of each group.
+        blocked: groups that certainly hit something.
+        picked: groups just opened.
+        free: bits of their options that hit nobody in the sampled test.
+        lanes: ends of the 8 options of each group.
+        lane_costs: their costs.
+        rows: for each open option, its row in the table.
+        ends: its end.
+        costs: its cost without pair terms.
+        least: lower bound of its whole cost.
+        approximate: whether the bound can still be raised.
+        sums: cost by pair term.
+        most_selective_term: the pair term to evaluate first.
+        path: one path.
+    """
+
+    near: NDArray[np.int64]
+    unsure: NDArray[np.int64]
+    others: NDArray[np.float64]
+    sweeps: NDArray[np.float64]
+    foremost: NDArray[np.float64]
+    marks: NDArray[np.int64]
+    some: NDArray[np.float64]
+    dropped: NDArray[np.int32]
+    close: Close
+    bodies: Bodies
+    fences: Fences
+    walls: NDArray[np.float64]
+    barriers: NDArray[np.float32]
+    bounds: NDArray[np.float64]
+    blocked: NDArray[np.int32]
+    picked: NDArray[np.int64]
+    free: NDArray[np.int64]
+    lanes: NDArray[np.float64]
+    lane_costs: NDArray[np.float64]
+    rows: NDArray[np.int64]
+    ends: NDArray[np.float64]
+    costs: NDArray[np.float64]
+    least: NDArray[np.float64]
+    approximate: NDArray[np.bool_]
+    sums: NDArray[np.float64]
+    most_selective_term: NDArray[np.int64]
+    path: NDArray[np.float64]
+
+
+def make_workspace(people: int, walls: int, options: int, groups: int, terms: int) -> Workspace:
+    """Arrays for given numbers of people, nearby walls, options, groups of a cluster, and terms."""
+    lanes = LANES * groups
+    return Workspace(
+        near=np.empty(people + LANES, np.int64),
+        unsure=np.empty(people, np.int64),
+        others=np.empty((COST + 1, people + LANES)),
+        sweeps=np.empty((3, people + LANES)),
+        foremost=np.empty((COST + 1, people + LANES)),
+        marks=np.empty(people, np.int64),
+        some=np.empty((COST + 1, people + LANES)),
+        dropped=np.empty(people, np.int32),
+        close=make_close(people),
+        bodies=Bodies(
+            np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people + 1), np.float32)
+        ),
+        fences=Fences(
+            np.empty(len(LEVELS), np.int64),
+            np.empty((len(LEVELS), BARRIER_FIELDS, walls), np.float32),
+        ),
+        walls=np.empty((walls, 5)),
+        barriers=np.empty((BARRIER_FIELDS, walls), np.float32),
+        bounds=np.empty(groups + AT_ONCE),
+        blocked=np.empty(groups + WIDE, np.int32),
+        picked=np.empty(groups + LANES, np.int64),
+        free=np.empty(groups, np.int64),
+        lanes=np.empty((SPEED + 1, lanes)),
+        lane_costs=np.empty(lanes),
+        rows=np.empty(options + LANES, np.int64),
+        ends=np.empty((SPEED + 1, options + LANES)),
+        costs=np.empty(options + LANES),
+        least=np.empty(options + AT_ONCE),
+        approximate=np.empty(options, np.bool_),
+        sums=np.empty(terms),
+        most_selective_term=np.zeros(1, np.int64),
+        path=np.empty((3, SAMPLES)),
+    )
+
+
+class Rules(NamedTuple):
+    """Constants of the model.
+
+    Attributes:
+        search_radius: radius in metres within which people are neighbours.
+        hard_bodies: whether bodies may not overlap.
+        standing: by pedestrian type, its standing cluster.
+        first_option: by pedestrian type, its first row in the table.
+    """
+
+    search_radius: float
+    hard_bodies: bool
+    standing: NDArray[np.int32]
+    first_option: NDArray[np.int64]

@@ -1,0 +1,139 @@
+"""Compiling decisions ahead, in another process.
+
+Numba compiles one function at a time, and decisions take as long as all other functions together.
+Another process that compiles them at the same time halves the wait at the first run after
+installation.  It leaves them in the cache on disk, where Numba finds them.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.threads import THREADS
+from mesa_mobility.crowd.options.option_groups import make_groups
+from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.options.table import OPTION, SAMPLES, OptionTable, boxes
+from mesa_mobility.crowd.planning.decision import decide
+from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
+from mesa_mobility.crowd.planning.term_table import compile_terms
+from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.crowd.state.advance import move, select_due
+from mesa_mobility.crowd.state.aggregates import aggregate, split_active
+from mesa_mobility.crowd.state.departed import merge, move_on, walk_on
+from mesa_mobility.crowd.state.environment import Surroundings
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.impatience import pick, turn
+from mesa_mobility.crowd.tactics.turns import find_mouths, give_turns
+from mesa_mobility.floorplan.routing.passages import Passages
+from mesa_mobility.interrupts import cleaning_up, deaf_children
+
+_COMMAND = """
+import gc
+gc.disable()
+from mesa_mobility.crowd.precompile import compile_decisions
+compile_decisions()
+"""
+
+
+@contextmanager
+def compiling_ahead() -> Iterator[None]:
+    """Compile decisions in another process, if necessary, while the block makes a model.
+
+    Everything else is compiled in this process after the block.
+    """
+    where = _cached_in()
+    if THREADS < 2 or where is None or any(where.glob("decision.decide-*.nbi")):
+        yield
+        return
+    with deaf_children():
+        other = _start()
+    try:
+        with cleaning_up(other.kill):
+            yield
+            compile_the_rest()
+            # If the other process fails, this one compiles what is missing.
+            other.wait()
+    finally:
+        other.kill()
+        other.wait()
+
+
+def _cached_in() -> Path | None:
+    """The folder of compiled decisions, or None if they are not kept."""
+    path = decide.stats.cache_path
+    return None if path is None else Path(path)
+
+
+def _start() -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        [sys.executable, "-c", _COMMAND], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+
+
+def compile_the_rest() -> None:
+    """Compile the rest that a run needs: movement, aggregates and cost terms."""
+    nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
+    select_due(nobody, 0, crowd.records, nobody)
+    move(nobody, 0, 1, _table(), crowd.records)
+    walk_on(nobody, 0, np.empty((0, 4)), np.empty((3, 2)), crowd.records)
+    move_on(nobody, 0, crowd.records)
+    merge(nobody, nobody, nobody)
+    pick(nothing, nobody, nothing)
+    turn(nobody, nothing, nothing, crowd.records)
+    aggregate(nobody, 0, crowd, np.empty((0, 2)))
+    split_active(nobody, crowd.records, nobody, nobody)
+    _compile_turns(nobody, crowd)
+    compile_terms(preset_named("default").make_terms())
+
+
+def _compile_turns(nobody: NDArray[np.int64], crowd: Crowd) -> None:
+    ends = np.zeros(1, dtype=np.int64)
+    passages = Passages(np.empty((0, 6)), ends, np.empty((0, 2)), ends, np.empty((0, 4)))
+    find_mouths(nobody, passages, crowd.records, crowd.agenda, np.empty((0, 2)))
+    allowed = np.empty(0, dtype=np.bool_)
+    give_turns(nobody, 0.0, passages, crowd.agenda, nobody, np.empty(0), allowed)
+
+
+def _table() -> OptionTable:
+    """A table of one option."""
+    return OptionTable(
+        offsets=np.array([0, 1], dtype=np.int64),
+        groups=np.zeros(1, dtype=np.int64),
+        farthest=np.zeros(1),
+        options=np.ones(1, dtype=OPTION).view(np.recarray),
+        heading=np.zeros(1, dtype=np.float32),
+        path=np.zeros((1, 3, SAMPLES), dtype=np.float32),
+    )
+
+
+def compile_decisions() -> None:
+    """Compile decisions by deciding for an empty crowd."""
+    table = _table()
+    around = Surroundings(
+        segments=np.empty((0, 4)),
+        x0=0.0,
+        y0=0.0,
+        nx=1,
+        ny=1,
+        size=1.0,
+        offsets=np.zeros(2, dtype=np.int64),
+        indices=np.empty(0, dtype=np.int32),
+        exits=np.empty((0, 4)),
+        leads_out=np.zeros((1, 0), dtype=np.bool_),
+    )
+    first = np.zeros(1, dtype=np.int64)
+    standing = np.zeros(1, dtype=np.int32)
+    repertoire = Repertoire(
+        (), table, make_groups(table, boxes(table.path)), standing, first, standing, 1.0, 1.0
+    )
+    decisions = DecisionScheduler(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
+    nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
+    decisions.take(nobody, 0, nobody, crowd, around, terms=[])

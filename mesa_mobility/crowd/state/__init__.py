@@ -1,0 +1,1 @@
+"""The crowd's records and what moves them."""

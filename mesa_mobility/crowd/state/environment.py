@@ -1,0 +1,276 @@
+"""The floor plan as the crowd needs it: walls, exits and routes, up to date with its changes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.state.corners import Corners
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan import FloorPlan, Router, Targets
+from mesa_mobility.floorplan.routing.route_nodes import NODE_SHARE
+from mesa_mobility.floorplan.walls.wall_index import cell_table
+
+CELL_SIZE = 1.0
+
+BERTH = 0.05
+"""Metres by which routes keep clear of corners, in addition to the core radius."""
+
+
+MARGIN = 1e-4
+"""Metres added to every clearance, so that rounded results still keep it."""
+
+
+class Surroundings(NamedTuple):
+    """Walls and exits, with a grid of nearby walls.
+
+    Fields: ``segments`` (w, 4) walls; ``x0``, ``y0``, ``nx``, ``ny``, ``size`` a grid of square
+    cells; ``offsets`` (nx * ny + 1,) and ``indices``: walls near each cell; ``exits`` (e, 4);
+    ``leads_out`` (destinations, e): whether people of a destination may leave there.
+    """
+
+    segments: NDArray[np.float64]
+    x0: float
+    y0: float
+    nx: int
+    ny: int
+    size: float
+    offsets: NDArray[np.int64]
+    indices: NDArray[np.int32]
+    exits: NDArray[np.float64]
+    leads_out: NDArray[np.bool_]
+
+
+def clearance_of(core: float) -> float:
+    """Clearance in metres that routes of bodies with this core radius keep from walls.
+
+    In narrow passages a route keeps ``NODE_SHARE`` of it, which must still hold the body.
+    """
+    return max(core + BERTH, (core + 2.0 * MARGIN) / NODE_SHARE)
+
+
+class Environment:
+    """Walls for the collision tests and routes for the targets of one floor plan.
+
+    Bodies of each core radius have routes of their own. The number of a destination stands for
+    both a set of exits, or a gate, and a core radius.
+
+    Args:
+        plan: the floor plan; obstacles and doors may change while a model runs.
+        reach: how far from a person walls matter, metres.
+        core_radii: core radius of each pedestrian type, metres.
+    """
+
+    def __init__(self, plan: FloorPlan, *, reach: float, core_radii: Sequence[float]) -> None:
+        self._plan = plan
+        self._reach = reach
+        self._radii = list(dict.fromkeys(core_radii))
+        self._clearances = [clearance_of(radius) for radius in self._radii]
+        self._body_of = [self._radii.index(core) for core in core_radii]
+        self._routers = [Router(plan, clearance=clearance) for clearance in self._clearances]
+        self._destinations: list[tuple[str, ...] | None] = []
+        self._version = -1
+        self._corners = Corners(self._routers)
+        self.destination(None)
+
+    @property
+    def bodies(self) -> int:
+        """Number of distinct core radii."""
+        return len(self._routers)
+
+    def body(self, type_index: int) -> int:
+        """Index of the core radius of a pedestrian type."""
+        return self._body_of[type_index]
+
+    def destination(self, exits: tuple[str, ...] | None, type_index: int = 0) -> int:
+        """Number of the destination "the nearest of these exits"; None stands for all.
+
+        Args:
+            exits: their names.
+            type_index: index of the pedestrian type that goes there.
+        """
+        for router in self._routers:
+            number = router.destination(exits)
+        return self._numbered(number, exits, type_index)
+
+    def crossing(self, gate: str, type_index: int = 0) -> int:
+        """Number of the destination "across this gate"; routes to it lead through no exit."""
+        for router in self._routers:
+            number = router.crossing(gate)
+        return self._numbered(number, (gate,), type_index)
+
+    def _numbered(self, number: int, names: tuple[str, ...] | None, type_index: int) -> int:
+        if number == len(self._destinations):
+            self._destinations.append(names)
+            self._version = -1
+        return number * self.bodies + self._body_of[type_index]
+
+    def exits(self, destination: int) -> tuple[str, ...]:
+        """Names of the exits of a destination, open or closed; none if it is a gate to cross."""
+        names = self._destinations[destination // self.bodies]
+        return tuple(e.name for e in self._plan.exits if names is None or e.name in names)
+
+    @property
+    def plan(self) -> FloorPlan:
+        """The floor plan."""
+        return self._plan
+
+    def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int64]) -> Targets:
+        """Targets of people at ``points`` (n, 2), metres.
+
+        Corners are numbered consecutively over the routers of all core radii.
+        """
+        if self.bodies == 1:
+            return self._routers[0].targets(points, destinations)
+        n = len(points)
+        points_of, gates = np.empty((n, 2)), np.empty(n, dtype=np.int64)
+        distances, corners = np.empty(n), np.empty((n, 2), dtype=np.int64)
+        to, body = np.divmod(np.asarray(destinations, dtype=np.int64), self.bodies)
+        for router, first, number in zip(
+            self._routers, self._corners.firsts, range(self.bodies), strict=True
+        ):
+            own = np.flatnonzero(body == number)
+            theirs = router.targets(points[own], to[own])
+            points_of[own], gates[own], distances[own] = (
+                theirs.points, theirs.gates, theirs.distances,
+            )  # fmt: skip
+            assert theirs.corners is not None
+            corners[own] = np.where(theirs.corners >= 0, theirs.corners + first, -1)
+        return Targets(points_of, gates, distances, corners)
+
+    def abreast(
+        self, points: NDArray[np.float64], targets: Targets, areas: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """(n, 2) targets in metres of people at ``points`` who pass a corner abreast of others.
+
+        They pass it within ``areas`` (n,), m2, divided by their distance; see ``Router.abreast``.
+        """
+        if self.bodies == 1 or targets.corners is None:
+            return self._routers[0].abreast(points, targets, areas)
+        found = np.array(targets.points, dtype=np.float64)
+        whose = self._corners.router_of(targets.corners[:, 0])
+        for number, (router, first) in enumerate(
+            zip(self._routers, self._corners.firsts, strict=True)
+        ):
+            own = np.flatnonzero(whose == number)
+            theirs = Targets(
+                targets.points[own],
+                targets.gates[own],
+                targets.distances[own],
+                targets.corners[own] - first,
+            )
+            found[own] = router.abreast(points[own], theirs, areas[own])
+        return found
+
+    @property
+    def corners(self) -> Corners:
+        """The corners of all routes."""
+        return self._corners
+
+    def check_way_out(self, points: NDArray[np.float64], destination: int) -> None:
+        """Raise FloorPlanError if some places would have no route even if everything were open."""
+        number, body = divmod(destination, self.bodies)
+        router = self._routers[body]
+        lost = points[_without_way(router, points, number)]
+        if len(lost) and not self._all_open():
+            router = self._router_when_open(body)
+            lost = lost[_without_way(router, lost, number)]
+        if len(lost):
+            raise FloorPlanError(
+                f"{len(lost)} of {len(points)} people have no way to {self._text(destination)}; "
+                f"the first stands at ({lost[0, 0]:.2f}, {lost[0, 1]:.2f})"
+                + self._too_narrow(router, destination)
+            )
+
+    def _too_narrow(self, router: Router, destination: int) -> str:
+        """Text naming the openings of a destination that are too narrow, or an empty one."""
+        passable = {name for _, name in router.graph.nodes(data="opening")}
+        names = self._destinations[destination // self.bodies]
+        wanted = names or tuple(exit_.name for exit_ in self._plan.exits)
+        narrow = [name for name in wanted if name not in passable]
+        if not narrow:
+            return ""
+        core = self._radii[destination % self.bodies]
+        # The floor behind an exit ends in a wall, too, which may be nearer than the body's radius.
+        return (
+            f"; bodies of {core:g} m radius have no room between the walls beside or behind "
+            f"{', '.join(repr(name) for name in narrow)}"
+        )
+
+    def check_way_on(self, gate: str, destination: int) -> None:
+        """Raise FloorPlanError if no route leads on from a gate even if everything were open."""
+        number, body = divmod(destination, self.bodies)
+        router = self._routers[body] if self._all_open() else self._router_when_open(body)
+        if not np.isfinite(router.way_from(gate, number)):
+            raise FloorPlanError(f"there is no way from {gate!r} to {self._text(destination)}")
+
+    def _all_open(self) -> bool:
+        return all(self._plan.is_open(opening.name) for opening in self._plan.openings())
+
+    def _router_when_open(self, body: int) -> Router:
+        """A router with everything open; destinations have the same numbers."""
+        plan = self._plan
+        plan = FloorPlan(
+            plan.walkable, exits=plan.exits, gates=plan.gates, obstacles=plan.obstacles.values()
+        )
+        router = Router(plan, clearance=self._clearances[body])
+        gates = {gate.name for gate in plan.gates}
+        for names in self._destinations:
+            if names is not None and names[0] in gates:
+                router.crossing(names[0])
+            else:
+                router.destination(names)
+        return router
+
+    def _text(self, destination: int) -> str:
+        names = self._destinations[destination // self.bodies]
+        return "any exit" if names is None else " or ".join(repr(name) for name in names)
+
+    @property
+    def surroundings(self) -> Surroundings:
+        """Walls and exits as they are now."""
+        if self._version != self._plan.version:
+            self._version = self._plan.version
+            self._now = self._survey()
+        return self._now
+
+    def _survey(self) -> Surroundings:
+        walls = self._plan.walls
+        cells = cell_table(walls, CELL_SIZE, self._reach)
+        exits = self._plan.exits
+        leads_out = np.array(
+            [
+                [
+                    self._plan.is_open(exit_.name) and (names is None or exit_.name in names)
+                    for exit_ in exits
+                ]
+                for names in self._destinations
+            ],
+            dtype=np.bool_,
+        )
+        return Surroundings(
+            segments=np.ascontiguousarray(walls),
+            x0=cells.x0,
+            y0=cells.y0,
+            nx=cells.nx,
+            ny=cells.ny,
+            size=cells.cell_size,
+            offsets=cells.offsets,
+            indices=cells.indices,
+            exits=np.array([[*e.a, *e.b] for e in exits], dtype=np.float64).reshape(-1, 4),
+            # A set of exits has one number for each core radius.
+            leads_out=leads_out.reshape(len(self._destinations), len(exits)).repeat(
+                self.bodies, axis=0
+            ),
+        )
+
+
+def _without_way(
+    router: Router, points: NDArray[np.float64], destination: int
+) -> NDArray[np.bool_]:
+    return ~np.isfinite(
+        router.targets(points, np.full(len(points), destination, dtype=np.int64)).distances
+    )

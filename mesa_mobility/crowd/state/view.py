@@ -1,0 +1,57 @@
+"""View of everybody inside, for behaviours that look beyond the deciding pedestrians."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.state.records import Crowd
+
+
+class CrowdView:
+    """The m people inside when decisions are made, newcomers included.
+
+    Positions are current; distances are those of each one's last decision.
+
+    Args:
+        pedestrians: (m,) their rows in the crowd.
+        crowd: the crowd.
+    """
+
+    def __init__(self, pedestrians: NDArray[np.int64], crowd: Crowd) -> None:
+        self.pedestrians = pedestrians
+        self._crowd = crowd
+
+    def places(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,) indices of people with these rows in the arrays of this class."""
+        return np.searchsorted(self.pedestrians, pedestrians)
+
+    def types_of(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,) index of the pedestrian type of people with these rows."""
+        return self._crowd.type_index[pedestrians].astype(np.int64)
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """(m, 2) metres."""
+        return np.column_stack([self._crowd.x[self.pedestrians], self._crowd.y[self.pedestrians]])
+
+    @property
+    def preferred_speeds(self) -> NDArray[np.float64]:
+        """(m,) unhindered preferred speeds, m/s."""
+        speeds: NDArray[np.float64] = self._crowd.agenda["speed"][self.pedestrians]
+        return speeds
+
+    @property
+    def destinations(self) -> NDArray[np.int32]:
+        """(m,) number of the set of exits by which each may leave, or of the gate to cross."""
+        return self._crowd.destination[self.pedestrians]
+
+    @property
+    def distances(self) -> NDArray[np.float64]:
+        """(m,) length of the route when each last decided, metres; inf without one."""
+        return self._crowd.route[self.pedestrians]
+
+    @property
+    def groups(self) -> NDArray[np.int64]:
+        """(m,) number of each one's group, 0 for those who walk alone."""
+        return self._crowd.agenda["group"][self.pedestrians].astype(np.int64)

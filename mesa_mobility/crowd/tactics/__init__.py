@@ -1,0 +1,1 @@
+"""What a pedestrian wants before it chooses: target, speed, waiting."""

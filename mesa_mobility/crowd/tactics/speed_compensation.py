@@ -1,0 +1,66 @@
+"""Speed compensation: free walkers correct their accumulated distance error.
+
+Recordings have steps of certain lengths, hardly ever one of exactly the preferred speed.  The
+option of least cost is more often a little too long than too short, since progress is worth
+something.  So free walkers keep account of how far they are ahead or behind, and make up for it in
+their next movements.  On average everybody walks at its own preferred speed.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.state.records import NO_OPTION, Crowd, CrowdState
+
+FREELY = 0.1
+"""A walker within this much of its preferred speed walks freely, m/s."""
+
+MOST = 0.15
+"""Greatest distance error that is kept, metres."""
+
+MAKES_UP = 1.5
+"""Seconds in which the error is corrected: the longest movement."""
+
+
+def compensate_speed(
+    rows: NDArray[np.int64], crowd: Crowd, speeds: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Preferred speeds that correct the accumulated distance error.
+
+    Args:
+        rows: (n,) the pedestrians who decide.
+        crowd: the crowd; its agenda gets their preferred speeds and distance errors.
+        speeds: (n,) preferred speeds, m/s.
+
+    Returns:
+        (n,) m/s, within ``MOST / MAKES_UP`` of ``speeds``; unchanged for those who could not walk
+        freely or want to stand.
+    """
+    kept = np.empty(len(rows))
+    _keep_pace(rows, speeds, crowd.records, crowd.agenda, kept)
+    return kept
+
+
+@entry_point()
+def _keep_pace(
+    rows: NDArray[np.int64],
+    speeds: NDArray[np.float64],
+    state: CrowdState,
+    agenda: NDArray[np.void],
+    kept: NDArray[np.float64],
+) -> None:
+    for k in range(len(rows)):
+        i = rows[k]
+        seconds = (state[i].end - state[i].start) * FRAME_SECONDS
+        walked = math.hypot(state[i].to_x - state[i].from_x, state[i].to_y - state[i].from_y)
+        short = agenda[i]["wished"] * seconds - walked
+        behind = 0.0
+        if state[i].option > NO_OPTION and abs(short) <= FREELY * seconds:
+            behind = min(max(agenda[i]["behind"] + short, -MOST), MOST)
+        agenda[i]["behind"], agenda[i]["wished"] = behind, speeds[k]
+        kept[k] = max(speeds[k] + behind / MAKES_UP, 0.0) if speeds[k] > 0.0 else speeds[k]

@@ -1,0 +1,56 @@
+"""Speed rules: behaviours that change preferred speeds."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.plugin_output import numbers_given
+from mesa_mobility.crowd.tactics.target_choice import Deciding
+from mesa_mobility.errors import ModelError
+
+FASTEST = 100.0
+"""Highest preferred speed that is accepted, m/s."""
+
+
+class SpeedRule(ABC):
+    """A behaviour that changes the preferred speed of a pedestrian's next movement.
+
+    Subclasses set ``name`` and define ``speeds``.  A model applies those in ``model.speed_rules``
+    in order; each gets the speeds that the one before returned.
+    """
+
+    name: ClassVar[str]
+
+    @abstractmethod
+    def speeds(self, deciding: Deciding, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) preferred speeds for the next movement, m/s, at least 0.
+
+        Args:
+            deciding: the pedestrians who decide.
+            speeds: (n,) preferred speeds without this behaviour, m/s.
+        """
+
+
+def apply_speed_rules(
+    speed_rules: Iterable[SpeedRule], deciding: Deciding, speeds: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Apply all speed rules in order and check what they return; (n,) m/s.
+
+    Raises:
+        ModelError: speeds that are negative or not finite, or an array of another shape.
+    """
+    for pace in speed_rules:
+        giver = f"behaviour {pace.name!r}"
+        given = numbers_given(giver, "speeds", pace.speeds(deciding, speeds), speeds.shape)
+        off = ~((given >= 0.0) & (given <= FASTEST))
+        if off.any():
+            raise ModelError(
+                f"{giver}: gave a speed of {given[off][0]} m/s, expected 0 to {FASTEST:g}"
+            )
+        speeds = given
+    return speeds

@@ -1,0 +1,135 @@
+"""Target choice: the behaviour that gives deciding pedestrians their targets."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.plugin_output import numbers_given, whole_numbers_given
+from mesa_mobility.crowd.state.environment import Environment
+from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.view import CrowdView
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import Targets
+
+FARTHEST = 1e9
+"""Greatest distance of a target from the origin, metres; its square is still exact enough."""
+
+_BAD_POINTS, _BAD_DISTANCES, _BAD_GATES, _BAD_CORNERS = 1, 2, 3, 4
+
+_NO_CORNERS = np.empty((0, 2), dtype=np.int64)
+
+
+class Deciding(NamedTuple):
+    """The pedestrians who decide in this frame.
+
+    Attributes:
+        pedestrians: (n,) rows in the crowd (``Pedestrian.row``).
+        positions: (n, 2) metres.
+        destinations: (n,) number of the set of exits by which each may leave.
+        elapsed: simulated seconds.
+        inside: everybody inside, the deciding pedestrians included.
+        rng: the model's generator.
+        site: the routes.  ``site.targets(positions, destinations)`` gives targets;
+            ``site.destination(exit_names, type)`` gives the number of a set of exits for a
+            pedestrian type, since routes depend on the core radius; ``site.exits(destination)``
+            gives the names of its exits.
+    """
+
+    pedestrians: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    destinations: NDArray[np.int64]
+    elapsed: float
+    inside: CrowdView
+    rng: np.random.Generator
+    site: Environment
+
+    @property
+    def types(self) -> NDArray[np.int64]:
+        """(n,) index of the pedestrian type."""
+        return self.inside.types_of(self.pedestrians)
+
+
+class TargetChoice(ABC):
+    """A behaviour that makes the target requests of section 6 of the paper.
+
+    Subclasses set ``name`` and define ``targets``.  A model has one target choice.
+    """
+
+    name: ClassVar[str]
+
+    @abstractmethod
+    def targets(self, deciding: Deciding) -> Targets:
+        """Target of each deciding pedestrian, and the length of its remaining route.
+
+        Returns:
+            ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,) in metres; people
+            decide in rising order of distance.  ``gates`` (n,) and ``corners`` (n, 2) are as
+            ``site.targets`` gives them, or -1 and None.
+        """
+
+
+def query_targets(choice: TargetChoice, deciding: Deciding, crowd: Crowd) -> Targets:
+    """The targets that a choice gives, checked and as arrays for compiled functions.
+
+    The length of each route is written to the crowd.
+
+    Raises:
+        ModelError: not ``Targets``, arrays of the wrong shape, or values out of range.
+    """
+    given, giver = choice.targets(deciding), f"behaviour {choice.name!r}"
+    if not isinstance(given, Targets):
+        raise ModelError(f"{giver}: gave {type(given).__name__}, expected Targets")
+    rows, n = deciding.pedestrians, len(deciding.pedestrians)
+    points = numbers_given(giver, "points", given.points, (n, 2))
+    distances = numbers_given(giver, "distances", given.distances, (n,))
+    gates = whole_numbers_given(giver, "gates", given.gates, (n,))
+    corners = _NO_CORNERS
+    if given.corners is not None:
+        corners = whole_numbers_given(giver, "corners", given.corners, (n, 2))
+    openings, known = len(deciding.site.plan.openings()), deciding.site.corners.count
+    wrong = _note_ways(rows, points, distances, gates, corners, openings, known, crowd.records)
+    if not wrong and not deciding.site.corners.of_one_router(corners):
+        wrong = _BAD_CORNERS
+    if wrong:
+        expected = {
+            _BAD_POINTS: f"points, expected finite ones within {FARTHEST:g} m",
+            _BAD_DISTANCES: "distances, expected metres, or inf where there is no way",
+            _BAD_GATES: f"gates, expected -1 or numbers of openings, 0 to {openings - 1}",
+            _BAD_CORNERS: f"corners, expected two of the site's, 0 to {known - 1}, or -1 for none",
+        }
+        raise ModelError(f"{giver}: gave other {expected[wrong]}")
+    return Targets(points, gates, distances, None if given.corners is None else corners)
+
+
+@entry_point()
+def _note_ways(
+    rows: NDArray[np.int64],
+    points: NDArray[np.float64],
+    distances: NDArray[np.float64],
+    gates: NDArray[np.int64],
+    corners: NDArray[np.int64],
+    openings: int,
+    known: int,
+    state: CrowdState,
+) -> int:
+    """Write the route lengths of those in ``rows``; returns 0, or a code of what is wrong."""
+    for k in range(len(rows)):
+        if not (abs(points[k, 0]) <= FARTHEST and abs(points[k, 1]) <= FARTHEST):
+            return _BAD_POINTS
+        if not distances[k] > -np.inf:
+            return _BAD_DISTANCES
+        if not -1 <= gates[k] < openings:
+            return _BAD_GATES
+    for k in range(len(corners)):
+        corner, following = corners[k, 0], corners[k, 1]
+        # A corner to pass is followed by another node.
+        if not (-1 <= corner < known and -1 <= following < known and following >= min(corner, 0)):
+            return _BAD_CORNERS
+    for k in range(len(rows)):
+        state[rows[k]].route = distances[k]
+    return 0

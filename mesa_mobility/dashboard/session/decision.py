@@ -1,0 +1,78 @@
+"""A decision in the form that its view draws."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mesa_mobility import PedestrianModel
+from mesa_mobility.crowd import Explanation
+from mesa_mobility.dashboard.session.serialization import packed
+from mesa_mobility.mobility.poses import POSE_JOINTS
+
+BONES = [
+    [POSE_JOINTS.index(f"{side}_{a}"), POSE_JOINTS.index(f"{side}_{b}")]
+    for side in ("left", "right")
+    for a, b in (("hip", "knee"), ("knee", "ankle"), ("ankle", "toe"))
+] + [[POSE_JOINTS.index("left_hip"), POSE_JOINTS.index("right_hip")]]
+"""Pairs of joints between which the stick figure has a bone: left leg, right leg, hips."""
+
+
+def described(told: Explanation, model: PedestrianModel) -> dict[str, Any]:
+    """Data of a decision for its view.
+
+    Numbers of options are base64 float32, options in the order of the explanation's: ``costs``
+    (terms, n) weighted, ``totals``, ``verdicts``, ``blockers``, ``ends`` (n, 2), ``durations``,
+    ``speeds``, ``paths`` (n, 16, 2) and ``knots``. A neighbour is row, x, y, core radius, and x, y
+    of where its movement leads.
+    """
+    row, crowd, candidates = told.pedestrian, model.crowd, told.candidates
+    kind = model.pedestrian_types[int(crowd.type_index[row])]
+    return {
+        "pedestrian": row,
+        "when": _when(told, model),
+        "taken": told.taken,
+        "frame": told.frame,
+        "type": kind.name,
+        "cluster": told.cluster,
+        "poses": int(kind.mobility_map.sizes[told.cluster]),
+        "pose": kind.mobility_map.mean_poses[told.cluster].tolist(),
+        "bones": BONES,
+        "core": float(crowd.core[row]),
+        "preferred": float(candidates.preferred_speeds[0]),
+        "position": candidates.positions[0].tolist(),
+        "heading": float(candidates.facings[0]),
+        "target": candidates.targets[0].tolist(),
+        "chosen": told.chosen,
+        "terms": list(told.terms),
+        "weights": told.weights.tolist(),
+        "options": len(candidates),
+        "costs": packed(told.weights[:, None] * told.costs),
+        "totals": packed(told.totals),
+        "verdicts": packed(told.verdicts),
+        "blockers": packed(told.blockers),
+        "ends": packed(candidates.points),
+        "durations": packed(candidates.durations),
+        "speeds": packed(candidates.speeds),
+        "paths": packed(np.moveaxis(told.paths[:, :2], 1, 2)),
+        "knots": packed(told.knots),
+        "neighbours": [
+            [int(j), *place, float(crowd.core[j]), *end]
+            for j, place, end in zip(
+                candidates.neighbours,
+                candidates.neighbour_positions.tolist(),
+                told.neighbour_ends.tolist(),
+                strict=True,
+            )
+        ],
+    }
+
+
+def _when(told: Explanation, model: PedestrianModel) -> str:
+    at = told.frame / model.frame_rate
+    if told.taken:
+        return f"Decision as taken at {at:.2f} s"
+    due = max(int(model.crowd.end[told.pedestrian]) - told.frame, 0) / model.frame_rate
+    when = "in this step" if due == 0 else f"in {due:.2f} s, when its movement ends"
+    return f"If it decided now, at {at:.2f} s, before everybody else; it will decide {when}"

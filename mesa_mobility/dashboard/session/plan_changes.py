@@ -1,0 +1,50 @@
+"""Doors, exits and obstacles that come and go by a click."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mesa_mobility import PedestrianModel
+from mesa_mobility.dashboard.session import serialization
+from mesa_mobility.floorplan.occupants import check_vacant
+
+
+class PlanChanges:
+    """Changes of one model's floor plan.
+
+    Args:
+        model: the model, its plan as it was made.
+    """
+
+    def __init__(self, model: PedestrianModel) -> None:
+        self._plan = model.floor_plan
+        self._polygons = list(self._plan.obstacles.values())
+        self._there: list[int | None] = list(self._plan.obstacles)
+
+    def drawn(self) -> dict[str, Any]:
+        """The plan as the canvas draws it."""
+        there = [number is not None for number in self._there]
+        return serialization.floor(self._plan, list(zip(self._polygons, there, strict=True)))
+
+    def toggle_opening(self, name: str) -> None:
+        """Close a door or exit that is open, open one that is closed."""
+        if self._plan.is_open(name):
+            self._plan.close_gate(name)
+        else:
+            self._plan.open_gate(name)
+
+    def toggle_obstacle(self, number: int) -> None:
+        """Take away an obstacle of the plan as it was made, or bring it back.
+
+        Raises:
+            FloorPlanError: somebody stands where it would be, or it would lock somebody in.
+        """
+        known = self._there[number]
+        if known is not None:
+            self._plan.remove_obstacle(known)
+            self._there[number] = None
+            return
+        polygon = self._polygons[number]
+        # The plan would refuse it by the number that it has next.
+        check_vacant(self._plan, polygon, f"obstacle {number}", self._plan.free)
+        self._there[number] = self._plan.add_obstacle(polygon)

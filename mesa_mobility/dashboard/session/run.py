@@ -1,0 +1,92 @@
+"""A running model, with its clock and its observers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mesa_mobility import PedestrianModel
+from mesa_mobility.dashboard.session.behaviours import Behaviours
+from mesa_mobility.dashboard.session.clock import Clock
+from mesa_mobility.dashboard.session.observer import Observer
+from mesa_mobility.dashboard.session.plan_changes import PlanChanges
+from mesa_mobility.dashboard.session.run_config import Recipe
+from mesa_mobility.dashboard.session.view_state import Status
+
+ALL_CLOSED = "every exit is closed"
+NO_WAY = "for a minute nobody has left or come nearer to an exit"
+
+
+@dataclass
+class Run:
+    """A model under way.
+
+    Attributes:
+        recipe: how it was made.
+        model: the model.
+        observer: collects the figures of the charts.
+        plan: changes of the floor plan by clicks.
+        terms: the behaviours in use.
+        clock: when the next step is due.
+        failed: whether a step has raised an error; no further step follows.
+        until_decision: whether it pauses when the watched person has decided.
+    """
+
+    recipe: Recipe
+    model: PedestrianModel
+    observer: Observer
+    plan: PlanChanges
+    terms: Behaviours
+    clock: Clock
+    failed: bool = False
+    until_decision: bool = False
+
+    def set_playing(self, playing: bool) -> None:
+        """Play or pause."""
+        possible = self.model.running and not self.failed
+        self.until_decision = False
+        self.clock.set_playing(playing and possible, self.model.elapsed)
+
+    def step(self) -> None:
+        """Advance the model by one step, unless it is over.
+
+        Raises:
+            Exception: whatever the model has raised; it has failed then.
+        """
+        model = self.model
+        if not model.running or self.failed:
+            self.set_playing(False)
+            return
+        watched = None if model.watch is None else model.watch.decision
+        before = model.elapsed
+        try:
+            model.step()
+            self.observer.after_step()
+        except Exception:
+            self.failed = True
+            self.set_playing(False)
+            raise
+        self.clock.stepped(model.elapsed - before)
+        if not model.running:
+            self.set_playing(False)
+        elif self.until_decision and model.watch is not None:
+            inside = model.crowd.active[model.watch.pedestrian]
+            if model.watch.decision is not watched or not inside:
+                self.set_playing(False)
+
+    def status(self) -> Status:
+        """The status that the page shows."""
+        model, clock = self.model, self.clock
+        state = "ready"
+        if self.failed:
+            state = "failed"
+        elif clock.playing:
+            state = "playing"
+        elif not model.running:
+            state = "stalled" if model.stalled else "finished"
+        reason, plan = "", model.floor_plan
+        if model.inside and plan.exits and not plan.open_exits():
+            reason = ALL_CLOSED
+        elif state == "stalled":
+            reason = NO_WAY
+        clock.measure(model.elapsed)
+        return Status(state, model.elapsed, model.inside, clock.pace, reason)

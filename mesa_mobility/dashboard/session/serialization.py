@@ -1,0 +1,94 @@
+"""What goes to the browser: numbers as base64 of float32, all else as JSON."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike
+
+from mesa_mobility import FloorPlan, PedestrianModel
+from mesa_mobility.dashboard.session.colouring import Colouring
+from mesa_mobility.dashboard.session.observer import Observer
+
+
+def packed(values: ArrayLike) -> str:
+    """Numbers as base64 of little-endian float32, rows one after the other."""
+    flat = np.ascontiguousarray(values, dtype="<f4")
+    return base64.b64encode(flat.tobytes()).decode("ascii")
+
+
+def frame(
+    model: PedestrianModel, colouring: Colouring, observer: Observer, *, run: int, number: int
+) -> dict[str, Any]:
+    """The crowd as the canvas draws it.
+
+    ``people`` holds five numbers each: row, x, y, heading, and the value that gives the colour.
+    Float32 holds rows up to 16 million, and places on a plan 1 km wide to 0.1 mm.
+
+    Args:
+        model: the model.
+        colouring: what the value is.
+        observer: what has been counted of the model.
+        run: changes when time starts anew.
+        number: of this frame.
+    """
+    rows, crowd = model.rows, model.crowd
+    people = np.empty((len(rows), 5), dtype="<f4")
+    people[:, 0] = rows
+    people[:, 1] = crowd.x[rows]
+    people[:, 2] = crowd.y[rows]
+    # Within one round: a heading that has wound up keeps its precision.
+    people[:, 3] = np.remainder(crowd.heading[rows], 2.0 * np.pi)
+    people[:, 4] = colouring.values(model, observer)
+    return {
+        "run": run,
+        "number": number,
+        "elapsed": model.elapsed,
+        "inside": model.inside,
+        "people": packed(people),
+        "legend": colouring.legend(model),
+    }
+
+
+def floor(
+    plan: FloorPlan, obstacles: Sequence[tuple[shapely.Polygon, bool]] = ()
+) -> dict[str, Any]:
+    """A floor plan as the canvas draws it: rings and lines, metres.
+
+    Args:
+        plan: the plan.
+        obstacles: those that a click takes away or brings back, and whether each is there now.
+    """
+    return {
+        "bounds": list(plan.bounds),
+        "outline": [_ring(plan.walkable.exterior)],
+        "free": [
+            [_ring(each) for each in (part.exterior, *part.interiors)]
+            for part in shapely.get_parts(plan.free)
+        ],
+        "walls": plan.walls.tolist(),
+        "zones": [_ring(zone.area.exterior) for zone in plan.zones],
+        "openings": [
+            {
+                "name": opening.name,
+                "kind": opening.kind,
+                "a": list(opening.a),
+                "b": list(opening.b),
+                "open": plan.is_open(opening.name),
+            }
+            for opening in plan.openings()
+        ],
+        "obstacles": [
+            {"number": number, "ring": _ring(polygon.exterior), "there": there}
+            for number, (polygon, there) in enumerate(obstacles)
+        ],
+    }
+
+
+def _ring(line: shapely.LinearRing) -> list[list[float]]:
+    points: list[list[float]] = np.asarray(line.coords)[:, :2].tolist()
+    return points

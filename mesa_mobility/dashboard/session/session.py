@@ -1,0 +1,170 @@
+"""One reader's run: a model, and the one thread that touches it.
+
+The page never calls the model: it hands the thread commands, and shows what the thread has
+published.  So the page answers at once however long a step takes, and nothing needs a lock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from mesa_mobility.crowd import Watch
+from mesa_mobility.dashboard.session import kept
+from mesa_mobility.dashboard.session.colouring import COLOURINGS
+from mesa_mobility.dashboard.session.engine import Answer, Engine, said
+from mesa_mobility.dashboard.session.run import Run
+from mesa_mobility.dashboard.session.run_config import Recipe
+
+AS_TAKEN, IF_NOW = "as taken", "if it decided now"
+"""The shown decision of the selected person: its last one, or the one that it would take now."""
+
+
+class Session(Engine):
+    """What a page asks of its model; all of it returns at once."""
+
+    def enter(self, key: str) -> None:
+        """Take over the run of a key, if there is one; before anything is built.
+
+        Args:
+            key: from the page's address, or "".
+        """
+
+        def command() -> None:
+            self._key, self._left = kept.enter(key, self)
+            self.key.set(self._key)
+
+        self._commands.put(command)
+
+    def build(self, recipe: Recipe, answer: Answer | None = None) -> None:
+        """Make a model anew; if it cannot be made, the run that there is goes on.
+
+        A run that has been taken over goes on if it was made so.
+
+        Args:
+            recipe: how to make it.
+            answer: called with what is wrong with the recipe, or "".
+        """
+
+        def command() -> None:
+            run, self._left = self._left, None
+            if run is not None and run.recipe == recipe:
+                self._go_on_with(run, answer)
+            else:
+                self._make(recipe, answer)
+
+        self._want(command)
+
+    def give_up(self) -> None:
+        """Make no model after all; the run that there is goes on."""
+        self._given_up.set()
+
+    def reset(self) -> None:
+        """Start the same model anew, doors and obstacles as at first; behaviours stay."""
+        recipe = self.recipe.peek()
+        if recipe is not None:
+            self.build(recipe)
+
+    def post(self, command: Callable[[Run], None]) -> None:
+        """Have the thread do something with the run, between two steps."""
+
+        def guarded() -> None:
+            if self._current is None:
+                return
+            self.problem.set("")
+            try:
+                command(self._current)
+            except Exception as error:
+                self.problem.set(said(error))
+            self._publish()
+
+        self._commands.put(guarded)
+
+    def play(self, playing: bool) -> None:
+        """Let time go by, or not."""
+        self.post(lambda run: run.set_playing(playing))
+
+    def step(self) -> None:
+        """One step, and stop."""
+
+        def command(run: Run) -> None:
+            run.set_playing(False)
+            run.step()
+
+        self.post(command)
+
+    def play_to_decision(self) -> None:
+        """Go on until the selected person decides, and stop there."""
+
+        def command(run: Run) -> None:
+            run.set_playing(True)
+            run.until_decision = True
+
+        self.post(command)
+
+    def set_speed(self, speed: float) -> None:
+        """Simulated seconds in a second, or ``FULL_SPEED``."""
+        self.speed.set(speed)
+        self._commands.put(lambda: self._clock.set_speed(speed))
+
+    def colour_by(self, name: str) -> None:
+        """Colour people by one of ``COLOURINGS``."""
+
+        def command() -> None:
+            self.colouring = COLOURINGS[name]
+            self._publish()
+
+        self._commands.put(command)
+
+    def select(self, row: int) -> None:
+        """Tell the decisions of the person in ``row``; nobody's if it is negative."""
+
+        def command(run: Run) -> None:
+            run.model.watch = Watch(row) if row >= 0 else None
+            self.mark(row)
+
+        self.post(command)
+
+    def tell(self, what: str) -> None:
+        """Tell decisions "as taken", or each moment the one "if it decided now"."""
+
+        def command(_: Run) -> None:
+            self.hypothetical = what == IF_NOW
+            self.forget_decision()
+
+        self.post(command)
+
+    def set_behaviour(self, name: str, on: bool, weight: float) -> None:
+        """Switch a behaviour on or off, with a weight; from the next decision on."""
+
+        def command(run: Run) -> None:
+            self._terms.set(run.model, name, on, weight)
+            self._show_terms(run.model)
+
+        self.post(command)
+
+    def choose_targets_by(self, name: str) -> None:
+        """Have another behaviour choose where people go; from each one's next decision on."""
+
+        def command(run: Run) -> None:
+            self._terms.choose(run.model, name)
+            self._show_terms(run.model)
+
+        self.post(command)
+
+    def toggle_opening(self, name: str) -> None:
+        """Close a door or exit that is open, open one that is closed."""
+
+        def command(run: Run) -> None:
+            run.plan.toggle_opening(name)
+            self.floor.set(run.plan.drawn())
+
+        self.post(command)
+
+    def toggle_obstacle(self, number: int) -> None:
+        """Take an obstacle away, or bring it back."""
+
+        def command(run: Run) -> None:
+            run.plan.toggle_obstacle(number)
+            self.floor.set(run.plan.drawn())
+
+        self.post(command)

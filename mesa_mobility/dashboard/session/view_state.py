@@ -1,0 +1,171 @@
+"""What a page shows of a run, and how often each part of it is sent."""
+
+from __future__ import annotations
+
+import time
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from typing import Any
+
+import solara
+
+from mesa_mobility import PedestrianModel, PedestrianType
+from mesa_mobility.crowd import Explanation
+from mesa_mobility.dashboard.session import serialization
+from mesa_mobility.dashboard.session.behaviours import Behaviours, ChoiceState, TermState
+from mesa_mobility.dashboard.session.colouring import COLOURINGS
+from mesa_mobility.dashboard.session.decision import described
+from mesa_mobility.dashboard.session.feed import Feed
+from mesa_mobility.dashboard.session.observer import Observer
+from mesa_mobility.dashboard.session.plan_changes import PlanChanges
+from mesa_mobility.dashboard.session.run_config import Recipe
+
+FRAME_INTERVAL = 1.0 / 30.0
+"""Least time between two frames for the canvas, seconds; it draws what lies between by itself."""
+
+DECISION_INTERVAL = 0.2
+SERIES_INTERVAL = 1.0
+"""Least times between decisions, and between drawings of the charts, seconds."""
+
+UNDER_WAY = 2
+"""Frames sent that the page has not yet answered, at most: one that is slow gets fewer."""
+
+RESEND = 0.5
+"""Seconds after which the next frame is sent all the same."""
+
+PATIENCE = 5.0
+"""Seconds without an answer from the page after which a run waits for it: nobody is looking."""
+
+
+@dataclass(frozen=True)
+class Status:
+    """What the page says of a run.
+
+    Attributes:
+        state: "no model", "building", "ready", "playing", "finished", "stalled" or "failed".
+        elapsed: simulated seconds.
+        inside: people inside.
+        pace: simulated seconds in a second, while playing.
+        reason: why nobody gets out, or "".
+    """
+
+    state: str = "no model"
+    elapsed: float = 0.0
+    inside: int = 0
+    pace: float = 0.0
+    reason: str = ""
+
+
+class Shown:
+    """What a page shows.
+
+    What changes many times a second is a ``Feed``; the rest is reactive: components that read it
+    are drawn anew when it changes.
+
+    Attributes:
+        recipe: ``Recipe`` of the model that runs, or None.
+        status: ``Status``, each second and when it changes.
+        frame: the crowd as the canvas draws it.
+        floor: the floor plan as the canvas draws it.
+        behaviours: ``TermState`` of each cost term.
+        choice: ``ChoiceState`` of who goes where.
+        series: a number that grows, and the ``Observer`` of the run; each second.
+        decision: the decision of the selected person as its view draws it, or {}; ``left``
+            alone has the row of somebody who was selected and has left.
+        types: the pedestrian types of the model that runs.
+        selected: row of the person whose decisions are shown, or -1.
+        problem: what the last command or step ran into, or "".
+        colouring: by what people are coloured.
+        hypothetical: whether the shown decision is the one that the person would take now.
+        together: within it the page is not drawn; at its end once.
+    """
+
+    def __init__(self) -> None:
+        self.recipe: solara.Reactive[Recipe | None] = solara.reactive(None)
+        self.status = solara.reactive(Status())
+        self.frame = Feed("frame")
+        self.floor: solara.Reactive[dict[str, Any]] = solara.reactive({})
+        self.behaviours: solara.Reactive[tuple[TermState, ...]] = solara.reactive(())
+        self.choice = solara.reactive(ChoiceState("", ()))
+        self.series: solara.Reactive[tuple[int, Observer | None]] = solara.reactive((0, None))
+        self.decision = Feed("decision")
+        self.types: solara.Reactive[tuple[PedestrianType, ...]] = solara.reactive(())
+        self.selected = solara.reactive(-1)
+        self.problem = solara.reactive("")
+        self.colouring = COLOURINGS["speed"]
+        self.hypothetical = False
+        self.together: AbstractContextManager[Any] = nullcontext()
+        self._run = self._sent = self._seen = self._series_number = 0
+        self._told: Explanation | None = None
+        self._frame_at = self._series_at = self._decision_at = 0.0
+
+    def seen(self, number: int) -> None:
+        """The page has got frame ``number``."""
+        self._seen = number
+
+    def nobody_looks(self) -> bool:
+        """Whether the page has not answered for long."""
+        return self._sent > self._seen and time.perf_counter() - self._frame_at > PATIENCE
+
+    def show_new(
+        self, recipe: Recipe, model: PedestrianModel, plan: PlanChanges, terms: Behaviours
+    ) -> None:
+        """Show a model that has just been made."""
+        self._run += 1
+        self.recipe.set(recipe)
+        self.problem.set("")
+        self.mark(-1)
+        self.types.set(model.pedestrian_types)
+        self.floor.set(plan.drawn())
+        self.behaviours.set(terms.states(model))
+        self.choice.set(terms.choice(model))
+
+    def mark(self, row: int) -> None:
+        """Select the person in ``row``, nobody if it is negative; no decision is shown yet."""
+        self.forget_decision()
+        self.decision.set({})
+        self.selected.set(row)
+
+    def forget_decision(self) -> None:
+        """Show the selected person's decision anew, whatever was shown."""
+        self._told = None
+
+    def show(
+        self, model: PedestrianModel, observer: Observer, status: Status, *, always: bool
+    ) -> None:
+        """Send what is due; everything if ``always``."""
+        now = time.perf_counter()
+        heard = self._sent - self._seen < UNDER_WAY or now - self._frame_at > RESEND
+        if always or (heard and now - self._frame_at >= FRAME_INTERVAL):
+            self._sent, self._frame_at = self._sent + 1, now
+            self.frame.set(
+                serialization.frame(
+                    model, self.colouring, observer, run=self._run, number=self._sent
+                )
+            )
+        if always or now - self._series_at >= SERIES_INTERVAL:
+            self._series_at = now
+            self._series_number += 1
+            with self.together:
+                self.status.set(status)
+                self.series.set((self._series_number, observer))
+        if always or now - self._decision_at >= DECISION_INTERVAL:
+            self._decision_at = now
+            self._tell_decision(model)
+
+    def _tell_decision(self, model: PedestrianModel) -> None:
+        if model.watch is None:
+            return
+        row, told = model.watch.pedestrian, model.watch.decision
+        if not model.crowd.active[row]:
+            model.watch = None
+            self.mark(-1)
+            self.decision.set({"left": row})
+            return
+        if told is None or self.hypothetical:
+            if self._told is not None and self._told.frame == model.frame:
+                return
+            told = model.explain(row)
+        if told is not None and told is not self._told:
+            self._told = told
+            self.decision.set(described(told, model))

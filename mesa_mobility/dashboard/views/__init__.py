@@ -1,0 +1,1 @@
+"""What a page draws: crowd, decision, map and charts."""

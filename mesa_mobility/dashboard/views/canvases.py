@@ -1,0 +1,41 @@
+"""Components that draw on a canvas, and share how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import solara
+
+_FOLDER = Path(__file__).parent
+
+
+def canvas_component(
+    file: str, *scripts: str
+) -> Callable[[Callable[..., None]], Callable[..., solara.Element]]:
+    """Make a component of a Vue file in this folder, with other scripts at the head of its own.
+
+    A component goes to the browser as one text, which cannot import another.
+
+    Args:
+        file: name of the Vue file; the arguments of the decorated function are its properties.
+        scripts: names of what it uses beside ``drawing.js``.
+    """
+    shared = "\n".join(
+        (_FOLDER / name).read_text(encoding="utf-8") for name in ("drawing.js", *scripts)
+    )
+    own = (_FOLDER / file).read_text(encoding="utf-8")
+    template = own.replace("<script>\n", f"<script>\n{shared}\n", 1)
+
+    def decorate(function: Callable[..., None]) -> Callable[..., solara.Element]:
+        make = solara.component_vue(file)(function)
+
+        @wraps(function)
+        def component(**properties: Any) -> solara.Element:
+            return make(template=template, **properties)
+
+        return component
+
+    return decorate

@@ -1,0 +1,36 @@
+"""The crowd on its floor plan, on a canvas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from mesa_mobility.dashboard.views.canvases import canvas_component
+
+
+@canvas_component("crowd_view.vue", "floor.js", "gestures.js")
+def CrowdCanvas(
+    floor: dict[str, Any],
+    frame: dict[str, Any] = {},  # noqa: B006
+    selected: int = -1,
+    height: str = "62vh",
+    shortcuts: bool = False,
+    event_seen: Callable[[int], None] | None = None,
+    event_pick: Callable[[int], None] | None = None,
+    event_toggle: Callable[[dict[str, Any]], None] | None = None,
+    event_play: Callable[[Any], None] | None = None,
+) -> None:
+    """The canvas.
+
+    Args:
+        floor: what ``wire.floor`` makes.
+        frame: what ``wire.frame`` makes; left out where a feed writes it.
+        selected: row of the person to mark, or -1.
+        height: of the canvas, as CSS says it.
+        shortcuts: whether keys count also where nothing on the page has the focus.
+        event_seen: called with the number of a frame when the page has got it.
+        event_pick: called with the row of the person that was clicked, or -1.
+        event_toggle: called with ``{"opening": name}`` or ``{"obstacle": number}`` when one was
+            clicked.
+        event_play: called when the space bar is to start or to pause time.
+    """

@@ -1,0 +1,20 @@
+"""One pedestrian's decision: its options, what they cost and why."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mesa_mobility.dashboard.views.canvases import canvas_component
+
+
+@canvas_component("decision_view.vue")
+def DecisionCanvas(
+    floor: dict[str, Any],
+    decision: dict[str, Any] = {},  # noqa: B006
+) -> None:
+    """The view; nothing is selected where ``decision`` is empty.
+
+    Args:
+        floor: what ``wire.floor`` makes.
+        decision: what ``decision.described`` makes; left out where a feed writes it.
+    """

@@ -1,0 +1,1 @@
+"""Routes to exits and gates: the graph, and the point to aim at."""

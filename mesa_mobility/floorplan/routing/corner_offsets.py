@@ -1,0 +1,95 @@
+"""The distance at which people in a crowd pass a corner."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import internal, kept
+from mesa_mobility.floorplan.routing.route_graph import Ways
+from mesa_mobility.floorplan.routing.target_search import past_corner
+from mesa_mobility.floorplan.walls.line_of_sight import (
+    NO_WALL,
+    Sight,
+    clear_line,
+    free_length,
+    wall_distance,
+)
+
+# Least distance to the corner, or to the place to pass it, that is taken into account (metres).
+_THERE = 0.05
+
+
+@kept(nogil=True)
+def pass_abreast(
+    sight: Sight,
+    ways: Ways,
+    positions: NDArray[np.float64],
+    corners: NDArray[np.int64],
+    areas: NDArray[np.float64],
+    points: NDArray[np.float64],
+) -> None:
+    """Move the targets, (n, 2) `points`, of people who pass abreast; see `Router.abreast`.
+
+    The next node is in view from the whole line through it and the corner, extended beyond the
+    corner. People pass at the point of that line nearest to them.
+    """
+    clearance = ways.view_clearance
+    for k in range(len(corners)):
+        if corners[k, 0] < 0 or areas[k] <= 0.0:
+            continue
+        x, y = positions[k]
+        cx, cy = ways.xy[corners[k, 0]]
+        nx, ny = ways.xy[corners[k, 1]]
+        onward = np.hypot(cx - nx, cy - ny)
+        if onward == 0.0:
+            continue
+        ux, uy = (cx - nx) / onward, (cy - ny) / onward
+        away = max(np.hypot(x - cx, y - cy), _THERE)
+        out = min((x - cx) * ux + (y - cy) * uy, areas[k] / away)
+        if out <= 0.0:
+            continue
+        end = out + clearance
+        out = min(out, free_length(sight, cx, cy, cx + end * ux, cy + end * uy) - clearance)
+        if out <= 0.0 or not _is_wide(sight, ways, x, y, cx, cy, ux, uy, out, onward):
+            continue
+        qx, qy = cx + out * ux, cy + out * uy
+        own = wall_distance(sight, x, y, clearance)
+        if np.hypot(qx - x, qy - y) > _THERE and clear_line(
+            sight, x, y, qx, qy, clearance, own, NO_WALL
+        ):
+            # Not assigned as a row: the check of its shape takes Numba 2 s to compile.
+            points[k, 0], points[k, 1] = past_corner(sight, ways, x, y, qx, qy, corners[k, 1])
+
+
+@internal()
+def _is_wide(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    cx: float,
+    cy: float,
+    ux: float,
+    uy: float,
+    out: float,
+    onward: float,
+) -> bool:
+    """Whether people who pass a corner up to `out` metres from it have room to go on side by side.
+
+    Past a jamb they have not: people wait there for the door. The room must be as deep as it is
+    wide, seen from (x, y) behind the line (ux, uy) through corner c. Doors and aisles, up to the
+    length of a step beyond an opening, do not count as wide.
+    """
+    deep = max(out, ways.beyond)
+    side = 1.0 if (x - cx) * uy - (y - cy) * ux > 0.0 else -1.0
+    wx, wy = -side * deep * uy, side * deep * ux
+    on = min(deep, onward)
+    qx, qy = cx + out * ux, cy + out * uy
+    fx, fy = cx + wx - on * ux, cy + wy - on * uy
+    gx, gy = qx + wx, qy + wy
+    return (
+        clear_line(sight, cx, cy, fx, fy, 0.0, np.inf, NO_WALL)
+        and clear_line(sight, qx, qy, fx, fy, 0.0, np.inf, NO_WALL)
+        and clear_line(sight, qx, qy, gx, gy, 0.0, np.inf, NO_WALL)
+        and clear_line(sight, gx, gy, fx, fy, 0.0, np.inf, NO_WALL)
+        and clear_line(sight, cx, cy, gx, gy, 0.0, np.inf, NO_WALL)
+    )

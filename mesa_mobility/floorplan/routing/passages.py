@@ -1,0 +1,113 @@
+"""Passages too narrow for two people, such as doors and corridors, and their mouths."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+FOR_TWO = 1.2
+"""Metres that two people need to pass each other with room: each takes 0.6 m (Fruin, Pedestrian
+Planning and Design, 1971)."""
+
+# Distance from a gap at which the floor on either side of it is sampled, and depth of a gap without
+# floor of its own, as between walls without thickness (metres).
+_BESIDE = 0.01
+
+_DIGITS = 6
+
+
+class Passages(NamedTuple):
+    """The narrow passages of a floor plan, one after the other.
+
+    Fields: ``mouths`` (m, 6) each mouth as a line from (x, y) to (x, y) and the unit vector into
+    the passage; ``first_mouth`` (p + 1,) where the mouths of each passage start; ``outline`` (k, 2)
+    the corners of the passages' floors and ``first_corner`` (p + 1,) where those of each start;
+    ``boxes`` (p, 4) the bounding box of each passage, x0, y0, x1, y1.
+    """
+
+    mouths: NDArray[np.float64]
+    first_mouth: NDArray[np.int64]
+    outline: NDArray[np.float64]
+    first_corner: NDArray[np.int64]
+    boxes: NDArray[np.float64]
+
+
+def narrow_passages(plan: "FloorPlan", width: float = FOR_TWO) -> Passages:
+    """The passages narrower than ``width`` metres that lead from floor to floor.
+
+    Dead ends, and passages that lead to an exit, have only one mouth and are left out: nobody comes
+    towards those who enter them.
+    """
+    gaps = _gaps(plan, width)
+    narrow = _narrow_floor(plan, gaps, width)
+    mouths: list[list[NDArray[np.float64]]] = [[] for _ in narrow]
+    floors = list(narrow)
+    for ax, ay, bx, by in gaps:
+        across = np.hypot(bx - ax, by - ay)
+        normal = np.array([-(by - ay), bx - ax]) / across
+        middle = np.array([ax + bx, ay + by]) / 2.0
+        line = np.array([ax, ay, bx, by])
+        one, other = (_holder(narrow, middle + s * _BESIDE * normal) for s in (1.0, -1.0))
+        if one < 0 and other < 0:
+            floors.append(shapely.LineString([(ax, ay), (bx, by)]).buffer(_BESIDE))
+            mouths.append([np.append(line, normal), np.append(line, -normal)])
+        elif one < 0:
+            mouths[other].append(np.append(line, -normal))
+        elif other < 0:
+            mouths[one].append(np.append(line, normal))
+    both = [(floor, own) for floor, own in zip(floors, mouths, strict=True) if len(own) > 1]
+    outlines = [shapely.get_coordinates(floor.exterior) for floor, _ in both]
+    return Passages(
+        mouths=np.array([mouth for _, own in both for mouth in own]).reshape(-1, 6),
+        first_mouth=np.cumsum([0] + [len(own) for _, own in both], dtype=np.int64),
+        outline=np.concatenate([np.empty((0, 2)), *outlines]),
+        first_corner=np.cumsum([0] + [len(outline) for outline in outlines], dtype=np.int64),
+        boxes=np.array(
+            [_box(outline, own) for outline, (_, own) in zip(outlines, both, strict=True)]
+        ).reshape(-1, 4),
+    )
+
+
+def _box(outline: NDArray[np.float64], mouths: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """(4,) bounding box of a passage's floor and its mouths."""
+    corners = np.concatenate([outline, np.array(mouths)[:, :4].reshape(-1, 2)])
+    return np.concatenate([corners.min(axis=0), corners.max(axis=0)])
+
+
+def _gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
+    """(k, 4) the gaps up to ``width`` metres wide, each once."""
+    found = narrow_gaps(plan, width + 10.0**-_DIGITS).round(_DIGITS)
+    turned = (found[:, 0] > found[:, 2]) | (
+        (found[:, 0] == found[:, 2]) & (found[:, 1] > found[:, 3])
+    )
+    found[turned] = found[turned][:, [2, 3, 0, 1]]
+    # Rounding may leave nothing of a gap between walls that touch.
+    found = found[(found[:, :2] != found[:, 2:]).any(axis=1)]
+    return np.unique(found, axis=0)
+
+
+def _narrow_floor(
+    plan: "FloorPlan", gaps: NDArray[np.float64], width: float
+) -> list[shapely.Polygon]:
+    """The parts of the floor between gaps in which no disc of diameter ``width`` has room."""
+    if len(gaps) == 0:
+        return []
+    lines = shapely.linestrings(gaps.reshape(-1, 2, 2))
+    cut = shapely.union_all([plan.free.boundary, *lines])
+    pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(cut)))
+    pieces = pieces[shapely.contains(plan.free, shapely.point_on_surface(pieces))]
+    room = shapely.buffer(pieces, -width / 2.0 - 10.0**-_DIGITS)
+    narrow = shapely.union_all(pieces[shapely.is_empty(room)])
+    return [part for part in shapely.get_parts(narrow) if isinstance(part, shapely.Polygon)]
+
+
+def _holder(floors: list[shapely.Polygon], place: NDArray[np.float64]) -> int:
+    """Index of the floor on which a point lies, -1 for none."""
+    on = [k for k, floor in enumerate(floors) if floor.contains(shapely.Point(place))]
+    return on[0] if on else -1

@@ -1,0 +1,100 @@
+"""The route graph for compiled functions: edges between nodes in view."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.compiled.decorators import internal, kept
+from mesa_mobility.floorplan.routing.route_nodes import EXIT, GATE
+from mesa_mobility.floorplan.walls.line_of_sight import Sight, clear_line
+
+# People this near to a gate's line stand in it and count as past it (metres).
+IN_LINE = 0.01
+
+
+class Ways(NamedTuple):
+    """A route graph for compiled functions; see `Nodes` for the node arrays.
+
+    For every gate and exit, in the order of `FloorPlan.openings()`: `lines`
+    (openings, 4) its line, `ends` (openings, 4) the line from its first to its last node,
+    `passable` (openings,) whether it has nodes, `curtains` (openings,) its number
+    among the walls of the sight, -1 for gates.
+    """
+
+    kind: NDArray[np.int64]
+    xy: NDArray[np.float64]
+    opening: NDArray[np.int64]
+    normal: NDArray[np.float64]
+    lines: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    passable: NDArray[np.bool_]
+    curtains: NDArray[np.int64]
+    view_clearance: float
+    beyond: float
+
+
+@internal()
+def side(ways: Ways, node: int, x: float, y: float) -> float:
+    """Distance of (x, y) past the line of a gate or exit node, in its crossing direction."""
+    return (x - ways.xy[node, 0]) * ways.normal[node, 0] + (y - ways.xy[node, 1]) * ways.normal[
+        node, 1
+    ]
+
+
+@internal()
+def _curtain(ways: Ways, node: int) -> int:
+    return ways.curtains[ways.opening[node]] if ways.kind[node] == EXIT else -1
+
+
+@kept()
+def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> list[tuple[int, int]]:
+    """All directed edges (from, to) between nodes in view of each other, as a list of pairs."""
+    n = len(ways.kind)
+    edges = [(0, 0) for _ in range(0)]
+    for i in range(n):
+        if ways.kind[i] == EXIT:
+            continue
+        for j in range(n):
+            # One view serves both directions between nodes that are not exits.
+            both = ways.kind[i] != EXIT and ways.kind[j] != EXIT
+            if i == j or (both and j < i):
+                continue
+            there = _may_follow(ways, i, j)
+            back = both and _may_follow(ways, j, i)
+            if not there and not back:
+                continue
+            ax, ay = ways.xy[i]
+            bx, by = ways.xy[j]
+            if clear_line(sight, ax, ay, bx, by, clearance, np.inf, _curtain(ways, j)):
+                if there:
+                    edges.append((i, j))
+                if back:
+                    edges.append((j, i))
+    return edges
+
+
+@internal()
+def _may_follow(ways: Ways, i: int, j: int) -> bool:
+    """Whether the directions of their gates let j follow i."""
+    if ways.kind[i] == GATE and side(ways, i, ways.xy[j, 0], ways.xy[j, 1]) < IN_LINE:
+        return False
+    if ways.kind[j] == GATE or ways.kind[j] == EXIT:
+        return side(ways, j, ways.xy[i, 0], ways.xy[i, 1]) < -IN_LINE
+    return True
+
+
+@internal()
+def in_view(
+    sight: Sight,
+    ways: Ways,
+    x: float,
+    y: float,
+    node: int,
+    qx: float,
+    qy: float,
+    clearance: float,
+    own: float,
+) -> bool:
+    """Whether (qx, qy), the position of a node or another point in its opening, is in view."""
+    return clear_line(sight, x, y, qx, qy, clearance, own, _curtain(ways, node))

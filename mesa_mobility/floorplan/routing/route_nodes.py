@@ -1,0 +1,226 @@
+"""The nodes of routes: corners, gates and exits."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
+from mesa_mobility.floorplan.openings import Exit, Opening
+from mesa_mobility.floorplan.walls.boundaries import rings, turns
+from mesa_mobility.floorplan.walls.line_of_sight import Sight, wall_distances
+from mesa_mobility.floorplan.walls.narrow_gaps import walls_near
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+CORNER, GATE, EXIT = 0, 1, 2
+"""Kinds of nodes."""
+
+# Nodes stand the clearance from walls, in narrow passages at least this share of it. Views
+# between nodes need a little less, and views of nodes by people less again: so a person near
+# a node has in view what the node has, and need not hit it to see how the route goes on.
+NODE_SHARE = 0.85
+EDGE_SHARE = 0.8
+VIEW_SHARE = 0.65
+
+# Shares of the clearance to try, widest first.
+_SHARES = (1.0, 0.92, NODE_SHARE)
+
+# Curved walls are thinned to corners with this share of the clearance between wall and chord.
+_SIMPLIFY = 0.1
+
+# Beyond a right angle and a bit, one corner far ahead of a sharp tip is replaced by two beside it.
+_SHARP = np.deg2rad(100.0)
+
+# Widest gap, in clearances, in which a corner beside one wall can be too near to the other.
+_NARROW = 2.5
+
+# Spacing of nodes along a gate or exit (metres), and their greatest number.
+_POINT_SPACING = 0.5
+_POINTS_PER_OPENING = 41
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """The nodes of a route graph.
+
+    Attributes:
+        kind: (n,) CORNER, GATE or EXIT.
+        xy: (n, 2) metres.
+        opening: (n,) number of the gate or exit in `FloorPlan.openings()`, -1 for corners.
+        normal: (n, 2) unit direction in which the gate or exit is crossed, 0 for corners. Every
+            point of a gate is two nodes, one for either direction.
+    """
+
+    kind: NDArray[np.int64]
+    xy: NDArray[np.float64]
+    opening: NDArray[np.int64]
+    normal: NDArray[np.float64]
+
+
+def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
+    """The nodes of a plan for bodies that keep `clearance` metres from walls."""
+    corners = np.concatenate(_corners(plan, sight, clearance))
+    corners = corners[np.unique(corners.round(3), axis=0, return_index=True)[1]]
+    kinds = [np.zeros(len(corners), np.int64)]
+    points, normals = [corners], [np.zeros((len(corners), 2))]
+    numbers = [np.full(len(corners), -1, dtype=np.int64)]
+    for number, opening in enumerate(plan.openings()):
+        if not plan.is_open(opening.name):
+            continue
+        places = _places(plan, opening, clearance)
+        directions = [outward(plan, opening)] if isinstance(opening, Exit) else _both_ways(opening)
+        for direction in directions:
+            kinds.append(
+                np.full(len(places), EXIT if isinstance(opening, Exit) else GATE, dtype=np.int64)
+            )
+            points.append(places)
+            normals.append(np.tile(direction, (len(places), 1)))
+            numbers.append(np.full(len(places), number, dtype=np.int64))
+    return Nodes(
+        np.concatenate(kinds),
+        np.ascontiguousarray(np.concatenate(points)),
+        np.concatenate(numbers),
+        np.ascontiguousarray(np.concatenate(normals)),
+    )
+
+
+def outward(plan: "FloorPlan", opening: Exit) -> NDArray[np.float64]:
+    """(2,) unit normal of an exit, away from the free area."""
+    normal = _both_ways(opening)[0]
+    along = np.linspace(0.05, 0.95, 10)[:, None]
+    places = np.array(opening.a) + along * (np.array(opening.b) - np.array(opening.a))
+    # Two centimetres: farther than an exit may lie from the edge.
+    ahead, behind = (
+        shapely.intersects_xy(plan.walkable, *(places + side * 0.02 * normal).T) for side in (1, -1)
+    )
+    return -normal if ahead.sum() > behind.sum() else normal
+
+
+def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
+    along = (np.array(opening.b) - np.array(opening.a)) / opening.length
+    normal = np.array([-along[1], along[0]])
+    return [normal, -normal]
+
+
+def _places(plan: "FloorPlan", opening: Opening, clearance: float) -> NDArray[np.float64]:
+    """Points along the parts of a gate or exit that are clear of walls."""
+    near = shapely.union_all(walls_near(plan, opening.line, clearance))
+    # An exit may lie a little outside the edge of the area.
+    room = plan.free.buffer(2 * EDGE_TOLERANCE)
+    places = [np.empty((0, 2))]
+    for share in _SHARES:
+        # Round ends are polygons inside the circle; the margin keeps the rest clear.
+        clear = opening.line.difference(near.buffer(1.001 * share * clearance, quad_segs=32))
+        for part in shapely.get_parts(clear.intersection(room)):
+            count = 1 + int(np.ceil(part.length / _POINT_SPACING)) if part.length > 0.05 else 1
+            share_along = np.linspace(0, 1, min(count, _POINTS_PER_OPENING)) if count > 1 else [0.5]
+            points = shapely.line_interpolate_point(part, share_along, normalized=True)
+            places.append(shapely.get_coordinates(points))
+        if len(places) > 1:
+            break
+    return np.concatenate(places)
+
+
+def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> NDArray[np.bool_]:
+    # The bound itself counts, whatever the last bit.
+    return wall_distances(sight, places, clearance) > NODE_SHARE * clearance - 1e-9
+
+
+def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
+    bases, offsets = _wall_ends(plan, clearance)
+    beside = []
+    for ring in rings(plan.free.simplify(_SIMPLIFY * clearance)):
+        for vertex, own, edges in _reflex(ring, clearance):
+            bases += [vertex] * len(own)
+            offsets += own
+            beside += [np.stack([vertex, vertex + offset]) for offset in edges]
+    waiting_base = np.array(bases, dtype=np.float64).reshape(-1, 2)
+    waiting_offset = np.array(offsets, dtype=np.float64).reshape(-1, 2)
+    found = [np.empty((0, 2))]
+    # In a narrow passage a corner is put nearer to its wall.
+    for share in _SHARES:
+        places = waiting_base + share * waiting_offset
+        good = plan.contains(places) & _passable(sight, places, clearance)
+        found.append(places[good])
+        waiting_base, waiting_offset = waiting_base[~good], waiting_offset[~good]
+    # Where even that is too near to another wall, the route bends in the middle of the gap, and
+    # beside the vertex before and after it.
+    failed = {tuple(base) for base in waiting_base.tolist()}
+    more = [place for vertex, place in beside if tuple(vertex.tolist()) in failed]
+    found.append(np.array(more, dtype=np.float64).reshape(-1, 2))
+    found.append(_middles(plan, waiting_base, clearance))
+    last = np.concatenate(found[-2:])
+    found[-2:] = [last[plan.contains(last) & _passable(sight, last, clearance)]]
+    return found
+
+
+def _middles(
+    plan: "FloorPlan", bases: NDArray[np.float64], clearance: float
+) -> NDArray[np.float64]:
+    """The middles of the gaps between some vertices and the walls near them."""
+    found = [np.empty((0, 2))]
+    for base in shapely.points(bases):
+        across = shapely.shortest_line(base, walls_near(plan, base, _NARROW * clearance))
+        middles = shapely.line_interpolate_point(across, 0.5, normalized=True)
+        found.append(shapely.get_coordinates(middles))
+    return np.concatenate(found)
+
+
+def _reflex(
+    ring: NDArray[np.float64], clearance: float
+) -> list[tuple[NDArray[np.float64], list[NDArray[np.float64]], list[NDArray[np.float64]]]]:
+    """The vertices of a ring that routes bend around.
+
+    Each comes with offsets to where a body passes it, one or, at a sharp tip, two, and with the two
+    offsets at right angles to the edges that meet there.
+    """
+    arriving = ring - np.roll(ring, 1, axis=0)
+    arriving /= np.hypot(*arriving.T)[:, None]
+    leaving = np.roll(arriving, -1, axis=0)
+    turn = turns(ring)
+    result = []
+    for i in np.flatnonzero(turn < -1e-6):
+        angle = -turn[i]
+        edges = [clearance * np.array([-y, x]) for x, y in (arriving[i], leaving[i])]
+        if angle <= _SHARP:
+            own = [(edges[0] + edges[1]) / (2 * np.cos(angle / 2) ** 2)]
+        else:
+            outwards = (arriving[i] - leaving[i]) / np.hypot(*(arriving[i] - leaving[i]))
+            own = _cap(outwards, np.pi - angle, clearance)
+        result.append((ring[i], own, edges))
+    return result
+
+
+def _cap(
+    outwards: NDArray[np.float64], solid: float, clearance: float
+) -> list[NDArray[np.float64]]:
+    """Two corners beside a tip of the given solid angle, as on a square cap around it."""
+    beside = clearance * (1 - np.sin(solid / 2)) / np.cos(solid / 2)
+    across = np.array([-outwards[1], outwards[0]])
+    return [clearance * outwards + beside * across, clearance * outwards - beside * across]
+
+
+def _wall_ends(
+    plan: "FloorPlan", clearance: float
+) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
+    """Ends of walls that are not vertices of the free area: at open exits and closed gates."""
+    bases, offsets = [], []
+    for opening in plan.open_exits():
+        a, b = np.array(opening.a), np.array(opening.b)
+        along = (b - a) / opening.length * min(clearance, opening.length / 2)
+        inward = -clearance * outward(plan, opening)
+        bases += [a, b]
+        offsets += [inward + along, inward - along]
+    edge = plan.free.boundary
+    for gate in plan.closed_gates():
+        a, b = np.array(gate.a), np.array(gate.b)
+        for end, other in ((a, b), (b, a)):
+            if edge.distance(shapely.Point(end)) > 0:
+                for offset in _cap((end - other) / gate.length, 0.0, clearance):
+                    bases.append(end)
+                    offsets.append(offset)
+    return bases, offsets

@@ -1,0 +1,317 @@
+"""Shortest routes to exits and gates, and the target of each person."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import networkx as nx
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.compiled.threads import in_threads, shares
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.routing.corner_offsets import pass_abreast
+from mesa_mobility.floorplan.routing.route_graph import Ways, edges_in_view
+from mesa_mobility.floorplan.routing.route_nodes import (
+    EDGE_SHARE,
+    NODE_SHARE,
+    VIEW_SHARE,
+    Nodes,
+    find_nodes,
+)
+from mesa_mobility.floorplan.routing.target_cache import nothing_told
+from mesa_mobility.floorplan.routing.target_search import ALL_TOLD, NO_TABLE, UNSEEN, aim
+from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
+from mesa_mobility.floorplan.walls.boundaries import opening_segments
+from mesa_mobility.floorplan.walls.line_of_sight import Sight, sight_of
+from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+_KIND_NAMES = ("corner", "gate", "exit")
+
+
+@dataclass(frozen=True)
+class Targets:
+    """Targets of n people.
+
+    Attributes:
+        points: (n, 2) metres: behind a gate or exit to cross, or past a corner to walk around, as
+            far as the way on from there is in view. A person who cannot reach the destination gets
+            its own position.
+        gates: (n,) the gate or exit aimed through, as its number in `FloorPlan.openings()` (gates
+            first, then exits); -1 for a corner.
+        distances: (n,) length of the route to the line of the exit, or of the gate to cross, in
+            metres; inf where there is none.
+        corners: (n, 2) the next corner of the route and the node after it, as their numbers in
+            `Router.graph`; -1 where the next node is a gate or exit. None if unknown.
+    """
+
+    points: NDArray[np.float64]
+    gates: NDArray[np.int64]
+    distances: NDArray[np.float64]
+    corners: NDArray[np.int64] | None = None
+
+    @cached_property
+    def nearest_first(self) -> NDArray[np.intp]:
+        """(n,) the people in rising order of distance; equal ones keep their order."""
+        return np.asarray(self.distances).argsort(kind="stable")
+
+
+class Router:
+    """Shortest routes to the exits and gates of a floor plan, kept up to date with it.
+
+    Routes bend at corners that stand `clearance` from the walls and lead through gates and exits,
+    but through no exits other than the destination's. A person aims at the node in view with the
+    shortest route through it. At a gate or exit the target lies `beyond` its line, so that it is
+    crossed. It lies straight behind the nearest point that serves, so that nobody is led into the
+    wall beside it.
+
+    Args:
+        plan: the floor plan; changes to it are followed.
+        clearance: distance in metres that routes keep from walls, above 0. In narrow passages it
+            shrinks to 85 % of this; narrower gaps are impassable.
+        beyond: how far behind a gate or exit the target lies, metres, above 0; less where a wall
+            is nearer.
+
+    Raises:
+        FloorPlanError: clearance or beyond out of range.
+    """
+
+    def __init__(self, plan: "FloorPlan", *, clearance: float = 0.2, beyond: float = 2.0) -> None:
+        if not (np.isfinite([clearance, beyond]).all() and clearance > 0 and beyond > 0):
+            raise FloorPlanError(
+                f"a router needs clearance > 0 and beyond > 0, found {clearance} and {beyond}"
+            )
+        self._plan = plan
+        self._clearance = float(clearance)
+        self._beyond = float(beyond)
+        self._destinations: list[tuple[str, ...] | None] = [None]
+        self._version = -1
+        self._distances: dict[int, NDArray[np.float64]] = {}
+        self._lengths: NDArray[np.float64] = np.empty((0, 0))
+        self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
+        self._follow: dict[int, NDArray[np.int64]] = {}
+        self._views: Views
+        self._told: NDArray[np.void]
+        self._update()
+
+    @property
+    def clearance(self) -> float:
+        """Distance in metres that routes keep from walls."""
+        return self._clearance
+
+    @property
+    def graph(self) -> nx.DiGraph:
+        """The routes, as a graph of nodes in view of each other.
+
+        Nodes have `kind` (corner, gate or exit), `position` (x, y), `opening` (the name of
+        the gate or exit) and `direction`, the unit vector in which that is crossed: every
+        place in a gate is two nodes. Edges have their length as `weight`, metres.
+        """
+        self._update()
+        return self._graph
+
+    def destination(self, exit_names: Sequence[str] | None = None) -> int:
+        """A number for "the nearest of these exits"; None is all exits, number 0.
+
+        Raises FloorPlanError for a name that is not an exit's, or for no names.
+        """
+        if exit_names is None:
+            return 0
+        names = (exit_names,) if isinstance(exit_names, str) else tuple(dict.fromkeys(exit_names))
+        if not names:
+            raise FloorPlanError("a destination needs at least one exit name")
+        for name in names:
+            if not isinstance(self._plan.gate(name), Exit):
+                raise FloorPlanError(f"{name!r} is a gate, a destination needs exits")
+        return self._number(tuple(sorted(names)))
+
+    def crossing(self, gate_name: str) -> int:
+        """A number for "across this gate", whichever way; FloorPlanError if it is not a gate's."""
+        if not isinstance(self._plan.gate(gate_name), Gate):
+            raise FloorPlanError(f"{gate_name!r} is an exit, expected a gate to cross")
+        return self._number((gate_name,))
+
+    def _number(self, names: tuple[str, ...]) -> int:
+        if names not in self._destinations:
+            self._destinations.append(names)
+        return self._destinations.index(names)
+
+    def distances(self, destination: int) -> NDArray[np.float64]:
+        """(nodes,) length of the route from every node of `graph` in metres; inf where none."""
+        self._update()
+        if not 0 <= destination < len(self._destinations):
+            raise FloorPlanError(
+                f"there is no destination {destination}; there are {len(self._destinations)}"
+            )
+        if destination not in self._distances:
+            lengths = self._shortest(self._destinations[destination])
+            self._distances[destination] = lengths
+            self._follow[destination] = self._next_nodes(lengths)
+        return self._distances[destination]
+
+    def targets(self, positions: ArrayLike, destinations: ArrayLike) -> Targets:
+        """Targets of people at (n, 2) `positions` with (n,) `destinations`.
+
+        It uses several threads itself, and caches results: only one thread at a time may call it.
+        """
+        self._update()
+        xy = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 2)
+        numbers = np.ascontiguousarray(destinations, dtype=np.int64).reshape(-1)
+        if len(xy) != len(numbers):
+            raise FloorPlanError(
+                f"targets need a destination for each position, found {len(numbers)} for {len(xy)}"
+            )
+        n = len(xy)
+        points, gates = np.empty((n, 2)), np.empty(n, dtype=np.int64)
+        distances, corners = np.empty(n), np.empty((n, 2), dtype=np.int64)
+        gates.fill(UNSEEN)
+        found = Targets(points, gates, distances, corners)
+        if n == 0:
+            return found
+
+        def aims(own: slice, learn: bool) -> int:
+            outcome: int = aim(
+                self._sight, self._ways, self._views, self._told, xy[own], numbers[own],
+                self._lengths, self._nexts, learn, points[own], gates[own], distances[own],
+                corners[own],
+            )  # fmt: skip
+            return outcome
+
+        parts = shares(n)
+        if len(parts) > 1 and NO_TABLE in in_threads(lambda own: aims(own, False), parts):
+            self._tabulate(numbers)
+            in_threads(lambda own: aims(own, False), parts)
+        while (outcome := aims(slice(n), True)) != ALL_TOLD:
+            if outcome == NO_TABLE:
+                self._tabulate(numbers)
+            else:
+                self._views = with_room(self._views)
+        return found
+
+    def abreast(
+        self, positions: NDArray[np.float64], targets: Targets, areas: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """(n, 2) targets in metres of people who pass their corner abreast of others.
+
+        Each passes at the nearest point from which the next node is in view, no farther from the
+        corner than its value of (n,) `areas`, m2, divided by its own distance. People without a
+        corner to pass, and those with too little room behind it, keep the points of `targets`,
+        which must be up to date.
+        """
+        points = np.array(targets.points, dtype=np.float64, order="C")
+        if targets.corners is not None:
+            pass_abreast(
+                self._sight,
+                self._ways,
+                np.ascontiguousarray(positions, dtype=np.float64),
+                np.ascontiguousarray(targets.corners, dtype=np.int64),
+                np.ascontiguousarray(areas, dtype=np.float64),
+                points,
+            )
+        return points
+
+    def _tabulate(self, numbers: NDArray[np.int64]) -> None:
+        """Tabulate route lengths and next nodes of all destinations, (destinations, nodes)."""
+        for number in (numbers.min(), numbers.max()):
+            self.distances(int(number))  # raises for an unknown one
+        every = range(len(self._destinations))
+        self._lengths = np.stack([self.distances(i) for i in every])
+        self._nexts = np.stack([self._follow[i] for i in every])
+
+    def way_from(self, gate_name: str, destination: int) -> float:
+        """Least distance in metres from a gate to a destination; inf without a route."""
+        lengths = self.distances(destination)
+        there = [n for n, name in self._graph.nodes(data="opening") if name == gate_name]
+        return float(lengths[there].min(initial=np.inf))
+
+    def _shortest(self, opening_names: tuple[str, ...] | None) -> NDArray[np.float64]:
+        names = set(opening_names or (e.name for e in self._plan.exits))
+        sources = {n for n, name in self._graph.nodes(data="opening") if name in names}
+        result = np.full(self._graph.number_of_nodes(), np.inf)
+        if sources:
+            backwards = self._graph.reverse(copy=False)
+            for node, length in nx.multi_source_dijkstra_path_length(backwards, sources).items():
+                result[node] = length
+        return result
+
+    def _next_nodes(self, lengths: NDArray[np.float64]) -> NDArray[np.int64]:
+        """(nodes,) the next node on the route from each, -1 at its end."""
+        follow = np.full(len(lengths), -1, dtype=np.int64)
+        start, end = self._edges.T
+        through = self._edge_lengths + lengths[end]
+        order = np.lexsort((end, through, start))
+        first = order[np.unique(start[order], return_index=True)[1]]
+        first = first[np.isfinite(through[first])]
+        follow[start[first]] = end[first]
+        # A gate that is the destination ends its route, though other routes lead on from it.
+        follow[lengths == 0.0] = -1
+        return follow
+
+    def _update(self) -> None:
+        if self._version == self._plan.version:
+            return
+        plan = self._plan
+        walls = plan.walls
+        curtains = [
+            opening_segments(plan.open_exits()),
+            narrow_gaps(plan, 2 * NODE_SHARE * self._clearance),
+        ]
+        self._sight: Sight = sight_of(walls, np.concatenate(curtains), self._clearance)
+        nodes = find_nodes(plan, self._sight, self._clearance)
+        self._ways = self._prepare(nodes, len(walls))
+        edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
+        self._edges = np.array(edges, dtype=np.int64).reshape(-1, 2)
+        step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
+        self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
+        self._graph = self._network(nodes)
+        self._views = no_views(plan.bounds, len(nodes.kind))
+        self._told = nothing_told()
+        self._distances, self._follow = {}, {}
+        self._lengths = self._lengths[:0]
+        self._version = plan.version
+
+    def _prepare(self, nodes: Nodes, walls: int) -> Ways:
+        openings = self._plan.openings()
+        curtains = np.full(len(openings), -1, dtype=np.int64)
+        for k, opening in enumerate(self._plan.open_exits()):
+            curtains[openings.index(opening)] = walls + k
+        lines = opening_segments(openings)
+        ends, passable = lines.copy(), np.zeros(len(openings), dtype=np.bool_)
+        for number in np.unique(nodes.opening[nodes.opening >= 0]):
+            places = nodes.xy[nodes.opening == number]
+            along = np.argsort(((places - lines[number, :2]) ** 2).sum(axis=1), kind="stable")
+            ends[number] = *places[along[0]], *places[along[-1]]
+            passable[number] = True
+        return Ways(
+            nodes.kind,
+            nodes.xy,
+            nodes.opening,
+            nodes.normal,
+            lines,
+            ends,
+            passable,
+            curtains,
+            VIEW_SHARE * self._clearance,
+            self._beyond,
+        )
+
+    def _network(self, nodes: Nodes) -> nx.DiGraph:
+        openings = self._plan.openings()
+        graph = nx.DiGraph()
+        for i, (x, y) in enumerate(nodes.xy.tolist()):
+            number = int(nodes.opening[i])
+            graph.add_node(
+                i,
+                kind=_KIND_NAMES[nodes.kind[i]],
+                position=(x, y),
+                opening=openings[number].name if number >= 0 else None,
+                direction=tuple(nodes.normal[i].tolist()) if number >= 0 else None,
+            )
+        pairs = zip(*self._edges.T.tolist(), self._edge_lengths.tolist(), strict=True)
+        graph.add_weighted_edges_from(pairs)
+        return graph

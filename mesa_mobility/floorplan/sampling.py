@@ -1,0 +1,97 @@
+"""Random places at which people can stand."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.poisson_disk import lattice, throw
+from mesa_mobility.floorplan.walls.boundaries import opening_segments
+from mesa_mobility.floorplan.walls.line_of_sight import Sight, sight_of, wall_distances
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+
+def random_points(
+    plan: "FloorPlan",
+    n: int,
+    rng: np.random.Generator,
+    *,
+    within: Polygon | None,
+    spacing: float,
+    clearance: float,
+    avoid: ArrayLike,
+) -> NDArray[np.float64]:
+    """See `FloorPlan.random_points`."""
+    if n < 0 or not (np.isfinite([spacing, clearance]).all() and spacing > 0 and clearance >= 0):
+        raise FloorPlanError(
+            "random points need n >= 0, spacing > 0 and clearance >= 0, "
+            f"found {n}, {spacing} and {clearance}"
+        )
+    taken = np.asarray(avoid, dtype=np.float64).reshape(-1, 2)
+    if n == 0:
+        return np.empty((0, 2))
+    region = _standing_region(plan, within, clearance)
+    # Open exits are not walls, but nobody should start in one.
+    edge = np.concatenate([plan.walls, opening_segments(plan.open_exits())])
+    sight = sight_of(edge, (), clearance)
+
+    def fits(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        return _fits(region, sight, clearance, points)
+
+    # Discs of half the spacing around more points would not fit, however they lay. Round corners of
+    # a polygon lack less than a hundredth of that area.
+    most = int(4.04 * region.buffer(spacing / 2.0).area / (np.pi * spacing**2))
+    if n > most:
+        raise FloorPlanError(
+            f"the floor plan leaves room for {most} of {n} people, {spacing} m apart and "
+            f"{clearance} m from walls, at most"
+        )
+    found = np.empty((0, 2))
+    if region.area > 0:
+        tried = min(n, _most(region, spacing))
+        found = throw(region, fits, tried, rng, spacing, taken)
+        if len(found) < tried:
+            found = max(found, lattice(region, fits, tried, rng, spacing, taken), key=len)
+    if len(found) < n:
+        raise FloorPlanError(
+            f"the floor plan leaves room for {len(found)} of {n} people, "
+            f"{spacing} m apart and {clearance} m from walls"
+        )
+    return found
+
+
+def _most(region: BaseGeometry, spacing: float) -> int:
+    """Upper bound of the points that a region can hold, since discs around them do not overlap.
+
+    Looking for room for millions would take minutes and gigabytes.
+    """
+    xmin, ymin, xmax, ymax = region.bounds
+    # The disc around a point at the region's edge lies half outside.
+    area = (xmax - xmin + spacing) * (ymax - ymin + spacing)
+    return int(area / (np.pi * (spacing / 2) ** 2)) + 1
+
+
+def _standing_region(plan: "FloorPlan", within: Polygon | None, clearance: float) -> BaseGeometry:
+    region = plan.free.buffer(-clearance, quad_segs=32)
+    if within is not None:
+        region = region.intersection(within)
+    parts = [part for part in shapely.get_parts(region) if part.geom_type == "Polygon"]
+    region = shapely.MultiPolygon(parts)
+    shapely.prepare(region)
+    return region
+
+
+def _fits(
+    region: BaseGeometry, sight: Sight, clearance: float, points: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    fits = shapely.contains_xy(region, points[:, 0], points[:, 1])
+    # Round corners of the shrunken region are polygons: only the walls themselves are exact.
+    # Where nothing is nearer the distance found is the bound itself.
+    fits[fits] = wall_distances(sight, points[fits], clearance) >= clearance
+    return fits

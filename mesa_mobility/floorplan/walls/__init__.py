@@ -1,0 +1,1 @@
+"""Walls as segments: index, boundaries, narrow gaps, line of sight."""

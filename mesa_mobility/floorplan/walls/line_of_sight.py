@@ -1,0 +1,351 @@
+"""Line of sight: whether a body can go straight from one point to another."""
+
+from typing import TYPE_CHECKING, NamedTuple, cast
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.compiled.decorators import internal, kept
+from mesa_mobility.compiled.simd import LANES, lowest_bit
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.walls.geometry import (
+    point_segment_distance2,
+    segment_segment_distance2,
+    segments_cross,
+)
+from mesa_mobility.floorplan.walls.wall_boxes import boxes_around, near_line
+from mesa_mobility.floorplan.walls.wall_index import CellTable, as_segments, cell_table
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+TOUCH = 1e-9
+"""A line nearer to a wall than this touches it (metres)."""
+
+NO_WALL = np.int64(-1)
+"""Stands for no wall; typed, as functions are compiled again for literal numbers."""
+
+# Somebody close to a convex wall has to come a little nearer to it.
+_OWN_SHARE = 0.5
+
+# Least side of a grid cell (metres).
+_CELL = 1.0
+
+# More than the rounding error of the distance between a wall and a line (metres).
+_ROUNDING = 1e-6
+
+# Up to this many walls, boxes are the fastest test of which are near a line; beyond, the grid.
+_FEW_WALLS = 512
+
+
+class Sight(NamedTuple):
+    """Wall segments and their grid, as the compiled functions take them.
+
+    The first `solid` rows of `walls` are walls; the others are lines that no view
+    crosses but that need no clearance. `boxes` and `boxed` are their boxes and numbers from
+    `boxes_around`, empty if there are many walls.
+    """
+
+    walls: NDArray[np.float64]
+    solid: int
+    table: CellTable
+    boxes: NDArray[np.float64]
+    boxed: NDArray[np.int64]
+
+
+def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
+    """Prepare walls (m, 4), and lines not to be crossed (k, 4), for views of clearance `reach`."""
+    solid = as_segments(walls)
+    rows = np.concatenate([solid, as_segments(curtains)])
+    extent = float(np.ptp(rows.reshape(-1, 2), axis=0).max()) if len(rows) else 1.0
+    # The extra millimetre keeps walls that rounding would put just out of reach of a cell.
+    table = cell_table(rows, max(_CELL, extent / 400), reach + 1e-3)
+    boxes, boxed = boxes_around(rows if len(rows) <= _FEW_WALLS else rows[:0])
+    return Sight(rows, len(solid), table, boxes, boxed)
+
+
+@internal()
+def rows_crossed(table: CellTable, py: float, qy: float) -> tuple[int, int]:
+    """First and last row of the grid that a segment from y = py to y = qy meets."""
+    first = int(np.floor((min(py, qy) - table.y0) / table.cell_size))
+    last = int(np.floor((max(py, qy) - table.y0) / table.cell_size))
+    return max(0, first), min(table.ny - 1, last)
+
+
+@internal()
+def per_metre_up(py: float, qy: float) -> float:
+    """Share of a segment from y = py to y = qy that lies within a metre of y; 0 if it is level."""
+    return 1.0 / (qy - py) if py != qy else 0.0
+
+
+@internal()
+def cells_in_row(
+    table: CellTable, row: int, px: float, py: float, qx: float, share: float
+) -> tuple[int, int]:
+    """First and last column of the cells of one row that a segment pq meets.
+
+    `share` is `per_metre_up` of its ends. Rounding errors are within the extra millimetre.
+    """
+    cell = table.cell_size
+    t0 = 0.0
+    t1 = 1.0
+    if share != 0.0:
+        ta = (table.y0 + row * cell - py) * share
+        tb = (table.y0 + (row + 1) * cell - py) * share
+        t0 = min(1.0, max(0.0, min(ta, tb)))
+        t1 = max(0.0, min(1.0, max(ta, tb)))
+    xa = px + t0 * (qx - px)
+    xb = px + t1 * (qx - px)
+    per_cell = 1.0 / cell
+    first = int(np.floor((min(xa, xb) - table.x0) * per_cell))
+    last = int(np.floor((max(xa, xb) - table.x0) * per_cell))
+    return max(0, first), min(table.nx - 1, last)
+
+
+@internal()
+def clear_line(
+    sight: Sight,
+    px: float,
+    py: float,
+    qx: float,
+    qy: float,
+    clearance: float,
+    own: float,
+    ignored: int,
+) -> bool:
+    """Whether the segment pq stays `clearance` metres (and more than `TOUCH`) from the walls.
+
+    `own` is the distance of p to the nearest wall, inf if nobody stands there. If it is less than
+    the clearance, half of it suffices for walls near p. So somebody close to a wall has a view,
+    and keeps it on the straight line there. The wall with number `ignored` does not count
+    (`NO_WALL`: all count).
+    """
+    table = sight.table
+    if len(sight.walls) <= _FEW_WALLS:
+        return _clear_of_boxes(sight, px, py, qx, qy, clearance, own, ignored)
+    first_row, last_row = rows_crossed(table, py, qy)
+    share = per_metre_up(py, qy)
+    for step in range(last_row - first_row + 1):
+        # From p outwards: most views are blocked by something near.
+        row = first_row + step if py <= qy else last_row - step
+        first, last = cells_in_row(table, row, px, py, qx, share)
+        for k in range(last - first + 1):
+            column = first + k if px <= qx else last - k
+            at = row * table.nx + column
+            for j in range(table.offsets[at], table.offsets[at + 1]):
+                wall = table.indices[j]
+                if wall != ignored and _bars(sight, wall, px, py, qx, qy, clearance, own):
+                    return False
+    return True
+
+
+@internal()
+def _clear_of_boxes(
+    sight: Sight,
+    px: float,
+    py: float,
+    qx: float,
+    qy: float,
+    clearance: float,
+    own: float,
+    ignored: int,
+) -> bool:
+    """`clear_line` by the boxes around the walls."""
+    reach = max(clearance, TOUCH) + _ROUNDING
+    blocks = len(sight.boxed)
+    outer = len(sight.boxes) - blocks
+    for row in range(max(outer, 1)):
+        near = (1 << blocks) - 1
+        if outer > 0:
+            near = near_line(sight.boxes, row, px, py, qx, qy, reach)
+        while near != 0:
+            block = LANES * row + lowest_bit(near)
+            near &= near - 1
+            walls = near_line(sight.boxes, outer + block, px, py, qx, qy, reach)
+            while walls != 0:
+                wall = sight.boxed[block, lowest_bit(walls)]
+                walls &= walls - 1
+                if wall != ignored and _bars(sight, wall, px, py, qx, qy, clearance, own):
+                    return False
+    return True
+
+
+@internal()
+def _bars(
+    sight: Sight,
+    wall: int,
+    px: float,
+    py: float,
+    qx: float,
+    qy: float,
+    clearance: float,
+    own: float,
+) -> bool:
+    """Whether the segment pq comes too near to a wall; see `clear_line`."""
+    walls, solid = sight.walls, sight.solid
+    ax, ay, bx, by = walls[wall, 0], walls[wall, 1], walls[wall, 2], walls[wall, 3]
+    limit = clearance if wall < solid and clearance > TOUCH else TOUCH
+    # The distance of their bounding boxes is fast to compute, and a lower bound.
+    off_x = max(min(ax, bx) - max(px, qx), min(px, qx) - max(ax, bx), 0.0)
+    off_y = max(min(ay, by) - max(py, qy), min(py, qy) - max(ay, by), 0.0)
+    if off_x * off_x + off_y * off_y >= limit * limit:
+        return False
+    # So is that of a wall on one side of the line through p and q.
+    dx = qx - px
+    dy = qy - py
+    a_side = dx * (ay - py) - dy * (ax - px)
+    b_side = dx * (by - py) - dy * (bx - px)
+    if a_side * b_side > 0.0:
+        far = limit + _ROUNDING
+        if min(a_side * a_side, b_side * b_side) >= far * far * (dx * dx + dy * dy):
+            return False
+    distance2 = segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by)
+    if distance2 >= limit * limit:
+        return False
+    if own < clearance and distance2 > TOUCH * TOUCH:
+        near = point_segment_distance2(px, py, ax, ay, bx, by) < 4 * clearance**2
+        if near and distance2 >= (_OWN_SHARE * own) ** 2:
+            return False
+    return True
+
+
+@internal()
+def wall_distance(sight: Sight, x: float, y: float, at_most: float) -> float:
+    """Metres from a point to the nearest wall, `at_most` if none is nearer.
+
+    `at_most` must not exceed the reach that the sight was prepared for.
+    """
+    walls, solid, table = sight.walls, sight.solid, sight.table
+    nearest = at_most
+    column = int(np.floor((x - table.x0) / table.cell_size))
+    row = int(np.floor((y - table.y0) / table.cell_size))
+    if 0 <= column < table.nx and 0 <= row < table.ny:
+        at = row * table.nx + column
+        for j in range(table.offsets[at], table.offsets[at + 1]):
+            wall = table.indices[j]
+            if wall < solid:
+                ax, ay, bx, by = walls[wall]
+                nearest = min(nearest, np.sqrt(point_segment_distance2(x, y, ax, ay, bx, by)))
+    return nearest
+
+
+@kept()
+def wall_distances(
+    sight: Sight, points: NDArray[np.float64], at_most: float
+) -> NDArray[np.float64]:
+    """(n,) `wall_distance` of (n, 2) points."""
+    distances = np.empty(len(points))
+    for i in range(len(points)):
+        distances[i] = wall_distance(sight, points[i, 0], points[i, 1], at_most)
+    return distances
+
+
+@internal()
+def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
+    """Whether no wall lies across the segment pq, except one that p stands on."""
+    walls, solid, table = sight.walls, sight.solid, sight.table
+    first_row, last_row = rows_crossed(table, py, qy)
+    share = per_metre_up(py, qy)
+    for row in range(first_row, last_row + 1):
+        first, last = cells_in_row(table, row, px, py, qx, share)
+        for column in range(first, last + 1):
+            at = row * table.nx + column
+            for j in range(table.offsets[at], table.offsets[at + 1]):
+                wall = table.indices[j]
+                ax, ay, bx, by = walls[wall]
+                if (
+                    wall < solid
+                    and segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by) == 0.0
+                    and point_segment_distance2(px, py, ax, ay, bx, by) > TOUCH * TOUCH
+                ):
+                    return False
+    return True
+
+
+@internal()
+def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> float:
+    """Metres from p towards q up to the first wall, at most to q."""
+    walls, table = sight.walls, sight.table
+    dx = qx - px
+    dy = qy - py
+    nearest = 1.0
+    first_row, last_row = rows_crossed(table, py, qy)
+    share = per_metre_up(py, qy)
+    for row in range(first_row, last_row + 1):
+        first, last = cells_in_row(table, row, px, py, qx, share)
+        for column in range(first, last + 1):
+            at = row * table.nx + column
+            for j in range(table.offsets[at], table.offsets[at + 1]):
+                ax, ay, bx, by = walls[table.indices[j]]
+                if segments_cross(px, py, qx, qy, ax, ay, bx, by):
+                    t = ((ax - px) * (by - ay) - (ay - py) * (bx - ax)) / (
+                        dx * (by - ay) - dy * (bx - ax)
+                    )
+                    nearest = min(nearest, t)
+    return nearest * np.sqrt(dx * dx + dy * dy)
+
+
+def distances_to_walls(
+    plan: "FloorPlan", points: NDArray[np.float64], at_most: float
+) -> NDArray[np.float64]:
+    """(n,) metres from (n, 2) points to the nearest wall of a plan, `at_most` if none is nearer."""
+    return wall_distances(_prepared(plan, at_most), np.ascontiguousarray(points), at_most)
+
+
+def line_of_sight(
+    plan_or_walls: "FloorPlan | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
+) -> bool:
+    """Whether the straight line from p to q (x, y in metres) stays `clearance` from all walls.
+
+    A line that touches a wall has no clearance: it is not in view. `plan_or_walls`
+    is a FloorPlan or an (m, 4) array of wall segments.
+    """
+    ends = [np.asarray(end, dtype=np.float64).reshape(1, 2) for end in (p, q)]
+    return bool(lines_of_sight(plan_or_walls, ends[0], ends[1], clearance)[0])
+
+
+def lines_of_sight(
+    plan_or_walls: "FloorPlan | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
+) -> NDArray[np.bool_]:
+    """(n,) `line_of_sight` for every pair of rows of two (n, 2) arrays.
+
+    Raises FloorPlanError for points that are not finite, arrays of different
+    length, or a negative clearance.
+    """
+    starts = np.ascontiguousarray(np.asarray(p, dtype=np.float64).reshape(-1, 2))
+    ends = np.ascontiguousarray(np.asarray(q, dtype=np.float64).reshape(-1, 2))
+    if len(starts) != len(ends) or not (np.isfinite(starts).all() and np.isfinite(ends).all()):
+        raise FloorPlanError(
+            "lines of sight need two arrays of finite points of the same length, "
+            f"found {len(starts)} and {len(ends)} points"
+        )
+    if not (np.isfinite(clearance) and clearance >= 0):
+        raise FloorPlanError(f"clearance must be at least 0 m, found {clearance}")
+    return _clear_lines(_prepared(plan_or_walls, float(clearance)), starts, ends, float(clearance))
+
+
+@kept()
+def _clear_lines(
+    sight: Sight, starts: NDArray[np.float64], ends: NDArray[np.float64], clearance: float
+) -> NDArray[np.bool_]:
+    clear = np.empty(len(starts), dtype=np.bool_)
+    for i in range(len(starts)):
+        px, py = starts[i]
+        qx, qy = ends[i]
+        clear[i] = clear_line(sight, px, py, qx, qy, clearance, np.inf, NO_WALL)
+    return clear
+
+
+_CACHE: "WeakKeyDictionary[FloorPlan, tuple[int, float, Sight]]" = WeakKeyDictionary()
+
+
+def _prepared(plan_or_walls: "FloorPlan | ArrayLike", clearance: float) -> Sight:
+    if not hasattr(plan_or_walls, "walls"):
+        return sight_of(plan_or_walls, (), clearance)
+    plan = cast("FloorPlan", plan_or_walls)
+    found = _CACHE.get(plan)
+    if found is None or found[0] != plan.version or found[1] < clearance:
+        found = (plan.version, clearance, sight_of(plan.walls, (), clearance))
+        _CACHE[plan] = found
+    return found[2]

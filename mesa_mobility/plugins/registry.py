@@ -1,0 +1,127 @@
+"""Models and behaviours that are installed, plug-ins of other packages included.
+
+A package offers a model or a behaviour by an entry point in the group `mesa_mobility.models` or
+`mesa_mobility.behaviors`; nothing is imported before it is asked for by name.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from importlib.metadata import Distribution, EntryPoint, entry_points
+
+from mesa_mobility.errors import ModelError
+
+MODELS = "mesa_mobility.models"
+BEHAVIORS = "mesa_mobility.behaviors"
+_KINDS = {MODELS: "model", BEHAVIORS: "behavior"}
+
+
+@dataclass(frozen=True)
+class Plugin:
+    """An installed model or behaviour.
+
+    Attributes:
+        name: by which it is chosen.
+        target: `module:attribute` that holds its class.
+        package: distribution that brings it, with its version.
+        rival: another distribution that offers the same name, or nothing.
+    """
+
+    name: str
+    target: str
+    package: str
+    rival: str
+    _entry: EntryPoint
+
+    def load(self) -> type:
+        """Import the class.
+
+        Raises:
+            ModelError: the plug-in cannot be imported, what it names is not a class, or two
+                packages offer its name.
+        """
+        kind = _KINDS[self._entry.group]
+        if self.rival:
+            raise ModelError(
+                f"{kind} {self.name} is offered both by {self.package} and by {self.rival}: "
+                "remove one of them"
+            )
+        try:
+            loaded = self._entry.load()
+        # A plug-in may fail in any way; whichever it is, its name is what the user needs.
+        except Exception as error:
+            reason = " ".join(str(error).split())
+            raise ModelError(
+                f"{kind} {self.name} ({self.target}, from {self.package}) cannot be loaded: "
+                f"{type(error).__name__}: {reason}"
+            ) from error
+        if not isinstance(loaded, type):
+            raise ModelError(
+                f"{kind} {self.name} ({self.target}, from {self.package}) is not a class"
+            )
+        return loaded
+
+
+def models() -> dict[str, Plugin]:
+    """Installed models by name, in alphabetical order; none of them is imported."""
+    return _installed(MODELS)
+
+
+def behaviors() -> dict[str, Plugin]:
+    """Installed behaviours by name, in alphabetical order; none of them is imported."""
+    return _installed(BEHAVIORS)
+
+
+def load_model(name: str) -> type:
+    """The class of a model.
+
+    Raises:
+        ModelError: no model of that name (the message lists what is installed), or it is broken.
+    """
+    return _find(name, models(), "model").load()
+
+
+def load_behavior(name: str) -> type:
+    """The class of a behaviour.
+
+    Raises:
+        ModelError: no behaviour of that name (the message lists what is installed), or it is
+            broken.
+    """
+    return _find(name, behaviors(), "behavior").load()
+
+
+def _installed(group: str) -> dict[str, Plugin]:
+    plugins: dict[str, Plugin] = {}
+    entries = sorted(entry_points(group=group), key=lambda each: (each.name, each.value))
+    # To ask a distribution for its name reads a file, and most bring several.
+    packages: dict[Distribution | None, str] = {}
+    for entry in entries:
+        dist = entry.dist
+        if dist not in packages:
+            packages[dist] = f"{dist.name} {dist.version}" if dist else "an unknown package"
+        package = packages[dist]
+        first = plugins.get(entry.name)
+        if first is None:
+            plugins[entry.name] = Plugin(entry.name, entry.value, package, rival="", _entry=entry)
+        elif first.target != entry.value:
+            plugins[entry.name] = replace(first, rival=package)
+    return plugins
+
+
+def _find(name: str, plugins: Mapping[str, Plugin], kind: str) -> Plugin:
+    if name in plugins:
+        return plugins[name]
+    installed = ", ".join(plugins) or "none"
+    raise ModelError(
+        f"unknown {kind} {name!r}{did_you_mean(name, plugins)}; installed: {installed}"
+    )
+
+
+def did_you_mean(name: str, known: Mapping[str, object]) -> str:
+    """``, did you mean 'doorway'?`` for the closest of the known names, or nothing."""
+    lowered = {each.lower(): each for each in known}
+    close = difflib.get_close_matches(name.lower(), lowered, n=1)
+    return f", did you mean {lowered[close[0]]!r}?" if close else ""

@@ -1,0 +1,1 @@
+"""Closed tracks on which people walk round."""

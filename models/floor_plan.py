@@ -1,0 +1,67 @@
+"""People leaving any floor plan, read from a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+
+from mesa_mobility import Files, FloorPlan, MobilityMap, PedestrianModel, Range
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.errors import ModelError
+
+
+class FloorPlanEgress(PedestrianModel):
+    """People all over a floor plan leave by the nearest exit.
+
+    Args:
+        plan: GeoJSON file of the floor plan, as ``FloorPlan.write_geojson`` writes it.
+        pedestrians: people, at random places all over the free floor.
+        pre_movement: seconds before people set off, or their distribution.
+        preset: "default" or "paper".
+        mobility_map: a map or its file; by default the able-bodied one that ships.
+        frames_per_step: frames that one step advances; 3 are 0.1 s.
+        record: keep every frame.
+        rng: seed or NumPy generator.
+    """
+
+    def __init__(
+        self,
+        plan: Annotated[Path | str | None, Files("*.geojson")] = None,
+        pedestrians: Annotated[int, Range(1, 500)] = 50,
+        pre_movement: Distribution | float = 0.0,
+        preset: str = "default",
+        mobility_map: MobilityMap | str | None = None,
+        frames_per_step: int = 3,
+        record: bool = False,
+        rng: int | np.random.Generator | None = None,
+    ) -> None:
+        if pedestrians < 1:
+            raise ModelError(f"pedestrians: got {pedestrians}, expected 1 or more")
+        floor = read_plan(plan)
+        super().__init__(
+            floor,
+            preset=preset,
+            mobility_map=mobility_map,
+            frames_per_step=frames_per_step,
+            record=record,
+            rng=rng,
+        )
+        places = floor.random_points(pedestrians, self.rng, spacing=0.5, clearance=0.3)
+        self.add_pedestrians(places, pre_movement=pre_movement)
+
+
+def read_plan(path: Path | str | None) -> FloorPlan:
+    """The floor plan of a file.
+
+    Raises:
+        ModelError: no file, or a plan without an exit.
+        FloorPlanError: the file cannot be read, or is no floor plan.
+    """
+    if path is None:
+        raise ModelError("plan: got none, expected a GeoJSON file of a floor plan")
+    plan = FloorPlan.from_geojson(path)
+    if not plan.exits:
+        raise ModelError(f"plan: {path} has no exit, expected one to leave by")
+    return plan

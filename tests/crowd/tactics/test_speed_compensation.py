@@ -1,0 +1,92 @@
+"""Whoever walks freely makes up for steps that were longer or shorter than it likes."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mesa_mobility.crowd.state.records import NO_OPTION, Crowd
+from mesa_mobility.crowd.tactics.speed_compensation import FREELY, MAKES_UP, MOST, compensate_speed
+from tests.fixtures.maps import make_map, stand, straight
+from tests.fixtures.scenes import corridor, model_of, put
+
+
+def after(walked: float, *, wished: float = 1.25, frames: int = 45, behind: float = 0.0) -> Crowd:
+    """Somebody who wished for a speed and has walked so many metres in so many frames."""
+    crowd = Crowd(1)
+    crowd.from_x[:], crowd.from_y[:] = 2.0, -1.0
+    # 3-4-5: a movement along neither axis.
+    crowd.to_x[:], crowd.to_y[:] = 2.0 + 0.6 * walked, -1.0 + 0.8 * walked
+    crowd.start[:], crowd.end[:], crowd.option[:] = 30, 30 + frames, 7
+    crowd.agenda["wished"], crowd.agenda["behind"] = wished, behind
+    return crowd
+
+
+def next_speed(crowd: Crowd, speed: float = 1.25) -> float:
+    return float(compensate_speed(np.array([0]), crowd, np.array([speed]))[0])
+
+
+@pytest.mark.parametrize(
+    ("walked", "behind", "expected"),
+    [
+        (1.875, 0.0, 1.25),  # 1.25 m/s for 1.5 s
+        (1.95, 0.0, 1.20),  # 7.5 cm too far: 5 cm/s less for 1.5 s
+        (1.80, 0.0, 1.30),
+        (1.80, 0.06, 1.34),  # and 6 cm from before
+        (1.80, 0.60, 1.35),  # nobody is further behind than 15 cm
+        (1.95, -0.60, 1.15),
+        (1.70, 0.06, 1.25),  # 0.12 m/s too slow: it could not walk freely, and starts anew
+        (2.05, 0.06, 1.25),
+    ],
+)
+def test_by_hand(walked, behind, expected):
+    crowd = after(walked, behind=behind)
+    assert next_speed(crowd) == pytest.approx(expected)
+    assert crowd.agenda["wished"][0] == 1.25
+
+
+def test_whoever_has_not_moved_yet_or_fell_back_starts_anew():
+    for option in (NO_OPTION, -2):
+        crowd = after(1.95)
+        crowd.option[:] = option
+        assert next_speed(crowd) == 1.25
+        assert crowd.agenda["behind"][0] == 0.0
+
+
+def test_whoever_stands_stands():
+    assert next_speed(after(1.80), 0.0) == 0.0
+    # What it is behind is of its old wish; nobody walks backwards to make up.
+    assert next_speed(after(1.95, behind=-0.15), 0.01) == 0.0
+
+
+@settings(deadline=None)  # compiled at the first
+@given(
+    walked=st.floats(0.0, 4.0),
+    wished=st.floats(0.0, 2.0),
+    frames=st.sampled_from([12, 24, 45]),
+    behind=st.floats(-MOST, MOST),
+    speed=st.floats(0.0, 2.0),
+)
+def test_within_bounds(walked, wished, frames, behind, speed):
+    crowd = after(walked, wished=wished, frames=frames, behind=behind)
+    got = next_speed(crowd, speed)
+    assert got >= 0.0
+    assert abs(got - speed) <= MOST / MAKES_UP + 1e-12
+    if abs(walked - wished * frames / 30.0) > FREELY * frames / 30.0 + 1e-9:
+        assert got == speed
+
+
+@pytest.mark.parametrize("speed", [1.12, 1.15, 1.18])
+def test_on_average_everybody_walks_at_its_own_speed(speed):
+    # Steps of 1.1 and 1.2 m/s alone: who likes another speed takes now the one, now the other.
+    steps = [straight(1.65, 45), straight(1.8, 45)]
+    model = model_of(corridor(length=80.0), make_map([[stand(), *steps], steps]), rng=1)
+    person = put(model, 1.0, 2.0, preferred_speeds=speed)
+    times = {}
+    while model.inside and model.frame < 3000:
+        model.step()
+        for line in (10.0, 70.0):
+            if model.inside and person.position[0] >= line:
+                times.setdefault(line, model.elapsed)
+    walked = 60.0 / (times[70.0] - times[10.0])
+    assert walked == pytest.approx(speed, abs=0.01)

@@ -1,0 +1,117 @@
+"""People who are told to wait stand until their time has come."""
+
+import numpy as np
+import pytest
+
+from mesa_mobility.crowd.planning.explanation import Watch
+from mesa_mobility.errors import ModelError
+from tests.fixtures.counting import overlaps, track
+from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.scenes import advance, core_of, corridor, model_of, put
+
+
+def still(model, person):
+    """Seconds in which a person does not move, from the first to the last of them."""
+    rows = track(model.recorder.arrays(), person.row)
+    stands = np.hypot(*np.diff(rows[:, 1:3], axis=0).T) < 1e-9
+    frames = rows[1:, 0][stands]
+    return (frames[0] - 1) / 30, frames[-1] / 30
+
+
+def test_waits_for_a_time_and_goes_on():
+    model = model_of(corridor(), strider())
+    person = put(model, 2.0, 2.0, preferred_speeds=[1.25])
+    advance(model, 10)
+    person.wait(5.0)
+    assert person.waiting
+    model.run(max_seconds=30)
+    # The movement under way ends after 45 frames; stands of 12 frames from there on.
+    first, last = still(model, person)
+    assert first == pytest.approx(1.5)
+    assert 10 / 30 + 5.0 <= last <= 10 / 30 + 5.0 + 0.4
+    assert not person.waiting
+    assert model.inside == 0
+
+
+def test_waits_until_something_is_so():
+    model = model_of(corridor(), strider())
+    person = put(model, 2.0, 2.0, preferred_speeds=[1.25])
+    person.wait(until=lambda: model.elapsed >= 70.0)
+    model.run(max_seconds=200)
+    assert not model.stalled
+    assert person.start_time == 0.0
+    assert still(model, person) == pytest.approx((0.0, 70.0), abs=0.41)
+
+
+def test_told_again_the_last_word_counts():
+    model = model_of(corridor(), strider())
+    person = put(model, 2.0, 2.0)
+    person.wait(until=lambda: False)
+    advance(model, 30)
+    person.wait(0.0)
+    assert not person.waiting
+    advance(model, 45)
+    assert person.position[0] > 2.0
+
+
+def test_the_same_whatever_a_step_is():
+    ends = []
+    for frames_per_step in (1, 4):
+        model = model_of(corridor(), shipped_map(), rng=3, frames_per_step=frames_per_step)
+        person = put(model, 2.0, 2.0)
+        person.wait(until=lambda model=model: model.elapsed > 1.9)
+        advance(model, 120)
+        ends.append(person.position.tolist())
+    assert ends[0] == ends[1]
+
+
+def test_others_walk_round_somebody_who_waits_and_it_stays_in_its_place():
+    model = model_of(corridor(width=2.5), shipped_map(), rng=3, frames_per_step=3)
+    (person,) = model.add_pedestrians([(8.0, 1.25)])
+    person.wait(40.0)
+    model.add_pedestrians([(1.0 + 0.6 * k, 0.6 + 0.6 * j) for k in range(4) for j in range(3)])
+    model.run(max_seconds=90)
+    assert model.inside == 0
+    rows = model.recorder.arrays()
+    assert overlaps(rows, core_of(model)) == 0
+    path = track(rows, person.row)
+    waiting = path[path[:, 0] < 40 * 30]
+    assert np.abs(waiting[:, 1:3] - (8.0, 1.25)).max() < 0.25
+
+
+@pytest.mark.parametrize(
+    "keywords", [{}, {"seconds": 1.0, "until": bool}, {"seconds": -1.0}, {"seconds": np.inf},
+                 {"until": 5.0}],
+)  # fmt: skip
+def test_waits_that_cannot_be(keywords):
+    model = model_of(corridor(), strider())
+    person = put(model, 2.0, 2.0)
+    with pytest.raises(ModelError, match="wait"):
+        person.wait(**keywords)
+    assert not person.waiting
+
+
+def test_whoever_waits_does_not_turn_round_and_round():
+    # To go nowhere, all ways to face cost the same, and the map has turns on the spot.
+    model = model_of(corridor(), shipped_map(), rng=1)
+    person = put(model, 2.0, 2.0)
+    person.wait(60.0)
+    advance(model, 600)
+    headings = track(model.recorder.arrays(), person.row)[:, 3]
+    assert np.ptp(headings) < np.radians(1.0)
+    assert model.explain(person.row).chosen >= 0
+
+
+def test_what_is_told_of_somebody_who_waits_is_what_it_does():
+    model = model_of(corridor(), shipped_map(), rng=1)
+    person = put(model, 2.0, 2.0)
+    person.wait(60.0)
+    advance(model, 30)
+    model.watch = Watch(person.row)
+    advance(model, 60)
+    taken = model.watch.decision
+    assert taken.taken
+    free = np.flatnonzero(taken.totals == taken.totals.min())
+    turns = np.abs(taken.paths[free, 2, -1] - taken.candidates.facings[0])
+    assert len(free) > 1
+    assert taken.chosen in free[turns < turns.min() + 1e-6]

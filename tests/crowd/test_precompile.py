@@ -1,0 +1,72 @@
+"""What is compiled ahead is what runs need."""
+
+import pytest
+from mesa_mobility.models import Doorway
+
+from mesa_mobility.crowd import precompile
+from mesa_mobility.crowd.planning import decision, grid
+from mesa_mobility.crowd.state import advance, aggregates, departed
+from mesa_mobility.crowd.tactics import impatience, turns
+
+FUNCTIONS = [
+    decision.decide,
+    advance.select_due,
+    advance._move,
+    grid.build_grid,
+    grid._write_headways,
+    departed.walk_on,
+    departed.move_on,
+    departed.merge,
+    impatience.pick,
+    impatience.turn,
+    turns.find_mouths,
+    turns.give_turns,
+    aggregates._look_over,
+    aggregates.split_active,
+]
+
+
+def test_what_is_compiled_ahead_is_what_a_run_calls():
+    Doorway(pedestrians=60, rng=1).run(max_seconds=20.0)
+    needed = [set(function.signatures) for function in FUNCTIONS]
+    precompile.compile_decisions()
+    precompile.compile_the_rest()
+    assert [set(function.signatures) for function in FUNCTIONS] == needed
+    assert all(needed)
+
+
+def test_the_other_process_can_import_what_it_calls():
+    found = {}
+    lines = [line for line in precompile._COMMAND.splitlines() if "import" in line]
+    exec("\n".join(lines), found)
+    assert found["compile_decisions"] is precompile.compile_decisions
+
+
+def test_decisions_are_compiled_ahead_once(monkeypatch, tmp_path):
+    started = []
+    monkeypatch.setattr(precompile, "THREADS", 2)
+    monkeypatch.setattr(precompile, "_cached_in", lambda: tmp_path)
+    monkeypatch.setattr(precompile, "_COMMAND", "pass")
+    monkeypatch.setattr(
+        precompile, "_start", lambda start=precompile._start: started.append(1) or start()
+    )
+    with precompile.compiling_ahead():
+        pass
+    assert len(started) == 1
+    (tmp_path / "decision.decide-40.py311.nbi").touch()
+    with precompile.compiling_ahead():
+        pass
+    assert len(started) == 1
+
+
+def test_trouble_within_ends_the_other_process(monkeypatch, tmp_path):
+    others = []
+    monkeypatch.setattr(precompile, "THREADS", 2)
+    monkeypatch.setattr(precompile, "_cached_in", lambda: tmp_path)
+    monkeypatch.setattr(precompile, "_COMMAND", "import time; time.sleep(60)")
+    monkeypatch.setattr(
+        precompile, "_start", lambda start=precompile._start: others.append(start()) or others[0]
+    )
+    with pytest.raises(ValueError, match="bad input"), precompile.compiling_ahead():
+        raise ValueError("bad input")
+    assert others[0].returncode is not None

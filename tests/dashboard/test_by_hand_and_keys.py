@@ -1,0 +1,159 @@
+"""The crowd's canvas under pointer, wheel, fingers and keys; on a phone; in the dark."""
+
+import numpy as np
+import pytest
+
+CANVAS = "document.querySelector('.mm-crowd-canvas')"
+SELECTED = f"() => {CANVAS}.shown().selected"
+
+
+def view(tab):
+    return tab.shown()["view"]
+
+
+def box(tab):
+    return tab.page.locator(".mm-crowd-canvas").bounding_box()
+
+
+def middle(tab):
+    where = box(tab)
+    return where["x"] + where["width"] / 2, where["y"] + where["height"] / 2
+
+
+def opened(tab, name):
+    return tab.page.evaluate(
+        "(name) => document.querySelector('.mm-crowd').__vue__.floor.openings"
+        ".find((each) => each.name === name).open",
+        name,
+    )
+
+
+def test_a_door_is_closed_by_its_name_whoever_stands_there(tab):
+    plate = next(each for each in tab.shown()["plates"] if each["name"] == "first door")
+    where = box(tab)
+    # As many people as there are, all right below the name.
+    tab.page.evaluate(
+        """([x, y]) => {
+            const vue = document.querySelector('.mm-crowd').__vue__, people = vue.to.people;
+            const [mx, my] = vue.metres({ clientX: x, clientY: y });
+            for (let k = 0; k < people.length; k += 5) [people[k + 1], people[k + 2]] = [mx, my];
+        }""",
+        [where["x"] + plate["x"], where["y"] + plate["y"]],
+    )
+    tab.page.mouse.click(where["x"] + plate["x"], where["y"] + plate["y"])
+    tab.page.get_by_role("button", name="first door: door, closed").wait_for()
+    assert not opened(tab, "first door")
+    assert tab.shown()["selected"] == -1
+    tab.page.get_by_role("button", name="first door: door, closed").click()
+    tab.page.get_by_role("button", name="first door: door, open").wait_for()
+    assert opened(tab, "first door")
+
+
+def test_only_the_wheel_with_ctrl_zooms_and_the_page_scrolls_without(tab):
+    tab.page.set_viewport_size({"width": 1100, "height": 600})
+    tab.wait(f"() => !{CANVAS}.shown().moving")
+    tab.page.mouse.move(*middle(tab))
+    before, top = view(tab), box(tab)["y"]
+    tab.page.mouse.wheel(0, 120)
+    tab.wait(f"(y) => {CANVAS}.getBoundingClientRect().top < y - 60", top)
+    assert view(tab) == before
+    tab.page.mouse.move(*middle(tab))
+    tab.page.keyboard.down("Control")
+    tab.page.mouse.wheel(0, -250)
+    tab.page.keyboard.up("Control")
+    tab.wait(f"(s) => {CANVAS}.shown().view.scale > s", before["scale"])
+    assert view(tab)["scale"] == pytest.approx(before["scale"] * np.exp(0.5))
+
+
+def test_the_view_outlasts_another_size_and_another_tab(tab):
+    tab.button("zoom in").click()
+    tab.button("zoom in").click()
+    before = view(tab)
+    wide = box(tab)["width"]
+    tab.page.set_viewport_size({"width": 1300, "height": 800})
+    tab.wait(f"(w) => {CANVAS}.getBoundingClientRect().width !== w", wide)
+    tab.page.get_by_role("tab", name="Mobility map").click()
+    tab.wait(f"() => {CANVAS}.offsetParent === null")
+    tab.page.get_by_role("tab", name="Simulation").click()
+    tab.wait(f"() => {CANVAS}.offsetParent !== null")
+    assert view(tab) == before
+    tab.button("Fit").click()
+    assert view(tab)["scale"] != before["scale"]
+
+
+def test_keys_play_move_zoom_and_deselect(tab):
+    page = tab.page
+    page.locator("body").press("Tab")
+    assert page.evaluate("() => document.activeElement.textContent") == "Skip to the crowd"
+    page.keyboard.press("Enter")
+    assert "Play" in page.evaluate("() => document.activeElement.innerText.trim()").title()
+    tab.click_person(23)
+    assert page.evaluate(f"() => document.activeElement === {CANVAS}")
+    page.keyboard.press("Escape")
+    tab.wait(f"{SELECTED} === -1")
+    page.keyboard.press("Space")
+    tab.button("Pause").wait_for()
+    page.keyboard.press("Space")
+    tab.button("Play").wait_for()
+    before = view(tab)
+    page.keyboard.press("+")
+    assert view(tab)["scale"] == pytest.approx(1.25 * before["scale"])
+    page.keyboard.press("ArrowRight")
+    assert view(tab)["x"] > before["x"]
+    page.keyboard.press("ArrowUp")
+    assert view(tab)["y"] > before["y"]
+    page.keyboard.press("0")
+    assert view(tab) == before
+
+
+def test_every_control_has_a_name_and_the_page_a_language(tab):
+    assert tab.page.evaluate("() => document.documentElement.lang") == "en"
+    nameless = tab.page.evaluate(
+        """() => [...document.querySelectorAll("button, a, input, [tabindex='0']")]
+            .filter((e) => e.offsetParent && e.type !== "hidden")
+            .filter((e) => !(e.ariaLabel || e.innerText || e.labels?.[0]?.innerText || e.title))
+            .map((e) => e.outerHTML)"""
+    )
+    assert nameless == []
+
+
+def test_a_phone_shows_the_crowd_and_two_fingers_zoom(open_tab):
+    tab = open_tab(width=420, height=800, has_touch=True, is_mobile=True)
+    assert tab.page.locator(".v-navigation-drawer--open").count() == 0
+    play, speed = (
+        tab.page.locator(what).first.bounding_box()
+        for what in (".mm-time button", ".mm-time .v-select label")
+    )
+    assert speed["y"] >= play["y"] + play["height"] or speed["x"] >= play["x"] + play["width"]
+    before, (x, y) = view(tab), middle(tab)
+    touch = tab.page.context.new_cdp_session(tab.page)
+
+    def fingers(kind, *places):
+        points = [{"x": px, "y": py, "id": k} for k, (px, py) in enumerate(places)]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    fingers("touchStart", (x - 50, y), (x + 50, y))
+    fingers("touchMove", (x - 75, y), (x + 75, y))
+    fingers("touchMove", (x - 100, y), (x + 100, y))
+    fingers("touchEnd")
+    tab.wait(f"(s) => {CANVAS}.shown().view.scale > s", before["scale"])
+    assert view(tab)["scale"] == pytest.approx(2.0 * before["scale"])
+    # One finger is the page's.
+    before = view(tab)
+    fingers("touchStart", (x, y))
+    for k in range(1, 6):
+        fingers("touchMove", (x, y - 20 * k))
+    fingers("touchEnd")
+    tab.wait(f"(y) => {CANVAS}.getBoundingClientRect().top < y - 30", box(tab)["y"] + 31)
+    assert view(tab) == before
+
+
+def test_a_dark_page_has_a_dark_floor(open_tab):
+    tab = open_tab(color_scheme="dark")
+    tab.wait("() => document.querySelector('.mm-crowd').classList.contains('mm-dark')")
+    tab.wait(
+        f"""() => {{
+            const pixel = {CANVAS}.getContext('2d').getImageData(3, 120, 1, 1).data;
+            return Math.max(...pixel.slice(0, 3)) < 80;
+        }}"""
+    )

@@ -1,0 +1,92 @@
+"""The scripts in examples/ run, and show what they say they show."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "examples"
+
+
+def run(name: str, capsys: pytest.CaptureFixture[str]) -> str:
+    spec = importlib.util.spec_from_file_location(f"example_{name}", FOLDER / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.main()
+    return capsys.readouterr().out
+
+
+def numbers(pattern: str, text: str) -> list[float]:
+    return [float(found) for found in re.findall(pattern, text)]
+
+
+def test_every_example_is_tested() -> None:
+    tested = {name[len("test_") :] for name in globals() if name.startswith("test_")}
+
+    assert {file.stem for file in FOLDER.glob("*.py")} <= tested
+
+
+def test_first_crowd(capsys: pytest.CaptureFixture[str]) -> None:
+    [seconds] = numbers(r"40 people are out after (\S+) s", run("first_crowd", capsys))
+
+    # Forty people at 2.2 persons/s, and 5 m of way.
+    assert 10.0 < seconds < 40.0
+
+
+def test_own_cost_term(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = run("own_cost_term", capsys).splitlines()
+
+    assert len(lines) == 2
+    east, west = zip(*(numbers(r"y = (\S+) m", line) for line in lines), strict=True)
+    # Left of the way east is the greater y.
+    assert east[1] > east[0] + 0.1
+    assert west[1] < west[0] - 0.1
+
+
+def test_own_speed_rule(capsys: pytest.CaptureFixture[str]) -> None:
+    clear, some, thick = numbers(r"after (\S+) s", run("own_speed_rule", capsys))
+
+    assert clear < some < thick
+
+
+def test_sources_over_time(capsys: pytest.CaptureFixture[str]) -> None:
+    text = run("sources_over_time", capsys)
+    [trickle] = numbers(r"(\d+) people trickled", text)
+
+    # 20 are expected of a Poisson process of 0.5/s in 40 s: 20 +- 4.5, three deviations.
+    assert 6 <= trickle <= 34
+    assert "30 came by train" in text
+
+
+def test_speeds_by_age(capsys: pytest.CaptureFixture[str]) -> None:
+    students, older = numbers(r"like (\S+) m/s", run("speeds_by_age", capsys))
+
+    assert students == pytest.approx(1.55, abs=0.05)
+    # Weidmann's curve falls from 1.1 m/s at 65 years to 0.7 at 80.
+    assert 0.6 < older < 1.15
+
+
+def test_exits_chosen(capsys: pytest.CaptureFixture[str]) -> None:
+    nearest, quickest, familiar = run("exits_chosen", capsys).splitlines()
+
+    assert "54 by the near exit, 0 by the far one" in nearest
+    assert numbers(r"(\d+) by the far", quickest)[0] > 0
+    assert numbers(r"(\d+) by the far", familiar)[0] > 27
+    assert numbers(r"after (\S+) s", quickest) < numbers(r"after (\S+) s", nearest)
+
+
+def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
+
+    assert narrow > middle > wide
+
+
+def test_analysis_with_pedpy(capsys: pytest.CaptureFixture[str]) -> None:
+    text = run("analysis_with_pedpy", capsys)
+    [flow] = numbers(r"flow (\S+) persons/s", text)
+
+    # Published bottleneck experiments of 1 m: 2.233 b - 0.155 +- 0.7 persons/s.
+    assert 1.378 < flow < 2.778
