@@ -35,7 +35,7 @@ def main() -> None:
                 safety = check_safety(Trajectories.of(model), model.floor_plan.walls)
                 rows.append((model, safety))
                 if model_class is Auditorium:
-                    curves.append((preset, seed, dict(model.occupancy)))
+                    curves.append((preset, seed, dict(model.statistics.occupancy)))
             print(_line(model_class.__name__.lower(), preset, rows))
     print("\n| inside at | paper | " + " | ".join(f"{p}, seed {s}" for p, s, _ in curves) + " |")
     print("|---" * (2 + len(curves)) + "|")

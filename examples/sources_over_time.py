@@ -30,7 +30,7 @@ def main():
     model.run(max_seconds=180)
     trickle, train = (inflow.entered for inflow in model.sources)
     print(f"{trickle} people trickled in, {train} came by train")
-    for seconds, inside in model.occupancy[::10]:
+    for seconds, inside in model.statistics.occupancy[::10]:
         print(f"{seconds:5.0f} s {inside:4d} inside")
 
 

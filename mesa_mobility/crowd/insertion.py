@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,22 +11,81 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.crowd.collision.exact import swept_collision
 from mesa_mobility.crowd.options.table import OptionTable
+from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.planning.grid import Grid, build_grid, people_within
-from mesa_mobility.crowd.plugin_output import numbers_given
 from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd, CrowdState
+from mesa_mobility.crowd.tactics.speed_rules import FASTEST
+from mesa_mobility.crowd.tactics.waiting import frames_of
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.poisson_disk import have_room
 from mesa_mobility.floorplan.walls.line_of_sight import distances_to_walls
+from mesa_mobility.plugins.output import numbers_given
 
 TOUCHING = 1e-6
 """Overlap with a wall that counts as rounding, metres."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Newcomers:
+    """Who is put on the floor, in the words of ``PedestrianModel.add_pedestrians``.
+
+    Raises:
+        ModelError: exits that are one text, a loop without a route, or a group without a name.
+    """
+
+    headings: ArrayLike | None = None
+    preferred_speeds: ArrayLike | Distribution | None = None
+    pre_movement: ArrayLike | Distribution = 0.0
+    exits: Sequence[str] | None = None
+    route: Sequence[str] = ()
+    loop: bool = False
+    group: str | int | None = None
+    type_index: int = 0
+
+    def __post_init__(self) -> None:
+        if isinstance(self.exits, str):
+            raise ModelError(
+                f"exits: got {self.exits!r}, expected a list of names such as [{self.exits!r}]"
+            )
+        if self.loop and not len(self.route):
+            raise ModelError("loop: got no route, expected names of at least two gates")
+        if self.group is not None and not isinstance(self.group, str | int):
+            raise ModelError(f"group: got {self.group!r}, expected a name or number")
+
+    def draw_speeds(
+        self, n: int, ptype: PedestrianType, rng: np.random.Generator
+    ) -> NDArray[np.float64]:
+        """(n,) preferred speeds, m/s.
+
+        Raises:
+            ModelError: another number of them, or one out of range.
+        """
+        given = self.preferred_speeds
+        speeds = draw_column(
+            "preferred_speeds", ptype.draw_speeds(n, rng) if given is None else given, n, rng
+        )
+        off = ~((speeds > 0.0) & (speeds <= FASTEST))
+        if off.any():
+            raise ModelError(
+                f"preferred_speeds: got {speeds[off][0]}, expected more than 0 and at most "
+                f"{FASTEST:g} m/s"
+            )
+        return speeds
+
+    def draw_waits(self, n: int, rng: np.random.Generator) -> NDArray[np.int64]:
+        """(n,) pre-movement times in frames.
+
+        Raises:
+            ModelError: another number of them, or one out of range.
+        """
+        return frames_of(draw_column("pre_movement", self.pre_movement, n, rng), "pre_movement")
+
+
 @dataclass(frozen=True)
-class Newcomer:
-    """Attributes that new people share: type index, core radius in metres, standing cluster,
+class Assigned:
+    """What newcomers are assigned in common: type index, core radius in metres, standing cluster,
     destination, and numbers of the journey and the group, 0 for none."""
 
     type_index: int
@@ -106,7 +166,7 @@ def place(
     speeds: NDArray[np.float64],
     frame: int,
     sets_off: NDArray[np.int64],
-    new: Newcomer,
+    new: Assigned,
 ) -> None:
     """Fill the rows of people who appear standing at ``points``; headings are set later.
 
@@ -137,7 +197,7 @@ def place(
     agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 
 
-def face(state: Crowd, rows: NDArray[np.int64], headings: NDArray[np.float64]) -> None:
+def face(state: Crowd, rows: NDArray[np.int64], headings: ArrayLike) -> None:
     """Turn people who have just been placed."""
     state.heading[rows] = state.from_heading[rows] = state.to_heading[rows] = headings
 

@@ -115,7 +115,7 @@ class Pedestrian(ContinuousSpaceAgent):
     def group(self) -> str | int | None:
         """The group that the person belongs to, if any."""
         number = int(self.model.crowd.agenda["group"][self.row])
-        return self.model.groups[number - 1] if number else None
+        return self.model.population.groups[number - 1] if number else None
 
     @property
     def route(self) -> tuple[str, ...]:
@@ -146,8 +146,7 @@ class Pedestrian(ContinuousSpaceAgent):
     @property
     def cluster(self) -> int:
         """Cluster, in the type's map, of the pose in which the movement under way ends."""
-        type_index = int(self.model.crowd.type_index[self.row])
-        return int(self.model.crowd.cluster[self.row]) - int(self.model.first_cluster[type_index])
+        return self.model.population.cluster_of(self.row)
 
     @property
     def in_fallback(self) -> bool:

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.crowd.insertion import Newcomers
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
 from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan.entrance import Entrance, read_entrance
 
 HIGHEST_RATE = 1000.0
 """Most people a second from one source: the flow through some 800 m of doors."""
@@ -113,18 +116,17 @@ class Source:
         """Whether people come for ever."""
         return self.rate is not None and self.until > LATEST and self.number is None
 
-    def keywords(self) -> dict[str, Any]:
-        """The arguments of ``add_pedestrians`` for each of them."""
-        names = (
-            "exits",
-            "route",
-            "loop",
-            "group",
-            "type_index",
-            "preferred_speeds",
-            "pre_movement",
+    def newcomers(self) -> Newcomers:
+        """Who comes."""
+        return Newcomers(
+            preferred_speeds=self.preferred_speeds,
+            pre_movement=self.pre_movement,
+            exits=self.exits,
+            route=self.route,
+            loop=self.loop,
+            group=self.group,
+            type_index=self.type_index,
         )
-        return {name: getattr(self, name) for name in names}
 
 
 def _real(value: object) -> bool:
@@ -136,17 +138,24 @@ class Inflow:
 
     Args:
         source: the source.
+        entrance: where they come in.
         frame: the current frame, before which nobody comes.
         rng: the model's generator.
 
     Attributes:
         source: the source.
+        entrance: where they come in.
+        newcomers: who comes.
         arrived: people who have come, those held back included.
         entered: those of them who have entered.
     """
 
-    def __init__(self, source: Source, frame: int, rng: np.random.Generator) -> None:
+    def __init__(
+        self, source: Source, entrance: Entrance, frame: int, rng: np.random.Generator
+    ) -> None:
         self.source = source
+        self.entrance = entrance
+        self.newcomers = source.newcomers()
         self.arrived = 0
         self.entered = 0
         self._rng = rng
@@ -182,3 +191,51 @@ class Inflow:
         full = source.number is not None and self.arrived >= source.number
         if full or self._next >= source.until:
             self._next = np.inf
+
+
+class Sources(Sequence[Inflow]):
+    """A model's sources: an ``Inflow`` for each, in the order in which they were added.
+
+    Args:
+        scene: the floor and what people can do on it.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._inflows: list[Inflow] = []
+
+    @overload
+    def __getitem__(self, index: int) -> Inflow: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Inflow]: ...
+
+    def __getitem__(self, index: int | slice) -> Inflow | list[Inflow]:
+        return self._inflows[index]
+
+    def __len__(self) -> int:
+        return len(self._inflows)
+
+    @property
+    def expecting(self) -> bool:
+        """Whether a source has more people to come."""
+        return not all(inflow.finished for inflow in self._inflows)
+
+    @property
+    def endless(self) -> bool:
+        """Whether people come for ever."""
+        return any(inflow.source.endless for inflow in self._inflows)
+
+    def add(self, source: Source, frame: int, rng: np.random.Generator) -> Inflow:
+        """Let people in from ``frame`` on; ``PedestrianModel.add_source`` says what is refused."""
+        scene = self._scene
+        core = scene.type_at(source.type_index).core_radius
+        entrance = Entrance(scene.plan, read_entrance(source.area), core + 0.01)
+        inflow = Inflow(source, entrance, frame, rng)
+        destination, _ = scene.journeys.start(
+            source.exits, source.route, source.loop, source.type_index
+        )
+        somewhere = entrance.room.representative_point()
+        scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
+        self._inflows.append(inflow)
+        return inflow

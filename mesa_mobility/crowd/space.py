@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from random import Random
 from typing import Any
 
 from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
+
+from mesa_mobility.floorplan import FloorPlan
 
 _FEW = 50
 
@@ -80,3 +83,18 @@ class CrowdSpace(ContinuousSpace):
     @_index_to_agent.setter
     def _index_to_agent(self, table: dict[int, ContinuousSpaceAgent]) -> None:
         self._agents_by_index = table
+
+
+def space_of(plan: FloorPlan, margin: float, random: Random) -> CrowdSpace:
+    """A space for the people on a floor plan.
+
+    Args:
+        plan: the floor plan.
+        margin: metres by which the space reaches beyond it: people who cross an exit end up a step
+            outside.
+        random: the model's generator.
+    """
+    x0, y0, x1, y1 = plan.bounds
+    return CrowdSpace(
+        [[x0 - margin, x1 + margin], [y0 - margin, y1 + margin]], random=random, n_agents=64
+    )

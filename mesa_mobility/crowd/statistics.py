@@ -2,60 +2,58 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
+from mesa_mobility.crowd.state.advance import Moved
 
-from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.stall import stall_reason
-from mesa_mobility.crowd.state.aggregates import Aggregates
-from mesa_mobility.crowd.state.records import Crowd
-from mesa_mobility.floorplan import FloorPlan
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.model import PedestrianModel
+
+REPORTERS: dict[str, Any] = {
+    "elapsed": "elapsed",
+    "inside": "inside",
+    "mean_speed": lambda model: model.statistics.mean_speed,
+    "fallback_time_share": lambda model: model.statistics.fallback_time_share,
+}
+"""What a model's ``DataCollector`` collects after each step."""
 
 
-class CrowdStatistics:
-    """Figures of a model, worked out from its crowd."""
+class Statistics:
+    """Figures of a model, kept while it runs.
 
-    crowd: Crowd
-    floor_plan: FloorPlan
-    frame: int
-    count: int
-    preset: str
-    stalled: bool
-    last_left: float | None
-    occupancy: list[tuple[float, int]]
-    expecting: bool
-    _rows: NDArray[np.int64]
-    _seen: Aggregates
-    _walked: float
-    _person_frames: int
-    _fallback_frames: int
+    Args:
+        model: the model.
 
-    @property
-    def frame_rate(self) -> float:
-        """Frames a second."""
-        return 1.0 / FRAME_SECONDS
+    Attributes:
+        occupancy: (seconds, people inside) each simulated second.
+        last_left: seconds at which somebody last left, or None.
+    """
 
-    @property
-    def elapsed(self) -> float:
-        """Simulated seconds since the start."""
-        return self.frame * FRAME_SECONDS
+    def __init__(self, model: PedestrianModel) -> None:
+        self._model = model
+        self.occupancy: list[tuple[float, int]] = []
+        self.last_left: float | None = None
+        self._walked = 0.0
+        self._person_frames = self._fallback_frames = 0
 
-    @property
-    def inside(self) -> int:
-        """People inside."""
-        return len(self._rows)
+    def count_people(self) -> None:
+        """Note how many are inside now."""
+        self.occupancy.append((self._model.elapsed, len(self._model.population.present)))
 
-    @property
-    def stall_reason(self) -> str | None:
-        """Why the evacuation has stalled, in a few words; None if it has not."""
-        return stall_reason(self.floor_plan, self._seen) if self.stalled else None
+    def add(self, moved: Moved, frames: int) -> None:
+        """Add what happened in the last so many frames."""
+        for _ in range(frames):  # rounding must not depend on how many frames are skipped
+            self._walked += moved.speeds
+        self._person_frames += frames * (len(moved.stay) + len(moved.gone))
+        self._fallback_frames += frames * moved.fallen
+        if len(moved.gone):
+            self.last_left = self._model.elapsed
 
     @property
     def mean_speed(self) -> float:
         """Mean speed of the movements under way after the last step, m/s; 0 if nobody is inside."""
-        return self._seen.speeds / self._seen.people if self._seen.people else 0.0
+        now = self._model.population.aggregates
+        return now.speeds / now.people if now.people else 0.0
 
     @property
     def mean_speed_so_far(self) -> float:
@@ -70,30 +68,24 @@ class CrowdStatistics:
     @property
     def fallback_decision_share(self) -> float:
         """Share of decisions that ended in the fallback."""
-        total = int(self.crowd.decisions.sum())
-        return float(self.crowd.fallbacks.sum()) / total if total else 0.0
+        crowd = self._model.crowd
+        total = int(crowd.decisions.sum())
+        return float(crowd.fallbacks.sum()) / total if total else 0.0
 
     def summary(self) -> dict[str, Any]:
-        """Figures of the run so far, ready for JSON.
-
-        Returns:
-            ``model``, ``preset``, ``pedestrians``, ``simulated_s``, ``egress_s`` (None while
-            anybody is inside or to come, or where nobody ever was), ``left_inside``, ``stalled``,
-            ``stall_reason`` (None unless stalled), ``decisions``, ``fallback_decision_share``,
-            ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy``
-            ([[t, inside], ...] each second).
-        """
-        out = self.inside == 0 and self.last_left is not None and not self.expecting
+        """The figures of ``PedestrianModel.summary``."""
+        model, last_left = self._model, self.last_left
+        out = model.inside == 0 and last_left is not None and not model.sources.expecting
         return {
-            "model": type(self).__name__,
-            "preset": self.preset,
-            "pedestrians": self.count,
-            "simulated_s": round(self.elapsed, 6),
-            "egress_s": round(self.last_left or 0.0, 6) if out else None,
-            "left_inside": self.inside,
-            "stalled": self.stalled,
-            "stall_reason": self.stall_reason,
-            "decisions": int(self.crowd.decisions.sum()),
+            "model": type(model).__name__,
+            "preset": model.preset,
+            "pedestrians": model.population.count,
+            "simulated_s": round(model.elapsed, 6),
+            "egress_s": round(last_left or 0.0, 6) if out else None,
+            "left_inside": model.inside,
+            "stalled": model.stalled,
+            "stall_reason": model.stall_reason,
+            "decisions": int(model.crowd.decisions.sum()),
             "fallback_decision_share": self.fallback_decision_share,
             "fallback_time_share": self.fallback_time_share,
             "mean_speed_mps": self.mean_speed_so_far,

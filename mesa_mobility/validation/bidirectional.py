@@ -67,7 +67,7 @@ def both_ways(seed: int, *, density: float) -> dict[str, Any]:
         model.add_source(Source(area=area, rate=density * speed * WIDTH / 2, exits=[name]))
     while model.elapsed < SETTLE_S + MEASURE_S + WINDOW_S:
         model.step()
-    east = model.crowd.destination[: model.count] == model.crowd.destination[0]
+    east = model.crowd.destination[: model.population.count] == model.crowd.destination[0]
     return {
         **(run := Run(model, plan.walls)).figures(),
         **_in_box(run, np.where(east, 1.0, -1.0), np.random.default_rng(seed)),

@@ -142,13 +142,13 @@ from mesa_mobility.compiled.twins import PLAIN
 from mesa_mobility.models import Doorway, OpenSpace
 print(PLAIN)
 for model, seconds in ((Doorway(rng=1), 20.0), (OpenSpace(pedestrians=320, rng=2), 4.0)):
-    digest, n = hashlib.sha256(), model.count
+    digest, n = hashlib.sha256(), model.population.count
     assert n < 256 or n > 300
     while model.running and model.elapsed < seconds:
         model.step()
         crowd = model.crowd
         for array in (crowd.x, crowd.y, crowd.heading, crowd.active):
-            digest.update(np.ascontiguousarray(array[: model.count]).tobytes())
+            digest.update(np.ascontiguousarray(array[: model.population.count]).tobytes())
     print(digest.hexdigest())
 """
 

@@ -12,7 +12,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel, Source, SpeedZone
 from mesa_mobility.compiled.threads import MANY
-from mesa_mobility.errors import ModelError
+from mesa_mobility.errors import FloorPlanError, ModelError
 from tests.fixtures.maps import wanderer
 from tests.fixtures.scenes import advance, corridor, model_of
 
@@ -23,11 +23,11 @@ def state(model):
     return (
         model.frame,
         rows.tobytes(),
-        fields(model.crowd.records[: model.count]),
-        fields(model.crowd.agenda[: model.count]),
+        fields(model.crowd.records[: model.population.count]),
+        fields(model.crowd.agenda[: model.population.count]),
         model.space.agent_positions.tobytes(),
         [agent.unique_id for agent in model.space.active_agents],
-        model.occupancy,
+        model.statistics.occupancy,
         model.rng.bit_generator.state,
     )
 
@@ -103,6 +103,14 @@ def test_each_has_people_and_a_floor_plan_of_its_own():
     assert state(model) == kept
     advance(copied, 60)
     advance(model, 60)
+
+
+def test_no_obstacle_is_put_where_people_of_the_copy_stand():
+    copied = copy.deepcopy(doorway())
+    x, y = copied.space.agent_positions[0]
+    with pytest.raises(FloorPlanError, match="pedestrian 0 stands there"):
+        copied.floor_plan.add_obstacle(box(x - 0.1, y - 0.1, x + 0.1, y + 0.1))
+    assert not copied.floor_plan.obstacles
 
 
 def test_changes_of_plan_after_the_copy():

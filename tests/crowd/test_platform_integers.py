@@ -28,7 +28,7 @@ def walk():
     model = Doorway(pedestrians=6, rng=3)
     for _ in range(3):
         model.step()
-    n = model.count
+    n = model.population.count
     return model.crowd.x[:n].copy(), model.crowd.y[:n].copy()
 
 

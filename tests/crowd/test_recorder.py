@@ -74,7 +74,7 @@ def test_trajectories_of_a_model(evacuation):
     assert trajectories.radii.tolist() == [shipped_map().metadata["body"]["core_radius_m"]] * 20
     assert len(trajectories) == len(rows["x"])
     inside = dict(enumerate(trajectories.inside()))
-    for seconds, people in evacuation.occupancy:
+    for seconds, people in evacuation.statistics.occupancy:
         assert inside[round(30 * seconds)] == people
 
 

@@ -83,7 +83,7 @@ def test_recording_and_steps_change_nothing(frames_per_step, preset):
     assert model.recorder is None
     for name in ("x", "y", "heading", "active_frames", "fallback_frames", "decisions"):
         assert recorded.crowd.records[name].tobytes() == model.crowd.records[name].tobytes()
-    assert recorded.last_left == model.last_left
+    assert recorded.statistics.last_left == model.statistics.last_left
     assert recorded.summary() == model.summary()
 
 

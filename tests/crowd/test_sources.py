@@ -24,7 +24,7 @@ def first_seen(model) -> list[float]:
 def test_scheduled_arrivals_come_in_the_first_frame_after_their_time():
     model = model_of(corridor(length=60.0), strider())
     inflow = model.add_source(Source(area=WEST, times=[2.0, 0.0, 0.51, 2.0]))
-    assert model.expecting
+    assert model.sources.expecting
     advance(model, 90)
     assert first_seen(model) == pytest.approx([0.0, 16 / 30, 2.0, 2.0])
     assert (inflow.arrived, inflow.entered, inflow.waiting) == (4, 4, 0)
@@ -108,7 +108,7 @@ def test_a_run_is_not_over_while_somebody_is_to_come():
     model.add_source(Source(area=WEST, times=[5.0, 100.0], preferred_speeds=1.25))
     model.run(max_seconds=50)
     assert model.inside == 0
-    assert model.expecting
+    assert model.sources.expecting
     assert model.running
     assert model.summary()["egress_s"] is None
     model.run()
@@ -205,7 +205,7 @@ def test_sources_that_do_not_fit_the_model(keywords, error, match):
     model = model_of(corridor(), strider())
     with pytest.raises(error, match=match):
         model.add_source(Source(times=[1.0], **keywords))
-    assert not model.expecting
+    assert not model.sources.expecting
 
 
 def test_people_who_come_almost_for_ever_want_an_end_too():

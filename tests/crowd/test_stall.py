@@ -34,7 +34,7 @@ def test_a_minute_after_the_last_who_left():
     put(model, 10.0, 3.0, type_index=1)
     model.run(max_seconds=600)
     assert model.stalled
-    assert model.last_left == pytest.approx(4.0, abs=0.2)
+    assert model.statistics.last_left == pytest.approx(4.0, abs=0.2)
     assert model.elapsed == pytest.approx(64.0, abs=2.0)
 
 

@@ -32,7 +32,7 @@ def test_the_grids_of_a_plan_of_100_square_kilometres_are_small():
     grid = build_grid(np.arange(4), *PLACES.T.copy())
     assert grid.nx * grid.ny <= neighbours.MOST_CELLS
     model = PedestrianModel(plan, mobility_map=strider(), record=True, rng=1)
-    around = model._site.surroundings
+    around = model._scene.environment.surroundings
     assert around.nx * around.ny <= walls.MOST_CELLS
     model.add_pedestrians(PLACES, preferred_speeds=1.25)
     model.run(max_seconds=20)

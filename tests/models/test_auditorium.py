@@ -56,7 +56,7 @@ def sparse():
 
 def test_sixty_people_all_find_the_way_out(sparse):
     assert sparse.inside == 0
-    assert sparse.last_left < 120
+    assert sparse.statistics.last_left < 120
 
 
 def test_people_leave_by_the_nearest_exit(sparse):
@@ -99,7 +99,7 @@ def full(request):
 @pytest.mark.slow
 def test_everybody_out_in_250_to_400_seconds(full):
     assert full.inside == 0
-    assert 250.0 <= full.last_left <= 400.0
+    assert 250.0 <= full.statistics.last_left <= 400.0
 
 
 @pytest.mark.slow

@@ -25,7 +25,7 @@ def doorway(request):
 
 
 def test_sixty_people_pass_both_doors_in_turn(doorway):
-    assert doorway.count == 60
+    assert doorway.population.count == 60
     assert doorway.inside == 0
     rows = doorway.recorder.arrays()
     plan = doorway.floor_plan
@@ -60,7 +60,7 @@ def test_bodies_keep_off_the_walls(doorway):
 
 def test_nobody_needs_the_fallback(doorway):
     # To stay where one is is among everybody's options, and always free.
-    assert doorway.fallback_decision_share == 0.0
+    assert doorway.statistics.fallback_decision_share == 0.0
 
 
 def test_a_step_leads_no_further_than_people_can_go(doorway):
@@ -89,7 +89,7 @@ def test_nobody_jitters(doorway):
 def test_a_wider_door_lets_people_out_sooner():
     narrow, wide = (run(1, door_width=width) for width in (0.8, 2.0))
     assert narrow.inside == wide.inside == 0
-    assert wide.last_left < 0.75 * narrow.last_left
+    assert wide.statistics.last_left < 0.75 * narrow.statistics.last_left
 
 
 def test_doors_are_as_wide_as_asked_for():

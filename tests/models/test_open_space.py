@@ -17,7 +17,7 @@ def crossing(request):
 
 
 def test_everybody_crosses_and_leaves(crossing):
-    assert crossing.count == 100
+    assert crossing.population.count == 100
     assert crossing.inside == 0
     # 30 m at the slowest speed there is, 0.6 m/s.
     assert crossing.elapsed < 60
@@ -40,7 +40,7 @@ def test_nobody_overlaps_or_crosses_a_wall(crossing):
 
 
 def test_where_there_is_room_people_hardly_need_the_fallback(crossing):
-    assert crossing.fallback_time_share < 0.02
+    assert crossing.statistics.fallback_time_share < 0.02
     assert crossing.summary()["mean_speed_mps"] > 1.0
 
 

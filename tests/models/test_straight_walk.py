@@ -26,7 +26,7 @@ def tracks(walk):
 
 def test_everybody_arrives(walk):
     assert walk.inside == 0
-    assert walk.count == 50
+    assert walk.population.count == 50
     # The slowest, at 0.9 m/s, needs 44.4 s for 40 m, give or take 5 % and a start.
     assert walk.elapsed == pytest.approx(44.4, abs=3.5)
 
@@ -87,7 +87,7 @@ def test_goes_straight(tracks):
 
 
 def test_lone_walkers_need_no_fallback(walk):
-    assert walk.fallback_decision_share == 0.0
+    assert walk.statistics.fallback_decision_share == 0.0
 
 
 def test_nobody_overlaps_or_crosses_a_wall(walk):

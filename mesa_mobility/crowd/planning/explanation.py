@@ -17,6 +17,7 @@ from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.planning.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
@@ -97,22 +98,21 @@ class Watch:
 def weigh(
     row: int,
     frame: int,
-    table: OptionTable,
+    known: Repertoire,
     crowd: Crowd,
     grid: Grid,
     rules: Rules,
-    first_cluster: int,
     terms: Sequence[CostTerm],
 ) -> Explanation:
     """What the options of the pedestrian in ``row`` cost; whether they are free is still open."""
-    candidates = make_candidates(np.array([row], dtype=np.int64), table, crowd, grid, rules)
+    candidates = make_candidates(np.array([row], dtype=np.int64), known.table, crowd, grid, rules)
     n = len(candidates)
     costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
     return Explanation(
         pedestrian=row,
         frame=frame,
         taken=False,
-        cluster=int(crowd.cluster[row]) - first_cluster,
+        cluster=int(crowd.cluster[row]) - int(known.first_cluster[crowd.type_index[row]]),
         candidates=candidates,
         terms=tuple(term.name for term in terms),
         weights=np.array([term.weight for term in terms]),

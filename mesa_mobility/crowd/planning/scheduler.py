@@ -16,8 +16,8 @@ from mesa_mobility.compiled.twins import PLAIN
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.planning.decision import decide
-from mesa_mobility.crowd.planning.explanation import Explanation, Watch, judge, weigh
-from mesa_mobility.crowd.planning.grid import Grid, build_grid, headways
+from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
+from mesa_mobility.crowd.planning.grid import build_grid, headways
 from mesa_mobility.crowd.planning.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.work_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
@@ -113,25 +113,13 @@ class DecisionScheduler:
             return
         # Costs see the crowd as it is before anybody decides, collisions what those before have
         # committed to. To decide in two parts changes nothing.
-        weighed = self.weigh(watch.pedestrian, frame, grid, crowd, terms)
+        weighed = weigh(watch.pedestrian, frame, self._repertoire, crowd, grid, self._rules, terms)
         at = int(np.flatnonzero(order == watch.pedestrian)[0])
         if at > 0:
             part(0, at)
-        watch.decision = self.judge(weighed, crowd, around)
+        watch.decision = judge(weighed, table, crowd, around, self._rules)
         part(at, len(order))
         watch.commits(crowd, self._rules.first_option)
-
-    def weigh(
-        self, row: int, frame: int, grid: Grid, crowd: Crowd, terms: Sequence[CostTerm]
-    ) -> Explanation:
-        """What the options of the pedestrian in ``row`` cost; see ``explain.weigh``."""
-        first_cluster = int(self._repertoire.first_cluster[crowd.type_index[row]])
-        table = self._repertoire.table
-        return weigh(row, frame, table, crowd, grid, self._rules, first_cluster, terms)
-
-    def judge(self, weighed: Explanation, crowd: Crowd, around: Surroundings) -> Explanation:
-        """Which of these options hit something now; see ``explain.judge``."""
-        return judge(weighed, self._repertoire.table, crowd, around, self._rules)
 
     def _works_for(
         self, threads: int, people: int, around: Surroundings, terms: int

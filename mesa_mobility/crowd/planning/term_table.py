@@ -14,9 +14,9 @@ from mesa_mobility.crowd.planning.candidate_batch import make_candidates, pairs_
 from mesa_mobility.crowd.planning.grid import Grid
 from mesa_mobility.crowd.planning.option_costs import Terms
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.plugin_output import numbers_given
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins.output import numbers_given
 
 NO_EXTRA = np.empty(0), np.zeros(1, dtype=np.int64)
 """What ``extra_costs`` returns without NumPy terms."""

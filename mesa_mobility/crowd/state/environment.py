@@ -62,10 +62,14 @@ class Environment:
         plan: the floor plan; obstacles and doors may change while a model runs.
         reach: how far from a person walls matter, metres.
         core_radii: core radius of each pedestrian type, metres.
+
+    Attributes:
+        plan: the floor plan.
+        corners: the corners of all routes.
     """
 
     def __init__(self, plan: FloorPlan, *, reach: float, core_radii: Sequence[float]) -> None:
-        self._plan = plan
+        self.plan = plan
         self._reach = reach
         self._radii = list(dict.fromkeys(core_radii))
         self._clearances = [clearance_of(radius) for radius in self._radii]
@@ -73,7 +77,7 @@ class Environment:
         self._routers = [Router(plan, clearance=clearance) for clearance in self._clearances]
         self._destinations: list[tuple[str, ...] | None] = []
         self._version = -1
-        self._corners = Corners(self._routers)
+        self.corners = Corners(self._routers)
         self.destination(None)
 
     @property
@@ -111,12 +115,7 @@ class Environment:
     def exits(self, destination: int) -> tuple[str, ...]:
         """Names of the exits of a destination, open or closed; none if it is a gate to cross."""
         names = self._destinations[destination // self.bodies]
-        return tuple(e.name for e in self._plan.exits if names is None or e.name in names)
-
-    @property
-    def plan(self) -> FloorPlan:
-        """The floor plan."""
-        return self._plan
+        return tuple(e.name for e in self.plan.exits if names is None or e.name in names)
 
     def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int64]) -> Targets:
         """Targets of people at ``points`` (n, 2), metres.
@@ -130,7 +129,7 @@ class Environment:
         distances, corners = np.empty(n), np.empty((n, 2), dtype=np.int64)
         to, body = np.divmod(np.asarray(destinations, dtype=np.int64), self.bodies)
         for router, first, number in zip(
-            self._routers, self._corners.firsts, range(self.bodies), strict=True
+            self._routers, self.corners.firsts, range(self.bodies), strict=True
         ):
             own = np.flatnonzero(body == number)
             theirs = router.targets(points[own], to[own])
@@ -151,9 +150,9 @@ class Environment:
         if self.bodies == 1 or targets.corners is None:
             return self._routers[0].abreast(points, targets, areas)
         found = np.array(targets.points, dtype=np.float64)
-        whose = self._corners.router_of(targets.corners[:, 0])
+        whose = self.corners.router_of(targets.corners[:, 0])
         for number, (router, first) in enumerate(
-            zip(self._routers, self._corners.firsts, strict=True)
+            zip(self._routers, self.corners.firsts, strict=True)
         ):
             own = np.flatnonzero(whose == number)
             theirs = Targets(
@@ -164,11 +163,6 @@ class Environment:
             )
             found[own] = router.abreast(points[own], theirs, areas[own])
         return found
-
-    @property
-    def corners(self) -> Corners:
-        """The corners of all routes."""
-        return self._corners
 
     def check_way_out(self, points: NDArray[np.float64], destination: int) -> None:
         """Raise FloorPlanError if some places would have no route even if everything were open."""
@@ -189,7 +183,7 @@ class Environment:
         """Text naming the openings of a destination that are too narrow, or an empty one."""
         passable = {name for _, name in router.graph.nodes(data="opening")}
         names = self._destinations[destination // self.bodies]
-        wanted = names or tuple(exit_.name for exit_ in self._plan.exits)
+        wanted = names or tuple(exit_.name for exit_ in self.plan.exits)
         narrow = [name for name in wanted if name not in passable]
         if not narrow:
             return ""
@@ -208,11 +202,11 @@ class Environment:
             raise FloorPlanError(f"there is no way from {gate!r} to {self._text(destination)}")
 
     def _all_open(self) -> bool:
-        return all(self._plan.is_open(opening.name) for opening in self._plan.openings())
+        return all(self.plan.is_open(opening.name) for opening in self.plan.openings())
 
     def _router_when_open(self, body: int) -> Router:
         """A router with everything open; destinations have the same numbers."""
-        plan = self._plan
+        plan = self.plan
         plan = FloorPlan(
             plan.walkable, exits=plan.exits, gates=plan.gates, obstacles=plan.obstacles.values()
         )
@@ -232,19 +226,19 @@ class Environment:
     @property
     def surroundings(self) -> Surroundings:
         """Walls and exits as they are now."""
-        if self._version != self._plan.version:
-            self._version = self._plan.version
+        if self._version != self.plan.version:
+            self._version = self.plan.version
             self._now = self._survey()
         return self._now
 
     def _survey(self) -> Surroundings:
-        walls = self._plan.walls
+        walls = self.plan.walls
         cells = cell_table(walls, CELL_SIZE, self._reach)
-        exits = self._plan.exits
+        exits = self.plan.exits
         leads_out = np.array(
             [
                 [
-                    self._plan.is_open(exit_.name) and (names is None or exit_.name in names)
+                    self.plan.is_open(exit_.name) and (names is None or exit_.name in names)
                     for exit_ in exits
                 ]
                 for names in self._destinations

@@ -38,16 +38,32 @@ class Steps(NamedTuple):
     perturb_targets: bool
 
 
+class Tactics(NamedTuple):
+    """The behaviours that say what people want, as a model has them now.
+
+    Attributes:
+        choice: the target choice.
+        speed_rules: the speed rules.
+        rng: the model's generator.
+    """
+
+    choice: TargetChoice
+    speed_rules: Sequence[SpeedRule]
+    rng: np.random.Generator
+
+
 class DesiredMotion:
     """Sets targets and preferred speeds for the next movement.
 
     Args:
         environment: the floor plan, with its routes and zones of reduced speed.
+        crowd: the crowd.
         steps: which steps are taken.
     """
 
-    def __init__(self, environment: Environment, steps: Steps) -> None:
+    def __init__(self, environment: Environment, crowd: Crowd, steps: Steps) -> None:
         self._environment = environment
+        self._crowd = crowd
         self._steps = steps
         self._turns = Turns(environment.plan)
 
@@ -56,10 +72,7 @@ class DesiredMotion:
         rows: NDArray[np.int64],
         inside: NDArray[np.int64],
         frame: int,
-        crowd: Crowd,
-        choice: TargetChoice,
-        speed_rules: Sequence[SpeedRule],
-        rng: np.random.Generator,
+        tactics: Tactics,
         *,
         all_go: bool = False,
     ) -> Targets:
@@ -69,31 +82,28 @@ class DesiredMotion:
             rows: (n,) the pedestrians.
             inside: rows of everybody inside, themselves included.
             frame: now.
-            crowd: the crowd.
-            choice: the model's target choice.
-            speed_rules: the model's speed rules.
-            rng: the model's generator.
+            tactics: the model's behaviours.
             all_go: whether those who wait get a target and a speed as well.
 
         Raises:
             ModelError: a behaviour gives values of the wrong shape or out of range.
         """
-        n, plan, steps = len(rows), self._environment.plan, self._steps
+        n, plan, steps, crowd = len(rows), self._environment.plan, self._steps, self._crowd
         positions, speeds = np.empty((n, 2)), np.empty(n)
         destinations = np.empty(n, dtype=np.int64)
         stay = _look_up(rows, frame, crowd.records, crowd.agenda, positions, destinations, speeds)
         elapsed = frame * FRAME_SECONDS
         deciding = Deciding(
-            rows, positions, destinations, elapsed, CrowdView(inside, crowd), rng,
+            rows, positions, destinations, elapsed, CrowdView(inside, crowd), tactics.rng,
             self._environment,
         )  # fmt: skip
-        targets = query_targets(choice, deciding, crowd)
+        targets = query_targets(tactics.choice, deciding, crowd)
         points = targets.points
         if steps.spread_at_corners:
             points = spread_at_corners(deciding, targets, crowd)
         if plan.zones:
             speeds = speeds * plan.speed_factors(positions)
-        speeds = apply_speed_rules(speed_rules, deciding, speeds)
+        speeds = apply_speed_rules(tactics.speed_rules, deciding, speeds)
         if steps.take_turns and not all_go:
             points, speeds = self._turns.take(rows, inside, frame, crowd, points, speeds)
         if stay and not all_go:
@@ -105,7 +115,7 @@ class DesiredMotion:
             speeds = compensate_speed(rows, crowd, speeds)
         _settle(rows, points, speeds, crowd.records)
         if steps.perturb_targets:
-            perturb_targets(rows, crowd, elapsed, rng)
+            perturb_targets(rows, crowd, elapsed, tactics.rng)
         return targets
 
 

@@ -96,17 +96,35 @@ class Journeys:
         self._numbers[key] = len(self._known)
         return len(self._known)
 
+    def start(
+        self, exits: Sequence[str] | None, route: Sequence[str], loop: bool, type_index: int
+    ) -> tuple[int, int]:
+        """Numbers of the first destination and of the journey, 0 for none.
+
+        Args:
+            exits: names of the exits by which people leave; None stands for all.
+            route: names of the gates that they cross before.
+            loop: whether they start over after the last gate.
+            type_index: index of their type.
+
+        Raises:
+            ModelError: see ``add``.
+            FloorPlanError: an unknown exit or gate, or no way from one to the next.
+        """
+        names = None if exits is None else tuple(exits)
+        if not len(route):
+            return self._site.destination(names, type_index), 0
+        number = self.add(route, loop, names, type_index)
+        return int(self._known[number - 1].legs[0]), number
+
     def gates(self, number: int) -> tuple[str, ...]:
         """Names of the gates of the journey with this number."""
         return self._known[number - 1].gates if number else ()
 
-    def endless(self, number: int) -> bool:
-        """Whether the journey with this number is a loop."""
-        return number > 0 and self._known[number - 1].loop
-
-    def first(self, number: int) -> int:
-        """Number of the destination of the first leg of a journey."""
-        return int(self._known[number - 1].legs[0])
+    def endless(self, rows: NDArray[np.int64], crowd: Crowd) -> bool:
+        """Whether the journey of somebody in ``rows`` is a loop."""
+        numbers = np.unique(crowd.agenda["journey"][rows]).tolist()
+        return any(number > 0 and self._known[number - 1].loop for number in numbers)
 
     def _take_stock(self) -> None:
         """Lay out the legs of all journeys one after the other."""

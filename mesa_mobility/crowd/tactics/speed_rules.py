@@ -9,9 +9,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.plugin_output import numbers_given
 from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins.output import numbers_given
 
 FASTEST = 100.0
 """Highest preferred speed that is accepted, m/s."""

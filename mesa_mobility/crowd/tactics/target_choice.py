@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.plugin_output import numbers_given, whole_numbers_given
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
+from mesa_mobility.plugins.output import numbers_given, whole_numbers_given
 
 FARTHEST = 1e9
 """Greatest distance of a target from the origin, metres; its square is still exact enough."""

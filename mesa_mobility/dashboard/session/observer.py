@@ -111,7 +111,7 @@ class Observer:
         self._before = self._places(self._rows)
 
     def _make_room(self) -> None:
-        missing = self._model.count - len(self._waited)
+        missing = self._model.population.count - len(self._waited)
         if missing > 0:
             self._waited = np.concatenate([self._waited, np.zeros(missing)])
 
@@ -120,10 +120,10 @@ class Observer:
         values = [
             model.elapsed,
             model.inside,
-            model.mean_speed,
+            model.statistics.mean_speed,
             float(around.mean()) if len(around) else 0.0,
             float(around.max()) if len(around) else 0.0,
-            model.fallback_time_share,
+            model.statistics.fallback_time_share,
             *np.abs(self._net).tolist(),
         ]
         for column, value in zip(self._series.values(), values, strict=True):

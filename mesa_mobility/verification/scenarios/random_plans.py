@@ -64,7 +64,7 @@ def random_run(seed: int, *, shape: str, both_ways: bool, people: int) -> Run:
             within=area,
             spacing=SPACING,
             clearance=CLEARANCE,
-            avoid=model.bodies()[1],
+            avoid=model.population.bodies()[1],
         )
         model.add_pedestrians(places, exits=exits)
     return evacuate(model, LIMIT_S)

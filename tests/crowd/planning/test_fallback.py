@@ -95,7 +95,7 @@ def test_turning_away_from_the_wall_lets_the_person_walk_off(cornered):
     assert model.inside == 0
     rows = model.recorder.arrays()
     assert wall_crossings(rows, model.floor_plan.walls) == 0
-    assert 0.0 < model.fallback_decision_share < 1.0
+    assert 0.0 < model.statistics.fallback_decision_share < 1.0
 
 
 def test_shares_of_decisions_and_of_time(onward, whole):
@@ -152,5 +152,5 @@ def test_without_an_option_free_nobody_freezes_for_ever_nor_passes_through_other
     model.add_pedestrians(places, headings=np.full(20, math.pi))
     model.run(max_seconds=120)
     assert model.inside == 0
-    assert model.fallback_decision_share > 0.0
+    assert model.statistics.fallback_decision_share > 0.0
     assert overlaps(model.recorder.arrays(), core_of(model)) == 0

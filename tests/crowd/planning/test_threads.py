@@ -72,13 +72,13 @@ def test_the_same_bytes_whatever_the_number_of_threads(count, alone, monkeypatch
     for name, values in theirs.items():
         assert values.tobytes() == ours[name].tobytes(), name
     assert model.crowd.records.tobytes() == alone.crowd.records.tobytes()
-    assert model.mean_speed_so_far == alone.mean_speed_so_far
+    assert model.statistics.mean_speed_so_far == alone.statistics.mean_speed_so_far
 
 
 def test_more_people_than_threads_can_ask_decide_in_one_frame(alone):
     # All start at once, so the first frame has them all, one within reach of the other.
     assert len(alone.rows) > 3 * threads.MANY
-    assert alone.crowd.decisions[: alone.count].min() >= 1
+    assert alone.crowd.decisions[: alone.population.count].min() >= 1
 
 
 def test_small_crowds_start_no_thread(monkeypatch):

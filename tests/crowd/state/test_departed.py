@@ -23,7 +23,7 @@ def test_leaves_in_the_first_frame_beyond_the_line():
     advance(model, 1)
     assert model.inside == 0
     assert not model.running
-    assert model.last_left == pytest.approx(0.4)
+    assert model.statistics.last_left == pytest.approx(0.4)
     assert model.summary()["egress_s"] == pytest.approx(0.4)
     last = track(model.recorder.arrays(), 0)[-1]
     assert last[0] == 12
@@ -119,7 +119,7 @@ def test_seven_of_eight_lone_walkers_leave_without_delay():
             speed = float(model.crowd.preferred[person.row])
             model.run(max_seconds=30)
             assert model.inside == 0
-            late.append(model.last_left > np.hypot(8.0 - x, 5.6 - y) / speed + 2.0)
+            late.append(model.statistics.last_left > np.hypot(8.0 - x, 5.6 - y) / speed + 2.0)
     assert np.mean(late) <= 1 / 8
 
 
@@ -148,10 +148,10 @@ def test_occupancy_counts_people_inside_each_second():
         put(model, 19.0 - 1.25 * k, 0.5 + k, preferred_speeds=[1.25])
     model.run()
     # They reach the line after 0.8, 1.8, 2.8 and 3.8 s.
-    seconds, inside = zip(*model.occupancy, strict=True)
+    seconds, inside = zip(*model.statistics.occupancy, strict=True)
     assert seconds[:4] == pytest.approx((0.0, 1.0, 2.0, 3.0))
     assert inside[:4] == (4, 3, 2, 1)
-    assert model.last_left == pytest.approx(3.8, abs=0.04)
+    assert model.statistics.last_left == pytest.approx(3.8, abs=0.04)
 
 
 @pytest.mark.parametrize(

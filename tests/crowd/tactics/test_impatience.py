@@ -219,4 +219,4 @@ def test_who_gets_on_once_it_sets_off_draws_nothing(how):
     assert not drawn(model, before)
     # 19 m at 1.25 m/s, and what it takes to set off.
     late = 0.0 if how == "at once" else ready
-    assert model.last_left - late == pytest.approx(15.2, abs=0.9)
+    assert model.statistics.last_left - late == pytest.approx(15.2, abs=0.9)

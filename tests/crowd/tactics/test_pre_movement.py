@@ -107,7 +107,7 @@ def test_a_run_has_not_stalled_while_somebody_is_yet_to_set_off():
     put(model, 2.0, 2.0, preferred_speeds=[1.25], pre_movement=100.0)
     model.run()
     assert not model.stalled
-    assert model.last_left == pytest.approx(100.0 + 4.0 / 1.25, abs=0.5)
+    assert model.statistics.last_left == pytest.approx(100.0 + 4.0 / 1.25, abs=0.5)
 
 
 @pytest.mark.parametrize("times", [-1.0, [1.0, 2.0], np.nan, 1e7, "lognormal(3, 1)"])

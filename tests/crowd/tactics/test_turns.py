@@ -32,7 +32,7 @@ def test_seventy_against_seventy_at_a_door():
 def test_a_corridor_for_one_does_not_fall_silent():
     model = crowds(0.7, 10.0, 70)
     model.run(max_seconds=600)
-    inside = np.array(model.occupancy)
+    inside = np.array(model.statistics.occupancy)
     news = inside[1:, 0][np.diff(inside[:, 1]) != 0]
     assert model.inside == 0 or model.stalled
     assert np.diff(news).max() <= 60.0

@@ -1,0 +1,208 @@
+"""One frame of a model: people come, decide, walk and leave."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.insertion import Newcomers
+from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.crowd.pedestrian import Pedestrian
+from mesa_mobility.crowd.planning.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.explanation import Explanation, judge, weigh
+from mesa_mobility.crowd.planning.grid import Grid, build_grid
+from mesa_mobility.crowd.planning.replanning import stop_where_blocked
+from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
+from mesa_mobility.crowd.scene import Scene
+from mesa_mobility.crowd.sources import PLACES_TRIED
+from mesa_mobility.crowd.state.advance import LONG_AFTER, move, select_due
+from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Steps, Tactics
+from mesa_mobility.floorplan import Targets
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.model import PedestrianModel
+
+
+class Dynamics:
+    """What happens to a model's people, frame by frame.
+
+    Args:
+        model: the model, whose behaviours may change at any time.
+        scene: its floor, and what people can do on it.
+    """
+
+    def __init__(self, model: PedestrianModel, scene: Scene) -> None:
+        self._model = model
+        self._scene = scene
+        self._scheduler = DecisionScheduler(
+            scene.repertoire,
+            scene.rules,
+            least_core=min(each.core_radius for each in scene.types),
+        )
+        self._desired_motion = DesiredMotion(
+            scene.environment,
+            scene.crowd,
+            Steps(
+                spread_at_corners=scene.preset.abreast,
+                take_turns=scene.preset.turns,
+                compensate_speed=scene.preset.even_pace,
+                perturb_targets=scene.preset.impatience,
+            ),
+        )
+        # Frame of the next event other than walking: a decision, or somebody leaves.
+        self._next = 0
+        self._plan_version = scene.plan.version
+
+    def insert(self, positions: ArrayLike, new: Newcomers) -> list[Pedestrian]:
+        """Put people on the floor; see ``PedestrianModel.add_pedestrians``.
+
+        Raises:
+            ModelError: see there.
+            FloorPlanError: see there.
+        """
+        model, people = self._model, self._model.population
+        grouped = bool(people.groups)
+        rows = people.place(positions, new, model.frame, model.rng)
+        if people.groups and not grouped:
+            model.speed_rules += self._scene.preset.make_group_paces()
+        # Those who have not set off face their first target, too.
+        targets = self._set_targets(rows, np.concatenate([people.present, rows]), all_go=True)
+        agents = people.admit(rows, targets.points, new.headings, model)
+        self._next = model.frame
+        people.look_over(model.frame)
+        model.running = True
+        return agents
+
+    def advance(self, end: int) -> None:
+        """Take this frame's decisions and advance to the next frame in which anything but walking
+        happens, to frame ``end`` at most."""
+        model, people, statistics = self._model, self._model.population, self._model.statistics
+        crowd, now = self._scene.crowd, self._model.frame
+        people.see_off(now)
+        known = people.count
+        self._let_in()
+        if now == 0:
+            statistics.count_people()
+            self._record(people.present)
+        elif people.count > known:
+            self._record(np.arange(known, people.count, dtype=np.int64))
+        if self._plan_has_changed:
+            self._replan()
+        if self._next <= now:
+            self._take_decisions()
+        full_second = (now // FRAMES_A_SECOND + 1) * FRAMES_A_SECOND
+        end = min(end, max(self._next, now + 1), full_second)
+        if model.recorder is not None or model.sources or self._plan_has_changed:
+            end = now + 1
+        model.frame = end
+        people.departed.move(end, crowd)
+        walking = people.present
+        moved = move(walking, end, end - now, self._scene.repertoire.table, crowd.records)
+        if self._next > now:  # otherwise newcomers decide in this frame
+            self._next = moved.next
+        self._record(walking)
+        people.part(moved)
+        statistics.add(moved, end - now)
+        if end == full_second:
+            statistics.count_people()
+
+    def candidates(self, rows: NDArray[np.int64]) -> Candidates:
+        """Movement options of the people in ``rows`` if they decided now."""
+        scene = self._scene
+        return make_candidates(rows, scene.repertoire.table, scene.crowd, self._grid(), scene.rules)
+
+    def explain(self, row: int) -> Explanation:
+        """The decision of the person in ``row`` if it decided now, before all others."""
+        scene, model = self._scene, self._model
+        weighed = weigh(
+            row, model.frame, scene.repertoire, scene.crowd, self._grid(), scene.rules, model.terms
+        )
+        return judge(
+            weighed,
+            scene.repertoire.table,
+            scene.crowd,
+            scene.environment.surroundings,
+            scene.rules,
+        )
+
+    def _let_in(self) -> None:
+        """Let in those who have come by a source, as far as there is room."""
+        model = self._model
+        for inflow in model.sources:
+            inflow.count(model.frame)
+            while inflow.waiting:
+                places = inflow.entrance.draw(PLACES_TRIED, model.rng)
+                place = model.population.first_free(places, inflow.source.type_index, model.frame)
+                if place is None:
+                    break
+                self.insert([place], inflow.newcomers)
+                inflow.entered += 1
+
+    @property
+    def _plan_has_changed(self) -> bool:
+        """Whether obstacles or doors have changed since the last decisions."""
+        return self._plan_version != self._scene.plan.version
+
+    def _replan(self) -> None:
+        """Stop people whom a change of the floor plan blocks; they decide in this frame."""
+        scene, rows, now = self._scene, self._model.population.present, self._model.frame
+        self._plan_version = scene.plan.version
+        # Those who stop lose their paths, on which crossed gates are found.
+        scene.journeys.advance(rows, now, scene.crowd, scene.repertoire.table)
+        stop_where_blocked(
+            rows, now, scene.repertoire.table, scene.crowd.records,
+            scene.environment.surroundings, scene.rules,
+        )  # fmt: skip
+        self._next = now
+
+    def _take_decisions(self) -> None:
+        """Take the decisions of those whose movement has ended; note when the next event is."""
+        rows, now = self._model.population.present, self._model.frame
+        state = self._scene.crowd.records
+        deciding, self._next = np.empty_like(rows), LONG_AFTER
+        count, soonest = select_due(rows, now, state, deciding)
+        if count:
+            deciding = deciding[:count]
+            self._decide(deciding)
+            theirs = select_due(deciding, now, state, np.empty_like(deciding))[1]
+            soonest = min(soonest, theirs)
+        self._next = min(self._next, soonest)
+
+    def _decide(self, deciding: NDArray[np.int64]) -> None:
+        model, scene, people = self._model, self._scene, self._model.population
+        inside = people.present
+        scene.journeys.advance(deciding, model.frame, scene.crowd, scene.repertoire.table)
+        model.waits.ask(deciding, model.frame, scene.crowd)
+        # Those nearest to their destination decide first, which frees space for those behind. The
+        # crowd has the rest of the targets by now, so they can be freed here.
+        order = deciding[self._set_targets(deciding, inside).nearest_first]
+        self._scheduler.take(
+            order,
+            model.frame,
+            people.departed.together_with(inside),
+            scene.crowd,
+            scene.environment.surroundings,
+            model.terms,
+            model.watch,
+        )
+
+    def _set_targets(
+        self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, all_go: bool = False
+    ) -> Targets:
+        """Set targets and preferred speeds of those in ``rows``, who are among those ``inside``."""
+        model = self._model
+        behaviours = Tactics(model.target_choice, model.speed_rules, model.rng)
+        return self._desired_motion.update(rows, inside, model.frame, behaviours, all_go=all_go)
+
+    def _record(self, rows: NDArray[np.int64]) -> None:
+        model = self._model
+        if model.recorder is not None:
+            model.recorder.add(model.frame, rows, self._scene.crowd)
+
+    def _grid(self) -> Grid:
+        people, crowd = self._model.population, self._scene.crowd
+        people.see_off(self._model.frame)
+        return build_grid(people.departed.together_with(people.present), crowd.x, crowd.y)

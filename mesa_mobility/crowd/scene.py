@@ -1,0 +1,80 @@
+"""What all parts of a model share: a floor, the people's types and options, and their records."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from numbers import Integral
+
+from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
+from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.presets import Preset
+from mesa_mobility.crowd.state.environment import Environment
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.journeys import Journeys
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import FloorPlan
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """The parts of a model that do not change hands while it runs.
+
+    Attributes:
+        plan: the floor plan.
+        types: the pedestrian types.
+        preset: the rules by which they move.
+        repertoire: the movement options of all types.
+        rules: the constants of a decision.
+        environment: walls and routes.
+        journeys: the routes of people who cross gates in order.
+        crowd: a record for each person.
+    """
+
+    plan: FloorPlan
+    types: tuple[PedestrianType, ...]
+    preset: Preset
+    repertoire: Repertoire
+    rules: Rules
+    environment: Environment
+    journeys: Journeys
+    crowd: Crowd
+
+    def type_at(self, type_index: int) -> PedestrianType:
+        """The pedestrian type with this index.
+
+        Raises:
+            ModelError: there is none.
+        """
+        if not (isinstance(type_index, Integral) and 0 <= type_index < len(self.types)):
+            raise ModelError(
+                f"type_index: got {type_index!r}, expected the index of a type, "
+                f"0 to {len(self.types) - 1}"
+            )
+        return self.types[type_index]
+
+
+def make_scene(plan: FloorPlan, types: tuple[PedestrianType, ...], preset: Preset) -> Scene:
+    """A scene without people.
+
+    Raises:
+        ModelError: a type's map has no option of the preset's durations.
+    """
+    known = repertoire(tuple(each.mobility_map for each in types), preset.durations, preset.shares)
+    cores = [each.core_radius for each in types]
+    environment = Environment(plan, reach=known.reach + max(cores) + 0.02, core_radii=cores)
+    return Scene(
+        plan=plan,
+        types=types,
+        preset=preset,
+        repertoire=known,
+        rules=Rules(
+            search_radius=known.reach + known.extent + 2.0 * max(cores) + 0.01,
+            hard_bodies=preset.hard_bodies,
+            standing=known.standing,
+            first_option=known.first_option,
+        ),
+        environment=environment,
+        journeys=Journeys(plan, environment),
+        crowd=Crowd(64),
+    )
