@@ -1,6 +1,5 @@
 """Floor plans as GeoJSON: one FeatureCollection, coordinates in metres."""
 
-import contextlib
 import json
 import os
 from collections.abc import Mapping
@@ -12,6 +11,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.extent import check_coordinates
 from mesa_mobility.floorplan.openings import Exit, Gate, Opening
@@ -56,16 +56,9 @@ def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
 
 
 def write(collection: Mapping[str, Any], path: "str | os.PathLike[str]") -> None:
-    """Write a FeatureCollection to `path` through a temporary file beside it."""
-    target = Path(path)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-    try:
+    """Write a FeatureCollection to `path`: complete or not at all."""
+    with replacing(path, FloorPlanError) as temporary:
         temporary.write_text(json.dumps(collection, indent=1) + "\n", encoding="utf-8")
-        os.replace(temporary, target)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-        raise FloorPlanError(f"{target}: cannot be written ({error.strerror})") from None
 
 
 def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:

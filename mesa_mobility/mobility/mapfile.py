@@ -11,7 +11,6 @@ from __future__ import annotations
 import io
 import json
 import math
-import os
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -23,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility._once import cached_once
+from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import MapError
-from mesa_mobility.interrupts import cleaning_up
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.map import MobilityMap
@@ -115,17 +114,9 @@ def write_map(map_: MobilityMap, path: str | Path) -> None:
     text = json.dumps(metadata, sort_keys=True, ensure_ascii=False).encode()
     arrays["metadata"] = np.frombuffer(text, dtype=np.uint8)
 
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with cleaning_up(lambda: temporary.unlink(missing_ok=True)):
-            with zipfile.ZipFile(temporary, "w") as archive:
-                for name, dtype in _DTYPES.items():
-                    _write_array(archive, name, arrays[name].astype(dtype))
-            os.replace(temporary, path)
-    except OSError as error:
-        raise MapError(f"{path}: cannot be written ({error.strerror or error})") from error
-    finally:
-        temporary.unlink(missing_ok=True)
+    with replacing(path, MapError) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        for name, dtype in _DTYPES.items():
+            _write_array(archive, name, arrays[name].astype(dtype))
 
 
 def _write_array(archive: zipfile.ZipFile, name: str, array: NDArray[Any]) -> None:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.files import replacing
 
 if TYPE_CHECKING:
     import pedpy
@@ -83,7 +83,7 @@ def write_jupedsim_sqlite(
         "ymin": float(trajectories.y.min()),
         "ymax": float(trajectories.y.max()),
     }
-    with replacing(path) as temporary:
+    with replacing(path, ResultsError) as temporary:
         try:
             connection = sqlite3.connect(temporary)
             try:
@@ -130,7 +130,10 @@ def write_juelich_text(trajectories: Trajectories, path: str | os.PathLike[str])
     """
     _check_rows(trajectories)
     order = trajectories.by_person
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as file:
+    with (
+        replacing(path, ResultsError) as temporary,
+        temporary.open("w", encoding="utf-8", newline="\n") as file,
+    ):
         file.write(f"# framerate: {trajectories.frame_rate:g}\n# id frame x/m y/m z/m\n")
         for first in range(0, len(order), CHUNK):
             rows = order[first : first + CHUNK]

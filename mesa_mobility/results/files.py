@@ -1,4 +1,4 @@
-"""Files that are complete or absent: written beside their place, then renamed."""
+"""Folders of results, of which all files are written or none, and JSON."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,27 +15,6 @@ import numpy as np
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.interrupts import cleaning_up, putting_in_place
-
-
-@contextmanager
-def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give a temporary path in the same folder; on success it replaces `path`, else it goes.
-
-    Raises:
-        ResultsError: the folder or the file cannot be written, or the disk is full.
-    """
-    target = Path(path)
-    # The suffix stays last: writers of pictures choose the format by it.
-    temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
-    try:
-        with cleaning_up(lambda: temporary.unlink(missing_ok=True)):
-            yield temporary
-            os.replace(temporary, target)
-    except OSError as error:
-        raise ResultsError(f"{target}: cannot be written: {error.strerror or error}") from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
 
 
 @contextmanager

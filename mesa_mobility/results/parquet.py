@@ -11,8 +11,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.files import replacing
 from mesa_mobility.results.seal import FIELD, UNSEALED, check_seal, seal
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
         FIELD: UNSEALED,
     }
     table = pa.table([getattr(trajectories, name) for name in SCHEMA.names], schema=SCHEMA)
-    with replacing(path) as temporary:
+    with replacing(path, ResultsError) as temporary:
         with pq.ParquetWriter(
             temporary,
             SCHEMA,

@@ -20,8 +20,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.files import replacing
 from mesa_mobility.results.floor import draw_floor, floor_figure
 from mesa_mobility.results.trajectories import Trajectories
 
@@ -265,5 +265,5 @@ def _finish(
 
 
 def _save(figure: Figure, path: str | os.PathLike[str]) -> None:
-    with replacing(path) as temporary:
+    with replacing(path, ResultsError) as temporary:
         figure.savefig(temporary)

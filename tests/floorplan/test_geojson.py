@@ -117,7 +117,7 @@ def test_nothing_half_written(plans, tmp_path: Path) -> None:
     blocked.mkdir()
     with pytest.raises(FloorPlanError, match="folder: cannot be written"):
         plans["room"]().write_geojson(blocked)
-    with pytest.raises(FloorPlanError, match=r"cannot be written .No such file"):
+    with pytest.raises(FloorPlanError, match=r"cannot be written: No such file"):
         plans["room"]().write_geojson(tmp_path / "nowhere" / "plan.geojson")
     assert os.listdir(tmp_path) == ["folder"]
 

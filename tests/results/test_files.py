@@ -1,4 +1,3 @@
-import errno
 import json
 import math
 
@@ -8,7 +7,7 @@ import pytest
 from mesa_mobility.errors import FloorPlanError, ResultsError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.results import check_writable, plots, read_parquet, run, write_run
-from mesa_mobility.results.files import json_text, replacing
+from mesa_mobility.results.files import json_text
 
 RUN_FILES = [
     "floorplan.geojson",
@@ -29,28 +28,6 @@ SUMMARY = {
 
 def names(folder):
     return sorted(path.name for path in folder.iterdir())
-
-
-def test_an_interrupted_writer_leaves_the_old_file(tmp_path):
-    path = tmp_path / "old.txt"
-    path.write_text("old")
-
-    def write():
-        with replacing(path) as temporary:
-            temporary.write_text("half")
-            raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        write()
-    assert path.read_text() == "old"
-    assert names(tmp_path) == ["old.txt"]
-
-
-def test_a_full_disk_is_one_line(tmp_path):
-    with pytest.raises(ResultsError) as caught, replacing(tmp_path / "new.txt"):
-        raise OSError(errno.ENOSPC, "No space left on device")
-    assert str(caught.value) == f"{tmp_path}/new.txt: cannot be written: No space left on device"
-    assert names(tmp_path) == []
 
 
 def test_folders_are_made_as_needed(tmp_path):
