@@ -20,6 +20,8 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 
+from tests.fixtures.waiting import until
+
 VARIABLE = "MESA_MOBILITY_BROWSER"
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 # Without these Chromium looks for hosts of its makers, which only costs time.
@@ -300,3 +302,19 @@ def start_server(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Server]
     yield make
     for each in running:
         each.stop()
+
+
+@pytest.fixture
+def session() -> Iterator[Any]:
+    """The thread behind a page, with a doorway of 12 people that stands still."""
+    from mesa_mobility.models import Doorway
+
+    from mesa_mobility.dashboard.session.run_config import Recipe
+    from mesa_mobility.dashboard.session.session import Session
+
+    session = Session()
+    session.start()
+    session.build(Recipe(Doorway, {"pedestrians": 12, "rng": 3}))
+    until(lambda: session.status.value.state == "ready")
+    yield session
+    session.close()

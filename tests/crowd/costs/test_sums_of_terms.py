@@ -1,0 +1,103 @@
+"""Terms add up, whatever their order, compiled or in plain NumPy."""
+
+import pytest
+from mesa_mobility.behaviors import (
+    FacingDeviation,
+    Headway,
+    Interference,
+    PreferredSpeed,
+    PreferredVelocity,
+    RightOfWay,
+    TargetDistance,
+)
+
+from mesa_mobility import CostTerm, FloorPlan
+from tests.fixtures.maps import shipped_map, wanderer
+from tests.fixtures.numpy_terms import Deviation, Distance, Near, Room, Speed, Velocity, Way
+from tests.fixtures.oracle import Oracle
+from tests.fixtures.oracle_costs import equation_one
+from tests.fixtures.plugin_terms import CompiledKeepRight, KeepRight, SameSpeed
+from tests.fixtures.scenes import model_of, two_doors
+
+
+def walk(plan: FloorPlan, map_, terms, people: int = 12, seconds: float = 40.0) -> bytes:
+    """All positions and headings of a run, as bytes."""
+    model = model_of(plan, map_, behaviors=terms, rng=7, frames_per_step=3)
+    model.add_pedestrians(plan.random_points(people, model.rng, spacing=0.6, clearance=0.3))
+    model.run(max_seconds=seconds)
+    rows = model.recorder.arrays()
+    assert len(rows["x"]) > 500
+    return b"".join(rows[name].tobytes() for name in ("frame", "person", "x", "y", "heading"))
+
+
+def ours() -> list[CostTerm]:
+    return [TargetDistance(1.0), FacingDeviation(0.5), PreferredSpeed(2.0), Interference(1.0)]
+
+
+def test_the_order_of_terms_changes_nothing():
+    runs = {walk(two_doors(), shipped_map(), [*ours()[k:], *ours()[:k]]) for k in range(4)} | {
+        walk(two_doors(), shipped_map(), ours()[::-1])
+    }
+    assert len(runs) == 1
+
+
+def test_the_order_of_terms_changes_nothing_where_some_are_plain_numpy():
+    terms = [KeepRight(0.3), TargetDistance(), Near(), Speed(2.0), FacingDeviation(0.5)]
+    runs = {walk(two_doors(), shipped_map(), order) for order in (terms, terms[::-1])}
+    assert len(runs) == 1
+
+
+@pytest.mark.parametrize(
+    ("place", "twin"), [(0, Distance(1.0)), (1, Deviation(0.5)), (2, Speed(2.0)), (3, Near(1.0))]
+)
+def test_the_same_term_compiled_and_in_numpy_give_the_same_trajectories(place, twin):
+    terms = ours()
+    compiled = walk(two_doors(), shipped_map(), ours())
+    terms[place] = twin
+    assert walk(two_doors(), shipped_map(), terms) == compiled
+
+
+def test_all_terms_in_numpy_give_the_same_trajectories():
+    plain = [Distance(1.0), Deviation(0.5), Speed(2.0), Near(1.0)]
+    compiled = walk(two_doors(), shipped_map(), ours())
+    assert walk(two_doors(), shipped_map(), plain) == compiled
+
+
+@pytest.mark.parametrize(("place", "twin"), [(2, Velocity(2.0)), (4, Room(2.0)), (5, Way(1.0))])
+def test_terms_of_the_default_give_the_same_trajectories_in_numpy(place, twin):
+    def terms():
+        return [TargetDistance(1.0), FacingDeviation(0.5), PreferredVelocity(2.0),
+                Interference(1.0), Headway(2.0), RightOfWay(1.0)]  # fmt: skip
+
+    compiled = walk(two_doors(), shipped_map(), terms())
+    others = terms()
+    others[place] = twin
+    assert walk(two_doors(), shipped_map(), others) == compiled
+    del others[place]
+    assert walk(two_doors(), shipped_map(), others) != compiled
+
+
+def test_costs_add_up():
+    # A term twice at half its weight is the term once.
+    terms = [TargetDistance(0.5), FacingDeviation(0.5), TargetDistance(0.5), PreferredSpeed(2.0),
+             Interference(0.5), Interference(0.5)]  # fmt: skip
+    assert walk(two_doors(), shipped_map(), terms) == walk(two_doors(), shipped_map(), ours())
+
+
+def test_a_term_of_weight_nought_counts_for_nothing():
+    terms = [*ours(), KeepRight(0.0), CompiledKeepRight(0.0), SameSpeed(0.0)]
+    assert walk(two_doors(), shipped_map(), terms) == walk(two_doors(), shipped_map(), ours())
+
+
+@pytest.mark.parametrize("near", [Interference, Near])
+@pytest.mark.parametrize("weight", [-0.5, 3.0])
+def test_interference_of_any_weight_is_chosen_by_the_whole_sum(near, weight):
+    # A negative weight (people who flock) makes the sum of the other terms an upper bound.
+    plan = two_doors()
+    terms = [TargetDistance(), FacingDeviation(0.5), PreferredSpeed(2.0), near(weight)]
+    model = model_of(plan, wanderer(31), behaviors=terms, rng=3)
+    model.add_pedestrians(plan.random_points(12, model.rng, spacing=0.5, clearance=0.3))
+    oracle = Oracle(model, equation_one(w_d=1.0, w_theta=0.5, w_v=2.0, w_p=weight))
+    while model.running and model.frame < 120:
+        for decision in oracle.step():
+            assert decision.fault() is None, (decision.frame, decision.person.row)

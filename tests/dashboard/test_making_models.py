@@ -1,0 +1,90 @@
+"""Models in the making: given up, replaced, or impossible."""
+
+import threading
+import time
+
+import pytest
+
+pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
+
+from mesa_mobility.models import Doorway
+
+from mesa_mobility.dashboard.session.run_config import Recipe
+from mesa_mobility.dashboard.session.session import Session
+from tests.fixtures.waiting import until
+
+
+def test_what_cannot_be_made_leaves_the_run_alone(session):
+    session.step()
+    until(lambda: session.frame.value["elapsed"] > 0.0)
+    run, said = session.frame.value["run"], []
+    session.build(Recipe(Doorway, {"pedestrians": -1}), said.append)
+    until(lambda: said)
+    assert said == ["pedestrians: got -1, expected 1 or more"]
+    until(lambda: session.status.value.state == "ready")
+    assert session.frame.value["run"] == run
+    assert session.recipe.value.keywords["pedestrians"] == 12
+
+
+class Endless(Doorway):
+    """Takes for ever to make."""
+
+    started = threading.Event()
+    ended = threading.Event()
+
+    def __init__(self, rng=None):
+        Endless.started.set()
+        try:
+            while True:
+                time.sleep(0.01)
+        finally:
+            Endless.ended.set()
+
+
+def test_a_model_in_the_making_is_given_up_and_the_run_goes_on(session):
+    Endless.started.clear()
+    Endless.ended.clear()
+    session.build(Recipe(Endless))
+    assert Endless.started.wait(10.0)
+    until(lambda: session.making.value >= 1.0)
+    assert session.status.value.state == "building"
+    # Another page's model is made meanwhile.
+    other = Session()
+    other.start()
+    other.build(Recipe(Doorway, {"pedestrians": 3, "rng": 1}))
+    until(lambda: other.status.value.state == "ready")
+    other.close()
+    session.give_up()
+    until(lambda: session.status.value.state == "ready")
+    assert Endless.ended.wait(10.0)
+    session.step()
+    until(lambda: session.frame.value["elapsed"] > 0.0)
+
+
+def test_a_later_wish_for_a_model_gives_up_the_one_before(session):
+    Endless.ended.clear()
+    session.build(Recipe(Endless))
+    session.build(Recipe(Doorway, {"pedestrians": 4, "rng": 1}))
+    until(lambda: session.status.value.inside == 4 and session.status.value.state == "ready")
+
+
+def test_a_first_model_that_cannot_be_made_is_no_model_under_way():
+    session, said = Session(), []
+    session.start()
+    session.build(Recipe(Doorway, {"pedestrians": -1}), said.append)
+    until(lambda: said)
+    until(lambda: session.status.value.state == "no model")
+    session.close()
+
+
+def test_a_model_without_memory_says_so():
+    class Greedy(Doorway):
+        def __init__(self, rng=None):
+            raise MemoryError
+
+    session, said = Session(), []
+    session.start()
+    session.build(Recipe(Greedy), said.append)
+    until(lambda: said)
+    assert said == ["the model needs more memory than there is"]
+    session.close()
