@@ -11,6 +11,7 @@ from mesa_mobility.validation import (
     bottleneck,
     corridor,
     fallback,
+    motion,
     single_file,
     standing,
     walking,
@@ -19,7 +20,16 @@ from mesa_mobility.validation.experiment import Experiment, judged
 
 EXPERIMENTS = {
     each.EXPERIMENT.name: each.EXPERIMENT
-    for each in (walking, single_file, corridor, bidirectional, bottleneck, standing, fallback)
+    for each in (
+        walking,
+        motion,
+        single_file,
+        corridor,
+        bidirectional,
+        bottleneck,
+        standing,
+        fallback,
+    )
 }
 
 

@@ -38,9 +38,6 @@ STANDSTILL = 0.1
 def both_ways(seed: int, *, density: float) -> dict[str, Any]:
     """People walk both ways in a corridor of 32 m x 4 m that is fed at either end.
 
-    It starts with half of them each way all over it. People come in at the rate at which measured
-    crowds of this density walked: where ours are slower than those, it fills up.
-
     Args:
         seed: of the run.
         density: persons per square metre at the start.
@@ -49,6 +46,21 @@ def both_ways(seed: int, *, density: float) -> dict[str, Any]:
         With what every run tells, over the middle 8 m: ``mean_speed`` in each one's own direction
         over 1.5 s (m/s), ``mean_density`` (1/m2), ``lane_order`` and the same with directions
         shuffled.
+    """
+    run = both_ways_run(seed, density=density)
+    crowd = run.model.crowd
+    east = crowd.destination[: run.model.population.count] == crowd.destination[0]
+    return {
+        **run.figures(),
+        **_in_box(run, np.where(east, 1.0, -1.0), np.random.default_rng(seed)),
+    }
+
+
+def both_ways_run(seed: int, *, density: float) -> Run:
+    """The run of ``both_ways``, with the same arguments.
+
+    It starts with half of the people each way all over the corridor. People come in at the rate at
+    which measured crowds of this density walked: where ours are slower than those, it fills up.
     """
     exits = [Exit("east", (LENGTH, 0.0), (LENGTH, WIDTH)), Exit("west", (0.0, 0.0), (0.0, WIDTH))]
     plan = FloorPlan(box(0.0, 0.0, LENGTH, WIDTH), exits=exits)
@@ -67,11 +79,7 @@ def both_ways(seed: int, *, density: float) -> dict[str, Any]:
         model.add_source(Source(area=area, rate=density * speed * WIDTH / 2, exits=[name]))
     while model.elapsed < SETTLE_S + MEASURE_S + WINDOW_S:
         model.step()
-    east = model.crowd.destination[: model.population.count] == model.crowd.destination[0]
-    return {
-        **(run := Run(model, plan.walls)).figures(),
-        **_in_box(run, np.where(east, 1.0, -1.0), np.random.default_rng(seed)),
-    }
+    return Run(model, plan.walls)
 
 
 def _in_box(run: Run, sign: FloatArray, shuffle: np.random.Generator) -> dict[str, float | None]:

@@ -55,6 +55,17 @@ def plan(width: float) -> FloorPlan:
     )
 
 
+def bottleneck_run(seed: int, *, width: float, people: int, **rules: Any) -> Run:
+    """The run of ``bottleneck``, with the same arguments."""
+    floor = plan(width)
+    model = crowd_model(floor, seed, **rules)
+    places = floor.random_points(
+        people, model.rng, within=START, spacing=SPACING, clearance=CLEARANCE
+    )
+    model.add_pedestrians(places)
+    return evacuate(model, 600.0)
+
+
 def bottleneck(seed: int, *, width: float, people: int = PEOPLE, **rules: Any) -> dict[str, Any]:
     """People leave a holding area, 3 persons/m2 at the start, through a neck.
 
@@ -69,14 +80,8 @@ def bottleneck(seed: int, *, width: float, people: int = PEOPLE, **rules: Any) -
         middle of the neck, and ``density_in_front``, the median over that time of the mean
         individual Voronoi density in a box 2 m x 1 m, half a metre in front of it.
     """
-    floor = plan(width)
-    model = crowd_model(floor, seed, **rules)
-    places = floor.random_points(
-        people, model.rng, within=START, spacing=SPACING, clearance=CLEARANCE
-    )
-    model.add_pedestrians(places)
-    run = evacuate(model, 600.0)
-    gate = floor.gates[0]
+    run = bottleneck_run(seed, width=width, people=people, **rules)
+    gate = run.model.floor_plan.gates[0]
     times = run.crossing_times(gate.a, gate.b)
     first, last = round(people / 6) - 1, round(people * 5 / 6) - 1
     return {

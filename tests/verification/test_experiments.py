@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mesa_mobility.validation import corridor
+from mesa_mobility.validation import corridor, motion
 from mesa_mobility.verification.references import corridor_band
 
 
@@ -52,3 +52,71 @@ def test_the_second_crowd_of_the_corridor_walks_as_fast_alone_as_those_recorded(
     drawn = speeds[8].draw(4000, np.random.default_rng(1))
     assert drawn.mean() == pytest.approx(1.55, abs=0.005)
     assert drawn.std() == pytest.approx(0.18, abs=0.005)
+
+
+def moving(**changes) -> list[dict]:
+    """A run of each case of the motion experiment in which people move as the recorded ones."""
+    rng = np.random.default_rng(1)
+
+    def walked(turn_deg, across, change, lag=0.0) -> dict:
+        pairs = rng.multivariate_normal([0, 0], [[1, lag], [lag, 1]], 4000)
+        return {
+            "turns": np.radians(rng.normal(0, turn_deg, 4000)),
+            "across": rng.normal(0, across, 4000),
+            "speed_changes": rng.normal(0, change, 4000),
+            "successive": pairs,
+            # Of a uniform distribution the percentiles are known: p50 0.2, p99 0.396.
+            "accelerations": np.linspace(0, 0.4, 1001),
+            "jumps": np.linspace(0, 0.3, 1001),
+        }
+
+    runs = {
+        "alone": walked(4.4, 0.126, 0.06, lag=-0.33),
+        "corridor": walked(4.5, 0.092, 0.084),
+        "exit": walked(9.7, 0.074, 0.093),
+        "both ways": walked(5.0, 0.1, 0.1),
+        "door 0.5": {"back": np.array([0.0] * 97 + [0.5] * 3)},
+        "door 0.9": {"back": np.zeros(100)},
+        "doorway": {"angles": np.full(1000, 0.1)},
+        "head-on": {"closest": np.full(20, 0.8)},
+        "crossing": {"closest": np.full(20, 0.9)},
+        "standing": {"closest": np.full(20, 0.6)},
+        "group": {"through": 0.05},
+        "start": {"first_second": np.full(20, 0.5)},
+    }
+    for name, change in changes.items():
+        runs[name.replace("_", " ")].update(change)
+    return list(runs.values())
+
+
+def test_people_who_move_as_recorded_pass():
+    assert unmet(motion.judge([moving()])) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "wrong"),
+    [
+        # 1.3 times 4.506 degrees are 5.86.
+        ({"corridor": {"turns": np.radians([-6.0, 6.0])}}, "corridor: sd of direction change deg"),
+        ({"alone": {"turns": np.radians([-3.0, 3.0])}}, "alone: sd of direction change deg"),
+        (
+            {"exit": {"jumps": np.full(9, 0.42)}},
+            "before an exit of 1.2 m: jump of speed over 0.1 s, p99 m/s",
+        ),
+        (
+            {"door_0.9": {"back": np.array([0.31] * 7 + [0.29] * 93)}},
+            "door of 0.9 m: share who walk back 0.3 m",
+        ),
+        (
+            {"doorway": {"angles": np.array([0.8] * 4 + [0.7] * 996)}},
+            "doorway: share of walking sideways",
+        ),
+        (
+            {"standing": {"closest": np.full(20, 0.49)}},
+            "past somebody standing: closest approach m",
+        ),
+        ({"start": {"first_second": np.full(20, 1.04)}}, "first second from standing m"),
+    ],
+)  # fmt: skip
+def test_each_way_of_moving_is_judged_on_its_own(changes, wrong):
+    assert unmet(motion.judge([moving(**changes)])) == [wrong]

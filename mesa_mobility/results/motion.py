@@ -1,0 +1,227 @@
+"""How people move inside a crowd: steps, accelerations, jumps of speed, ways back.
+
+All work on positions alone, as measured tracks of heads do; only :func:`facing_angles` needs
+headings. Definitions are those by which the reference figures were measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.trajectories import Trajectories
+
+FloatArray = NDArray[np.float64]
+
+SETTLED_S = 0.9
+"""Ends of a track in which its smoothing is not settled yet: three deviations, seconds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Steps of equal duration, and how each differs from the one before.
+
+    Attributes:
+        across: (n,) component of each step across the direction of the crowd, metres.
+        turns: (k,) change of direction between successive steps, radians in [-pi, pi).
+        speed_changes: (k,) change of speed between successive steps, m/s.
+        successive: (k, 2) ``across`` of successive steps, metres.
+    """
+
+    across: FloatArray
+    turns: FloatArray
+    speed_changes: FloatArray
+    successive: FloatArray
+
+    @property
+    def correlation(self) -> float:
+        """Correlation of ``across`` between successive steps; negative where people zigzag."""
+        return float(np.corrcoef(*self.successive.T)[0, 1])
+
+
+def steps_between(
+    trajectories: Trajectories,
+    direction: ArrayLike,
+    *,
+    interval: float = 1.5,
+    area: shapely.Polygon | None = None,
+    after: float = 0.0,
+) -> Steps:
+    """Cut the part of each track inside an area into steps of equal duration.
+
+    Args:
+        trajectories: the run.
+        direction: (2,) of the crowd, of any length.
+        interval: duration of a step, seconds.
+        area: polygon in which a step starts and ends, metres; by default everywhere.
+        after: seconds from which on tracks count.
+
+    Raises:
+        ResultsError: an interval shorter than a frame, or a direction without length.
+    """
+    frames = _frames(interval, trajectories)
+    along = np.asarray(direction, dtype=np.float64)
+    length = float(np.hypot(*along)) if along.shape == (2,) else 0.0
+    if not 0.0 < length < np.inf:
+        raise ResultsError(f"steps along {direction!r}: expected a direction (x, y)")
+    ex, ey = along / length
+    across, turns, changes, successive = [], [], [], []
+    for places, _ in _tracks(trajectories, area, after):
+        dx, dy = np.diff(places[::frames], axis=0).T
+        aside = ex * dy - ey * dx
+        angle, speed = np.arctan2(dy, dx), np.hypot(dx, dy) / interval
+        across.append(aside)
+        turns.append((np.diff(angle) + np.pi) % (2.0 * np.pi) - np.pi)
+        changes.append(np.diff(speed))
+        successive.append(np.column_stack([aside[:-1], aside[1:]]))
+    return Steps(_joined(across), _joined(turns), _joined(changes), _joined(successive, (0, 2)))
+
+
+def accelerations(
+    trajectories: Trajectories,
+    *,
+    smoothing: float = 0.3,
+    area: shapely.Polygon | None = None,
+    after: float = 0.0,
+) -> FloatArray:
+    """Second derivative of positions smoothed by a Gaussian.
+
+    Args:
+        trajectories: the run.
+        smoothing: standard deviation of the Gaussian, seconds.
+        area: polygon in which tracks count, metres; by default everywhere.
+        after: seconds from which on tracks count.
+
+    Returns:
+        (k,) m/s2, of every frame but the first and last 0.9 s of each track.
+    """
+    rate = trajectories.frame_rate
+    edge = round(SETTLED_S * rate)
+    found = []
+    for places, _ in _tracks(trajectories, area, after):
+        smooth = gaussian_filter1d(places, smoothing * rate, axis=0, mode="nearest")
+        second = np.diff(smooth, 2, axis=0)[edge:-edge] * rate**2
+        found.append(np.hypot(second[:, 0], second[:, 1]))
+    return _joined(found)
+
+
+def speed_jumps(
+    trajectories: Trajectories,
+    *,
+    interval: float = 0.1,
+    least_speed: float = 0.5,
+    area: shapely.Polygon | None = None,
+    after: float = 0.0,
+) -> FloatArray:
+    """Norm of the change of mean velocity between successive intervals of people who walk.
+
+    Args:
+        trajectories: the run.
+        interval: seconds.
+        least_speed: in both intervals, m/s.
+        area: polygon in which tracks count, metres; by default everywhere.
+        after: seconds from which on tracks count.
+
+    Returns:
+        (k,) m/s.
+
+    Raises:
+        ResultsError: an interval shorter than a frame.
+    """
+    frames = _frames(interval, trajectories)
+    found = []
+    for places, _ in _tracks(trajectories, area, after):
+        velocity = np.diff(places[::frames], axis=0) / interval
+        fast = np.hypot(velocity[:, 0], velocity[:, 1]) > least_speed
+        change = np.diff(velocity, axis=0)[fast[1:] & fast[:-1]]
+        found.append(np.hypot(change[:, 0], change[:, 1]))
+    return _joined(found)
+
+
+def facing_angles(
+    trajectories: Trajectories,
+    *,
+    interval: float = 0.5,
+    least_speed: float = 0.5,
+    area: shapely.Polygon | None = None,
+    after: float = 0.0,
+) -> FloatArray:
+    """Angle between the direction of travel and the facing direction of people who walk.
+
+    Args:
+        trajectories: the run.
+        interval: over which travel is measured, seconds; facing is that in its middle.
+        least_speed: m/s.
+        area: polygon in which tracks count, metres; by default everywhere.
+        after: seconds from which on tracks count.
+
+    Returns:
+        (k,) radians from 0 to pi, one for each interval in which somebody walks.
+    """
+    frames = _frames(interval, trajectories)
+    found = []
+    for places, headings in _tracks(trajectories, area, after):
+        dx, dy = np.diff(places[::frames], axis=0).T
+        facing = headings[frames // 2 :: frames][: len(dx)]
+        fast = np.hypot(dx, dy) > least_speed * interval
+        off = np.arctan2(dy, dx) - facing
+        found.append(np.abs((off + np.pi) % (2.0 * np.pi) - np.pi)[fast])
+    return _joined(found)
+
+
+def walked_back(trajectories: Trajectories, point: ArrayLike) -> FloatArray:
+    """How far each person has walked back from a point that it had come nearer to.
+
+    Args:
+        trajectories: the run.
+        point: (2,) metres, for instance the middle of a door.
+
+    Returns:
+        (people,) metres, in order of persons: the greatest distance regained after coming nearer.
+    """
+    x, y = np.asarray(point, dtype=np.float64)
+    found = []
+    for places, _ in _tracks(trajectories, None, 0.0):
+        away = np.hypot(places[:, 0] - x, places[:, 1] - y)
+        # Once through, people move away from the door because they have passed it.
+        until = int(np.argmin(away)) + 1
+        found.append(float(np.max(away[:until] - np.minimum.accumulate(away[:until]))))
+    return np.array(found)
+
+
+def _tracks(
+    trajectories: Trajectories, area: shapely.Polygon | None, after: float
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Places (n, 2) and headings (n,) of each unbroken piece of a track inside the area."""
+    rows = trajectories.by_person
+    kept = trajectories.frame[rows] >= after * trajectories.frame_rate
+    if area is not None:
+        shapely.prepare(area)
+        kept &= shapely.contains_xy(area, trajectories.x[rows], trajectories.y[rows])
+    rows = rows[kept]
+    breaks = np.flatnonzero(
+        (np.diff(trajectories.person[rows]) != 0) | (np.diff(trajectories.frame[rows]) != 1)
+    )
+    for piece in np.split(rows, breaks + 1):
+        if len(piece):
+            places = np.column_stack([trajectories.x[piece], trajectories.y[piece]])
+            yield places, trajectories.heading[piece]
+
+
+def _frames(seconds: float, trajectories: Trajectories) -> int:
+    frames = round(seconds * trajectories.frame_rate)
+    if frames < 1:
+        raise ResultsError(
+            f"interval of {seconds} s is shorter than a frame at {trajectories.frame_rate} Hz"
+        )
+    return frames
+
+
+def _joined(parts: list[FloatArray], empty: tuple[int, ...] = (0,)) -> FloatArray:
+    return np.concatenate(parts) if parts else np.empty(empty)

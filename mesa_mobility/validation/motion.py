@@ -1,0 +1,264 @@
+"""Single people inside a crowd: how straight, how smoothly and how near to others they walk.
+
+Beside recorded crowds of the same density. Flows and mean speeds are compared elsewhere; here it
+is how each person moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from shapely import Polygon, box
+
+from mesa_mobility import Exit, FloorPlan, Source
+from mesa_mobility.plugins.registry import load_model
+from mesa_mobility.results.motion import (
+    accelerations,
+    facing_angles,
+    speed_jumps,
+    steps_between,
+    walked_back,
+)
+from mesa_mobility.validation import drawing
+from mesa_mobility.validation.bidirectional import BOX as BOTH_WAYS_BOX
+from mesa_mobility.validation.bidirectional import both_ways_run
+from mesa_mobility.validation.bottleneck import bottleneck_run
+from mesa_mobility.validation.corridor import RECORDED
+from mesa_mobility.validation.encounters import (
+    crossing,
+    from_standing,
+    head_on,
+    past_group,
+    past_standing,
+)
+from mesa_mobility.validation.experiment import Experiment, Runs
+from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification.cases import Figures
+from mesa_mobility.verification.checks import Check, at_most, within
+from mesa_mobility.verification.references import table
+from mesa_mobility.verification.runs import CLEARANCE, SPACING, Run, crowd_model, evacuate
+
+FloatArray = NDArray[np.float64]
+
+LENGTH, WIDTH = 24.0, 1.8
+BOX = box(12.0, 0.0, 22.0, WIDTH)
+"""Where tracks count, metres: ten metres of corridor before its end."""
+ENTRY = box(0.6, CLEARANCE, 1.6, WIDTH - CLEARANCE)
+SETTLE_S, MEASURE_S = 30.0, 60.0
+ALLOWED = 1.3
+"""How many times as large as measured a figure may be."""
+JOINT_JUMP = 0.32
+"""p99 of the jump of speed over 0.1 s of the recorded walkers, m/s."""
+CROWDS = {
+    "corridor": "unidirectional corridor 1.8 m (uo-100-180-180)",
+    "before an exit of 1.2 m": "corridor 1.8 m with an exit of 1.2 m (uo-180-180-120)",
+}
+"""Crowds, and what the reference calls them."""
+BOTH_WAYS = "bidirectional corridor 4 m (bi_corr_400_b_03 and _08)"
+PERCENTILES = (50, 95, 99)
+
+
+def one_way(seed: int, *, density: float, speed: float, exit_width: float) -> Figures:
+    """People walk one way along a corridor 24 m long that is fed at one end.
+
+    Args:
+        seed: of the run.
+        density: persons per square metre at the start.
+        speed: at which measured people of this density walked, m/s: with the density, the rate at
+            which people come in.
+        exit_width: of its end, metres.
+
+    Returns:
+        With what every run tells, over the last ten metres but two: ``turns`` (radians),
+        ``across`` (m), ``speed_changes`` (m/s) between steps of 1.5 s, ``accelerations`` (m/s2)
+        and ``jumps`` of speed over 0.1 s (m/s).
+    """
+    low, high = (WIDTH - exit_width) / 2, (WIDTH + exit_width) / 2
+    plan = FloorPlan(
+        box(0.0, 0.0, LENGTH, WIDTH), exits=[Exit("end", (LENGTH, low), (LENGTH, high))]
+    )
+    model = crowd_model(plan, seed)
+    people = round(density * LENGTH * WIDTH)
+    places = plan.random_points(people, model.rng, spacing=SPACING, clearance=CLEARANCE)
+    model.add_pedestrians(places, preferred_speeds=RECORDED.draw(people, model.rng))
+    model.add_source(Source(area=ENTRY, rate=density * speed * WIDTH, preferred_speeds=RECORDED))
+    while model.elapsed < SETTLE_S + MEASURE_S:
+        model.step()
+    return _moved(Run(model, plan.walls), BOX, SETTLE_S)
+
+
+def both_ways(seed: int, *, density: float) -> Figures:
+    """People walk both ways in a corridor 4 m wide; figures as of ``one_way``."""
+    return _moved(both_ways_run(seed, density=density), BOTH_WAYS_BOX, SETTLE_S)
+
+
+def alone(seed: int, *, people: int = 25) -> Figures:
+    """People walk alone, in lanes 3 m apart; figures as of ``one_way``."""
+    plan = FloorPlan(
+        box(-2.0, 0.0, LENGTH, 3.0 * people),
+        exits=[Exit("end", (LENGTH, 0.0), (LENGTH, 3.0 * people))],
+    )
+    model = crowd_model(plan, seed)
+    places = np.column_stack([np.zeros(people), 3.0 * (np.arange(people) + 0.5)])
+    model.add_pedestrians(
+        places, headings=np.zeros(people), preferred_speeds=RECORDED.draw(people, model.rng)
+    )
+    run = evacuate(model, 3.0 * LENGTH)
+    return _moved(run, box(4.0, 0.0, LENGTH - 2.0, 3.0 * people), 0.0)
+
+
+def before_door(seed: int, *, width: float) -> Figures:
+    """People leave through a door; ``back`` (m,) metres that each has walked back from it."""
+    run = bottleneck_run(seed, width=width, people=60)
+    return {**run.figures(), "back": walked_back(run.trajectories, (0.0, 0.0))}
+
+
+def faced(seed: int, *, model: str) -> Figures:
+    """A model that ships; ``angles`` (k,) in radians between facing and travel of who walks."""
+    made = load_model(model)(record=True, rng=seed)
+    run = evacuate(made, 120.0)
+    return {**run.figures(), "angles": facing_angles(run.trajectories)}
+
+
+def _moved(run: Run, area: Polygon, after: float) -> Figures:
+    tracks = run.trajectories
+    steps = steps_between(tracks, (1.0, 0.0), area=area, after=after)
+    return {
+        **run.figures(),
+        "turns": steps.turns,
+        "across": steps.across,
+        "speed_changes": steps.speed_changes,
+        "successive": steps.successive,
+        "accelerations": accelerations(tracks, area=area, after=after),
+        "jumps": speed_jumps(tracks, area=area, after=after),
+    }
+
+
+def judge(runs: Runs) -> Verdict:
+    """Each figure at most 1.3 times the measured one, or within the measured range."""
+    by_case = [list(of) for of in zip(*runs, strict=True)]
+    free, *crowds, opposed, door_05, door_09, doorway, meet, cross, stand, group, start = by_case
+    checks: list[Check] = []
+    figures: dict[str, Any] = {}
+    reference = {row["set"]: row for row in table("motion_in_crowds")}
+    rows = [("alone", "free walk 3 m corridor", free)]
+    rows += [(name, CROWDS[name], of) for name, of in zip(CROWDS, crowds, strict=True)]
+    for name, measured, of in rows:
+        own = {each: _joined(of, each) for each in ("turns", "across", "speed_changes")}
+        spread = {
+            "direction change deg": float(np.degrees(own["turns"].std())),
+            "lateral step m": float(own["across"].std()),
+            "speed change m/s": float(own["speed_changes"].std()),
+        }
+        columns = ("heading_change_sd_deg", "lateral_disp_sd_m", "speed_change_sd_m_s")
+        for (figure, value), column in zip(spread.items(), columns, strict=True):
+            most = ALLOWED * float(reference[measured][column])
+            least = 0.7 / ALLOWED * most if of is free else 0.0
+            checks.append(within(f"{name}: sd of {figure}", value, least, most))
+        figures[f"{name}: turns"] = np.degrees(own["turns"]).tolist()
+        if of is free:
+            pairs = _joined(of, "successive")
+            lag = float(np.corrcoef(*pairs.T)[0, 1])
+            checks.append(within(f"{name}: correlation of lateral steps", lag, -0.5, -0.15))
+            continue
+        checks += _against(f"{name}: acceleration m/s2", _joined(of, "accelerations"),
+                           reference[measured], "accel")  # fmt: skip
+        figures[f"{name}: accelerations"] = _percentiles(_joined(of, "accelerations"))
+        figures[f"{name}: jumps"] = _percentiles(_joined(of, "jumps"))
+        checks.append(
+            at_most(f"{name}: jump of speed over 0.1 s, p99 m/s", figures[f"{name}: jumps"][-1],
+                    ALLOWED * JOINT_JUMP)
+        )  # fmt: skip
+    checks += _against("both ways: acceleration m/s2", _joined(opposed, "accelerations"),
+                       reference[BOTH_WAYS], "accel")  # fmt: skip
+    for name, of in (("0.5", door_05), ("0.9", door_09)):
+        share = float(np.mean(_joined(of, "back") > 0.3))
+        checks.append(at_most(f"door of {name} m: share who walk back 0.3 m", share, 0.06))
+    angles = _joined(doorway, "angles")
+    for figure, angle in (("sideways", np.pi / 4), ("backwards", np.pi / 2)):
+        share = float(np.mean(angles > angle))
+        checks.append(at_most(f"doorway: share of walking {figure}", share, 0.003))
+    for name, of, low, high in (
+        ("head-on", meet, 0.6, 1.1),
+        ("crossing", cross, 0.7, 1.1),
+        ("past somebody standing", stand, 0.5, 2.0),
+    ):
+        closest = float(np.median(_joined(of, "closest")))
+        checks.append(within(f"{name}: closest approach m", closest, low, high))
+    through = float(np.mean([each["through"] for each in group]))
+    checks.append(at_most("standing group of five: share who walk through", through, 0.1))
+    covered = float(np.median(_joined(start, "first_second")))
+    checks.append(within("first second from standing m", covered, 0.4, 0.7))
+    return Verdict(tuple(checks), figures)
+
+
+def _against(name: str, values: FloatArray, reference: dict[str, str], column: str) -> list[Check]:
+    return [
+        at_most(f"{name}, p{p}", value, ALLOWED * float(reference[f"{column}_p{p}"]))
+        for p, value in zip(PERCENTILES, _percentiles(values), strict=True)
+    ]
+
+
+def _percentiles(values: FloatArray) -> list[float]:
+    return [float(each) for each in np.percentile(values, PERCENTILES)]
+
+
+def _joined(runs: Sequence[Figures], name: str) -> FloatArray:
+    return np.concatenate([each[name] for each in runs])
+
+
+def draw(figures: dict[str, Any]) -> Figure:
+    """Changes of direction, accelerations and jumps of speed, beside the measured ones."""
+    figure, axes = drawing.panels(3)
+    reference = {row["set"]: row for row in table("motion_in_crowds")}
+    edges = np.arange(-60.0, 61.0, 2.0)
+    for (name, measured), colour in zip(
+        CROWDS.items(), (drawing.OURS.colour, drawing.OTHER.colour), strict=True
+    ):
+        turns = np.array(figures[f"{name}: turns"])
+        axes[0].hist(turns, bins=edges.tolist(), density=True, histtype="step", color=colour,
+                     label=f"{name}, sd {turns.std():.1f}")  # fmt: skip
+        sd = float(reference[measured]["heading_change_sd_deg"])
+        axes[0].plot(edges, np.exp(-((edges / sd) ** 2) / 2) / (sd * np.sqrt(2 * np.pi)),
+                     color=colour, linestyle=":", label=f"experiment, sd {sd:.1f}")  # fmt: skip
+        for panel, column, key in (
+            (axes[1], "accel", "accelerations"),
+            (axes[2], "speed_jump_0p1s", "jumps"),
+        ):
+            theirs = [float(reference[measured][f"{column}_p{p}"]) for p in PERCENTILES]
+            panel.plot(PERCENTILES, figures[f"{name}: {key}"], "o-", color=colour, label=name)
+            panel.plot(PERCENTILES, theirs, "s:", color=colour, label=f"{name}, experiment")
+    axes[0].set_xlabel("change of direction between steps of 1.5 s (deg)")
+    axes[1].set_ylabel("acceleration (m/s²)")
+    axes[2].set_ylabel("jump of speed over 0.1 s (m/s)")
+    for panel in axes[1:]:
+        panel.set_xlabel("percentile")
+    drawing.finish(axes)
+    return figure
+
+
+def _encounter(scenario: Callable[[int], Figures]) -> Any:
+    return case(scenario, effort=3.0)
+
+
+EXPERIMENT = Experiment(
+    name="motion",
+    what="single people inside a crowd: directions, steps, accelerations, distances",
+    source="tracks of HERMES, BaSiGo and Adrian et al. 2020 (motion_in_crowds.csv)",
+    cases=(
+        case(alone, effort=2.0),
+        case(one_way, effort=3.0, density=1.1, speed=1.208, exit_width=1.8),
+        case(one_way, effort=4.0, density=2.06, speed=0.66, exit_width=1.2),
+        case(both_ways, effort=4.0, density=1.0),
+        case(before_door, effort=2.0, width=0.5),
+        case(before_door, effort=2.0, width=0.9),
+        case(faced, effort=2.0, model="doorway"),
+        *map(_encounter, (head_on, crossing, past_standing, past_group, from_standing)),
+    ),
+    judge=judge,
+    draw=draw,
+)
