@@ -31,7 +31,7 @@ from mesa_mobility.crowd.sources import PLACES_TRIED, Inflow, Source
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state.aggregates import EMPTY, Aggregates, aggregate, split_active
 from mesa_mobility.crowd.state.departed import Departed
-from mesa_mobility.crowd.state.environment import Environment
+from mesa_mobility.crowd.state.environment import Environment, passing_of
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.journeys import Journeys
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST, SpeedRule
@@ -175,7 +175,12 @@ class Population(mesa.Model, ABC):
         """
         self._check_type_index(source.type_index)
         core = self.pedestrian_types[source.type_index].core_radius
-        entrance = Entrance(self.floor_plan, read_entrance(source.area), core + 0.01)
+        entrance = Entrance(
+            self.floor_plan,
+            read_entrance(source.area),
+            clearance=core + 0.01,
+            passing=passing_of(core),
+        )
         destination, _ = self._where_to(source.exits, source.route, source.loop, source.type_index)
         somewhere = entrance.room.representative_point()
         self._site.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
