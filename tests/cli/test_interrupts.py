@@ -6,6 +6,8 @@
 import json
 import os
 import random
+import subprocess
+import sys
 
 import pytest
 
@@ -98,6 +100,20 @@ def test_a_second_one_stops_at_once_and_writes_nothing(tmp_path):
     assert ended.status == 130
     assert ended.err.endswith("interrupted: nothing written\n")
     assert list((tmp_path / "out").iterdir()) == []
+
+
+@pytest.mark.parametrize("loaded", ["cli", "interrupts", "commands"])
+def test_while_the_command_is_loaded(loaded):
+    source = (
+        "import os, runpy, signal, sys\n"
+        "class Press:\n"
+        "    def find_spec(name, path, target=None):\n"
+        f"        if name == 'mesa_mobility.{loaded}': os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Press)\n"
+        "runpy.run_module('mesa_mobility', run_name='__main__')"
+    )
+    ended = subprocess.run([sys.executable, "-c", source, "models"], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (130, "interrupted: nothing written\n")
 
 
 def test_while_a_model_is_looked_for(tmp_path):
