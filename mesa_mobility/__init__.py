@@ -6,10 +6,10 @@ and the command line start at once.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from mesa_mobility._lazy import beside_in_a_checkout, names_of
 
+# To load typing takes as long as all else here, and the command answers Ctrl-C only after it.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mesa_mobility._version import __version__
     from mesa_mobility.batch import batch_run

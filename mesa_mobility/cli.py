@@ -1,6 +1,6 @@
 """The command line: `mesa-mobility`.
 
-What is imported here comes before Ctrl-C is answered: the commands are imported after that.
+The commands are imported only when Ctrl-C is answered.
 """
 
 from __future__ import annotations

@@ -3,9 +3,8 @@
 A marker that is lost, swapped or mislabelled moves the body by decimetres within one frame.  Such
 frames are found by the motion that hips and legs would have had to make:
 
-- Speed.  The fastest sprint ever measured reached 12.34 m/s (Graubner and Nixdorf, Biomechanical
-  analysis of the sprint and hurdles events at the 2009 IAAF World Championships in Athletics, New
-  Studies in Athletics 26, 2011).  A swinging foot moves about twice as fast as the body.
+- Speed.  A body moves no faster than the fastest sprint ever measured.  A swinging foot moves about
+  twice as fast as the body.
 - Turning.  The fastest spin on ice took 0.175 s a turn (342 a minute, Guinness World Records 2015).
 - Change of velocity.  Feet on the ground cannot speed up the body by much more than gravity would,
   as friction limits them.  Steps, soft tissue and markers shake the hips by up to 87 m/s2 and the
@@ -27,11 +26,12 @@ from numpy.typing import NDArray
 from mesa_mobility.capture.legs import leg_joints
 from mesa_mobility.capture.recording import Recording
 from mesa_mobility.capture.transforms import resample, trim
+from mesa_mobility.human_limits import FASTEST_SPRINT
 
 FRAME_RATE = 30.0
 """Frames a second at which jumps are looked for."""
 
-HIPS_SPEED, LEGS_SPEED = 12.34, 25.0
+HIPS_SPEED, LEGS_SPEED = FASTEST_SPRINT, 25.0
 """Highest speeds in m/s of the point between the hips, and of hips, knees, ankles and toes."""
 
 HIPS_ACCELERATION, LEGS_ACCELERATION = 100.0, 250.0

@@ -14,6 +14,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.crowd.insertion import Newcomers
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.scene import Scene
+from mesa_mobility.crowd.state.environment import passing_of
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
 from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
@@ -230,7 +231,12 @@ class Sources(Sequence[Inflow]):
         """Let people in from ``frame`` on; ``PedestrianModel.add_source`` says what is refused."""
         scene = self._scene
         core = scene.type_at(source.type_index).core_radius
-        entrance = Entrance(scene.plan, read_entrance(source.area), core + 0.01)
+        entrance = Entrance(
+            scene.plan,
+            read_entrance(source.area),
+            clearance=core + 0.01,
+            passing=passing_of(core),
+        )
         inflow = Inflow(source, entrance, frame, rng)
         destination, _ = scene.journeys.start(
             source.exits, source.route, source.loop, source.type_index

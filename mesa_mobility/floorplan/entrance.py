@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.reachability import with_way_out
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -43,10 +44,14 @@ class Entrance:
         plan: the floor plan.
         geometry: a polygon or a line, metres.
         clearance: distance to walls, metres.
+        passing: half the width of the narrowest gap on the body's way to an exit, metres.
     """
 
-    def __init__(self, plan: FloorPlan, geometry: BaseGeometry, clearance: float) -> None:
+    def __init__(
+        self, plan: FloorPlan, geometry: BaseGeometry, *, clearance: float, passing: float
+    ) -> None:
         self._plan = plan
+        self._passing = passing
         self._geometry = geometry
         self._clearance = clearance
         self._version = -1
@@ -61,7 +66,8 @@ class Entrance:
         if self._version != self._plan.version:
             self._version = self._plan.version
             free = self._plan.free.buffer(-self._clearance, quad_segs=32)
-            found = shapely.get_parts(free.intersection(self._geometry))
+            room = with_way_out(self._plan, free.intersection(self._geometry), self._passing)
+            found = shapely.get_parts(room)
             parts = [part for part in found if part.geom_type == self._geometry.geom_type]
             self._room = shapely.union_all(parts)
             shapely.prepare(self._room)

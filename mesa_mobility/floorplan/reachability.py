@@ -1,5 +1,6 @@
 """Whether a body of some width can reach an open exit."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import ArrayLike
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.openings import Exit
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -18,9 +20,11 @@ def check_reachable(plan: "FloorPlan", points: ArrayLike, clearance: float) -> N
     xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
     if not np.isfinite(xy).all():
         raise FloorPlanError("points to check must be finite")
+    closed = shapely.union_all([gate.line for gate in plan.closed_gates()]).buffer(clearance)
     # A body nearer to a wall than the clearance counts as at the nearest place that keeps it.
     # That place is never behind the wall, where such places are farther away.
-    away = shapely.distance(_ways_out(plan, clearance), shapely.points(xy))
+    leads_out, _ = _pieces(plan, clearance, plan.open_exits(), closed)
+    away = shapely.distance(leads_out, shapely.points(xy))
     lost = ~(plan.contains(xy) & (away <= clearance + 1e-6))
     if lost.any():
         x, y = xy[np.flatnonzero(lost)[0]]
@@ -30,17 +34,38 @@ def check_reachable(plan: "FloorPlan", points: ArrayLike, clearance: float) -> N
         )
 
 
-def _ways_out(plan: "FloorPlan", clearance: float) -> BaseGeometry:
-    """Places from which the centre of a body can get to an open exit."""
-    # Open exits are lengthened outwards into short corridors, so that shrinking the area by
+def with_way_out(plan: "FloorPlan", region: BaseGeometry, radius: float) -> BaseGeometry:
+    """The part of a region from which bodies could reach an exit if everything were open.
+
+    All of the region is kept where none of it has a way out, or where the plan has no exit.
+
+    Args:
+        plan: the floor plan.
+        region: centres of bodies.
+        radius: half the width of the narrowest gap that the bodies pass, metres.
+    """
+    if not plan.exits:
+        return region
+    _, cut_off = _pieces(plan, radius, plan.exits, shapely.Polygon())
+    if cut_off.is_empty:
+        return region
+    # Nearer to a wall than the radius a body counts as at the nearest place that keeps it.
+    kept = region.difference(cut_off.buffer(radius, quad_segs=32))
+    return region if kept.is_empty else kept
+
+
+def _pieces(
+    plan: "FloorPlan", clearance: float, exits: Sequence[Exit], closed: BaseGeometry
+) -> tuple[BaseGeometry, BaseGeometry]:
+    """Places at which the centre of a body can be: with a way to one of the exits, and without."""
+    # The exits are lengthened outwards into short corridors, so that shrinking the area by
     # the body leaves a piece touching the exit's line only where the body fits through it.
-    doorways = [e.line.buffer(2 * clearance, cap_style="flat") for e in plan.open_exits()]
+    doorways = [e.line.buffer(2 * clearance, cap_style="flat") for e in exits]
     outside = shapely.union_all(doorways).difference(plan.walkable)
     room = shapely.union_all([plan.free, outside]).buffer(-clearance, quad_segs=32)
-    closed = shapely.union_all([gate.line for gate in plan.closed_gates()]).buffer(clearance)
-    pieces = [
-        piece
-        for piece in shapely.get_parts(room.difference(closed))
-        if any(piece.intersects(e.line) for e in plan.open_exits())
-    ]
-    return shapely.union_all(pieces)
+    pieces = shapely.get_parts(room.difference(closed))
+    lines = shapely.union_all([e.line for e in exits])
+    leads_out = shapely.intersects(pieces, lines)
+    # What lies in such a corridor is no place to be.
+    cut_off = [piece for piece in pieces[~leads_out] if piece.intersects(plan.free)]
+    return shapely.union_all(pieces[leads_out]), shapely.union_all(cut_off)

@@ -10,11 +10,15 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.poisson_disk import lattice, throw
+from mesa_mobility.floorplan.reachability import with_way_out
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
 from mesa_mobility.floorplan.walls.line_of_sight import Sight, sight_of, wall_distances
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
+
+PASSING = 0.1615
+"""Half the width in metres of the narrowest gap that routes of an adult lead through."""
 
 
 def random_points(
@@ -79,8 +83,12 @@ def _most(region: BaseGeometry, spacing: float) -> int:
 
 def _standing_region(plan: "FloorPlan", within: Polygon | None, clearance: float) -> BaseGeometry:
     region = plan.free.buffer(-clearance, quad_segs=32)
+    # In one piece of at least this clearance every place has a way out, or none has.
+    whole = clearance >= PASSING and region.geom_type == "Polygon"
     if within is not None:
         region = region.intersection(within)
+    if not whole:
+        region = with_way_out(plan, region, PASSING)
     parts = [part for part in shapely.get_parts(region) if part.geom_type == "Polygon"]
     region = shapely.MultiPolygon(parts)
     shapely.prepare(region)

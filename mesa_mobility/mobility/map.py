@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import MapError
+from mesa_mobility.human_limits import FASTEST_SPRINT
 
 SAMPLE_SECONDS = 0.1
 """Time between two samples of a stored path: three frames at 30 Hz."""
@@ -211,7 +212,24 @@ def check_map(map_: MobilityMap) -> None:
             f"mobility map option {row}: {int(samples[row])} samples for "
             f"{int(map_.durations[row])} frames, expected one each 3 frames"
         )
+    _check_speeds(map_)
     _check_metadata(map_.metadata)
+
+
+def _check_speeds(map_: MobilityMap) -> None:
+    # Without this limit a damaged file makes the search and its grids reach for kilometres.
+    steps = np.diff(map_.paths[:, :2], axis=0, prepend=np.float32(0.0))
+    starts = map_.path_offsets[:-1]
+    steps[starts] = map_.paths[starts, :2]
+    speeds = np.hypot(*steps.T) / SAMPLE_SECONDS
+    fastest = int(np.argmax(speeds))
+    # Rounding to the steps of the file may add a little.
+    if speeds[fastest] > FASTEST_SPRINT + 0.01:
+        row = int(np.searchsorted(map_.path_offsets, fastest, side="right")) - 1
+        raise MapError(
+            f"mobility map option {row}: moves at {speeds[fastest]:.1f} m/s, "
+            f"expected at most {FASTEST_SPRINT:g}"
+        )
 
 
 def _check_metadata(metadata: Mapping[str, Any]) -> None:

@@ -21,6 +21,9 @@ from mesa_mobility.interrupts import cleaning_up, putting_in_place
 def all_or_none(directory: str | os.PathLike[str], files: Sequence[str]) -> Iterator[Path]:
     """Give a temporary folder for these files; on success they go to `directory`, else none does.
 
+    The last of them goes first, if it is there from before, and is put in place last. Whatever
+    ends the process meanwhile, a folder that has the last file has all of them, of one run.
+
     Args:
         directory: folder that the files go to, created if need be.
         files: their names; those that are not in the temporary folder at the end are left out.
@@ -36,6 +39,7 @@ def all_or_none(directory: str | os.PathLike[str], files: Sequence[str]) -> Iter
                 yield temporary
                 check_writable(folder, files)
                 with putting_in_place():
+                    (folder / files[-1]).unlink(missing_ok=True)
                     for file in files:
                         if (temporary / file).exists():
                             os.replace(temporary / file, folder / file)

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
 RUN_FILES = (
-    "summary.json",
     "trajectories.parquet",
     "floorplan.geojson",
     "occupancy.png",
     "trajectories.png",
+    "summary.json",
 )
 
 
@@ -32,7 +32,8 @@ def write_run(
 ) -> None:
     """Write summary.json, trajectories.parquet, floorplan.geojson and two pictures.
 
-    Either all of them are written or none is.
+    Either all of them are written or none is; where the process is killed meanwhile, summary.json
+    is missing.
 
     Args:
         directory: folder to write to, created if need be.

@@ -6,6 +6,9 @@
 import json
 import os
 import random
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -21,6 +24,13 @@ def some_times(seed, n, low, high):
     return [draw.uniform(low, high) for _ in range(n)]
 
 
+def two_at_a_time(press, times):
+    """Call ``press`` with the number of each time and the time; most of it is waiting."""
+    with ThreadPoolExecutor(2) as pool:
+        for _ in pool.map(press, range(len(times)), times):
+            pass
+
+
 @pytest.mark.parametrize("after", some_times(1, 3, 0.0, 2.5))
 def test_at_some_time(after, tmp_path):
     arguments = ["run", "straight_walk", "--seconds", 2, "--out", tmp_path / "out"]
@@ -30,18 +40,22 @@ def test_at_some_time(after, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("threads", [1, 2])
 def test_in_the_first_seconds(threads, tmp_path):
-    for k, after in enumerate(some_times(threads, OFTEN, 0.0, 2.0)):
+    def press(k, after):
         folder = tmp_path / str(k)
         arguments = ["run", "auditorium", "--seconds", 3, "--out", folder]
         check_run(interrupted(arguments, after, threads=threads), folder)
 
+    two_at_a_time(press, some_times(threads, OFTEN, 0.0, 2.0))
+
 
 @pytest.mark.slow
 def test_while_a_model_is_made_and_run(tmp_path):
-    for k, after in enumerate(some_times(3, round(1.5 * OFTEN), 0.3, 3.0)):
+    def press(k, after):
         folder = tmp_path / str(k)
         arguments = ["run", "auditorium", "--seconds", 3, "--out", folder]
         check_run(interrupted(arguments, after, times=1 + k % 3), folder)
+
+    two_at_a_time(press, some_times(3, OFTEN, 0.3, 3.0))
 
 
 @pytest.mark.slow
@@ -98,6 +112,20 @@ def test_a_second_one_stops_at_once_and_writes_nothing(tmp_path):
     assert ended.status == 130
     assert ended.err.endswith("interrupted: nothing written\n")
     assert list((tmp_path / "out").iterdir()) == []
+
+
+@pytest.mark.parametrize("loaded", ["cli", "interrupts", "commands"])
+def test_while_the_command_is_loaded(loaded):
+    source = (
+        "import os, runpy, signal, sys\n"
+        "class Press:\n"
+        "    def find_spec(name, path, target=None):\n"
+        f"        if name == 'mesa_mobility.{loaded}': os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Press)\n"
+        "runpy.run_module('mesa_mobility', run_name='__main__')"
+    )
+    ended = subprocess.run([sys.executable, "-c", source, "models"], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (130, "interrupted: nothing written\n")
 
 
 def test_while_a_model_is_looked_for(tmp_path):

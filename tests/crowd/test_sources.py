@@ -156,6 +156,16 @@ def test_a_stream_through_a_corridor_is_safe():
     assert (report.overlaps, report.wall_crossings) == (0, 0)
 
 
+def test_nobody_appears_where_no_way_leads_out():
+    """Past the end of a wall 0.3 m from another, no adult passes."""
+    model = model_of(corridor(obstacles=[box(12, 0, 12.2, 3.7)]), strider())
+    model.add_source(Source(area=box(8, 0.2, 16, 3.8), times=[0.0] * 60))
+    advance(model, 2)
+    rows = model.recorder.arrays()
+    assert len(np.unique(rows["person"])) > 20
+    assert rows["x"].min() > 12.2
+
+
 def test_nobody_appears_beside_whoever_is_just_crossing_the_exit():
     # 1.98 m at 1.25 m/s are 47.5 frames: in frame 48 it is 0.02 m beyond the exit at 12 m, and
     # 0.22 m from the spot, where two bodies take 0.28 m: it is free two frames later.

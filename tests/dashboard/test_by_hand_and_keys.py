@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+DECISION = "document.querySelector('.mm-decision canvas')"
 CANVAS = "document.querySelector('.mm-crowd-canvas')"
 SELECTED = f"() => {CANVAS}.shown().selected"
 
@@ -157,3 +158,30 @@ def test_a_dark_page_has_a_dark_floor(open_tab):
             return Math.max(...pixel.slice(0, 3)) < 80;
         }}"""
     )
+
+
+DARK_GROUND = """(canvas) => {
+    const ctx = canvas.getContext('2d');
+    const pixel = ctx.getImageData(canvas.width - 4, canvas.height / 3, 1, 1).data;
+    return Math.max(...pixel.slice(0, 3)) < 80 && pixel[3] === 255;
+}"""
+
+
+def test_a_dark_page_has_a_dark_decision_and_a_dark_cluster(open_tab):
+    tab = open_tab(color_scheme="dark")
+    tab.step(2)
+    tab.click_person(int(tab.people()[0, 0]))
+    tab.wait(f"() => ({DARK_GROUND})({DECISION})")
+    tab.page.get_by_role("tab", name="Mobility map").click()
+    cluster = "document.querySelector('.mm-cluster canvas')"
+    tab.wait(f"() => {cluster}?.shown?.().options > 0 && ({DARK_GROUND})({cluster})")
+    spine = tab.page.locator(".mm-cluster svg line").last
+    assert spine.get_attribute("stroke") == "#eeeeee"
+
+
+def test_a_page_that_turns_dark_draws_the_decision_anew(tab):
+    tab.step(2)
+    tab.click_person(int(tab.people()[0, 0]))
+    tab.wait(f"() => !({DARK_GROUND})({DECISION})")
+    tab.page.emulate_media(color_scheme="dark")
+    tab.wait(f"() => ({DARK_GROUND})({DECISION})")

@@ -133,3 +133,41 @@ def test_room_for_millions_is_not_looked_for_where_there_is_none(n):
     plan = FloorPlan("POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0))", exits=[Exit("out", (4, 1), (4, 2))])
     with pytest.raises(FloorPlanError, match=rf"leaves room for \d+ of {n} people"):
         plan.random_points(n, np.random.default_rng(1), spacing=0.5, clearance=0.3)
+
+
+def pocket(gap: float, *, exits: tuple[Exit, ...] = (Exit("e", (0, 1), (0, 3)),)) -> FloorPlan:
+    """10 m x 4 m, whose last 4 m lie behind a gap."""
+    return FloorPlan(box(0, 0, 10, 4), exits=exits, obstacles=[box(5.8, 0, 6, 4 - gap)])
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.1, 0.2, 0.4])
+def test_nobody_is_put_where_no_way_leads_out(clearance) -> None:
+    points = pocket(0.3).random_points(
+        100, np.random.default_rng(0), spacing=0.2, clearance=clearance
+    )
+    assert points[:, 0].max() < 6.0
+    assert points[:, 0].max() > 5.2
+
+
+def test_people_are_put_behind_a_gap_that_they_pass() -> None:
+    # Wider than a body with its clearance to walls, narrower than twice the clearance.
+    points = pocket(0.4).random_points(100, np.random.default_rng(0), spacing=0.2, clearance=0.3)
+    assert (points[:, 0] > 6.0).mean() > 0.2
+
+
+def test_places_behind_closed_doors_have_a_way_out() -> None:
+    door = Gate("door", (6, 0), (6, 4))
+    plan = FloorPlan(box(0, 0, 10, 4), exits=[Exit("e", (0, 1), (0, 3))], gates=[door])
+    plan.close_gate("door")
+    plan.close_gate("e")
+    points = plan.random_points(100, np.random.default_rng(0), spacing=0.2, clearance=0.2)
+    assert (points[:, 0] > 6.0).mean() > 0.2
+
+
+def test_all_places_count_where_none_has_a_way_out() -> None:
+    narrow = pocket(0.3, exits=(Exit("e", (0, 1), (0, 1.25)),))
+    for plan in (narrow, pocket(0.3)):
+        points = plan.random_points(
+            40, np.random.default_rng(0), within=box(6, 0, 10, 4), spacing=0.2, clearance=0.2
+        )
+        assert points[:, 0].min() > 6.0

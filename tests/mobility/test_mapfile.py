@@ -32,7 +32,8 @@ def maps(draw):
     durations = rng.choice([3, 12, 24, 45], m).astype(np.int16)
     samples = durations.astype(int) // 3
     p = int(samples.sum())
-    whole = rng.integers(-8000, 8000, (p, 3))
+    whole = np.cumsum(rng.integers(-1500, 1500, (p, 3)), axis=0)
+    whole -= np.repeat(whole[np.cumsum(samples) - samples], samples, axis=0)
     return MobilityMap(
         offsets=np.concatenate([[0], np.cumsum(counts)]),
         durations=durations,
@@ -131,6 +132,29 @@ def test_a_file_that_contradicts_itself_is_refused(saved, name, array, message):
         MobilityMap.load(saved)
     assert str(caught.value).startswith(str(saved))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("sample", [0, 4, 9])
+def test_a_file_with_an_option_that_outruns_everybody_is_refused(saved, sample):
+    """Out by 1.3 m in 0.1 s and back, at the start of an option or later on its path."""
+    with np.load(saved) as archive:
+        steps = archive["path_steps"].copy()
+    row = 0 if sample < 4 else 1 if sample < 8 else 2
+    steps[1, sample] += 2600
+    steps[1, sample + 1] -= 2600
+    rewrite(saved, "path_steps", steps)
+    with pytest.raises(MapError, match=rf"map.npz: .*option {row}: moves at 1\d.\d m/s") as refused:
+        MobilityMap.load(saved)
+    assert "\n" not in str(refused.value)
+
+
+def test_an_option_may_be_as_fast_as_the_fastest_sprint(small_map):
+    paths = np.array(small_map.paths)
+    paths[:4] = [[1.234 * k, 0.0, 0.0] for k in (1, 2, 1, 0)]
+    dataclasses.replace(small_map, paths=paths)
+    paths[0, 0] += 0.002
+    with pytest.raises(MapError, match=r"option 0: moves at 12\.4 m/s, expected at most 12\.34"):
+        dataclasses.replace(small_map, paths=paths)
 
 
 def test_object_arrays_are_refused(saved):
@@ -238,7 +262,14 @@ def test_a_truncated_or_damaged_file_never_fails_otherwise(saved, data):
 def test_a_map_that_cannot_be_written_leaves_nothing(small_map, tmp_path):
     with pytest.raises(MapError, match="cannot be written"):
         small_map.save(tmp_path / "missing" / "map.npz")
-    far = dataclasses.replace(small_map, paths=np.full((16, 3), 20.0, dtype=np.float32))
+    paths = np.zeros((16, 3), dtype=np.float32)
+    paths[:14, 0] = 1.2 * np.arange(1, 15)
+    far = dataclasses.replace(
+        small_map,
+        paths=paths,
+        path_offsets=np.array([0, 14, 15, 16]),
+        durations=np.array([42, 3, 3], dtype=np.int16),
+    )
     turning = dataclasses.replace(small_map, paths=small_map.paths + np.float32([0, 0, 7]))
     with pytest.raises(MapError, match=r"an option turns by more than 6\.5 rad"):
         turning.save(tmp_path / "turning.npz")

@@ -37,7 +37,7 @@ def check(outcome):
 
 
 def test_spoilt_recordings(tmp_path):
-    for outcome in outcomes(tmp_path, 0, 6):
+    for outcome in outcomes(tmp_path / "made" / "for it", 0, 6):
         check(outcome)
 
 

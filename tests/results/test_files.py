@@ -1,12 +1,14 @@
 import json
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
 from mesa_mobility.errors import FloorPlanError, ResultsError
 from mesa_mobility.floorplan import FloorPlan
-from mesa_mobility.results import check_writable, plots, read_parquet, run, write_run
+from mesa_mobility.results import check_writable, files, plots, read_parquet, run, write_run
 from mesa_mobility.results.files import json_text
 
 RUN_FILES = [
@@ -110,3 +112,66 @@ def test_a_run_that_cannot_be_written_leaves_what_was_there(
         write_run(tmp_path, summary=SUMMARY, trajectories=two_leave_one_stays, plan=room)
     assert names(tmp_path) == ["summary.json"]
     assert (tmp_path / "summary.json").read_text() == "before"
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from mesa_mobility.results import files
+
+folder, steps = Path(sys.argv[1]), int(sys.argv[2])
+
+def counted(do):
+    def step(*arguments, **keywords):
+        global steps
+        if steps == 0:
+            os.kill(os.getpid(), signal.SIGKILL)
+        steps -= 1
+        return do(*arguments, **keywords)
+    return step
+
+with files.all_or_none(folder, ["a", "b", "sealing"]) as temporary:
+    for name in ("a", "b", "sealing"):
+        (temporary / name).write_text("new")
+    os.replace = counted(os.replace)
+    Path.unlink = counted(Path.unlink)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+@pytest.mark.parametrize("before", [False, True])
+def test_a_folder_that_has_the_last_file_is_whole_whenever_the_writer_is_killed(tmp_path, before):
+    whole = []
+    for steps in range(6):
+        folder = tmp_path / str(steps)
+        folder.mkdir()
+        if before:
+            for name in ("a", "b", "sealing"):
+                (folder / name).write_text("old")
+        ended = subprocess.run([sys.executable, "-c", KILLED, folder, str(steps)])
+        found = {path.name: path.read_text() for path in folder.iterdir() if path.is_file()}
+        whole.append("sealing" in found)
+        if whole[-1]:
+            assert found in (
+                dict.fromkeys(("a", "b", "sealing"), "old"),
+                dict.fromkeys(("a", "b", "sealing"), "new"),
+            )
+        if ended.returncode == 0:
+            break
+    # Killed before each of four steps, and not at all.
+    assert whole == [before, False, False, False, True]
+
+
+def test_the_last_file_of_a_run_is_its_summary(two_leave_one_stays, room, tmp_path, monkeypatch):
+    placed = []
+    replace = files.os.replace
+
+    def noted(old, new):
+        if new.parent == tmp_path:
+            placed.append(new.name)
+        replace(old, new)
+
+    monkeypatch.setattr(files.os, "replace", noted)
+    write_run(tmp_path, summary=SUMMARY, trajectories=two_leave_one_stays, plan=room)
+    assert sorted(placed) == RUN_FILES
+    assert placed[-1] == "summary.json"

@@ -41,6 +41,11 @@ def test_everybody_gets_out_of_a_random_plan(seed):
     walked(seed, 12)
 
 
+@pytest.mark.parametrize("seed", [1_000_599, 1_000_794])
+def test_nobody_starts_where_two_obstacles_leave_no_way(seed):
+    walked(seed, 30)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1000, 1200))
 def test_everybody_gets_out_of_200_random_plans(seed):

@@ -52,6 +52,11 @@ def clearance_of(core: float) -> float:
     return max(core + BERTH, (core + 2.0 * MARGIN) / NODE_SHARE)
 
 
+def passing_of(core: float) -> float:
+    """Half the width in metres of the narrowest gap that routes of such bodies lead through."""
+    return NODE_SHARE * clearance_of(core)
+
+
 class Environment:
     """Walls for the collision tests and routes for the targets of one floor plan.
 

@@ -9,28 +9,30 @@ from typing import Any
 
 import solara
 
-_FOLDER = Path(__file__).parent
+_FOLDER = Path(__file__).parent / "browser"
 
 
 def canvas_component(
     file: str, *scripts: str
 ) -> Callable[[Callable[..., None]], Callable[..., solara.Element]]:
-    """Make a component of a Vue file in this folder, with other scripts at the head of its own.
+    """Make a component of a Vue file in ``browser``, with other scripts at the head of its own.
 
     A component goes to the browser as one text, which cannot import another.
 
     Args:
         file: name of the Vue file; the arguments of the decorated function are its properties.
-        scripts: names of what it uses beside ``drawing.js``.
+        scripts: names of what it uses beside ``assembling.js``, ``colours.js`` and
+            ``drawing.js``.
     """
     shared = "\n".join(
-        (_FOLDER / name).read_text(encoding="utf-8") for name in ("drawing.js", *scripts)
+        (_FOLDER / name).read_text(encoding="utf-8")
+        for name in ("assembling.js", "colours.js", "drawing.js", *scripts)
     )
     own = (_FOLDER / file).read_text(encoding="utf-8")
     template = own.replace("<script>\n", f"<script>\n{shared}\n", 1)
 
     def decorate(function: Callable[..., None]) -> Callable[..., solara.Element]:
-        make = solara.component_vue(file)(function)
+        make = solara.component_vue(f"browser/{file}")(function)
 
         @wraps(function)
         def component(**properties: Any) -> solara.Element:

@@ -8,7 +8,9 @@ from typing import Any
 from mesa_mobility.dashboard.views.canvases import canvas_component
 
 
-@canvas_component("crowd_view.vue", "floor.js", "gestures.js")
+@canvas_component(
+    "crowd_view.vue", "floor.js", "frames.js", "gestures.js", "people.js", "plane.js", "trails.js"
+)
 def CrowdCanvas(
     floor: dict[str, Any],
     frame: dict[str, Any] = {},  # noqa: B006
@@ -23,8 +25,8 @@ def CrowdCanvas(
     """The canvas.
 
     Args:
-        floor: what ``wire.floor`` makes.
-        frame: what ``wire.frame`` makes; left out where a feed writes it.
+        floor: what ``serialization.floor`` makes.
+        frame: what ``serialization.frame`` makes; left out where a feed writes it.
         selected: row of the person to mark, or -1.
         height: of the canvas, as CSS says it.
         shortcuts: whether keys count also where nothing on the page has the focus.

@@ -7,7 +7,7 @@ from typing import Any
 from mesa_mobility.dashboard.views.canvases import canvas_component
 
 
-@canvas_component("decision_view.vue")
+@canvas_component("decision_view.vue", "floor.js", "options.js")
 def DecisionCanvas(
     floor: dict[str, Any],
     decision: dict[str, Any] = {},  # noqa: B006
@@ -15,6 +15,6 @@ def DecisionCanvas(
     """The view; nothing is selected where ``decision`` is empty.
 
     Args:
-        floor: what ``wire.floor`` makes.
+        floor: what ``serialization.floor`` makes.
         decision: what ``decision.described`` makes; left out where a feed writes it.
     """

@@ -7,27 +7,12 @@ function numbers(text) {
   return new Float32Array(values.buffer);
 }
 
-function blend(colours, share) {
-  const at = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
-  const k = Math.min(Math.floor(at), colours.length - 2), u = at - k;
-  const part = (i, p) => parseInt(colours[i].slice(p, p + 2), 16);
-  const mix = (p) => Math.round(part(k, p) + u * (part(k + 1, p) - part(k, p)));
-  return `rgb(${mix(1)},${mix(3)},${mix(5)})`;
-}
-
-// Of a colour "#rrggbb" or "rgb(r,g,b)", from 0 to 1.
-function brightness(colour) {
-  const parts = colour[0] === "#" ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
-    : colour.match(/\d+/g).map(Number);
-  return (0.299 * parts[0] + 0.587 * parts[1] + 0.114 * parts[2]) / 255;
-}
-
 // Lines of an SVG for the joints of a pose: 0 from the side, x forwards; 1 from the front.
-function stickFigure(pose, pairs, axis) {
+function stickFigure(pose, pairs, axis, colours) {
   if (!pose) return [];
   return pairs.map(([a, b], k) => ({
     x1: pose[a][axis], y1: -pose[a][2], x2: pose[b][axis], y2: -pose[b][2],
-    stroke: k < 3 ? "#0072b2" : k < 6 ? "#d55e00" : "#222", "stroke-width": 0.03,
+    stroke: k < 3 ? colours.left : k < 6 ? colours.right : colours.text, "stroke-width": 0.03,
     "stroke-linecap": "round" }));
 }
 
@@ -42,10 +27,10 @@ function resizeTo(canvases, width, height) {
   return true;
 }
 
-// A white plate behind a text, so that it can be read whatever it lies on.
-function plate(ctx, x, y, width, height) {
+// A plate behind a text, so that it can be read whatever it lies on.
+function plate(ctx, x, y, width, height, colours) {
   const fill = ctx.fillStyle;
-  ctx.fillStyle = "rgba(255, 255, 255, 0.85)";
+  ctx.fillStyle = colours.plate;
   ctx.fillRect(x, y, width, height);
   ctx.fillStyle = fill;
 }

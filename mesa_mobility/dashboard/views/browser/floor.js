@@ -1,13 +1,5 @@
 // The floor plan on a canvas: free floor, walls, obstacles, doors and exits with their names.
 
-// Colours of openings differ for every kind of colour vision; closed ones also by dashes and a cross.
-const LIGHT = { ground: "#f2f2f0", solid: "#b5b5b5", free: "#ffffff", wall: "#2b2b2b", text: "#222222",
-  plate: "rgba(255, 255, 255, 0.85)", away: "#767676", exit: "#00795a", door: "#0072b2",
-  closed: "#b23c00", outline: "rgba(0, 0, 0, 0.7)" };
-const DARK = { ground: "#1e1e1e", solid: "#4d5156", free: "#2c2f33", wall: "#d6d6d6", text: "#eeeeee",
-  plate: "rgba(24, 25, 27, 0.85)", away: "#a0a0a0", exit: "#3ddc97", door: "#6cc3ff",
-  closed: "#ff9a5c", outline: "rgba(255, 255, 255, 0.75)" };
-
 function outlined(ctx, rings, place) {
   ctx.beginPath();
   for (const ring of rings) {

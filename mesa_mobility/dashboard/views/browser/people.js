@@ -1,0 +1,124 @@
+// People on the canvas, time, scale and legend: a part of the crowd's view.
+
+const SHADES = 32, TURNS = 64;
+const VIRIDIS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962",
+  "#addc30", "#fde725"];
+const TYPES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#999999"];
+
+function shade(share) {
+  return blend(VIRIDIS, share);
+}
+
+const PEOPLE = {
+  created() {
+    this.sprites = new Map();
+  },
+  methods: {
+    paintPeople(ctx, now) {
+      const people = now.people, { scale } = this.view, { low, high, names } = now.legend;
+      const canvas = this.$refs.canvas;
+      // Shoulders are 0.46 m wide and bodies 0.26 m deep; never smaller than can be seen.
+      const size = Math.max(0.23 * scale, 1.5 * this.ratio);
+      const half = Math.ceil(1.5 * size) + 1;
+      if (this.spriteSize !== size) {
+        this.sprites.clear();
+        this.spriteSize = size;
+      }
+      const [px, py] = [canvas.width / 2, canvas.height / 2], { x: vx, y: vy } = this.view;
+      const width = canvas.width + half, height = canvas.height + half;
+      const steps = names.length ? 1 : SHADES / (high - low);
+      // On whole pixels pictures are copied, which is twice as fast; only large ones would jerk.
+      const small = size < 4 * this.ratio;
+      let ring = null;
+      for (let k = 0; k < people.length; k += FIELDS) {
+        const x = px + (people[k + 1] - vx) * scale, y = py - (people[k + 2] - vy) * scale;
+        if (x < -half || y < -half || x > width || y > height) continue;
+        const colour = Math.max(0, Math.min(SHADES - 1, Math.floor(steps * (people[k + 4] - low))));
+        const turn = ((Math.round((people[k + 3] / (2 * Math.PI)) * TURNS) % TURNS) + TURNS) % TURNS;
+        const key = colour * TURNS + turn;
+        let sprite = this.sprites.get(key);
+        if (!sprite) {
+          const fill = names.length ? TYPES[colour % TYPES.length] : shade(colour / (SHADES - 1));
+          sprite = this.sprite(fill, (turn * 2 * Math.PI) / TURNS, size, half);
+          this.sprites.set(key, sprite);
+        }
+        if (small) ctx.drawImage(sprite, Math.round(x - half), Math.round(y - half));
+        else ctx.drawImage(sprite, x - half, y - half);
+        if (people[k] === this.selected) ring = [x, y];
+      }
+      if (ring) {
+        ctx.strokeStyle = "#e6007e";
+        ctx.lineWidth = 2.5 * this.ratio;
+        ctx.beginPath();
+        ctx.arc(...ring, 1.5 * size + 3 * this.ratio, 0, 2 * Math.PI);
+        ctx.stroke();
+      }
+    },
+    sprite(fill, heading, size, half) {
+      const canvas = new OffscreenCanvas(2 * half, 2 * half), ctx = canvas.getContext("2d");
+      ctx.translate(half, half);
+      ctx.rotate(-heading);
+      ctx.fillStyle = fill;
+      ctx.strokeStyle = this.colours.outline;
+      ctx.lineWidth = Math.max(0.5, size / 10);
+      ctx.beginPath();
+      ctx.ellipse(0, 0, 0.57 * size, size, 0, 0, 2 * Math.PI);
+      ctx.fill();
+      ctx.stroke();
+      // The head, and the nose that says where it faces.
+      ctx.fillStyle = brightness(fill) > 0.4 ? "rgba(0, 0, 0, 0.75)" : "rgba(255, 255, 255, 0.9)";
+      ctx.beginPath();
+      ctx.arc(0, 0, 0.36 * size, 0, 2 * Math.PI);
+      ctx.moveTo(0.25 * size, -0.3 * size);
+      ctx.lineTo(0.95 * size, 0);
+      ctx.lineTo(0.25 * size, 0.3 * size);
+      ctx.fill();
+      return canvas.transferToImageBitmap();
+    },
+    paintText(ctx, now) {
+      const r = this.ratio, canvas = this.$refs.canvas;
+      ctx.font = `${14 * r}px sans-serif`;
+      ctx.fillStyle = this.colours.text;
+      ctx.textAlign = "left";
+      ctx.textBaseline = "alphabetic";
+      ctx.fillText(`${now.elapsed.toFixed(1)} s    ${now.inside} inside`, 12 * r, 22 * r);
+      // Scale bar: 1, 2 or 5 of something, about a hundred pixels long.
+      const rough = (110 * r) / this.view.scale, ten = 10 ** Math.floor(Math.log10(rough));
+      const metres = ten * (rough / ten >= 5 ? 5 : rough / ten >= 2 ? 2 : 1);
+      const long = metres * this.view.scale, x = 12 * r, y = canvas.height - 12 * r;
+      ctx.fillRect(x, y - 3 * r, long, 3 * r);
+      ctx.font = `${12 * r}px sans-serif`;
+      ctx.fillText(`${+metres.toPrecision(1)} m`, x, y - 7 * r);
+      this.paintLegend(ctx, now.legend, canvas.width - 12 * r, canvas.height - 12 * r, r);
+    },
+    paintLegend(ctx, legend, right, bottom, r) {
+      if (legend.names.length) {
+        let x = right;
+        ctx.textAlign = "right";
+        [...legend.names.entries()].reverse().forEach(([k, name]) => {
+          ctx.fillStyle = this.colours.text;
+          ctx.fillText(name, x, bottom);
+          x -= ctx.measureText(name).width + 6 * r;
+          ctx.fillStyle = TYPES[k % TYPES.length];
+          ctx.fillRect(x - 10 * r, bottom - 9 * r, 10 * r, 10 * r);
+          x -= 22 * r;
+        });
+        return;
+      }
+      const long = 160 * r;
+      ctx.textAlign = "right";
+      ctx.fillStyle = this.colours.plate;
+      const wide = Math.max(long, ctx.measureText(legend.label).width) + 10 * r;
+      ctx.fillRect(right - wide, bottom - 42 * r, wide + 5 * r, 47 * r);
+      for (let k = 0; k < SHADES; k += 1) {
+        ctx.fillStyle = shade(k / (SHADES - 1));
+        ctx.fillRect(right - long + (k * long) / SHADES, bottom - 22 * r, long / SHADES + 1, 8 * r);
+      }
+      ctx.fillStyle = this.colours.text;
+      ctx.fillText(legend.label, right, bottom - 28 * r);
+      ctx.fillText(`${legend.high} or more`, right, bottom);
+      ctx.textAlign = "left";
+      ctx.fillText(`${legend.low}`, right - long, bottom);
+    },
+  },
+};

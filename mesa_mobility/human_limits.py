@@ -1,0 +1,8 @@
+"""How fast people are at most."""
+
+from __future__ import annotations
+
+FASTEST_SPRINT = 12.34
+"""The fastest sprint ever measured, m/s (Graubner and Nixdorf, Biomechanical analysis of the sprint
+and hurdles events at the 2009 IAAF World Championships in Athletics, New Studies in Athletics 26,
+2011)."""
