@@ -52,7 +52,7 @@ class Making:
         self._recipe = recipe
         self._model: PedestrianModel | None = None
         self._error: Exception | None = None
-        # Outside the page's context: a thread does not start in that of a page that is just closing.
+        # Outside the page's context: a thread does not start in that of a page that is closing.
         with kernel_context.without_context():
             self._thread = threading.Thread(
                 target=self._make, name="mesa-mobility make", daemon=True
