@@ -1,13 +1,27 @@
 import os
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from mesa_mobility.crowd import PRESETS
 
 VARIABLE = "MESA_MOBILITY_CAPTURES"
 SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+# How long an example takes depends on what else the machine does.
+settings.register_profile("mesa-mobility", deadline=None)
+settings.load_profile("mesa-mobility")
+
+
+def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
+    """Slow tests may take as long as their settings make them."""
+    for item in items:
+        if item.get_closest_marker("slow"):
+            item.add_marker(pytest.mark.timeout(0))
 
 
 def _captures(folder: Path) -> Path:

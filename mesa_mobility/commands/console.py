@@ -63,17 +63,20 @@ def answer_table(rows: Mapping[str, str]) -> None:
 def progress_bar(*, shown: bool = True) -> Iterator[Report]:
     """A progress bar on standard error; nothing is drawn where that is not a terminal."""
     console = Console(stderr=True)
+    if not shown or not console.is_terminal:
+        # Older versions of Rich end a disabled bar with an empty line.
+        yield lambda what, done, total: None
+        return
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
         TimeElapsedColumn(),
         console=console,
-        disable=not shown or not console.is_terminal,
         transient=True,
     )
     # Rich hides the cursor while a bar is drawn.
-    with cleaning_up(lambda: console.is_terminal and console.show_cursor()), bar:
+    with cleaning_up(console.show_cursor), bar:
         task = bar.add_task("starting", total=None)
 
         def report(what: str, done: float, total: float) -> None:

@@ -41,7 +41,9 @@ class ShortestPaths:
 def shortest_paths(graph: MotionGraph, sources: NDArray[np.int64]) -> ShortestPaths:
     """Least-cost paths of any length from ``sources`` (Dijkstra on the pruned graph)."""
     n = len(graph.poses)
-    matrix = csr_array((graph.costs, graph.successors, graph.offsets), shape=(n, n))
+    # Older versions of SciPy take 32-bit indices alone here.
+    offsets = graph.offsets.astype(np.int32)
+    matrix = csr_array((graph.costs, graph.successors, offsets), shape=(n, n))
     frames = np.full((len(sources), n), -1, dtype=np.int32)
     for row, source in enumerate(sources):
         cost, before = dijkstra(matrix, indices=int(source), return_predecessors=True)

@@ -170,7 +170,9 @@ def _strong_labels(
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
 
-    matrix = csr_array((np.ones(len(source), np.int8), (source, successor)), shape=(n, n))
+    # Older versions of SciPy take 32-bit indices alone here.
+    edges = (source.astype(np.int32), successor.astype(np.int32))
+    matrix = csr_array((np.ones(len(source), np.int8), edges), shape=(n, n))
     return connected_components(matrix, directed=True, connection="strong")[1]
 
 

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 
+import llvmlite
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -100,7 +101,14 @@ def _everything(numbers, counts):
 @pytest.mark.parametrize(
     ("numbers", "counts"),
     [
-        (ir.PointerType(), ir.PointerType()),
+        pytest.param(
+            ir.PointerType(),
+            ir.PointerType(),
+            marks=pytest.mark.skipif(
+                not getattr(llvmlite, "opaque_pointers_enabled", True),
+                reason="this llvmlite has typed pointers",
+            ),
+        ),
         (vectors.DOUBLE.as_pointer(), vectors.LONG.as_pointer()),
     ],
     ids=["opaque", "typed"],

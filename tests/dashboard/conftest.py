@@ -34,8 +34,14 @@ ARGUMENTS = (
     "--disable-component-update",
     "--disable-sync",
 )
-PATIENCE_MS = 240_000
+PATIENCE_MS = 180_000
 """For the first page: kernels may have to be compiled before it."""
+
+IMPATIENCE_MS = 15_000
+"""For the first page of a server that has failed to show one before."""
+
+SILENT: set[str] = set()
+"""Servers that have not shown a page yet, by address."""
 
 CANVAS = "document.querySelector('.mm-crowd-canvas')"
 DECISION = "document.querySelector('.mm-decision canvas')"
@@ -70,7 +76,7 @@ class Server:
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
         try:
-            assert self._up.wait(120), "".join(self.lines)
+            assert self._up.wait(60), "".join(self.lines)
             assert self.address, "".join(self.lines)
             self._wait_for_answer()
         except BaseException:
@@ -79,7 +85,7 @@ class Server:
 
     def _wait_for_answer(self) -> None:
         # Solara says where it listens before it does.
-        end = time.monotonic() + 60.0
+        end = time.monotonic() + 30.0
         while True:
             try:
                 place = urlsplit(self.address)
@@ -88,7 +94,8 @@ class Server:
             except urllib.error.HTTPError:
                 return
             except OSError:
-                assert time.monotonic() < end, "".join(self.lines)
+                waiting = self.process.poll() is None and time.monotonic() < end
+                assert waiting, "".join(self.lines)
                 time.sleep(0.1)
 
     def _read(self) -> None:
@@ -156,9 +163,11 @@ class Dashboard:
         page.on("response", self._response)
         here = f"http://{urlsplit(address).netloc}/"
         page.on("request", lambda request: self._request(request, here))
-        page.set_default_timeout(PATIENCE_MS)
+        page.set_default_timeout(IMPATIENCE_MS if here in SILENT else PATIENCE_MS)
+        SILENT.add(here)
         page.goto(address)
         self.wait(f"() => {CANVAS}?.shown?.().drawn > 0")
+        SILENT.discard(here)
         page.set_default_timeout(30_000)
 
     def _console(self, message: Any) -> None:

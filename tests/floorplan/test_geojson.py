@@ -51,7 +51,7 @@ def same(one: FloorPlan, other: FloorPlan) -> bool:
         *zip(one.obstacles.values(), other.obstacles.values(), strict=True),
     ]
     return (
-        all(a.equals_exact(b, 0, normalize=False) for a, b in pairs)
+        all(a.equals_exact(b, 0) for a, b in pairs)
         and one.openings() == other.openings()
         and one.name == other.name
         and one.closed_gates() == other.closed_gates()
