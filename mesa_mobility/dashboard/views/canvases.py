@@ -15,7 +15,7 @@ _FOLDER = Path(__file__).parent / "browser"
 def canvas_component(
     file: str, *scripts: str
 ) -> Callable[[Callable[..., None]], Callable[..., solara.Element]]:
-    """Make a component of a Vue file in the folder ``browser``, with other scripts at the head of its own.
+    """Make a component of a Vue file in ``browser``, with other scripts at the head of its own.
 
     A component goes to the browser as one text, which cannot import another.
 
