@@ -157,11 +157,14 @@ def _Problem(session: Session) -> None:
 
 @solara.component
 def _Crowd(session: Session) -> None:
-    def toggle(what: dict[str, object]) -> None:
+    def pick(what: dict[str, Any]) -> None:
+        session.select(what["row"], what["run"])
+
+    def toggle(what: dict[str, Any]) -> None:
         if "opening" in what:
-            session.toggle_opening(str(what["opening"]))
+            session.toggle_opening(what["opening"], what["run"])
         else:
-            session.toggle_obstacle(int(str(what["obstacle"])))
+            session.toggle_obstacle(what["obstacle"], what["run"])
 
     Fed(
         session.frame,
@@ -169,7 +172,7 @@ def _Crowd(session: Session) -> None:
         floor=session.floor.value,
         selected=session.selected.value,
         event_seen=session.seen,
-        event_pick=session.select,
+        event_pick=pick,
         event_toggle=toggle,
         event_play=lambda _: session.play(session.status.peek().state != "playing"),
         shortcuts=True,

@@ -34,11 +34,14 @@ TYPED = (
 PARAMETERS = (
     "seed",
     "pedestrians",
+    "size",
     "door width",
     "frames per step",
     "pre movement",
     "mobility map",
 )
+# More than is made without a question, more than a room holds, and more than is accepted.
+HUGE = ("20000", "300000", "1000000", "1000001", "3000000000")
 KEYS = (
     "Space",
     "+",
@@ -78,6 +81,12 @@ SOMETHING = """([selector, share]) => {
 }"""
 
 
+def playwright_timeout():
+    from playwright.sync_api import TimeoutError
+
+    return TimeoutError
+
+
 def hit(click):
     """Rows of the people that a click may have meant: the nearest within reach, and its like."""
     scale = click["view"]["scale"]
@@ -104,13 +113,14 @@ class Monkey:
 
     def __init__(self, tab, rng):
         self.tab, self.page, self.rng = tab, tab.page, rng
-        self.checked = 0
+        self.checked = self.cancelled = 0
         self.page.evaluate(RECORD)
 
     def act(self):
         kinds = {
             self.click_person: 6, self.click_floor: 3, self.drag: 3, self.wheel: 3, self.key: 4,
             self.press_button: 5, self.type: 2, self.switch: 1, self.turn: 1,
+            self.change_model: 1, self.type_a_huge_crowd: 1,
         }  # fmt: skip
         self.rng.choices(list(kinds), list(kinds.values()))[0]()
 
@@ -202,6 +212,42 @@ class Monkey:
         field = self.page.get_by_label(label, exact=True)
         if field.count() == 1:
             self.tab.set(label, self.rng.choice(TYPED))
+
+    def change_model(self):
+        """Whatever is asked or being made."""
+        self.tab.choose("model", self.rng.choice(MODELS))
+
+    def type_a_huge_crowd(self):
+        """With room for it, where the model has a size; then leave it, or make it and cancel."""
+        if self.page.get_by_label("pedestrians", exact=True).count() != 1:
+            return
+        if self.page.get_by_label("size", exact=True).count() == 1:
+            self.tab.set("size", self.rng.choice(("50", "2000")))
+        self.tab.set("pedestrians", self.rng.choice(HUGE))
+        # Asked, or refused at once; what is typed next withdraws the question.
+        if self.is_there("Make it", 3.0) and self.rng.random() < 0.8:
+            if self.rng.random() < 0.2:
+                self.press("Leave it")
+                return
+            self.press("Make it")
+            # Made, or refused for lack of room, before anybody could cancel.
+            if self.is_there("Cancel", 3.0) and self.press("Cancel"):
+                self.cancelled += 1
+
+    def is_there(self, name, seconds):
+        try:
+            self.tab.button(name).wait_for(timeout=1000 * seconds)
+        except playwright_timeout():
+            return False
+        return True
+
+    def press(self, name):
+        """Whether there was time to press it: it goes when a model is made."""
+        try:
+            self.tab.button(name).click(timeout=3000)
+        except playwright_timeout():
+            return False
+        return True
 
     def switch(self):
         where = self.page.evaluate(SOMETHING, [".v-input--checkbox", self.rng.random()])

@@ -64,11 +64,17 @@ class Session(Engine):
         if recipe is not None:
             self.build(recipe)
 
-    def post(self, command: Callable[[Run], None]) -> None:
-        """Have the thread do something with the run, between two steps."""
+    def post(self, command: Callable[[Run], None], shown: int | None = None) -> None:
+        """Have the thread do something with the run, between two steps.
+
+        Args:
+            command: what to do.
+            shown: number of the run that the page showed when it asked for this. Nothing is done
+                if it is another by now: its people and doors are others.
+        """
 
         def guarded() -> None:
-            if self._current is None:
+            if self._current is None or shown not in (None, self.run_number):
                 return
             self.problem.set("")
             try:
@@ -115,14 +121,17 @@ class Session(Engine):
 
         self._commands.put(command)
 
-    def select(self, row: int) -> None:
-        """Tell the decisions of the person in ``row``; nobody's if it is negative."""
+    def select(self, row: int, shown: int | None = None) -> None:
+        """Tell the decisions of the person in ``row``; nobody's if it is negative.
+
+        For ``shown`` see `post`.
+        """
 
         def command(run: Run) -> None:
             run.model.watch = Watch(row) if row >= 0 else None
             self.mark(row)
 
-        self.post(command)
+        self.post(command, shown)
 
     def tell(self, what: str) -> None:
         """Tell decisions "as taken", or each moment the one "if it decided now"."""
@@ -151,20 +160,20 @@ class Session(Engine):
 
         self.post(command)
 
-    def toggle_opening(self, name: str) -> None:
-        """Close a door or exit that is open, open one that is closed."""
+    def toggle_opening(self, name: str, shown: int | None = None) -> None:
+        """Close a door or exit that is open, open one that is closed; for ``shown`` see `post`."""
 
         def command(run: Run) -> None:
             run.plan.toggle_opening(name)
             self.floor.set(run.plan.drawn())
 
-        self.post(command)
+        self.post(command, shown)
 
-    def toggle_obstacle(self, number: int) -> None:
-        """Take an obstacle away, or bring it back."""
+    def toggle_obstacle(self, number: int, shown: int | None = None) -> None:
+        """Take an obstacle away, or bring it back; for ``shown`` see `post`."""
 
         def command(run: Run) -> None:
             run.plan.toggle_obstacle(number)
             self.floor.set(run.plan.drawn())
 
-        self.post(command)
+        self.post(command, shown)

@@ -76,6 +76,7 @@ class Shown:
         selected: row of the person whose decisions are shown, or -1.
         problem: what the last command or step ran into, or "".
         colouring: by what people are coloured.
+        run_number: number of the run that is shown, 1 for the page's first.
         hypothetical: whether the shown decision is the one that the person would take now.
         together: within it the page is not drawn; at its end once.
     """
@@ -95,7 +96,8 @@ class Shown:
         self.colouring = COLOURINGS["speed"]
         self.hypothetical = False
         self.together: AbstractContextManager[Any] = nullcontext()
-        self._run = self._sent = self._seen = self._series_number = 0
+        self.run_number = 0
+        self._sent = self._seen = self._series_number = 0
         self._told: Explanation | None = None
         self._frame_at = self._series_at = self._decision_at = 0.0
 
@@ -111,7 +113,7 @@ class Shown:
         self, recipe: Recipe, model: PedestrianModel, plan: PlanChanges, terms: Behaviours
     ) -> None:
         """Show a model that has just been made."""
-        self._run += 1
+        self.run_number += 1
         self.recipe.set(recipe)
         self.problem.set("")
         self.mark(-1)
@@ -140,7 +142,7 @@ class Shown:
             self._sent, self._frame_at = self._sent + 1, now
             self.frame.set(
                 serialization.frame(
-                    model, self.colouring, observer, run=self._run, number=self._sent
+                    model, self.colouring, observer, run=self.run_number, number=self._sent
                 )
             )
         if always or now - self._series_at >= SERIES_INTERVAL:

@@ -18,7 +18,7 @@ def CrowdCanvas(
     height: str = "62vh",
     shortcuts: bool = False,
     event_seen: Callable[[int], None] | None = None,
-    event_pick: Callable[[int], None] | None = None,
+    event_pick: Callable[[dict[str, Any]], None] | None = None,
     event_toggle: Callable[[dict[str, Any]], None] | None = None,
     event_play: Callable[[Any], None] | None = None,
 ) -> None:
@@ -31,8 +31,9 @@ def CrowdCanvas(
         height: of the canvas, as CSS says it.
         shortcuts: whether keys count also where nothing on the page has the focus.
         event_seen: called with the number of a frame when the page has got it.
-        event_pick: called with the row of the person that was clicked, or -1.
-        event_toggle: called with ``{"opening": name}`` or ``{"obstacle": number}`` when one was
-            clicked.
+        event_pick: called with ``{"row": row, "run": number}``: the person that was clicked, or -1,
+            and the run that was shown then.
+        event_toggle: called with ``{"opening": name, "run": number}`` or ``{"obstacle": number,
+            "run": number}`` when one was clicked.
         event_play: called when the space bar is to start or to pause time.
     """
