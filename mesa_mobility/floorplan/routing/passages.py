@@ -46,16 +46,15 @@ def narrow_passages(plan: "FloorPlan", width: float = FOR_TWO) -> Passages:
     """
     gaps = _gaps(plan, width)
     narrow = _narrow_floor(plan, gaps, width)
+    along = gaps[:, 2:] - gaps[:, :2]
+    normals = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
+    middles = (gaps[:, :2] + gaps[:, 2:]) / 2.0
+    ahead, behind = (_holders(narrow, middles + s * _BESIDE * normals) for s in (1.0, -1.0))
     mouths: list[list[NDArray[np.float64]]] = [[] for _ in narrow]
     floors = list(narrow)
-    for ax, ay, bx, by in gaps:
-        across = np.hypot(bx - ax, by - ay)
-        normal = np.array([-(by - ay), bx - ax]) / across
-        middle = np.array([ax + bx, ay + by]) / 2.0
-        line = np.array([ax, ay, bx, by])
-        one, other = (_holder(narrow, middle + s * _BESIDE * normal) for s in (1.0, -1.0))
+    for line, normal, one, other in zip(gaps, normals, ahead, behind, strict=True):
         if one < 0 and other < 0:
-            floors.append(shapely.LineString([(ax, ay), (bx, by)]).buffer(_BESIDE))
+            floors.append(shapely.LineString(line.reshape(2, 2)).buffer(_BESIDE))
             mouths.append([np.append(line, normal), np.append(line, -normal)])
         elif one < 0:
             mouths[other].append(np.append(line, -normal))
@@ -107,7 +106,9 @@ def _narrow_floor(
     return [part for part in shapely.get_parts(narrow) if isinstance(part, shapely.Polygon)]
 
 
-def _holder(floors: list[shapely.Polygon], place: NDArray[np.float64]) -> int:
-    """Index of the floor on which a point lies, -1 for none."""
-    on = [k for k, floor in enumerate(floors) if floor.contains(shapely.Point(place))]
-    return on[0] if on else -1
+def _holders(floors: list[shapely.Polygon], places: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(n,) index of the floor on which each of (n, 2) points lies, -1 for none."""
+    found = np.full(len(places), -1, dtype=np.int64)
+    which, floor = shapely.STRtree(floors).query(shapely.points(places), predicate="within")
+    found[which] = floor
+    return found
