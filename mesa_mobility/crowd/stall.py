@@ -41,6 +41,7 @@ class StallWatch:
         self._mark: tuple[int, int, int] = (-1, 0, 0)
         self._route = np.empty(0)
         self._start = np.empty(0)
+        self._begun: tuple[NDArray[np.int64], NDArray[np.float64]] | None = None
 
     def stalled(
         self,
@@ -76,13 +77,17 @@ class StallWatch:
 
     def _begin(self, elapsed: float, rows: NDArray[np.int64], crowd: Crowd) -> None:
         self._since = elapsed
-        self._route = np.full(len(crowd.route), np.inf)
-        self._route[rows] = crowd.route[rows]
-        self._start = self._route.copy()
+        # Laid out by row only when it is compared with: where people leave, it begins each step.
+        self._begun = rows, crowd.route[rows]
 
     def _gained(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
         """(n,) metres by which those in ``rows`` are nearer than at the last progress; 0 without a
         route."""
+        if self._begun is not None:
+            those, routes = self._begun
+            self._route = np.full(len(crowd.route), np.inf)
+            self._route[those] = routes
+            self._start, self._begun = self._route.copy(), None
         more = len(crowd.route) - len(self._route)
         self._route = np.append(self._route, np.full(more, np.inf))
         self._start = np.append(self._start, np.full(more, np.inf))

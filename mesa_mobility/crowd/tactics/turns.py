@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.compiled.decorators import entry_point, internal, kept
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.floorplan import FloorPlan
@@ -33,6 +33,10 @@ person's width."""
 BESIDE_JAMB = 0.15
 """Share of a mouth's width by which the way of somebody who goes by it may miss it: people aim just
 past a jamb."""
+
+_MISS = BESIDE_JAMB * FOR_TWO + 1e-6
+"""Metres by which a way may miss the box around a passage and still go by one of its mouths, and
+rounding."""
 
 SIDESTEP = 0.8
 """Highest speed of those who step aside, m/s."""
@@ -94,7 +98,7 @@ class Turns:
         return points, speeds
 
 
-@kept(nogil=True)
+@entry_point()
 def find_mouths(
     rows: NDArray[np.int64],
     passages: Passages,
@@ -104,20 +108,22 @@ def find_mouths(
 ) -> None:
     """Note at which mouth those in ``rows`` are who go to ``points``: m + 1 if they are about to
     enter by mouth m, -(m + 1) if they are in a passage and leave it by mouth m, else 0."""
-    mouths, margin = passages.mouths, REACH + BESIDE_JAMB * FOR_TWO
+    mouths = passages.mouths
     for k in range(len(rows)):
         i = rows[k]
         x, y = state[i].x, state[i].y
-        px, py = points[k]
+        px, py = points[k, 0], points[k, 1]
+        # A box around the part of the way on which mouths count.
+        west, east = max(min(x, px), x - REACH) - _MISS, min(max(x, px), x + REACH) + _MISS
+        south, north = max(min(y, py), y - REACH) - _MISS, min(max(y, py), y + REACH) + _MISS
         agenda[i]["mouth"] = 0
         nearest = REACH
         for p in range(len(passages.first_mouth) - 1):
             x0, y0, x1, y1 = passages.boxes[p]
-            if x < x0 - margin or y < y0 - margin or x > x1 + margin or y > y1 + margin:
+            if east < x0 or west > x1 or north < y0 or south > y1:
                 continue
-            corners = passages.outline[passages.first_corner[p] : passages.first_corner[p + 1]]
             # Outside the box, nobody is within the outline.
-            if not (x0 <= x <= x1 and y0 <= y <= y1 and _within(corners, x, y)):
+            if not (x0 <= x <= x1 and y0 <= y <= y1 and _within(passages, p, x, y)):
                 for m in range(passages.first_mouth[p], passages.first_mouth[p + 1]):
                     way, inward = _way_to(mouths[m], x, y, px, py)
                     if inward and way < nearest:
@@ -138,7 +144,7 @@ def find_mouths(
             break
 
 
-@kept()
+@internal()
 def _way_to(
     mouth: NDArray[np.float64], x: float, y: float, px: float, py: float
 ) -> tuple[float, bool]:
@@ -157,13 +163,12 @@ def _way_to(
     return np.inf, inward
 
 
-@kept()
-def _within(corners: NDArray[np.float64], x: float, y: float) -> bool:
-    """Whether (x, y) is within a closed ring of (n, 2) corners."""
-    within = False
-    for k in range(len(corners) - 1):
-        ax, ay = corners[k]
-        bx, by = corners[k + 1]
+@internal()
+def _within(passages: Passages, p: int, x: float, y: float) -> bool:
+    """Whether (x, y) is within the outline of passage p."""
+    corners, within = passages.outline, False
+    for k in range(passages.first_corner[p], passages.first_corner[p + 1] - 1):
+        ax, ay, bx, by = corners[k, 0], corners[k, 1], corners[k + 1, 0], corners[k + 1, 1]
         if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
             within = not within
     return within
