@@ -37,7 +37,7 @@ from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.occupants import add_occupants
 from mesa_mobility.mobility import MobilityMap
-from mesa_mobility.seeds import seed_of
+from mesa_mobility.plugins.seeds import seed_of
 
 
 class PedestrianModel(mesa.Model):
