@@ -15,7 +15,7 @@ FORMATS = {"bvh", "asf", "amc", "manifest", "map", "geojson", "wkt", "parquet"}
 
 
 def outcomes(folder, first, count):
-    """What a process of its own, which tells its memory, makes of mutants of each format."""
+    """Read mutants of each format in a separate process, which reports its memory."""
     command = [sys.executable, "-m", "tests.fixtures.mutating", str(folder), str(first), str(count)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

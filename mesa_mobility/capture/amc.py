@@ -19,7 +19,7 @@ from mesa_mobility.capture.text import quote, read_bytes, table, text_lines, who
 from mesa_mobility.errors import CaptureError
 
 FRAME_RATE = 120.0
-"""Frames a second of CMU's files.  The format has no place for it."""
+"""Frame rate of CMU's files, Hz; the format does not store one."""
 
 
 def read_amc(
@@ -36,7 +36,7 @@ def read_amc(
         asf: its skeleton; without one, the file in the same folder that has the subject's name
             (``16.asf`` for ``16_11.amc``) or the clip's, or else the only one there.
         unit_to_m: metres in one unit of the file.
-        frame_rate: frames a second, which the format does not tell.
+        frame_rate: frames a second, which the format does not store.
 
     Returns:
         The recording in the z-up world.  Joints are named after the bones that start there.

@@ -36,7 +36,7 @@ from mesa_mobility.capture.text import (
 from mesa_mobility.errors import CaptureError
 
 STRETCH_TOLERANCE_M = 0.005
-"""How far a joint below the root may move against its parent before bones count as stretching."""
+"""Largest change of a joint's distance to its parent before bones count as stretching."""
 
 
 def read_bvh(path: str | Path, *, unit_to_m: float) -> Recording:

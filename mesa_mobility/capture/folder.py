@@ -22,7 +22,7 @@ UNITS_M = (1.0, 0.01, 0.0254, 0.0564444, 0.001)
 """Units in use: metre, centimetre, inch, CMU's 0.0254 / 0.45 m, millimetre."""
 
 MOST_FOLDERS = 1000
-"""Folders that are looked through for recordings when the one that was given has none."""
+"""Subfolders searched, at most, for recordings when the given folder has none."""
 
 LEG_LENGTH_M = (0.6, 1.1)
 """Thigh and shank of an adult.  No two of the units put one skeleton within this range."""
@@ -46,8 +46,8 @@ def find_clips(path: str | Path) -> Manifest:
 def read_folder(path: str | Path) -> Manifest:
     """The recordings of a folder, by name: every ``.bvh``, ``.bvh.xz`` and ``.amc`` in it.
 
-    What a manifest would say is taken from the files: all frames are used, the type is not known,
-    the unit is the one of :data:`UNITS_M` that makes the leg of plausible length, and AMC files
+    Without a manifest, all frames are used, the type is unknown,
+    the unit is the one in :data:`UNITS_M` that gives legs a plausible length, and AMC files
     have 120 frames a second.  A T-pose at the beginning of a recording is cut off as a jump.
 
     Raises:
@@ -67,7 +67,7 @@ def read_folder(path: str | Path) -> Manifest:
 
 
 def _below(path: Path) -> str:
-    """Which folders below have recordings, for the error about one that has none."""
+    """Subfolders that have recordings, named in the error about a folder without any."""
     found = [
         str(Path(folder).relative_to(path))
         for folder, _, files in islice(os.walk(path), 1, MOST_FOLDERS)

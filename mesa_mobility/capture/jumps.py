@@ -1,4 +1,4 @@
-"""Jumps in a recording, which no human can have made, and the parts between them.
+"""Find movements in a recording that no human can make, and the parts between them.
 
 A marker that is lost, swapped or mislabelled moves the body by decimetres within one frame.  Such
 frames are found by the motion that hips and legs would have had to make:
@@ -52,7 +52,7 @@ class Jumps:
     Attributes:
         spoilt: (F,) bool; frames that jump, or lie next to one that does.
         frames: (k,) int64; the worst frame of each run of spoilt ones, ascending.
-        reason: what is wrong with the first of these, in one line; empty where there is none.
+        reason: description of the first jump, in one line; empty if there is none.
     """
 
     spoilt: NDArray[np.bool_]
@@ -89,13 +89,13 @@ def find_jumps(legs: NDArray[np.float64]) -> Jumps:
 
 
 def _of_frames(steps: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(F, k) the larger of what (F - 1, k) steps before and behind each frame have."""
+    """(F, k) the larger value of the steps, (F - 1, k), before and after each frame."""
     padded = np.pad(steps, ((1, 1), (0, 0)))
     return np.maximum(padded[:-1], padded[1:])
 
 
 def _reason(excess: NDArray[np.float64]) -> str:
-    """What is wrong with a frame, from its row of ``excess``; speeds are said before the rest."""
+    """Description of a frame's jump, from its row of ``excess``; speeds are reported first."""
     speeds, turn, accelerations = excess[:9], float(excess[9]), excess[10:]
     part = int(np.argmax(speeds if speeds.max() > 1.0 else accelerations))
     who = f"the {_PARTS[part]} {'move' if part == 0 else 'moves'}"
@@ -110,12 +110,12 @@ def _reason(excess: NDArray[np.float64]) -> str:
 
 @dataclass(frozen=True)
 class Parts:
-    """What is left of a recording without its jumps.
+    """The parts of a recording between its jumps.
 
     Attributes:
         ranges: (first frame, frame after the last) of each part, ascending.
         jumps: the frames at which the recording jumps, ascending.
-        reason: what is wrong at the first jump, in one line; empty where there is none.
+        reason: description of the first jump, in one line; empty if there is none.
     """
 
     ranges: tuple[tuple[int, int], ...]
@@ -148,8 +148,8 @@ def sound_parts(recording: Recording, shortest: int) -> Parts:
             continue
         at = (start + np.round(found.frames * ratio)).astype(int).tolist()
         jumps |= dict.fromkeys(at, "") | {at[0]: found.reason}
-        # A part begins with another frame, so that others may be picked or mixed at 30 Hz: it is
-        # looked at again.
+        # Resampling a part starts from its own first frame, which may give other frames at 30 Hz:
+        # check it again.
         edges = np.flatnonzero(np.diff(~found.spoilt, prepend=False, append=False))
         for first, after in edges.reshape(-1, 2).tolist():
             if after - first >= shortest:

@@ -1,4 +1,4 @@
-"""Which joints are the legs, and which is the left of which right, by the names in use."""
+"""Find the leg joints, and pairs of left and right joints, by their names."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ CONVENTIONS: tuple[tuple[str, Names, Names], ...] = (
         ("RightUpperLeg", "RightLowerLeg", "RightFoot", ("RightToe", "RightToeBase")),
     ),
 )
-"""For each way of naming: (hip, knee, ankle, toe or its alternatives), left and right."""
+"""Joint names by convention: (hip, knee, ankle, toe or its alternatives), left and right."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ class LegJoints:
 def leg_joints(skeleton: Skeleton) -> LegJoints:
     """Find the legs of a skeleton by the names of its joints.
 
-    Known are the names of CMU (BVH and ASF), ACCAD, Bandai-Namco, Mixamo and Xsens files; what
-    stands before a colon, as in ``mixamorig:LeftLeg``, is left out of the comparison.
+    Supports the names in CMU (BVH and ASF), ACCAD, Bandai-Namco, Mixamo and Xsens files. A prefix
+    before a colon, as in ``mixamorig:LeftLeg``, is ignored.
 
     Raises:
         CaptureError: the names belong to no known convention, or the joints found do not hang

@@ -1,4 +1,4 @@
-"""From a manifest to recordings that a mobility map can be built from."""
+"""Load the clips of a manifest as recordings from which a map can be built."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MINIMUM_FRAMES = 45
 """Poses that a clip must have: the length of a movement option, 1.5 s."""
 
 LEG_LENGTH_M = (0.25, 1.3)
-"""Thigh and shank of the smallest who walk and of the tallest."""
+"""Leg length (thigh and shank) of the smallest and the tallest people who walk, metres."""
 
 FOOT_LENGTH_M = 0.6
 """From hip to hip, or from ankle to toe, with room to spare."""
@@ -30,15 +30,15 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class LoadedClips:
-    """What :func:`load_clips` gives.
+    """Result of :func:`load_clips`.
 
     Attributes:
         recordings: in the order of the manifest, each followed by its mirror image if wanted.
             Parts of a clip that was split are named after it and their frames of the file, such as
             "walk[120:344]".
-        skipped: (name, reason) of the clips of which nothing was long enough.
-        split: (name, reason) of the clips that jump, and of which only the parts before, between
-            and behind the jumps are taken.
+        skipped: (name, reason) of the clips without a part that is long enough.
+        split: (name, reason) of the clips that jump; only the parts before, between
+            and after the jumps are used.
     """
 
     recordings: list[Recording]
@@ -98,7 +98,7 @@ def load_clips(
 def _load(
     clip: Clip, loaded: LoadedClips, frame_rate: float, mirrored: bool, minimum_frames: int
 ) -> None:
-    """Add what a clip gives to ``loaded``."""
+    """Add the usable parts of a clip to ``loaded``."""
     recording = _read_clip(clip)
     shortest = math.ceil(minimum_frames * FRAME_RATE / frame_rate)
     parts = sound_parts(recording, shortest)

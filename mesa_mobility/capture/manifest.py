@@ -1,4 +1,4 @@
-"""Manifests: which clips there are, what they show, and where they came from."""
+"""Manifests: tables of clips with their content and origin."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading a recording of whatever kind its name says."""
+"""Read a recording; the file's suffix decides the format."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from mesa_mobility.capture.text import read_bytes
 from mesa_mobility.errors import CaptureError
 
 SUFFIXES = (".bvh", ".bvh.xz", ".amc")
-"""Ends of the names of recordings that can be read, in lower case."""
+"""Supported suffixes, in lower case."""
 
 
 def is_recording(path: Path) -> bool:
-    """Whether a file's name is that of a recording."""
+    """Whether a file has a supported suffix."""
     return path.name.lower().endswith(SUFFIXES)
 
 
@@ -27,7 +27,7 @@ def read_recording(
     Args:
         path: the file.
         unit_to_m: metres in one unit of the file.
-        frame_rate: frames a second of an AMC file, which does not tell.
+        frame_rate: frames a second of an AMC file, which does not store it.
 
     Raises:
         CaptureError: the name ends otherwise, or the file cannot be used.

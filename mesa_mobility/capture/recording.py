@@ -1,4 +1,4 @@
-"""Recordings: a skeleton in motion, whatever file it came from."""
+"""Recordings: a skeleton in motion, independent of the file format."""
 
 from __future__ import annotations
 

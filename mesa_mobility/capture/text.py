@@ -24,7 +24,7 @@ _XZ_MEMORY = 200_000_000
 
 
 def read_bytes(path: Path) -> bytes:
-    """Content of a file; of an ``.xz`` file, what was compressed.
+    """Content of a file, decompressed if it is an ``.xz`` file.
 
     Raises:
         CaptureError: the file is missing, cannot be read, is empty, holds more than
@@ -77,7 +77,7 @@ def text_lines(data: bytes, path: Path) -> list[str]:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
-    # Not str.splitlines, which also cuts at characters that no editor counts as line ends.
+    # str.splitlines would also split at characters that no editor counts as line ends.
     return text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
 
 
@@ -97,7 +97,7 @@ def number(text: str, where: str) -> float:
         CaptureError: the text is no such number; ``where`` says what file and line.
     """
     try:
-        # Python's own notation for digits in groups is none of any file's.
+        # Python accepts underscores between digits; no file format does.
         value = math.nan if "_" in text else float(text)
     except ValueError:
         value = math.nan
@@ -123,7 +123,7 @@ def table(rows: Sequence[tuple[int, str]], width: int, where: str) -> NDArray[np
     Args:
         rows: line number and text of each row.
         width: numbers in each row.
-        where: what stands before the line number in errors.
+        where: text before the line number in errors.
 
     Raises:
         CaptureError: a row has more or fewer, or a word is no finite number.
@@ -136,7 +136,7 @@ def table(rows: Sequence[tuple[int, str]], width: int, where: str) -> NDArray[np
         values = np.empty((0, 0))
     if values.shape == (len(rows), width) and (np.abs(values) <= LARGEST).all():
         return values
-    # One conversion of everything is fast; the slow way finds the line that is at fault.
+    # Converting everything at once is fast. If it fails, go line by line to find the bad one.
     return np.array([numbers(text.split(), width, f"{where}, line {line}") for line, text in rows])
 
 

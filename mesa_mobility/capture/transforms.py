@@ -1,4 +1,4 @@
-"""Recordings made from recordings: cut, resampled, mirrored."""
+"""Cut, resample and mirror recordings."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def resample(recording: Recording, frame_rate: float = 30.0) -> Recording:
     last = recording.frames - 1
     joints = len(recording.skeleton)
     check_size(int(last / ratio) + 1, joints, recording.name)
-    # The times, counted in old frames, at which the new ones fall.
+    # Times of the new frames, in units of old frames.
     times = np.arange(int(last / ratio + RATIO_TOLERANCE) + 1) * ratio
     before = np.minimum(times.astype(np.int64), last)
     after = np.minimum(before + 1, last)

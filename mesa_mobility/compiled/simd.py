@@ -1,6 +1,6 @@
-"""Several numbers at once, where a compiler does not see by itself that it could.
+"""SIMD operations that the compiler does not find by itself.
 
-Bits of a whole number tell of which of the numbers something holds, the lowest bit of the first.
+Masks are integers: bit i is set if the condition holds for number i.
 """
 
 # Intrinsics take their arguments by name and give Numba types.
@@ -24,19 +24,19 @@ from mesa_mobility.compiled.twins import with_twin
 from mesa_mobility.compiled.vectors import BIT, DOUBLE, INT, LONG
 
 LANES = 8
-"""Options of a group, and numbers looked at at once."""
+"""Options of a group, and lanes of a vector."""
 
 WIDE = 16
-"""Groups looked at at once."""
+"""Groups tested at once."""
 
 SAMPLES = 16
 """Samples of a path."""
 
 AT_ONCE = 32
-"""Numbers of which the least is found at once."""
+"""Numbers read at once when searching for the least."""
 
 _PRESSES = 19
-"""Version of LLVM from which on it has an instruction for pressing lanes together."""
+"""First version of LLVM with an instruction that compresses lanes."""
 
 
 def _plain_place_of_least(values: NDArray[np.float64], n: int) -> int:
@@ -49,10 +49,10 @@ def _plain_place_of_least(values: NDArray[np.float64], n: int) -> int:
 
 @with_twin(_plain_place_of_least)
 def place_of_least(typingctx, values, n):
-    """Place of the least of n numbers, the first of several, none of which is nan.
+    """Index of the least of n numbers, the first if several are equal; none may be nan.
 
-    n is at least 1. Read are whole vectors, ``AT_ONCE`` at a time: what fills up the last ones must
-    not be less.
+    n is at least 1. Whole vectors are read, ``AT_ONCE`` numbers at a time: padding at the end must
+    not be less than the least.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -62,7 +62,7 @@ def place_of_least(typingctx, values, n):
         numbers = ir.Constant(ir.VectorType(LONG, LANES), list(range(LANES)))
 
         def look(block: Any, part: int) -> tuple[Any, Any]:
-            """A vector of values, and their places."""
+            """A vector of values and the vector of their indices."""
             at = builder.add(block, ir.Constant(LONG, part))
             places = builder.add(vectors.spread(builder, at, LANES), numbers)
             return vectors.load(builder, begin, at, LANES), places
@@ -98,7 +98,7 @@ def place_of_least(typingctx, values, n):
 
 
 def _lesser(builder: Any, value: Any, place: Any, other: Any, elsewhere: Any) -> tuple[Any, Any]:
-    """Lane by lane, the lesser value and its place, the first one among equals."""
+    """Lane by lane, the lesser value and its index, the first among equals."""
     first = builder.and_(
         builder.fcmp_ordered("==", other, value), builder.icmp_signed("<", elsewhere, place)
     )
@@ -107,7 +107,7 @@ def _lesser(builder: Any, value: Any, place: Any, other: Any, elsewhere: Any) ->
 
 
 def _eight(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    """The numbers of the first argument from the place on that is the second."""
+    """The vector of 8 numbers of the first argument that starts at the second."""
     begin = vectors.start_of(context, builder, sig.args[0], args[0])
     at = vectors.whole(context, builder, sig.args[1], args[1])
     return vectors.load(builder, begin, at, LANES)
@@ -122,7 +122,7 @@ def _plain_any_of(values: NDArray[np.float64], at: int) -> bool:
 
 @with_twin(_plain_any_of)
 def any_of(typingctx, values, at):
-    """Whether any of 8 numbers from place ``at`` on is not 0."""
+    """Whether any of the 8 numbers starting at ``at`` is not 0."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         value = _eight(context, builder, sig, args)
@@ -142,7 +142,7 @@ def _plain_no_more_than(values: NDArray[np.float64], at: int, most: float) -> in
 
 @with_twin(_plain_no_more_than)
 def no_more_than(typingctx, values, at, most):
-    """Bits of those of 8 numbers from place ``at`` on that are at most so much, or not finite."""
+    """Mask of the 8 numbers starting at ``at`` that are at most a limit, or not finite."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         value = _eight(context, builder, sig, args)
@@ -155,7 +155,7 @@ def no_more_than(typingctx, values, at, most):
 
 @force_inlined()
 def lowest_bit(bits: int) -> int:
-    """Number of the lowest bit that is set; there must be one."""
+    """Index of the lowest set bit; there must be one."""
     number = 0
     while not bits >> number & 1:
         number += 1
@@ -164,7 +164,7 @@ def lowest_bit(bits: int) -> int:
 
 @force_inlined()
 def bits_set(bits: int) -> int:
-    """How many of the lowest 8 bits are set."""
+    """Number of set bits among the lowest 8."""
     number = 0
     for lane in range(LANES):
         number += bits >> lane & 1
@@ -172,7 +172,7 @@ def bits_set(bits: int) -> int:
 
 
 def _pressed(builder: Any, vector: Any, bits: Any) -> Any:
-    """Those lanes of a vector whose bit is set, side by side from the first one on."""
+    """Compress a vector: the lanes whose bit is set, moved to the front."""
     width, element = vector.type.count, vector.type.element
     mask = builder.trunc(bits, ir.IntType(width))
     mask = builder.bitcast(mask, ir.VectorType(BIT, width))
@@ -211,11 +211,11 @@ def _plain_compress(
 
 @with_twin(_plain_compress)
 def compress(typingctx, given, row, at, bits, to, first, place, rows):
-    """Copy those of 8 elements whose bit is set, side by side, in each of so many rows.
+    """Of 8 elements in each of ``rows`` rows, copy those whose bit is set, side by side.
 
-    ``given`` and ``to`` are C-contiguous arrays of one type of 8 bytes; rows are copied from
-    ``row`` on, from place ``at`` on, to those from ``first`` on, there from ``place`` on. ``rows``
-    is a literal number. 8 elements are written: what follows those copied is of no meaning.
+    ``given`` and ``to`` are C-contiguous arrays of the same 8-byte type. Reading starts at row
+    ``row``, column ``at``; writing starts at row ``first``, column ``place``. ``rows``
+    is a literal number. 8 elements are written; those after the copied ones are undefined.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -241,9 +241,9 @@ def compress(typingctx, given, row, at, bits, to, first, place, rows):
 
 @force_inlined()
 def press_numbers(first: int, bits: int, to: NDArray[np.int64], place: int) -> None:
-    """Write those of the 8 whole numbers from ``first`` on whose bit is set, side by side.
+    """Write the integers ``first`` to ``first + 7`` whose bit is set, compressed.
 
-    8 numbers are written: what follows is of no meaning.
+    8 numbers are written; those after the set ones are undefined.
     """
     for lane in range(LANES):
         to[place] = first + lane

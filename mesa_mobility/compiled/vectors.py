@@ -1,8 +1,8 @@
-"""The few words of LLVM that hand-written code is made of.
+"""Building blocks of the hand-written LLVM code.
 
-A pointer never tells what it points to: the type of what is loaded, and of the elements that a
-place is counted in, is named each time. So the same code does for llvmlite's typed pointers, which
-get the type that they want by a cast, and for its opaque ones.
+Pointers carry no element type here: each function names the type that it loads, and the type
+in which an index is counted. The same code therefore serves llvmlite's typed pointers, which
+are cast to the type needed, and its opaque ones.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ FLOAT, DOUBLE = ir.FloatType(), ir.DoubleType()
 
 
 class Start(NamedTuple):
-    """Where the elements of an array begin, and of what LLVM type they are."""
+    """Pointer to the first element of an array, and the LLVM type of its elements."""
 
     pointer: Any
     element: Any
@@ -32,12 +32,12 @@ def start_of(context: Any, builder: Any, kind: Any, array: Any) -> Start:
 
 
 def whole(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """A number of the Numba type ``kind`` as one of 64 bits."""
+    """A number of the Numba type ``kind``, as a 64-bit integer."""
     return context.cast(builder, value, kind, types.int64)
 
 
 def place_in(builder: Any, start: Start, at: Any, kind: Any | None = None) -> Any:
-    """Pointer to a value of type ``kind``, by default an element, from element ``at`` on."""
+    """Pointer to element ``at``, as a pointer to ``kind``, by default the element's type."""
     place = builder.gep(start.pointer, [at], source_etype=start.element)
     wanted = start.element if kind is None else kind
     if place.type.is_opaque or place.type.pointee == wanted:
@@ -51,14 +51,14 @@ def load_one(builder: Any, start: Start, at: Any) -> Any:
 
 
 def load(builder: Any, start: Start, at: Any, width: int) -> Any:
-    """A vector of ``width`` elements from element ``at`` on."""
+    """Load ``width`` elements, starting at ``at``, as a vector."""
     vector = ir.VectorType(start.element, width)
     # Aligned as an element is, not as a whole vector.
     return builder.load(place_in(builder, start, at, vector), align=4, typ=vector)
 
 
 def load_three(builder: Any, start: Start, at: Any, row: Any, width: int) -> tuple[Any, Any, Any]:
-    """``width`` elements from element ``at`` on in each of three rows ``row`` elements apart."""
+    """Load ``width`` elements, starting at ``at``, of three rows ``row`` elements apart."""
     second, third = builder.add(at, row), builder.add(at, builder.add(row, row))
     return (
         load(builder, start, at, width),
@@ -68,12 +68,12 @@ def load_three(builder: Any, start: Start, at: Any, row: Any, width: int) -> tup
 
 
 def store(builder: Any, value: Any, start: Start, at: Any) -> None:
-    """Write a vector from element ``at`` on."""
+    """Store a vector, starting at element ``at``."""
     builder.store(value, place_in(builder, start, at, value.type), align=4)
 
 
 def same(kind: Any, width: int, number: float) -> Any:
-    """A vector of a constant ``width`` times."""
+    """A vector that repeats a constant ``width`` times."""
     return ir.Constant(ir.VectorType(kind, width), [number] * width)
 
 
@@ -88,12 +88,12 @@ def more_of(builder: Any, one: Any, other: Any) -> Any:
 
 
 def bits_of(builder: Any, found: Any) -> Any:
-    """A whole number whose bits tell of which lanes something holds."""
+    """Mask of the lanes for which a condition holds, as an integer."""
     return builder.zext(builder.bitcast(found, ir.IntType(found.type.count)), LONG)
 
 
 def spread(builder: Any, value: Any, width: int) -> Any:
-    """A vector of a number ``width`` times."""
+    """A vector that repeats a value ``width`` times."""
     vector = ir.VectorType(value.type, width)
     nothing = ir.Constant(vector, ir.Undefined)
     one = builder.insert_element(nothing, value, ir.Constant(INT, 0))
@@ -101,46 +101,46 @@ def spread(builder: Any, value: Any, width: int) -> Any:
 
 
 def some_lanes(builder: Any, vector: Any, lanes: Sequence[int]) -> Any:
-    """Those of the lanes of a vector."""
+    """Select lanes of a vector."""
     mask = ir.Constant(ir.VectorType(INT, len(lanes)), list(lanes))
     return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined), mask)
 
 
 def bytes_of(builder: Any, pointer: Any) -> Start:
-    """The same place in memory, as bytes."""
+    """The same address, as a pointer to bytes."""
     if not pointer.type.is_opaque:
         pointer = builder.bitcast(pointer, BYTE.as_pointer())
     return Start(pointer, BYTE)
 
 
 def prefetch(builder: Any, place: Any) -> None:
-    """Have what is at a place brought from memory: to be read, and to be kept in all caches."""
+    """Prefetch an address for reading, into all cache levels."""
     takes = ir.FunctionType(ir.VoidType(), [place.type, INT, INT, INT])
-    # LLVM itself adds to the name what the pointer is.
+    # LLVM itself appends the pointer type to the name.
     function = cgutils.get_or_insert_function(builder.module, takes, "llvm.prefetch.p0")
     builder.call(function, [place, *(ir.Constant(INT, number) for number in (0, 3, 1))])
 
 
 def take_number(builder: Any, place: Any) -> Any:
-    """What is at a place, to which 1 is added in the same step."""
+    """Atomic fetch-and-add of 1; returns the old value."""
     return builder.atomic_rmw("add", place, ir.Constant(LONG, 1), "seq_cst")
 
 
 def store_release(builder: Any, number: Any, place: Any) -> None:
-    """Store a whole number: whoever sees it sees all earlier stores.
+    """Store an integer with release semantics: threads that load it see all earlier stores.
 
-    An exchange, as llvmlite stores atomically through typed pointers alone.
+    This is an exchange, since llvmlite's atomic store takes typed pointers only.
     """
     builder.atomic_rmw("xchg", place, number, "release")
 
 
 def load_acquire(builder: Any, place: Any) -> Any:
-    """The whole number at a place, and with it all that was stored before it was."""
+    """Load an integer with acquire semantics: all stores before its release are visible."""
     return builder.load_atomic(place, "acquire", 8, typ=LONG)
 
 
 def across(builder: Any, vector: Any, of_two: Callable[[Any, Any, Any], Any]) -> Any:
-    """The least or the greatest of the lanes of a vector, by what tells it of two."""
+    """Reduce a vector to its least or greatest lane, with the function that selects from two."""
     width = vector.type.count
     while width > 1:
         width //= 2

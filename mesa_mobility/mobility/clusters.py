@@ -1,4 +1,4 @@
-"""Subtractive clustering of poses, and the one cluster of everybody who stands.
+"""Subtractive clustering of poses, with a single cluster for all standing poses.
 
 Subtractive clustering (Chiu 1994; used by Kim et al. 2003, the paper's reference
 [5]): each pose has a potential, the sum of Gaussians of its distance to all

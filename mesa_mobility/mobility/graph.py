@@ -1,4 +1,4 @@
-"""The motion graph: which pose may follow which, and at what cost.
+"""The motion graph: allowed transitions between poses and their costs.
 
 Pose j + 1 may follow pose i because pose j looks like pose i (Lee et al. 2002).
 A natural successor costs next to nothing.  The graph is pruned while it is

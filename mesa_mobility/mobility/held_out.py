@@ -1,4 +1,4 @@
-"""How well a map covers people it has never seen."""
+"""How well a map covers people who are not in its recordings."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ HORIZON = 45
 
 
 def coverage(map_: MobilityMap, recordings: Sequence[Recording]) -> dict[str, Any]:
-    """Compare each pose's 45-frame options with where the person really was 45 frames later.
+    """Compare each pose's 45-frame options with the person's recorded place 45 frames later.
 
-    Every pose of the recordings with 45 more frames to come is given the cluster that the
-    map would give it: the standing cluster if it stands, else the one of the nearest centre.
+    Each pose followed by at least 45 frames gets the cluster that the
+    map would assign: the standing cluster if it stands, else the one with the nearest centre.
 
     Args:
         map_: the map under test.

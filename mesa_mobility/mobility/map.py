@@ -1,4 +1,4 @@
-"""The clustered mobility map: what a body can do next.
+"""The clustered mobility map: the movements possible from each pose.
 
 For each cluster of poses the map holds the movement options that any pose of
 the cluster has: where a person could be after 12, 24 or 45 frames, facing
@@ -85,7 +85,7 @@ class MobilityMap:
                 object.__setattr__(self, name, view)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> MobilityMap:
-        """Itself: nothing of it can be written to."""
+        """The map itself, since it is immutable."""
         return self
 
     @property
@@ -151,7 +151,7 @@ class MobilityMap:
 
     @classmethod
     def load(cls, path: str | Path | None = None) -> MobilityMap:
-        """Read a map file, or the able-bodied map that ships if no path is given.
+        """Read a map file; without a path, the able-bodied map that ships.
 
         Raises:
             MapError: the file is missing, damaged, of another version or inconsistent.

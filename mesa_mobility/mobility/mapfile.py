@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from mesa_mobility.mobility.map import MobilityMap
 
 Map = TypeVar("Map")
-"""What is made of the arrays of a file."""
+"""The object made from the arrays of a file."""
 
 POSITION_STEP = 0.0005
 """Paths are stored in steps of half a millimetre ..."""
@@ -128,11 +128,11 @@ def _write_array(archive: zipfile.ZipFile, name: str, array: NDArray[Any]) -> No
 
 
 def read_map_once(path: str | Path, make: Callable[..., Map]) -> Map:
-    """Read a map file, or give the map that was read from it before if it has not changed.
+    """Read a map file; return the cached map if the file has not changed.
 
     Args:
         path: the file.
-        make: makes the map of its fields, given by name.
+        make: builds the map from its fields, given by name.
 
     Raises:
         MapError: as ``read_map``.
@@ -141,7 +141,7 @@ def read_map_once(path: str | Path, make: Callable[..., Map]) -> Map:
     try:
         status = path.stat()
     except OSError:
-        return read_map(path, make)  # which says what is wrong
+        return read_map(path, make)  # which raises the error
     return _read_version(path.resolve(), status.st_mtime_ns, status.st_size, make)
 
 
@@ -155,10 +155,10 @@ def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
 
     Args:
         path: the file.
-        make: makes the map of its fields, given by name.
+        make: builds the map from its fields, given by name.
 
     Raises:
-        MapError: naming the file and what is wrong with it.
+        MapError: the file is missing or invalid; the message names it and the fault.
     """
     path = Path(path)
     try:
@@ -197,11 +197,11 @@ def _read_arrays(archive: zipfile.ZipFile, path: Path) -> dict[str, NDArray[Any]
     for name in _DTYPES:
         entry = entries[name]
         what = f"{path}: array {name!r}"
-        # Other methods unpack all that they are given at once, however much that becomes.
+        # Other compression methods cannot be unpacked in bounded steps.
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise MapError(f"{what}: compressed by method {entry.compress_type}, expected deflate")
         with archive.open(entry) as stream:
-            # To ask for one byte more reaches the end, where the checksum is compared.
+            # Reading one byte more reaches the end of the member, which triggers its checksum test.
             arrays[name] = _read_array(io.BytesIO(stream.read(entry.file_size + 1)), what)
     return arrays
 
@@ -212,7 +212,7 @@ def _read_array(file: io.BytesIO, what: str) -> NDArray[Any]:
         raise MapError(f"{what}: npy format {version}, expected (1, 0)")
     shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
     content = file.read()
-    # The sizes are compared before anything of the size that the header asks for is made.
+    # Check the header's size before allocating memory for it.
     if dtype.hasobject or fortran_order or math.prod(shape) * dtype.itemsize != len(content):
         raise MapError(
             f"{what}: its header says {dtype} in shape {shape}, but {len(content)} bytes follow"
@@ -244,7 +244,7 @@ def _decode(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     path_offsets = np.concatenate([[0], np.cumsum(samples)])
     whole = np.empty((len(steps[0]), 3), dtype=np.int32)
     for axis, each in enumerate(steps):
-        # A sum over all paths may wrap round; that over one, a difference of two, is right.
+        # The running sum may wrap round, but differences of it are still correct.
         running = np.cumsum(each, dtype=np.int32)
         before = np.concatenate([[0], running[path_offsets[1:-1] - 1]]).astype(np.int32)
         np.subtract(running, np.repeat(before, samples), out=whole[:, axis])

@@ -1,4 +1,4 @@
-"""Poses: what a recording says of the lower body, frame by frame.
+"""Poses of the lower body, one for each frame of a recording.
 
 A pose is one frame of a recording at 30 Hz.  Two poses are compared by the unit
 directions of thigh, shank and foot of both legs, seen in the frame of the
@@ -39,7 +39,7 @@ SPEED_SMOOTHING = 0.10
 """Standard deviation, in seconds, of the Gaussian used for root speed and turn rate."""
 
 STANDING_SPEED, STANDING_TURN_RATE = 0.10, 0.35
-"""Who stands is slower than both, m/s and rad/s."""
+"""A person slower than both counts as standing; m/s and rad/s."""
 
 POSE_JOINTS = (
     "pelvis",
@@ -102,7 +102,7 @@ class PoseTable:
 def pose_table(
     recordings: Sequence[Recording], progress: Callable[[int, int], None] | None = None
 ) -> PoseTable:
-    """Work out the pose table of recordings at 30 Hz.
+    """Compute the pose table of recordings at 30 Hz.
 
     Args:
         recordings: clips of at least two frames each.

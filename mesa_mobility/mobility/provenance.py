@@ -14,7 +14,7 @@ _ACKNOWLEDGEMENTS = {
     ),
     "ACCAD": "Motion capture by ACCAD, The Ohio State University, licensed CC BY 3.0.",
 }
-"""What sources ask to be said, by a word of their licence; others are named by the licence."""
+"""Acknowledgements that sources require, by a word of their licence."""
 
 
 def provenance(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
@@ -39,7 +39,7 @@ def provenance(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
 
 
 def acknowledgements(recordings: Sequence[Recording]) -> list[str]:
-    """What the sources of the recordings ask to be said wherever their data is used."""
+    """Acknowledgements required by the sources of the recordings."""
     licences = {r.clip.licence for r in recordings if r.clip is not None and r.clip.licence}
     said = set()
     for licence in licences:

@@ -71,7 +71,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # Matplotlib takes half a second, for nothing where no picture is asked for.
+    # Matplotlib takes half a second to load, so it is imported only when a picture is drawn.
     if name.startswith("plot_") and name in __all__:
         return getattr(import_module("mesa_mobility.results.plots"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""Measuring lines: how many have crossed by when, and the flow over time."""
+"""Measuring lines: cumulative crossings and flow over time."""
 
 from __future__ import annotations
 

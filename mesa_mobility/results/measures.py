@@ -1,4 +1,4 @@
-"""What is measured on trajectories: occupancy, egress, speed, crossings, flow and density."""
+"""Measures of trajectories: occupancy, egress, speed, crossings, flow and density."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def frames_at(trajectories: Trajectories, every: float) -> list[tuple[float, int
 
 
 def departures(trajectories: Trajectories) -> FloatArray:
-    """When people left: (k,) seconds in rising order, the frame that found each outside."""
+    """Exit times, (k,) seconds in rising order: each is the first frame with the person outside."""
     frames = trajectories.exit_frames
     return np.sort(frames[frames >= 0]) / trajectories.frame_rate
 
@@ -159,7 +159,7 @@ def mean_speed(trajectories: Trajectories, window: float = 1.0) -> float | None:
 def direction_changes(
     trajectories: Trajectories, interval: float = 1.5, minimum_m: float = 0.3
 ) -> FloatArray:
-    """By how much people's direction of travel changes from one interval to the next.
+    """Changes of people's direction of travel from one interval to the next.
 
     Each person's track is cut into steps of `interval` seconds from its first frame on. Works on
     positions alone, as measured tracks of heads do, not on headings.
@@ -212,7 +212,7 @@ def crossings(trajectories: Trajectories, a: ArrayLike, b: ArrayLike) -> Crossin
 def passages(
     start: ArrayLike, end: ArrayLike, a: ArrayLike, b: ArrayLike
 ) -> tuple[FloatArray, NDArray[np.int8]]:
-    """Which of some straight steps pass over the segment from a to b, and where.
+    """Find the straight steps that cross the segment from a to b, and where they cross it.
 
     Args:
         start: (n, 2) where each step starts, metres.

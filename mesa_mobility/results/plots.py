@@ -1,4 +1,4 @@
-"""Pictures of a run: where people walked, how many were inside, who stood where when.
+"""Pictures of a run: tracks, occupancy and snapshots.
 
 Figures are made without pyplot, so that no window and no global state is involved.
 """
@@ -28,7 +28,7 @@ from mesa_mobility.results.trajectories import Trajectories
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
-# Most pieces of track in one picture: more cannot be distinguished and take long to draw.
+# Largest number of track pieces in a picture; more cannot be told apart and are slow to draw.
 MOST_PIECES = 250_000
 PAPER = "paper (Casburn et al. 2005, Fig. 7)"
 # Without the green of exits, the blue of doors and the pale yellow that is lost on white.
@@ -92,7 +92,7 @@ def plot_snapshots(
     times: Sequence[float],
     title: str = "",
 ) -> None:
-    """Draw who stood where at given times: body cores as discs, a stroke for the facing.
+    """Draw people at given times: body cores as discs, with a stroke for the facing.
 
     Args:
         trajectories: the run.
@@ -136,7 +136,7 @@ def plot_occupancy(
         occupancy: [[t, inside], ...], seconds and people.
         path: picture to write.
         reference: people inside at some times (s), drawn as points to compare with.
-        reference_label: whose they are.
+        reference_label: their label in the legend.
         title: first line of the picture.
 
     Raises:
@@ -208,7 +208,7 @@ def _tracks(trajectories: Trajectories) -> LineCollection:
     # Each person's every-th row only: its pieces then join end to end.
     kept = trajectories.frame[start] % every == 0
     start, end = start[kept], end[kept]
-    # Later pieces lie on top: where many passed, the colour tells when the last ones did.
+    # Later pieces are drawn on top, so the colour shows when the last people passed.
     in_time = np.argsort(trajectories.frame[start], kind="stable")
     start, end = start[in_time], end[in_time]
     pieces = np.empty((len(start), 2, 2))

@@ -45,7 +45,7 @@ def write_run(
     Raises:
         ResultsError: the folder or a file cannot be written.
     """
-    # Matplotlib takes half a second to load, and is for those alone who ask for pictures.
+    # Matplotlib takes half a second to load, so it is imported only when pictures are drawn.
     from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 
     title = _title(summary, trajectories)
@@ -65,7 +65,7 @@ def write_run(
 
 def _curve(trajectories: Trajectories) -> list[list[float]]:
     curve, egress = occupancy(trajectories), egress_time(trajectories)
-    # The last one rarely leaves on a full second.
+    # The last person rarely leaves on a full second.
     return curve if egress is None or egress <= curve[-1][0] else [*curve, [egress, 0]]
 
 

@@ -1,7 +1,7 @@
 """Bodies that overlap and steps through walls, counted over finished trajectories.
 
-The count shares nothing with the code that keeps people apart while they walk: it takes positions
-as they were written and asks SciPy's k-d tree and shapely.
+The count shares no code with the collision tests of the simulation: it takes positions
+as they were written and uses SciPy's k-d tree and shapely.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from mesa_mobility.results.trajectories import Trajectories
 
 # Rounding of floats may bring two bodies that just touch this much closer, metres.
 TOLERANCE_M = 1e-5
-# How many of the overlaps and crossings a report names one by one.
+# Overlaps and crossings that a report lists individually, at most.
 NAMED = 10
 # Least width of the squares by which steps near walls are found, metres.
 SQUARE_M = 0.25
 # An exit may lie 1 cm off the edge of the floor, and people beyond that edge before they cross it.
 EXIT_OFF_M = 0.02
-# Squares along either side of the floor at most: memory does not go by area.
+# Largest number of squares along either side of the floor, which bounds memory.
 MOST_SQUARES = 4000
-# Steps looked at together: bounds the memory that shapely's objects take.
+# Steps tested at once, which bounds the memory for shapely's objects.
 CHUNK = 200_000
 
 
@@ -52,7 +52,7 @@ class WallCrossing:
 
 @dataclass(frozen=True)
 class SafetyReport:
-    """What the independent check found.
+    """Result of the independent check.
 
     Attributes:
         overlaps: pairs of bodies closer than their cores, counted over all frames.
@@ -139,7 +139,7 @@ def _overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | N
         tree = cKDTree(points)
         if not np.isfinite(nearest):
             nearest = float(tree.query(points, k=2)[0][:, 1].min())
-        # Nobody matters who is neither within reach nor nearer than any two were before.
+        # Ignore people who are neither within reach nor nearer than the nearest pair so far.
         a, b = tree.query_pairs(max(reach, nearest), output_type="ndarray").T
         if not len(a):
             continue

@@ -1,8 +1,8 @@
 """One checksum over all bytes of a Parquet file, kept in its own metadata.
 
 Checksums of pages do not cover their headers nor the footer.  The seal is a sha256 of the whole
-file, written into the JSON of the footer's key-value metadata where 64 zeros have been; to check
-it, they are taken for zeros again.
+file. It replaces 64 zeros in the JSON of the footer's key-value metadata; to check
+it, they are set to zero again.
 """
 
 from __future__ import annotations

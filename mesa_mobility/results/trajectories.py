@@ -1,4 +1,4 @@
-"""Where everybody was, frame by frame: the one form in which results pass on."""
+"""Trajectories: everybody's position frame by frame, the input of all measures."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ IntArray = NDArray[np.int32]
 class Trajectories:
     """One row for each person in each frame that the person spent inside.
 
-    Somebody who leaves has one row more, in the frame that found it beyond the exit: with it,
-    the step over the exit is part of the track. Rows are sorted by (frame, person); unsorted
+    A person who leaves has one more row, in the first frame beyond the exit, so that
+    the step across the exit is part of the track. Rows are sorted by (frame, person); unsorted
     input is sorted. The arrays are read-only.
 
     Attributes:
@@ -36,7 +36,7 @@ class Trajectories:
         heading: (n,) float64, radians, facing direction, 0 = +x, counter-clockwise.
         frame_rate: frames a second.
         core_radius: (m,) float64, metres: the radius of the hard body core of person p is
-            ``core_radius[p]``. A single number stands for everybody.
+            ``core_radius[p]``. A single number applies to everybody.
         last_frame: last frame that was simulated. Later than the last row when the floor was
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
@@ -45,7 +45,7 @@ class Trajectories:
     Raises:
         ResultsError: columns of unequal length, values that are not finite, a person twice in
             one frame, a negative frame or person, a radius that is missing or not positive,
-            somebody inside at the end without a row in the last frame.
+            a person inside at the end without a row in the last frame.
     """
 
     frame: IntArray

@@ -1,4 +1,4 @@
-"""Voronoi densities: everybody stands on the floor of a cell of its own."""
+"""Voronoi densities, from the part of the floor nearest to each person."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ def voronoi_cells(
 ) -> NDArray[np.object_]:
     """The part of the floor that is nearer to each person than to anybody else.
 
-    Cells end at the walls; of a cell that walls cut to pieces the piece with the person counts.
+    Cells end at walls. If walls cut a cell into pieces, only the piece with the person counts.
     (Steffen and Seyfried 2010, Physica A 389: 1902, with PedPy's cut at the walls.)
 
     Args:
         points: (n, 2) metres, on the floor, all different.
         floor: walkable area (`FloorPlan.free`).
-        of: (n,) whose cell is asked for; by default everybody's.
+        of: (n,) people whose cells are wanted; by default everybody.
 
     Returns:
-        (k,) polygons, of those asked for.
+        (k,) polygons, one for each person in ``of``.
     """
     asked = np.arange(len(points)) if of is None else np.flatnonzero(of)
     if len(asked) == 0:
@@ -54,7 +54,7 @@ def voronoi_cells(
 def individual_densities(
     points: FloatArray, floor: BaseGeometry, of: NDArray[np.bool_] | None = None
 ) -> FloatArray:
-    """Density that each person stands in: 1 / area of its cell, persons per square metre.
+    """Individual densities: 1 / area of each person's cell, persons per square metre.
 
     Arguments and order as for :func:`voronoi_cells`.
     """
@@ -71,7 +71,7 @@ def voronoi_density(
     """Mean over an area of the density 1 / A_i of the cells in it, as [[t, people / m2], ...].
 
     Everybody counts with the share of its cell that lies in the area (Steffen and Seyfried 2010,
-    equation 6), so that the density does not jump when somebody walks in, as N / A does.
+    equation 6), so that the density does not jump when a person enters, as N / A does.
 
     Args:
         trajectories: the run.

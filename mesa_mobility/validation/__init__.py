@@ -1,4 +1,4 @@
-"""Comparison with experiments: what measured crowds did, beside ours."""
+"""Comparison with experiments: measured and simulated crowds."""
 
 from __future__ import annotations
 

@@ -22,10 +22,10 @@ FloatArray = NDArray[np.float64]
 
 LENGTH, WIDTH = 32.0, 4.0
 BOX = box(12.0, 0.0, 20.0, WIDTH)
-"""Where speed, density and lanes are measured."""
+"""Measuring area of speed, density and lanes."""
 ROW_M = 0.4
 ENTRY_M = (0.6, 1.6)
-"""How far from either end people come in: clear of those who have just left there."""
+"""Distance of newcomers from either end, metres, clear of people who are just leaving."""
 DENSITIES = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75)
 SETTLE_S, MEASURE_S, WINDOW_S, EVERY_S = 30.0, 60.0, 1.5, 1.0
 REFERENCE = "bo bidirectional"

@@ -27,12 +27,12 @@ from mesa_mobility.verification.runs import (
 
 WIDTHS = (0.8, 0.9, 1.0, 1.2, 1.6, 2.0, 2.5)
 JUDGED = (0.9, 1.0, 1.2, 1.6, 2.0)
-"""Widths at which a figure is asked for."""
+"""Widths at which figures are reported, metres."""
 PEOPLE = 180
 ROOM_WIDTH, ROOM_DEPTH, NECK = 8.0, 10.0, 1.0
 START = box(-4.0, -8.5, 4.0, -1.0)
 FRONT = box(-1.0, -1.5, 1.0, -0.5)
-"""Where the density in front is measured, metres; the neck begins at y = 0."""
+"""Measuring area of the density in front, metres; the neck begins at y = 0."""
 DENSITY_IN_FRONT = (3.5, 6.0)
 
 
@@ -73,10 +73,10 @@ def bottleneck(seed: int, *, width: float, people: int = PEOPLE, **rules: Any) -
         seed: of the run.
         width: of the neck, metres.
         people: how many.
-        **rules: other than those of the default preset, as ``PedestrianModel`` takes them.
+        **rules: passed to ``PedestrianModel``, to override the default preset.
 
     Returns:
-        With what every run tells: ``flow_per_s`` between the 30th and the 150th passage of the
+        The common figures; ``flow_per_s`` between the 30th and the 150th passage of the
         middle of the neck, and ``density_in_front``, the median over that time of the mean
         individual Voronoi density in a box 2 m x 1 m, half a metre in front of it.
     """
@@ -144,7 +144,7 @@ def judge(runs: Runs) -> Verdict:
 
 
 def _median(values: list[float | None]) -> float | None:
-    """Median over the seeds; None where one of them gave nothing."""
+    """Median over the seeds; None if one of them has no value."""
     return None if None in values else float(np.median(values))  # type: ignore[arg-type]
 
 

@@ -1,8 +1,8 @@
-"""Fundamental diagram: walkers in a corridor 1.8 m wide without an end.
+"""Fundamental diagram of an endless corridor 1.8 m wide.
 
-How fast a thin crowd walks depends on how fast its people walk alone. Those in the recorded
-corridors were students, who do so 0.2 m/s faster than the people of the default preset; so the
-corridor is walked twice, by crowds that differ in nothing but that.
+The speed of a sparse crowd depends on people's free walking speed. Participants in the recorded
+corridors were students, 0.2 m/s faster than the people of the default preset. The
+corridor is therefore simulated twice, with crowds that differ only in that speed.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ ASKED = (0.5, 1.125, 1.625, 2.125, 3.125)
 """Densities at which the speed must lie within the reference, persons/m2: bins of it."""
 WIDTH = 1.8
 RECORDED = replace(PREFERRED_SPEED, of=Normal(1.55, 0.18))
-"""Speeds at which those in the recorded corridors walk alone, m/s (HERMES, 42 students: Liao et al.
+"""Free speeds in the recorded corridors, m/s (HERMES, 42 students: Liao et al.
 2014), in the range that the default preset has."""
 AS_RECORDED = "speeds as recorded"
-"""What that crowd is called; the preset's has no name, in figures as in checks."""
+"""Name of that crowd in figures and checks; the preset's crowd has none."""
 
 
 def near(runs: Sequence[Figures], density: float) -> np.ndarray:
-    """Speeds of people whose individual density is within a quarter of the one asked for."""
+    """Speeds of people whose individual density is within a quarter of the given one."""
     densities = np.concatenate([each["density"] for each in runs])
     along = np.concatenate([each["along"] for each in runs])
     reach = DENSITY_BIN / 2 if density > 0.75 else DENSITY_BIN
@@ -44,7 +44,7 @@ def near(runs: Sequence[Figures], density: float) -> np.ndarray:
 
 
 def judge(runs: Runs) -> Verdict:
-    """Median speed of either crowd at each density asked for within p10 to p90 of the reference."""
+    """Median speed of either crowd, at each density, within p10 to p90 of the reference."""
     preset, recorded = (
         [row[first : first + len(DENSITIES)] for row in runs] for first in (0, len(DENSITIES))
     )
@@ -54,7 +54,7 @@ def judge(runs: Runs) -> Verdict:
 
 
 def _judged(runs: Runs, crowd: str) -> tuple[list[Check], dict[str, Any]]:
-    """Checks and figures of one crowd, named with what it is called before each."""
+    """Checks and figures of one crowd, each prefixed with its name."""
     flat = [each for row in runs for each in row]
     checks: list[Check] = []
     for density in ASKED:

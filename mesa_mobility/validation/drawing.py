@@ -59,5 +59,5 @@ def finish(axes: Sequence[Axes]) -> None:
 
 
 def numbers(values: Sequence[float | None]) -> list[float]:
-    """Figures to draw: nothing where nothing was measured."""
+    """Figures to draw; empty if nothing was measured."""
     return [float("nan") if value is None else value for value in values]

@@ -1,4 +1,4 @@
-"""What a comparison with an experiment consists of."""
+"""Comparisons with experiments: their cases, verdict and picture."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Experiment:
     """One comparison.
 
     Attributes:
-        name: by which it is asked for.
-        what: what is compared, in a line.
-        source: whose figures stand on the other side.
-        cases: what is run for each seed.
+        name: its name on the command line.
+        what: its subject, in one line.
+        source: origin of the measured figures.
+        cases: run for each seed.
         judge: verdict, with a table for each figure that is drawn, from the runs of all seeds.
         draw: a picture of a verdict's figures.
     """
@@ -37,7 +37,7 @@ class Experiment:
 
 
 def judged(experiment: Experiment, runs: Runs) -> Verdict:
-    """The verdict on an experiment; one case that failed is a check that is not met."""
+    """The verdict on an experiment; a case that failed is a check that is not met."""
     flat = [figures for row in runs for figures in row]
     errors = [each["error"] for each in flat if "error" in each]
     if errors:

@@ -1,4 +1,4 @@
-"""How much of their time people spend in the fallback, as nothing else is possible."""
+"""Share of time that people spend in the fallback, when no option is possible."""
 
 from __future__ import annotations
 

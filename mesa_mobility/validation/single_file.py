@@ -16,7 +16,7 @@ from mesa_mobility.verification.scenarios.tracks.single_file import CASES
 
 
 def judge(runs: Runs) -> Verdict:
-    """Three quarters of the bins within what was measured."""
+    """Three quarters of the bins lie within the measured range."""
     bins = single_file_bins([figures for row in runs for figures in row])
     check, figures = single_file_share(bins)
     table = {name: values.tolist() for name, values in bins.items()}

@@ -35,12 +35,12 @@ def queue(seed: int, *, closes: bool) -> dict[str, Any]:
 
     Args:
         seed: of the run.
-        closes: whether the neck is shut after 20 s; people then have nowhere to go, and what they
-            do from 25 s to 55 s is measured. Else they go on, and those of them who stand at
-            any time from 10 s to 55 s are.
+        closes: whether the neck is shut after 20 s. If so, everybody is measured
+            from 25 s to 55 s. If not, people keep moving, and those who stand at
+            any time from 10 s to 55 s are measured.
 
     Returns:
-        With what every run tells, of people who stand: ``speed_max``, ``speed_p99`` (m/s),
+        The common figures and, of people who stand: ``speed_max``, ``speed_p99`` (m/s),
         ``moving_share``, the share of their time with the pelvis above 0.1 m/s, ``turn_max`` and
         ``turn_p99``, degrees between the extremes of heading within 1.5 s, ``standing_share``
         of the time of all, and ``crossed_closed``, people through the neck once it was shut.
@@ -68,7 +68,7 @@ def _at_rest(run: Run, start: float, *, everybody: bool) -> dict[str, float | No
     rate = tracks.frame_rate
     window, step = round(WINDOW_S * rate), round(STEP_S * rate)
     speeds, turns, standing, total = [], [], 0, 0
-    # In front of the closed door everybody stands; those already behind it leave in peace.
+    # In front of the closed door everybody stands; people already behind it still leave.
     people = tracks.remaining if everybody else None
     for places, headings in _tracks_from(tracks, round(start * rate), window, people):
         middle = window // 2
@@ -111,7 +111,7 @@ def _tracks_from(
 
 
 def judge(runs: Runs) -> Verdict:
-    """In front of the closed door all stand quietly; what stands in the jam is reported."""
+    """People in front of the closed door stand quietly; those in the jam are only reported."""
     closed, jam = zip(*runs, strict=True)
 
     def worst(of: Any, name: str) -> float | None:
@@ -138,7 +138,7 @@ def judge(runs: Runs) -> Verdict:
 
 
 def draw(figures: dict[str, Any]) -> Figure:
-    """What is left of motion in people who stand."""
+    """Residual motion of people who stand."""
     figure, axes = drawing.panels(2)
     for each, name, bound, label in (
         (axes[0], "speed_p99", MOST_SPEED, "pelvis speed of who stands, p99 (m/s)"),

@@ -1,4 +1,4 @@
-"""People who walk alone: how fast, how straight, how much side to side."""
+"""People who walk alone: speed, straightness and sway."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def free_walk(seed: int, *, people: int = PEOPLE) -> dict[str, Any]:
     """People with the default speeds walk 40 m in lanes 3 m apart.
 
     Returns:
-        With what every run tells: ``walked`` and ``assigned`` speeds (m/s), ``turns`` (k,) changes
+        The common figures; ``walked`` and ``assigned`` speeds (m/s); ``turns`` (k,) changes
         of direction between steps of 1.5 s (degrees), ``stride_hz`` and ``sway_m`` by walker.
     """
     model = lanes_model(people, seed)
@@ -79,7 +79,7 @@ def judge(runs: Runs) -> Verdict:
 
 
 def draw(figures: dict[str, Any]) -> Figure:
-    """Speeds walked against given, and how much the direction changes."""
+    """Walked against assigned speeds, and changes of direction."""
     figure, axes = drawing.panels(2)
     speeds = np.array(figures["assigned"])
     axes[0].plot(speeds, figures["walked"], **drawing.OURS.dots)

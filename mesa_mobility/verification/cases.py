@@ -56,10 +56,10 @@ def run_cases(
 ) -> Mapping[tuple[Case, int], Figures]:
     """Run every case for every seed.
 
-    A case that fails gives ``{"error": message}``. What comes out does not depend on `jobs`.
+    A case that fails gives ``{"error": message}``. Results do not depend on `jobs`.
 
     Args:
-        cases: what to run; a case that comes twice is run once.
+        cases: the cases; duplicates are run once.
         seeds: one run each.
         jobs: processes.
         progress: called with the run just done, the effort so far, and the total effort.
@@ -78,13 +78,13 @@ def run_cases(
 
 
 def run_units(units: Iterable[tuple[Case, int]], jobs: int) -> Iterator[tuple[Case, int, Figures]]:
-    """Run cases, each with its seed, and give what comes out as soon as it does.
+    """Run cases, each with its seed, and yield each result as soon as it is there.
 
     Units are begun in their order; one is taken when a process is free for it.
     """
     ahead = iter(units)
     with _one_thread_each(), _pool(jobs) as pool:
-        # Processes are started when a unit is handed over.
+        # Processes are started when a unit is submitted.
         with deaf_children():
             waiting = {pool.submit(_run, *unit): unit for unit in islice(ahead, jobs)}
         while waiting:
@@ -97,7 +97,7 @@ def run_units(units: Iterable[tuple[Case, int]], jobs: int) -> Iterator[tuple[Ca
 
 
 def _run(each: Case, seed: int) -> Figures:
-    # One scenario that breaks is one test that fails, and not the end of all the others.
+    # A scenario that raises fails its own test, not the whole suite.
     try:
         return each(seed)
     except Exception as error:
@@ -131,7 +131,7 @@ def _pool(jobs: int) -> Iterator[ProcessPoolExecutor]:
 
 @contextmanager
 def _one_thread_each() -> Iterator[None]:
-    """Processes started within use one thread each: side by side, more would be in their way."""
+    """Processes started in this block use one thread each, since they share the processors."""
     before = os.environ.get(THREADS)
     os.environ[THREADS] = "1"
     try:

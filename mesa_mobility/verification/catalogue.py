@@ -1,4 +1,4 @@
-"""The catalogue of tests: what each asks for and where that is written."""
+"""The catalogue of tests: criteria and their sources."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class Entry:
 
     Attributes:
         id: its name.
-        what: what it is about, in a line.
+        what: its subject, in one line.
         source: standard, and where its numbers were read.
         applies: "flat", or "flat*" for a stand-in on a level floor.
         geometry: floor, start and exits; WKT in metres where the source gives it.
         population: people.
-        criterion: what is asked for.
-        criterion_strict: a number for it, where there is one.
-        chosen: what the source leaves open, chosen here, and why.
-        cap: why a figure of the criterion is a design cap that need not be met.
+        criterion: the requirement, as text.
+        criterion_strict: its limit as a number, if there is one.
+        chosen: choices where the source leaves something open, and why.
+        cap: why a figure of the criterion is a design limit that need not be met.
     """
 
     id: str

@@ -1,4 +1,4 @@
-"""A verdict: figures that were measured, each against what was wanted."""
+"""Verdicts: measured figures against their criteria."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Check:
-    """One figure against what is wanted of it.
+    """One figure and its criterion.
 
     Attributes:
         figure: its name.
-        value: what was measured; None where nothing could be.
-        wanted: what is wanted, as text.
-        met: whether that is so.
-        gates: whether the verdict hangs on it; others are reported only.
+        value: measured value; None if nothing could be measured.
+        wanted: the criterion, as text.
+        met: whether the criterion is met.
+        gates: whether the verdict depends on it; otherwise it is only reported.
     """
 
     figure: str
@@ -30,7 +30,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a test found.
+    """Result of a test.
 
     Attributes:
         checks: figures with a bound.

@@ -15,7 +15,7 @@ from mesa_mobility.verification.scenarios.counterflow import counterflow
 from mesa_mobility.verification.suite import VerificationTest
 
 DESIGN_CAP = 1.33
-"""Persons a second through 1 m: what designs may reckon with, not what people do."""
+"""Design limit of the flow through 1 m, persons a second; measured crowds exceed it."""
 
 COUNTERFLOW = tuple(
     case(counterflow, effort=0.5 + 0.05 * opposing, opposing=opposing)
@@ -28,7 +28,7 @@ LOW, HIGH = rooms.MALES_30_TO_50
 
 
 def exit_flow(runs: Sequence[Figures]) -> Verdict:
-    """Flow within what was measured at openings of 1 m; the design cap is reported beside it."""
+    """Flow within the measured range for openings of 1 m; the design limit is only reported."""
     flow = runs[0]["flow_per_s"]
     least, most = bottleneck_envelope(1.0)
     return Verdict(

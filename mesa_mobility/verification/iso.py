@@ -13,7 +13,7 @@ from mesa_mobility.verification.suite import VerificationTest
 PEOPLE = (60, 120, 240, 360, 480)
 FREE_SPEED = 1.0
 FASTER_BY = 0.05
-"""What a walker's steps may add to the speed it is given, as in the tests of lone walkers."""
+"""Allowed excess over the assigned speed, m/s, as in the tests of lone walkers."""
 
 
 def corridor_flow(runs: Sequence[Figures]) -> Verdict:

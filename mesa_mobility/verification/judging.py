@@ -1,4 +1,4 @@
-"""Verdicts that several standards share: lone walkers, spreads of speeds, crowds that get out."""
+"""Verdicts that several standards share: lone walkers, speed distributions, egress."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LEAST_ENTRIES = 50
 
 
 def mean(values: Sequence[float | None]) -> float | None:
-    """Mean over the seeds; None where one of them gave nothing."""
+    """Mean over the seeds; None if one of them has no value."""
     known = [value for value in values if value is not None]
     return float(np.mean(known)) if known and len(known) == len(values) else None
 
@@ -80,7 +80,7 @@ def speed_spread(
     """Speeds walked, over all seeds, are those of a distribution (a frozen one of SciPy).
 
     Mean and standard deviation within 0.05 m/s, a Kolmogorov-Smirnov test at the 5 % level, and
-    each person within 0.05 m/s of the speed it was given on average over its walk.
+    each person's mean speed within 0.05 m/s of its assigned speed.
     """
 
     def judge(seeds: Sequence[Sequence[Figures]]) -> Verdict:
@@ -107,7 +107,7 @@ def speed_spread(
 
 
 def counterflow(runs: Sequence[Figures]) -> Verdict:
-    """The more come the other way, the longer the crossing takes; nobody is stuck for good."""
+    """Crossing takes longer with more people in the other direction; nobody remains stuck."""
     times = [each["last_entered_s"] for each in runs]
     ratios = {}
     if all(time is not None for time in times):
@@ -168,7 +168,7 @@ def single_file_share(bins: Figures) -> tuple[Check, Figures]:
 
 
 def allocated(runs: Sequence[Figures]) -> Verdict:
-    """15 people leave by the main exit and 8 by the other, as they were told."""
+    """15 people leave by the main exit and 8 by the other, as assigned."""
     (run,) = runs
     return Verdict(
         (

@@ -37,7 +37,7 @@ PRE_MOVEMENT = {
     "log-normal": (LogNormal(4.586, 0.967), stats.lognorm(0.967, scale=98.1013)),
     "Weibull": (Weibull(139.285, 1.195), stats.weibull_min(1.195, scale=139.285)),
 }
-"""What people draw from, and the same as SciPy has it; exp(4.586) = 98.1013."""
+"""Pre-movement distributions, ours and SciPy's; exp(4.586) = 98.1013."""
 
 NARROW, WIDE = 1.2, 4.0
 TRIALS = 40
@@ -79,7 +79,7 @@ def other_exit(runs: Sequence[Figures]) -> Verdict:
 
 
 def social_influence(seeds: Sequence[Sequence[Figures]]) -> Verdict:
-    """On its own a person takes either exit as often; with another bound for exit 2, that more."""
+    """A lone person takes both exits equally often; another heading for exit 2 attracts it."""
     alone, other, trials = _shares(seeds)
     # The range of 99 of 100 fair coins in as many throws.
     spread = 2.576 * (0.25 / trials) ** 0.5
@@ -93,7 +93,7 @@ def social_influence(seeds: Sequence[Sequence[Figures]]) -> Verdict:
 
 
 def familiarity(seeds: Sequence[Sequence[Figures]]) -> Verdict:
-    """The far exit is used more by those who know it."""
+    """People who know the far exit use it more often."""
     unknown, known, trials = _shares(seeds)
     return Verdict(
         (more_than("rise of the share of the far exit", known - unknown, 0.0),),

@@ -15,7 +15,7 @@ BOTTLENECK_FIT = (2.233, -0.155)
 """Slope and intercept of flow (1/s) against width (m), pooled over eight studies, 0.7 to 3 m."""
 
 BOTTLENECK_TOLERANCE = 0.7
-"""Two standard deviations of what single runs differ from the fit by, 1/s."""
+"""Two standard deviations of single runs about the fit, 1/s."""
 
 
 def table(name: str) -> list[dict[str, str]]:

@@ -72,7 +72,7 @@ def fundamental_diagram(runs: Sequence[Figures]) -> Verdict:
 
 
 def starts_on_time(runs: Sequence[Figures]) -> Verdict:
-    """Everybody starts within one decision period after its time, and nobody before."""
+    """People start within one decision period after their pre-movement time, never before it."""
     (room,) = runs
     late = [
         start - assigned
@@ -90,10 +90,10 @@ def starts_on_time(runs: Sequence[Figures]) -> Verdict:
 
 
 def speeds_by_age(seeds: Sequence[Sequence[Figures]]) -> Verdict:
-    """Everybody walks at its own speed, and speeds scatter about the curve of ages as they should.
+    """People walk at their own speed, and speeds are distributed about the age curve as specified.
 
     The deviation from the curve in units of its standard deviation is normal, cut off where
-    ``walking_speed`` cuts it: three below, and at the fastest that anybody was given.
+    ``walking_speed`` truncates it: at three below, and at the highest assigned speed.
     """
     walked, assigned, deviation, most = (
         np.array([v for (run,) in seeds for v in run[name]], dtype=np.float64)
@@ -131,7 +131,7 @@ def two_exits(runs: Sequence[Figures]) -> Verdict:
 
 
 def jam_before_first(runs: Sequence[Figures]) -> Verdict:
-    """The crowd is in front of the first bottleneck, not of the second."""
+    """The crowd forms in front of the first bottleneck, not the second."""
     (run,) = runs
     return Verdict(
         (
@@ -199,7 +199,7 @@ def queues(runs: Sequence[Figures]) -> Verdict:
 
 
 def wider_neck(runs: Sequence[Figures]) -> Verdict:
-    """Flow rises with width, and is what was measured at openings as wide."""
+    """Flow rises with width and agrees with measurements at openings of the same width."""
     flows = [run["flow_per_s"] for run in runs]
     checks: list[Check] = [
         *judging.everybody_out(runs),
@@ -224,7 +224,7 @@ def three_ways(runs: Sequence[Figures]) -> Verdict:
 
 
 def single_file(seeds: Sequence[Sequence[Figures]]) -> Verdict:
-    """Three quarters of the bins within what was measured."""
+    """Three quarters of the bins lie within the measured range."""
     bins = judging.single_file_bins([run for row in seeds for run in row])
     check, figures = judging.single_file_share(bins)
     return Verdict((check,), figures)

@@ -1,4 +1,4 @@
-"""Scenarios on the way to figures: a crowd is built, run, recorded and counted over."""
+"""Run scenarios and compute their figures."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from mesa_mobility.results import check_safety, crossings, flow
 FloatArray = NDArray[np.float64]
 
 CLEARANCE = 0.2
-"""Metres that people are put away from walls: a body core of 0.14 m and a little."""
+"""Initial distance to walls, metres: a body core of 0.14 m and a little."""
 
 SPACING = 0.4
-"""Metres that people are put apart where a crowd is not too dense for it."""
+"""Initial distance between people, metres, unless the crowd is too dense for it."""
 
 
 def crowd_model(
@@ -37,7 +37,7 @@ class Run:
 
     Attributes:
         model: the model.
-        walls: (m, 4) walls that nobody may have crossed, metres.
+        walls: (m, 4) walls that nobody may cross, metres.
     """
 
     model: PedestrianModel
@@ -45,7 +45,7 @@ class Run:
 
     @cached_property
     def trajectories(self) -> Trajectories:
-        """Who was where."""
+        """The recorded trajectories."""
         return Trajectories.of(self.model)
 
     def figures(self) -> dict[str, Any]:
@@ -90,7 +90,7 @@ def evacuate(
     Args:
         model: the model.
         seconds: simulated seconds at most.
-        events: what happens when, in order of time.
+        events: times and actions, in order of time.
         stop_when_stalled: False where people may wait for longer than a minute.
     """
     walls = model.floor_plan.walls

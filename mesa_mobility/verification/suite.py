@@ -1,4 +1,4 @@
-"""What a test of a standard consists of, and how it is judged."""
+"""Tests of a standard: their cases and verdicts."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ PASS, FAIL, CAP = "pass", "fail", "cap"
 
 @dataclass(frozen=True)
 class VerificationTest:
-    """A test: cases to run and a judge of what they gave.
+    """A test: cases to run and a judge of their results.
 
     Attributes:
-        cases: what is run for each seed.
+        cases: run for each seed.
         judge: verdict on one seed, from the figures of the cases in their order.
         pooled: verdict on all seeds together, where the criterion is one of statistics.
     """
@@ -34,13 +34,13 @@ class VerificationTest:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a test found over all its seeds.
+    """Result of a test over all its seeds.
 
     Attributes:
         verdict: "pass", "fail", or "cap": only a design cap that real crowds exceed is exceeded.
         measured: figures; medians over the seeds.
-        failed: what was not met, each with the seed.
-        reported: what was not met and does not gate the verdict, each with the seed.
+        failed: criteria not met, each with the seed.
+        reported: criteria not met on which the verdict does not depend, each with the seed.
         seeds: the seeds.
         per_seed: verdict and figures of each seed, or of all together.
         safety: overlaps and wall crossings, and the share of time in the fallback.

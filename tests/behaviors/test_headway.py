@@ -65,7 +65,7 @@ def test_ahead_is_where_one_faces_at_the_mobility_point():
     assert cost(facing_up, ((2.0, 0.0), STILL)) == 0.0
 
 
-def test_whoever_stands_makes_no_room_by_looking_elsewhere():
+def test_people_who_stand_make_no_room_by_looking_elsewhere():
     # Its target is to the right: it lacks 0.25 m there whichever way it faces, and nothing behind.
     for heading in (0.0, 1.0, -2.0, math.pi):
         standing = Ending(heading=heading, displacement=0.0, duration=0.4)

@@ -1,4 +1,4 @@
-"""What is known about the real recordings, against what the readers make of them."""
+"""Known facts about the real recordings, compared with the readers' results."""
 
 import csv
 

@@ -282,7 +282,7 @@ def test_killed_while_it_compiles(tmp_path, after):
 
 @pytest.mark.slow
 def test_nowhere_to_write(tmp_path):
-    """Neither below the folder that was asked for, nor home, nor for temporary files."""
+    """Not below the requested folder, nor home, nor for temporary files."""
     nowhere = "/dev/null/nowhere"
     process = run(Path(nowhere), HOME=nowhere, TMPDIR=nowhere, XDG_CACHE_HOME=nowhere)
     _, err = process.communicate(timeout=600)

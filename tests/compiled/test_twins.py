@@ -1,4 +1,4 @@
-"""Plain Numba does what hand-written code does, and takes its place where that is not to be had."""
+"""Plain Numba equals hand-written code, and replaces it where that cannot be compiled."""
 
 import os
 import subprocess
@@ -184,7 +184,7 @@ def test_trajectories_are_the_same_in_plain_numba(tmp_path):
     plain, found = _walk(tmp_path, MESA_MOBILITY_PLAIN="1")
     assert plain == "True"
     assert found == expected
-    # What was compiled of the one is never taken for the other.
+    # The compiled files of one are never used for the other.
     new = set(tmp_path.rglob("*.nbc")) - files
     assert new
     assert {path.relative_to(tmp_path).parts[0] for path in new} == {"plain"}

@@ -1,4 +1,4 @@
-"""What cannot be is refused in one line that says what and what was expected."""
+"""Impossible input is refused in one line that says what was given and what was expected."""
 
 import math
 

@@ -69,7 +69,7 @@ def test_rows_are_of_people_alone_whatever_other_agents_there_are(model):
     assert [person.position.tolist() for person in people] == [list(place) for place in places]
 
 
-def test_the_space_knows_whoever_has_come_since_it_was_asked(model):
+def test_the_space_knows_people_added_since_the_last_query(model):
     assert model.space.get_agents_in_radius((14.0, 3.0), 0.1)[0] == []
     first = next(iter(model.agents))
     assert len(first.get_neighbors_in_radius(30.0)[0]) == 2

@@ -1,4 +1,4 @@
-"""What behaviours give is checked before it counts: one error, and nobody moves."""
+"""Output of behaviours is checked before it is used: one error, and nobody moves."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What is compiled ahead is what runs need."""
+"""Precompilation covers the functions that runs need."""
 
 import pytest
 from mesa_mobility.models import Doorway

@@ -1,4 +1,4 @@
-"""What a run leaves: the record, the summary, and the way to PedPy."""
+"""Output of a run: the record, the summary, and PedPy's form."""
 
 import json
 

@@ -72,7 +72,7 @@ def test_in_another_process():
 @pytest.mark.parametrize("preset", ["default", "paper"])
 @pytest.mark.parametrize("frames_per_step", [1, 3, 30])
 def test_recording_and_steps_change_nothing(frames_per_step, preset):
-    # What is not recorded is not worked out frame by frame.
+    # Frames that are not recorded need not be computed one by one.
     recorded, model = (
         Doorway(pedestrians=30, mobility_map=shipped_map(), preset=preset, record=record,
                 frames_per_step=frames, rng=11)

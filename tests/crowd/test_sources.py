@@ -166,7 +166,7 @@ def test_nobody_appears_where_no_way_leads_out():
     assert rows["x"].min() > 12.2
 
 
-def test_nobody_appears_beside_whoever_is_just_crossing_the_exit():
+def test_nobody_appears_beside_a_person_crossing_the_exit():
     # 1.98 m at 1.25 m/s are 47.5 frames: in frame 48 it is 0.02 m beyond the exit at 12 m, and
     # 0.22 m from the spot, where two bodies take 0.28 m: it is free two frames later.
     model = model_of(corridor(length=12.0), strider())

@@ -1,4 +1,4 @@
-"""What counts as coming nearer: ways that people still have to go, made up for the purpose."""
+"""Progress towards the exits, measured on invented remaining distances."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,7 @@ def test_to_change_ones_mind_again_and_again_is_not_coming_nearer():
     assert stalls_at(lambda t: places + 20.0 * (int(t) // 7 % 2)) == pytest.approx(60.0, abs=1.0)
 
 
-def test_whoever_has_no_way_stands_for_nothing():
+def test_people_without_a_way_are_ignored():
     assert stalls_at(lambda t: np.array([np.inf, np.inf])) == pytest.approx(60.0, abs=1.0)
 
 

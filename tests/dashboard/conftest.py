@@ -186,7 +186,7 @@ class Dashboard:
         self.page.wait_for_function(condition, arg=argument)
 
     def shown(self) -> dict[str, Any]:
-        """What is on the crowd's canvas."""
+        """The state drawn on the crowd's canvas."""
         return self.page.evaluate(f"() => {CANVAS}.shown()")
 
     def people(self) -> np.ndarray:
@@ -194,7 +194,7 @@ class Dashboard:
         return np.array(self.shown()["people"]).reshape(-1, 5)
 
     def decision(self) -> dict[str, Any]:
-        """What the decision view shows."""
+        """The state drawn in the decision view."""
         return self.page.evaluate(f"() => {DECISION}.shown()")
 
     def pixels(self) -> str:
@@ -230,7 +230,7 @@ class Dashboard:
         field.press("Enter")
 
     def message(self, name: str) -> str:
-        """What stands below the field of a parameter."""
+        """The message below the field of a parameter."""
         field = self.page.locator(".v-input", has=self.page.get_by_label(name, exact=True))
         return str(field.locator(".v-messages").inner_text())
 

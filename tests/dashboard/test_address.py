@@ -1,4 +1,4 @@
-"""What the page's address tells."""
+"""The page's address holds the state of the run."""
 
 import pytest
 from hypothesis import given

@@ -29,7 +29,7 @@ def opened(tab, name):
     )
 
 
-def test_a_door_is_closed_by_its_name_whoever_stands_there(tab):
+def test_a_door_is_closed_by_its_name_although_people_stand_there(tab):
     plate = next(each for each in tab.shown()["plates"] if each["name"] == "first door")
     where = box(tab)
     # As many people as there are, all right below the name.

@@ -165,7 +165,7 @@ class Monkey:
         rows = hit(clicks[-1])
         if not rows:
             return
-        # What is shown is the decision of who was hit, or that it has left, or the run is another.
+        # The view shows the clicked person's decision, or that the person has left, or another run.
         self.tab.wait(
             f"""([rows, run]) => {{
                 const shown = {DECISION}.__vue__.decision, now = {CANVAS}.shown();

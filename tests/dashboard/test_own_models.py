@@ -1,4 +1,4 @@
-"""Models of somebody's own with a page: README's, both ways of serving, and after a refresh."""
+"""Users' own models in a page: the README's, both ways of serving, and a refresh."""
 
 import re
 from pathlib import Path

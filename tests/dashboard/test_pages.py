@@ -1,4 +1,4 @@
-"""Pages of somebody's own, and what is left when pages are closed."""
+"""Users' own pages, and cleaning up when pages are closed."""
 
 import time
 

@@ -106,7 +106,7 @@ def test_a_run_to_its_end_counts_everybody(session):
     assert columns["inside"][-1] == 0
     assert columns["passed first door"][-1] == 12
     assert columns["passed second door"][-1] == 12
-    # What has flowed in windows side by side is what has passed.
+    # Flow summed over adjacent windows is the number of people who passed.
     seconds = len(columns["elapsed"]) - 2
     flowed = 10.0 * sum(columns["flow first door"][k] for k in range(seconds, 0, -10))
     assert flowed == pytest.approx(columns["passed first door"][seconds])

@@ -100,7 +100,7 @@ def places(plan: FloorPlan, step: float, clearance: float = 0.02) -> np.ndarray:
 
 @dataclass
 class Walk:
-    """What became of walkers: those left inside, steps through walls, lengths, gates crossed."""
+    """Results of walkers: those left inside, steps through walls, lengths, gates crossed."""
 
     left: np.ndarray
     wall_crossings: int

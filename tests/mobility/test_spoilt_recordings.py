@@ -16,7 +16,7 @@ METRES_PER_SECOND = 4.0
 
 
 def outcomes(folder, first, count):
-    """What a process of its own, which tells its memory, makes of ``count`` recordings."""
+    """Read ``count`` recordings in a separate process, which reports its memory."""
     command = [sys.executable, "-m", "tests.fixtures.spoiling", str(folder), str(first), str(count)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

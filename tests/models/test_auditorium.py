@@ -73,7 +73,7 @@ def test_people_leave_by_the_nearest_exit(sparse):
     taken = [
         min(range(len(exits)), key=lambda e: exits[e].line.distance(Point(t[-1]))) for t in tracks
     ]
-    # Whoever overshoots the aisle when it comes out of its row may end up nearer to another.
+    # A person who overshoots the aisle on leaving a row may end up nearer to another aisle.
     assert (np.array(taken) == ways.argmin(axis=1))[clear].mean() >= 0.9
 
 

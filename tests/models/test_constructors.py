@@ -1,4 +1,4 @@
-"""What all models that ship have in common."""
+"""Common properties of all models that ship."""
 
 import inspect
 

@@ -123,7 +123,7 @@ def test_the_fundamental_diagram_passes_on_the_references_own_medians():
     def median(density: float) -> float:
         return float(corridor_band(density + 0.125)[1]) - 0.001 * density
 
-    # Seven densities fill five bins up to 5.1/m2 and one beyond; eight are asked for.
+    # Seven densities fill five bins up to 5.1/m2 and one beyond; eight are required.
     verdict = rimea.fundamental_diagram(density_runs(median))
     assert unmet(verdict) == ["bins compared"]
     assert verdict.figures["bins outside"] == []

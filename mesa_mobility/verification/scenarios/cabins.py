@@ -51,10 +51,10 @@ def cabins_plan() -> FloorPlan:
 
 
 def cabins(seed: int) -> dict[str, Any]:
-    """23 people, two a cabin and one in cabin 3, leave by the exit that their cabin is given.
+    """23 people, two a cabin and one in cabin 3, leave by the exit assigned to their cabin.
 
     Returns:
-        With what every run tells: how many of the ``to_main`` and ``to_secondary`` left by
+        The common figures, and how many of the ``to_main`` and ``to_secondary`` left by
         their exit, and how many left by another, ``astray``.
     """
     plan = cabins_plan()

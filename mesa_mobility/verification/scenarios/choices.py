@@ -21,7 +21,7 @@ EXIT_2: Line = ((SIDE, 4.5), (SIDE, 5.5))
 NEAR, FAR = 3.0, 8.0
 """Metres to the near exit, in the left wall, and to the far one."""
 HESITATES_S = 2.0
-"""Seconds that the one person takes before it chooses: time to see where another goes."""
+"""Seconds before the person chooses, in which it can see where another goes."""
 
 
 def influenced(seed: int, *, trials: int, other: bool) -> dict[str, Any]:
@@ -30,10 +30,10 @@ def influenced(seed: int, *, trials: int, other: bool) -> dict[str, Any]:
     Args:
         seed: of the first trial; each has a generator of its own.
         trials: how many.
-        other: whether somebody beside the one is bound for exit 2.
+        other: whether a second person beside it heads for exit 2.
 
     Returns:
-        With what every run tells, over all trials: ``share``, of trials in which the one left by
+        The common figures over all trials; ``share``, of trials in which the person left by
         exit 2, and ``trials``.
     """
     floor = box(0.0, 0.0, SIDE, SIDE)
@@ -86,7 +86,7 @@ def _trials(
 
 
 def together(figures: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """What every run tells, of several runs as if they were one."""
+    """Common figures of several runs, combined into one."""
     time = sum(each["person_s"] for each in figures)
     sums = ("pedestrians", "left_inside", "overlaps", "wall_crossings", "person_s")
     shares = ("fallback_time_share", "fallback_decision_share")

@@ -45,7 +45,7 @@ def shortest_way(seed: int, *, screen: bool = False, assigned: str = "") -> dict
 
     Args:
         seed: of the run.
-        screen: whether one stands before the near exit, which makes that way the longer one.
+        screen: whether a screen in front of the near exit makes that way the longer one.
         assigned: "near" or "far", or nothing.
     """
     plan = FloorPlan(

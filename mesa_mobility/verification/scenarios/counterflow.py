@@ -20,20 +20,20 @@ ROOMS = Polygon(
 START_1, START_2 = box(0.0, 0.0, 5.5, 10.0), box(24.7, 0.0, 30.0, 10.0)
 ENTRANCE_2 = ((20.0, 4.0), (20.0, 6.0))
 LIMIT_S = 300.0
-"""FDS+Evac needs 136 s for 100 against 100; who has not come through in 300 s is stuck."""
+"""FDS+Evac needs 136 s for 100 against 100; people inside after 300 s count as stuck."""
 
 
 def counterflow(seed: int, *, opposing: int, people: int = 100, **rules: Any) -> dict[str, Any]:
     """100 people cross from room 1 to room 2 while others come the other way.
 
     They leave by the far wall of the room that they go to, which is open over its whole width:
-    nobody who has arrived stands in the way of those who come.
+    people who have arrived do not obstruct others.
 
     Args:
         seed: of the run.
         opposing: people who start in room 2.
         people: people who start in room 1.
-        **rules: other than those of the default preset, as ``PedestrianModel`` takes them.
+        **rules: passed to ``PedestrianModel``, to override the default preset.
     """
     plan = FloorPlan(
         ROOMS,

@@ -24,7 +24,7 @@ def group_behind(seed: int, *, together: bool) -> dict[str, Any]:
         together: whether the five are a group.
 
     Returns:
-        With what every run tells: ``spread_s``, seconds between the first and the last of the five
+        The common figures, and ``spread_s``, seconds between the first and the last of the five
         at the end of the corridor.
     """
     model = crowd_model(corridor_plan(LENGTH, WIDTH), seed)

@@ -42,14 +42,14 @@ def wide_way(seed: int, *, way: str, people: int = 500) -> dict[str, Any]:
 LENGTH, WIDTH = 60.0, 2.0
 ZONE = (20.0, 40.0)
 FROM_S, TO_S = 5.0, 15.0
-"""When density and flow are measured: people have got going, and the zone is still fed."""
+"""Measuring interval: people are under way and the zone is still fed."""
 
 
 def full_corridor(seed: int, *, people: int, speed: float) -> dict[str, Any]:
     """People all over a corridor of 60 m x 2 m walk to its right end.
 
     Returns:
-        With what every run tells: ``density`` (1/m2) from x = 20 to 40 m and ``flow`` (1/(m s))
+        The common figures; ``density`` (1/m2) from x = 20 to 40 m and ``flow`` (1/(m s))
         over x = 40 m, both from 5 s to 15 s, and ``speed``, the mean over people of 20 m divided
         by the time from x = 20 to 40 m (m/s).
     """

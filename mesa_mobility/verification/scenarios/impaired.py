@@ -12,9 +12,9 @@ from mesa_mobility.results import crossings
 from mesa_mobility.verification.runs import SPACING, crowd_model, evacuate
 
 ROOM, PASSAGE = 6.0, 60.0
-"""Metres. In so long a passage those behind catch up with the slow one: its door lets 25 people
-through in some 20 s, and to lose these to people at 1.25 m/s takes one at 0.8 m/s 45 m. In a
-shorter one the last through the door walk freely, with and without a slow one ahead."""
+"""Metres, long enough for people behind to catch up with the slow one. The door lets 25 people
+through in some 20 s; a person at 0.8 m/s loses this lead to people at 1.25 m/s in 45 m. In a
+shorter passage the last people walk freely, with or without a slow one ahead."""
 OTHERS = 24
 BODY, LARGER_BODY = 0.2, 0.31
 """Core radii, metres: the larger body takes more than half of the narrow passage."""
@@ -27,10 +27,10 @@ def passage(seed: int, *, width: float, impaired: bool) -> dict[str, Any]:
     Args:
         seed: of the run.
         width: of the passage between the rooms, metres.
-        impaired: whether the one is slow and larger, or like the others.
+        impaired: whether that person is slow and larger, or like the others.
 
     Returns:
-        With what every run tells: ``overtaken_by``, how many of the others left before the one.
+        The common figures, and ``overtaken_by``, the number of others who left earlier.
     """
     low, high = (ROOM - width) / 2, (ROOM + width) / 2
     end = 2 * ROOM + PASSAGE

@@ -34,12 +34,12 @@ def neck(
         seed: of the run.
         width: of the neck, metres.
         length: of the neck, metres.
-        goal: how far behind the neck people have arrived, metres; 0 is the neck's own end.
+        goal: distance of the goal behind the neck, metres; 0 is the neck's own end.
         people: how many start in the left half of the room.
 
     Returns:
-        With what every run tells: ``flow_per_s`` over the end of the neck, without the run-up and
-        the tail, and ``passed_s``, when the last one had passed it.
+        The common figures; ``flow_per_s`` over the end of the neck, without the run-up and
+        the tail; and ``passed_s``, the time when the last person had passed it.
     """
     low, high, end = MIDDLE - width / 2, MIDDLE + width / 2, ROOM + length
     parts = [box(0.0, 0.0, ROOM, ROOM), box(ROOM, low, end, high)]

@@ -1,4 +1,4 @@
-"""People in a room who start after a time of their own."""
+"""People in a room who start after individual pre-movement times."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def late_starters(seed: int, *, people: int, times: Distribution) -> dict[str, A
     """People leave a room of 8 m x 5 m, each after a time drawn for it.
 
     Returns:
-        With what every run tells: ``assigned`` and ``started``, seconds by person; None for one
+        The common figures, and ``assigned`` and ``started``, seconds by person; None for one
         who never started.
     """
     plan = FloorPlan(SMALL_ROOM, exits=[Exit("door", *SMALL_ROOM_DOOR)])

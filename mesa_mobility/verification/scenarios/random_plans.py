@@ -18,7 +18,7 @@ WALL = 0.2
 NARROWEST, WIDEST = 0.5, 2.0
 """Widths of doors, metres."""
 
-# Two bodies and what they keep apart: less is no door for two ways.
+# Two bodies and their distance: a narrower door is not used both ways.
 NARROWEST_BOTH_WAYS = 1.2
 
 _TRIES = 100
@@ -26,7 +26,7 @@ _TRIES = 100
 
 @dataclass(frozen=True)
 class Drawn:
-    """A floor plan and who starts where.
+    """A floor plan and the areas in which people start.
 
     Attributes:
         plan: the floor plan.
@@ -43,8 +43,8 @@ def random_plan(seed: int, *, shape: str, both_ways: bool, people: int = 30) -> 
     Args:
         seed: of the plan and of the run.
         shape: one of ``SHAPES``.
-        both_ways: whether half of them go against the other half.
-        people: how many there are, or as many as find room.
+        both_ways: whether half of them walk in the opposite direction.
+        people: their number, reduced if there is no room.
     """
     return random_run(seed, shape=shape, both_ways=both_ways, people=people).figures()
 
@@ -56,7 +56,7 @@ def random_run(seed: int, *, shape: str, both_ways: bool, people: int) -> Run:
     model = crowd_model(drawn.plan, rng)
     share = people // len(drawn.starts)
     for area, exits in drawn.starts:
-        # A quarter of what a lattice would hold: random places always find so much room.
+        # A quarter of the capacity of a lattice, which random places always reach.
         fit = min(share, int(0.25 * drawn.plan.free.intersection(area).area / SPACING**2))
         places = drawn.plan.random_points(
             max(fit, 1),
@@ -195,7 +195,7 @@ def _corridor(rng: np.random.Generator, both_ways: bool) -> Drawn:
 
 
 def _star(rng: np.random.Generator, both_ways: bool) -> Drawn:
-    """Arms that lead to a middle; one or two of them out of it."""
+    """Corridors that meet in the middle; one or two of them lead out."""
     arms = int(rng.integers(3, 7))
     turns = np.linspace(0, 360, arms, endpoint=False) + rng.uniform(0, 30)
     parts, ends = [shapely.Point(0, 0).buffer(float(rng.uniform(2.0, 3.5)), quad_segs=4)], []
@@ -216,7 +216,7 @@ def _star(rng: np.random.Generator, both_ways: bool) -> Drawn:
 
 
 def _trap(rng: np.random.Generator, both_ways: bool) -> Drawn:
-    """A hall with walls like a U, whose open side faces those who come."""
+    """A hall with U-shaped walls, open towards the people who approach."""
     length, height = rng.uniform(10.0, 13.0), rng.uniform(7.0, 9.0)
     exits, may = _ends(rng, length, height, both_ways)
     traps = []
@@ -234,4 +234,4 @@ def _trap(rng: np.random.Generator, both_ways: bool) -> Drawn:
 
 
 SHAPES = {"hall": _hall, "rooms": _rooms, "corridor": _corridor, "star": _star, "trap": _trap}
-"""What is drawn, by name."""
+"""Kinds of random plans, by name."""

@@ -1,4 +1,4 @@
-"""A room that empties into a corridor with a slow stretch in the place of a stair (NIST 5.1)."""
+"""A room that empties into a corridor with a slow stretch instead of a stair (NIST 5.1)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def into_corridor(seed: int, *, slow: bool, people: int = 100) -> dict[str, Any]
         people: in the room at the start.
 
     Returns:
-        With what every run tells: highest densities (1/m2) in boxes at the ``neck``, in the
+        The common figures; highest densities (1/m2) in boxes at the ``neck``, in the
         ``corridor`` and at the ``foot`` of the slow stretch, and ``foot_5_s``, the mean of the ten
         highest of half-seconds at the foot.
     """

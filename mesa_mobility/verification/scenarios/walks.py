@@ -18,7 +18,7 @@ WIDTH = 2.0
 LANE = 3.0
 LENGTH = 40.0
 FASTEST = 1.85
-"""Greatest speed that people of the map keep up, m/s: who likes to walk faster walks slower."""
+"""Greatest sustained speed in the map, m/s; people cannot walk faster than this."""
 
 
 def corridor_plan(length: float, width: float = WIDTH) -> FloorPlan:
@@ -33,12 +33,12 @@ def lone_walker(
 ) -> dict[str, Any]:
     """One person walks along a corridor 2 m wide.
 
-    The point of the standards, x = 0, lies in the wall: the person stands a body's radius off.
+    The standards start at x = 0, in the wall; here the person stands a body's radius off it.
 
     Args:
         seed: of the run.
         length: of the corridor, metres.
-        speed: that the person is given, m/s.
+        speed: preferred speed, m/s.
         measured_from: x where its speed begins to be measured, metres.
         measured_to: x where that ends.
     """
@@ -100,8 +100,8 @@ def speeds_by_age(seed: int, *, people: int, youngest: float, oldest: float) -> 
     """People of ages spread evenly, with speeds from the curve of ages.
 
     Returns:
-        As of the others, and in standard deviations of each one's age ``deviation``, of the speed
-        walked from the mean of the age, and ``most``, beyond which nobody was drawn.
+        As for the others, and in standard deviations of each age group: ``deviation``, of the speed
+        walked from the mean of the age, and ``most``, the upper bound of the draws.
     """
     model = lanes_model(people, seed)
     ages = np.linspace(youngest, oldest, people)

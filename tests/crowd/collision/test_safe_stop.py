@@ -1,4 +1,4 @@
-"""Whoever's movement ends first is taken to stand there until the other's has ended."""
+"""A person whose movement ends first counts as standing there until the other's has ended."""
 
 import math
 
@@ -62,7 +62,7 @@ def test_somebody_who_leaves_is_there_behind_the_exit_too(length, follows):
 
 
 @pytest.mark.parametrize(("y", "leaves"), [(2.0, False), (1.85, True)])
-def test_whoever_leaves_runs_over_nobody_who_stays(y, leaves, whole):
+def test_people_who_leave_run_over_nobody_who_stays(y, leaves, whole):
     # It crosses the line at (6, 2.42), 0.42 m from somebody who stands at (5.95, 2), and passes
     # it behind the line, 0.25 m off; 0.33 m from somebody at (5.95, 1.85).
     out = make_map([[stand(), straight(1.0, 12, towards=-math.pi / 3, to=0)]])
@@ -75,7 +75,7 @@ def test_whoever_leaves_runs_over_nobody_who_stays(y, leaves, whole):
     assert (leaver.speed > 0.0) == leaves
 
 
-def test_whoever_has_left_walks_on_for_a_while():
+def test_people_who_have_left_walk_on_for_a_while():
     # It crosses the line at 6 m in frame 12 and walks on as it went, though it would like to be
     # slower: for 1.5 s it is a neighbour of those behind, and no longer.
     model = model_of(corridor(length=6.0), [strider(), statues()])

@@ -1,4 +1,4 @@
-"""What is done for several at once is what NumPy finds one by one."""
+"""SIMD operations agree with NumPy, element by element."""
 
 import numpy as np
 import pytest
@@ -200,7 +200,7 @@ def test_the_lowest_bit_is_found():
 
 def test_what_is_at_most_so_much_is_told_by_its_bits():
     values = np.array([9.0, 1.0, 2.0, 2.5, np.nan, np.inf, -np.inf, 2.0, 3.0, 0.0])
-    # 2 is at most 2; what is not a number is told, whatever the limit.
+    # 2 is at most 2; nan is reported whatever the limit.
     assert _little(values, 2, 2.0) == 0b10111101
     assert _little(values, 0, np.inf) == 0b11111111
 

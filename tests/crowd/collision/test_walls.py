@@ -1,4 +1,4 @@
-"""Walls seen from a pedestrian: what is told for several places at once is what holds for each."""
+"""Walls near a pedestrian: tests of several places at once agree with tests of each."""
 
 import math
 

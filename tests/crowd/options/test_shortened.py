@@ -93,7 +93,7 @@ def test_the_shortest_are_those_of_each_cluster():
 
 
 def check(capability, shares):
-    """All that is told of shortened options, looked up one by one."""
+    """All properties of shortened options, looked up one by one."""
     map_, parts, table = capability.map, capability.parts, capability.table
     cluster = np.repeat(np.arange(map_.n_clusters), np.diff(map_.offsets))
     assert (table.options.frames == map_.durations[parts.rows]).all()

@@ -1,4 +1,4 @@
-"""What a term says of its bounds changes the time a run takes, never the run."""
+"""A term's bounds change the time that a run takes, never its result."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What is told of a decision is what the choice saw."""
+"""The explanation of a decision agrees with the decision itself."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What an option costs because of neighbours, and when it need not be known any better."""
+"""Costs of options from neighbours, and when an approximation suffices."""
 
 import numpy as np
 import pytest

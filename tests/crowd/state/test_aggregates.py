@@ -1,4 +1,4 @@
-"""What is looked up of everybody once a step, by one thread or several."""
+"""Per-step crowd aggregates, by one thread or several."""
 
 import numpy as np
 import pytest

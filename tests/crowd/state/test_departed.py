@@ -167,7 +167,7 @@ def test_occupancy_counts_people_inside_each_second():
         (None, 7.5, (0.3, 0.4), (8.15, 1.2)),
     ],
 )
-def test_whoever_has_left_walks_straight_away_from_the_exit(line, begun, velocity, then):
+def test_people_who_have_left_walk_straight_away_from_the_exit(line, begun, velocity, then):
     crowd, beyond = Crowd(2), Departed()
     crowd.x[1], crowd.y[1] = 8.0, 1.0
     crowd.from_x[1], crowd.from_y[1] = begun, 0.6
@@ -180,6 +180,6 @@ def test_whoever_has_left_walks_straight_away_from_the_exit(line, begun, velocit
     assert (crowd.x[1], crowd.y[1]) == pytest.approx(then)
     beyond.move(80, crowd)
     assert len(beyond.rows) == 0
-    # It stays where it was after 1.5 s, however many frames that is told later.
+    # After 1.5 s it stays in place, however many frames pass.
     after = np.array([8.0, 1.0]) + 3.0 * (np.array(then) - [8.0, 1.0])
     assert (crowd.x[1], crowd.y[1]) == pytest.approx(tuple(after))

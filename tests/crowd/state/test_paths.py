@@ -1,4 +1,4 @@
-"""Whoever has chosen an option follows it to its end, exactly."""
+"""People follow a chosen option exactly, to its end."""
 
 import math
 

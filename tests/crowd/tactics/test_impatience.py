@@ -1,4 +1,4 @@
-"""Whoever gets nowhere looks for a way round."""
+"""People who make no progress look for a way round."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Whoever decides again where it stands has the target of now, not that of its last decision."""
+"""A person who decides again on the same spot gets the present target, not the last one."""
 
 import pytest
 
@@ -23,7 +23,7 @@ def aim(person) -> float:
 
 
 def decide_again(person) -> float:
-    """What it aims at after its next decision, in place."""
+    """The target after the next decision on the same spot."""
     model, row = person.model, person.row
     place, count = tuple(person.position), model.crowd.decisions[row]
     while model.crowd.decisions[row] == count:

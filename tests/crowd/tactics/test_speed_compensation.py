@@ -1,4 +1,4 @@
-"""Whoever walks freely makes up for steps that were longer or shorter than it likes."""
+"""Free walkers correct their accumulated distance error."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_by_hand(walked, behind, expected):
     assert crowd.agenda["wished"][0] == 1.25
 
 
-def test_whoever_has_not_moved_yet_or_fell_back_starts_anew():
+def test_the_error_starts_anew_before_the_first_move_and_after_a_fallback():
     for option in (NO_OPTION, -2):
         crowd = after(1.95)
         crowd.option[:] = option
@@ -53,9 +53,9 @@ def test_whoever_has_not_moved_yet_or_fell_back_starts_anew():
         assert crowd.agenda["behind"][0] == 0.0
 
 
-def test_whoever_stands_stands():
+def test_people_who_stand_stay():
     assert next_speed(after(1.80), 0.0) == 0.0
-    # What it is behind is of its old wish; nobody walks backwards to make up.
+    # The error belongs to the old preferred speed; nobody walks backwards to correct it.
     assert next_speed(after(1.95, behind=-0.15), 0.01) == 0.0
 
 

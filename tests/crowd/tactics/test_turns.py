@@ -51,7 +51,7 @@ def test_all_one_way_nothing_changes(monkeypatch):
     assert places(True) == places(False)
 
 
-def test_whoever_waits_for_its_turn_leaves_the_way_out_free():
+def test_people_waiting_for_their_turn_leave_the_way_out_free():
     model = PedestrianModel(two_rooms(0.7, 10.0), rng=1)
     model.add_pedestrians([(15.0, 4.0)], headings=[0.0], exits=["east"], preferred_speeds=[0.8])
     waiting = model.add_pedestrians([(21.5, 4.0)], exits=["west"])[0]

@@ -1,4 +1,4 @@
-"""People who are told to wait stand until their time has come."""
+"""People with a waiting time stand until it is over."""
 
 import numpy as np
 import pytest
@@ -91,7 +91,7 @@ def test_waits_that_cannot_be(keywords):
     assert not person.waiting
 
 
-def test_whoever_waits_does_not_turn_round_and_round():
+def test_people_who_wait_do_not_turn_round_and_round():
     # To go nowhere, all ways to face cost the same, and the map has turns on the spot.
     model = model_of(corridor(), shipped_map(), rng=1)
     person = put(model, 2.0, 2.0)

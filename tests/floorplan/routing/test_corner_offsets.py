@@ -71,7 +71,7 @@ def test_whatever_the_arrays_are_made_of():
 
 
 @pytest.mark.parametrize("place", [(15.0, 26.0), (3.0, 45.0), (19.0, 21.0)])
-def test_whoever_is_first_cuts_the_corner(place):
+def test_the_first_person_cuts_the_corner(place):
     alone, point = aims(HALLS, place, 0.0)
     assert point.tolist() == alone.tolist()
     # By the corner, or straight for the exit that is in view past it.

@@ -1,4 +1,4 @@
-"""Who asks again from the same place is told what it was told, as long as that is right."""
+"""Repeated queries from the same place are cached, as long as the answer is valid."""
 
 import numpy as np
 import pytest
@@ -50,7 +50,7 @@ def test_where_another_answer_is_kept_it_is_worked_out(plans) -> None:
     east = router.destination(("east",))
     aim(router, 5.0)
     kept = router._told[router._told["destination"] > 0][0]
-    # Every place is taken by what was told at (5, 2), which serves nobody else.
+    # The cache is full of answers for (5, 2), which serve no other place.
     router._told[:] = kept
     lie(router)
     assert aim(router, 5.0) == 99.0

@@ -82,7 +82,7 @@ def test_at_a_gate_too_narrow_for_a_body_nobody_aims(plans) -> None:
     plan = FloorPlan(box(0, 0, 8, 4), exits=exits, gates=gates, obstacles=wall)
     found = Router(plan).targets([(4, 2.15), (5.1, 2.15)], [0, 0])
     assert found.gates[0] == 2
-    # Whoever is squeezed in gets somewhere to go.
+    # A person squeezed in still gets a target.
     assert np.isfinite(found.distances).all()
 
 
@@ -106,9 +106,7 @@ def test_nobody_past_a_gate_turns_back_to_it(plans, place: tuple) -> None:
 
 
 @pytest.mark.parametrize("name", ["room", "two_rooms", "two_rooms_turning_back", "hall", "bend"])
-def test_whoever_aims_through_an_opening_crosses_it_going_straight(
-    plans, places_in, name: str
-) -> None:
+def test_people_cross_the_opening_they_aim_through_straight(plans, places_in, name: str) -> None:
     plan = plans[name]()
     places = places_in(plan, 0.4)
     found = Router(plan).targets(places, np.zeros(len(places), int))

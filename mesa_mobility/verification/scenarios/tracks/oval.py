@@ -1,4 +1,4 @@
-"""A closed track, two straights and two half circles, on which people walk for ever."""
+"""A closed track of two straights and two half circles."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def oval_model(
     clearance: float,
     **rules: Any,
 ) -> PedestrianModel:
-    """People all over an oval, walking round it for ever, counter-clockwise."""
+    """People distributed over an oval who walk round it endlessly, counter-clockwise."""
     plan = oval.plan()
     model = crowd_model(plan, seed, **rules)
     places = plan.random_points(people, model.rng, spacing=spacing, clearance=clearance)

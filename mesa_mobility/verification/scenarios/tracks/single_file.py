@@ -1,8 +1,8 @@
 """People one behind the other on a narrow oval (RiMEA test 16).
 
-Measured are people who walk along a line. The track alone does not make them: through a neck as
-wide, and 5 m long, twice as many get as ever walk in single file (RiMEA test 12d), since they walk
-staggered. So those of this scenario stay in line, by a cost term of their own.
+The experiment measured people who walk in line. A narrow track alone does not ensure that: in a
+neck as wide, and 5 m long, flow is twice that of single file (RiMEA test 12d), since people walk
+staggered. An additional cost term keeps the people of this scenario in line.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ def _off_line_bound(  # type: ignore[no-untyped-def]
 class InLine(CompiledTerm):
     """Metres from the mobility point to the centre line of an oval.
 
-    High enough that nobody leaves the line for the room beside the person ahead: with 20 a
-    metre people in a jam are as near to it as those who walk freely (0.05 to 0.07 m, root mean
+    The weight is high enough that nobody leaves the line to walk beside others: with 20 a
+    metre, people in a jam keep as close to it as free walkers (0.05 to 0.07 m, root mean
     square, against 0.06), with 10 they are 0.09 m off and with 5 0.13.
     """
 
@@ -69,7 +69,7 @@ def single_file(seed: int, *, people: int) -> dict[str, Any]:
         people: how many.
 
     Returns:
-        With what every run tells: ``density`` (k,) persons per metre, 2 / (gap in front + gap
+        The common figures; ``density`` (k,) persons per metre, 2 / (gap in front + gap
         behind), and ``along`` (k,) speeds over 0.4 s, m/s, of people on the straights.
     """
     model = oval_model(OVAL, people, seed, speed=SPEED, spacing=0.34, clearance=0.18)

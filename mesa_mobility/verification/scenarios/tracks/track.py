@@ -1,4 +1,4 @@
-"""Walkers on an endless corridor: each one's density and speed in the middle of a straight."""
+"""Walkers in an endless corridor: individual density and speed in the middle of a straight."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def track(
     measure_s: float = 60.0,
     **rules: Any,
 ) -> dict[str, Any]:
-    """People walk round an oval; who is in the middle of a straight is measured each second.
+    """People walk round an oval; those in the middle of a straight are measured once a second.
 
     Args:
         seed: of the run.
@@ -44,10 +44,10 @@ def track(
         speed: preferred by everybody, m/s, or a distribution; by default the type's own.
         settle_s: seconds before anything is measured.
         measure_s: seconds that count.
-        **rules: other than those of the default preset, as ``PedestrianModel`` takes them.
+        **rules: passed to ``PedestrianModel``, to override the default preset.
 
     Returns:
-        With what every run tells: ``density`` (k,) individual Voronoi densities and ``along``
+        The common figures; ``density`` (k,) individual Voronoi densities and ``along``
         (k,) speeds along the corridor over 1.5 s, m/s, of people in the boxes; ``mean_speed``
         and ``mean_density``, means over people, and over time in the boxes.
     """
