@@ -84,6 +84,9 @@ def test_the_view_outlasts_another_size_and_another_tab(tab):
 
 def test_keys_play_move_zoom_and_deselect(tab):
     page = tab.page
+    # While a model is made, Play is off, and the first button that is on gets the focus.
+    tab.wait("() => [...document.querySelectorAll('.mm-time button')].some("
+             "(b) => /play/i.test(b.innerText) && !b.disabled)")  # fmt: skip
     page.locator("body").press("Tab")
     assert page.evaluate("() => document.activeElement.textContent") == "Skip to the crowd"
     page.keyboard.press("Enter")
@@ -120,7 +123,8 @@ def test_every_control_has_a_name_and_the_page_a_language(tab):
 
 def test_a_phone_shows_the_crowd_and_two_fingers_zoom(open_tab):
     tab = open_tab(width=420, height=800, has_touch=True, is_mobile=True)
-    assert tab.page.locator(".v-navigation-drawer--open").count() == 0
+    # It is drawn open until the page knows how narrow it is.
+    tab.wait("() => !document.querySelector('.v-navigation-drawer--open')")
     play, speed = (
         tab.page.locator(what).first.bounding_box()
         for what in (".mm-time button", ".mm-time .v-select label")

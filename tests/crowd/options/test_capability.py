@@ -50,8 +50,8 @@ def test_stacked_tables_follow_one_another():
 
 
 def test_reach_is_the_farthest_of_the_path_not_its_end():
-    far_and_back = [(0.5, 0.0, 0.0), (1.5, 2.0, 0.0), (0.5, 0.0, 0.0), (0.25, 0.0, 0.0)]
-    assert Capability(make_map([[stand(), through(far_and_back, to=0)]])).longest_reach == 2.5
+    far_and_back = [(0.5, 0.0, 0.0), (0.75, 1.0, 0.0), (0.5, 0.0, 0.0), (0.25, 0.0, 0.0)]
+    assert Capability(make_map([[stand(), through(far_and_back, to=0)]])).longest_reach == 1.25
 
 
 def test_a_cluster_without_options_of_these_durations_is_refused():
