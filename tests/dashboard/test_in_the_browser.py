@@ -254,3 +254,10 @@ def test_the_map_view_tells_clusters_and_where_they_come_from(tab):
     for line in map_.metadata["acknowledgements"]:
         assert line in text
     assert "23700, 1, 1, 1, 1" in text or str(map_.metadata["build"]["poses_in_component"]) in text
+
+
+def test_options_that_cost_infinitely_much_are_drawn(tab):
+    # Costs go to the page in single precision, in which 1e300 is infinite.
+    tab.page.get_by_label("weight of target distance", exact=True).fill("1e300")
+    tab.page.get_by_label("weight of target distance", exact=True).press("Enter")
+    tab.click_person(23)
