@@ -145,7 +145,12 @@ def test_one_pedestrian_is_clicked_after_another(tab):
         assert tab.shown()["selected"] == row
     # A decision that is open outlasts the other tab, and goes with another run.
     tab.page.get_by_role("tab", name="Mobility map").click()
+    canvas = "document.querySelector('.mm-crowd-canvas')"
+    tab.wait(f"() => {canvas}.offsetParent === null")
     tab.page.get_by_role("tab", name="Simulation").click()
+    tab.wait(f"() => {canvas}.offsetParent !== null")
+    # The tab slides in: a click on the way would miss.
+    tab.page.wait_for_timeout(500)
     tab.click_person(11)
     tab.button("if it decided now").click()
     tab.click_person(7)
