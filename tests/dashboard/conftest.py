@@ -168,7 +168,7 @@ class Dashboard:
         page.goto(address)
         self.wait(f"() => {CANVAS}?.shown?.().drawn > 0")
         SILENT.discard(here)
-        page.set_default_timeout(30_000)
+        page.set_default_timeout(60_000)
 
     def _console(self, message: Any) -> None:
         if message.type == "error":
