@@ -79,7 +79,7 @@ def speeds(trajectories: Trajectories, window: float = 1.0) -> FloatArray:
         (k,) m/s, by person, then frame: straight displacement over the window, divided by it. A
         window of about a gait cycle leaves out the pelvis's side-to-side motion.
     """
-    frames = _frames(window, trajectories, "window")
+    frames = frames_in(window, trajectories, "window")
     start, end = trajectories.steps(frames)
     dx = trajectories.x[end] - trajectories.x[start]
     dy = trajectories.y[end] - trajectories.y[start]
@@ -124,11 +124,8 @@ def speeds_along(
     Raises:
         ResultsError: a direction without length, or a window shorter than a frame.
     """
-    along = np.asarray(direction, dtype=np.float64)
-    length = float(np.hypot(*along)) if along.shape == (2,) else 0.0
-    if not 0.0 < length < np.inf:
-        raise ResultsError(f"speeds along {direction!r}: expected a direction (x, y)")
-    frames = _frames(window, trajectories, "window")
+    along, length = checked_direction(direction, "speeds")
+    frames = frames_in(window, trajectories, "window")
     order = trajectories.by_person
     start, end = order[:-frames], order[frames:]
     middle = order[frames // 2 : len(order) - frames + frames // 2]
@@ -148,6 +145,23 @@ def speeds_along(
         point=np.column_stack([trajectories.x[middle], trajectories.y[middle]]),
         speed=(dx * along[0] + dy * along[1]) / (length * seconds),
     )
+
+
+def checked_direction(direction: ArrayLike, what: str) -> tuple[FloatArray, float]:
+    """A direction as (2,) numbers, and its length.
+
+    Args:
+        direction: (2,) of any length.
+        what: what is measured along it, for the error.
+
+    Raises:
+        ResultsError: it has no length, or is no direction.
+    """
+    along = np.asarray(direction, dtype=np.float64)
+    length = float(np.hypot(*along)) if along.shape == (2,) else 0.0
+    if not 0.0 < length < np.inf:
+        raise ResultsError(f"{what} along {direction!r}: expected a direction (x, y)")
+    return along, length
 
 
 def mean_speed(trajectories: Trajectories, window: float = 1.0) -> float | None:
@@ -172,7 +186,7 @@ def direction_changes(
     Returns:
         (k,) radians in [-pi, pi), positive to the left.
     """
-    frames = _frames(interval, trajectories, "interval")
+    frames = frames_in(interval, trajectories, "interval")
     start, end = trajectories.steps(frames)
     first_frame = np.full(int(trajectories.person.max(initial=-1)) + 1, -1, dtype=np.int64)
     backwards = slice(None, None, -1)
@@ -184,7 +198,12 @@ def direction_changes(
     angle, long_enough = np.arctan2(dy, dx), np.hypot(dx, dy) >= minimum_m
     follows = (end[:-1] == start[1:]) & long_enough[:-1] & long_enough[1:]
     change = np.diff(angle)[follows]
-    return (change + np.pi) % (2 * np.pi) - np.pi
+    return wrapped(change)
+
+
+def wrapped(angles: FloatArray) -> FloatArray:
+    """The same angles in [-pi, pi), radians."""
+    return (angles + np.pi) % (2 * np.pi) - np.pi
 
 
 def crossings(trajectories: Trajectories, a: ArrayLike, b: ArrayLike) -> Crossings:
@@ -286,7 +305,12 @@ def density(
     return result
 
 
-def _frames(seconds: float, trajectories: Trajectories, name: str) -> int:
+def frames_in(seconds: float, trajectories: Trajectories, name: str) -> int:
+    """How many frames a time has, rounded.
+
+    Raises:
+        ResultsError: less than one.
+    """
     frames = round(seconds * trajectories.frame_rate)
     if frames < 1:
         raise ResultsError(

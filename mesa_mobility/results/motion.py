@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.measures import checked_direction, frames_in, wrapped
 from mesa_mobility.results.trajectories import Trajectories
 
 FloatArray = NDArray[np.float64]
@@ -65,11 +65,8 @@ def steps_between(
     Raises:
         ResultsError: an interval shorter than a frame, or a direction without length.
     """
-    frames = _frames(interval, trajectories)
-    along = np.asarray(direction, dtype=np.float64)
-    length = float(np.hypot(*along)) if along.shape == (2,) else 0.0
-    if not 0.0 < length < np.inf:
-        raise ResultsError(f"steps along {direction!r}: expected a direction (x, y)")
+    frames = frames_in(interval, trajectories, "interval")
+    along, length = checked_direction(direction, "steps")
     ex, ey = along / length
     across, turns, changes, successive = [], [], [], []
     for places, _ in _tracks(trajectories, area, after):
@@ -77,7 +74,7 @@ def steps_between(
         aside = ex * dy - ey * dx
         angle, speed = np.arctan2(dy, dx), np.hypot(dx, dy) / interval
         across.append(aside)
-        turns.append((np.diff(angle) + np.pi) % (2.0 * np.pi) - np.pi)
+        turns.append(wrapped(np.diff(angle)))
         changes.append(np.diff(speed))
         successive.append(np.column_stack([aside[:-1], aside[1:]]))
     return Steps(_joined(across), _joined(turns), _joined(changes), _joined(successive, (0, 2)))
@@ -134,7 +131,7 @@ def speed_jumps(
     Raises:
         ResultsError: an interval shorter than a frame.
     """
-    frames = _frames(interval, trajectories)
+    frames = frames_in(interval, trajectories, "interval")
     found = []
     for places, _ in _tracks(trajectories, area, after):
         velocity = np.diff(places[::frames], axis=0) / interval
@@ -164,14 +161,14 @@ def facing_angles(
     Returns:
         (k,) radians from 0 to pi, one for each interval in which somebody walks.
     """
-    frames = _frames(interval, trajectories)
+    frames = frames_in(interval, trajectories, "interval")
     found = []
     for places, headings in _tracks(trajectories, area, after):
         dx, dy = np.diff(places[::frames], axis=0).T
         facing = headings[frames // 2 :: frames][: len(dx)]
         fast = np.hypot(dx, dy) > least_speed * interval
         off = np.arctan2(dy, dx) - facing
-        found.append(np.abs((off + np.pi) % (2.0 * np.pi) - np.pi)[fast])
+        found.append(np.abs(wrapped(off))[fast])
     return _joined(found)
 
 
@@ -212,15 +209,6 @@ def _tracks(
         if len(piece):
             places = np.column_stack([trajectories.x[piece], trajectories.y[piece]])
             yield places, trajectories.heading[piece]
-
-
-def _frames(seconds: float, trajectories: Trajectories) -> int:
-    frames = round(seconds * trajectories.frame_rate)
-    if frames < 1:
-        raise ResultsError(
-            f"interval of {seconds} s is shorter than a frame at {trajectories.frame_rate} Hz"
-        )
-    return frames
 
 
 def _joined(parts: list[FloatArray], empty: tuple[int, ...] = (0,)) -> FloatArray:
