@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import inspect
-import os
-import sys
-from collections.abc import Iterable, Mapping, Sequence
-from multiprocessing import current_process, get_context
-from typing import Any
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import as_completed
+from functools import partial
+from itertools import product
+from typing import Any, TypeAlias
 
 import mesa
+from tqdm.auto import tqdm
 
 from mesa_mobility.errors import ModelError
+from mesa_mobility.interrupts import deaf_children
+from mesa_mobility.processes import (
+    available_processors,
+    check_importable,
+    one_thread_each,
+    spawned_pool,
+)
 
-_TRIAL, _CALLED_AGAIN = "mesa-mobility trial", 75
+_Rows: TypeAlias = list[dict[str, Any]]
 
 
 def batch_run(
@@ -29,7 +38,7 @@ def batch_run(
     """Run a model over all combinations of parameters, once for each seed.
 
     Mesa 3.3 takes seeds among the parameters, 3.5 as an argument of their own and overwrites the
-    former; this takes them as ``rng`` on both.
+    former; this takes them as ``rng`` on both. A run that fails does not lose the others.
 
     Args:
         model_class: an importable model (workers are spawned).
@@ -38,65 +47,82 @@ def batch_run(
         max_steps: steps after which a run is cut.
         number_processes: None for one a processor.
         data_collection_period: steps between two rows of a run; -1 for its last step only.
-        display_progress: show Mesa's progress bar.
+        display_progress: show a progress bar.
 
     Returns:
-        One row a run and collected step, with parameters and collected values.
+        One row a run and collected step, with parameters and collected values. A run that fails
+        has one row with its parameters and ``error``, and gives a warning.
 
     Raises:
-        ModelError: ``rng`` is among the parameters, or another process cannot import the model.
+        ModelError: ``rng`` is among the parameters, another process cannot import the model, or
+            all runs fail.
     """
     if "rng" in parameters:
         raise ModelError("batch_run: rng is among the parameters, expected seeds as rng=[...]")
     if number_processes != 1:
-        _check_importable(model_class)
-    seeds = list(rng)
+        check_importable(model_class, "batch_run")
+    run = partial(_run, model_class, max_steps, data_collection_period)
+    runs = list(product(enumerate(rng), _combinations(parameters)))
+    results: list[_Rows | str] = [""] * len(runs)
+    with tqdm(total=len(runs), disable=not display_progress) as bar:
+        processes = number_processes or available_processors()
+        for number, rows in _results(run, runs, processes):
+            results[number] = rows
+            bar.update()
+    failed = [number for number, rows in enumerate(results) if isinstance(rows, str)]
+    if failed:
+        said = f"batch_run: {len(failed)} of {len(runs)} runs fail, the first with "
+        said += str(results[failed[0]])
+        if len(failed) == len(runs):
+            raise ModelError(said)
+        warnings.warn(said, RuntimeWarning, stacklevel=2)
+    rows_of_all: _Rows = []
+    for number, ((iteration, seed), values) in enumerate(runs):
+        found = results[number]
+        where = {"RunId": number, "iteration": iteration}
+        if isinstance(found, str):
+            found = [{"Step": None, "rng": seed, **values, "error": found}]
+        rows_of_all += [{**row, **where} for row in found]
+    return rows_of_all
+
+
+def _combinations(parameters: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """All combinations of the values; a text is one value."""
+    lists = [
+        list(values) if isinstance(values, Iterable) and not isinstance(values, str) else [values]
+        for values in parameters.values()
+    ]
+    return [dict(zip(parameters, values, strict=True)) for values in product(*lists)]
+
+
+def _results(
+    run: Callable[[Any], _Rows | str], runs: Sequence[Any], processes: int
+) -> Iterator[tuple[int, _Rows | str]]:
+    """Number and rows, or error, of each run as soon as it is there."""
+    if processes == 1:
+        yield from enumerate(map(run, runs))
+        return
+    with one_thread_each(), spawned_pool(processes) as pool:
+        with deaf_children():
+            futures = {pool.submit(run, each): number for number, each in enumerate(runs)}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+
+
+def _run(model_class: type[mesa.Model], max_steps: int, period: int, each: Any) -> _Rows | str:
+    """The rows that Mesa gives for one run, or what is wrong with it."""
+    (_, seed), values = each
     options: dict[str, Any] = {
         "max_steps": max_steps,
-        "number_processes": number_processes,
-        "data_collection_period": data_collection_period,
-        "display_progress": display_progress,
+        "number_processes": 1,
+        "data_collection_period": period,
+        "display_progress": False,
     }
-    if _takes_seeds():
-        return mesa.batch_run(model_class, dict(parameters), rng=seeds, **options)
-    values: dict[str, Any | Iterable[Any]] = {**parameters, "rng": seeds}
-    return mesa.batch_run(model_class, values, **options)
-
-
-def _check_importable(model_class: type[mesa.Model]) -> None:
-    """Raise ModelError where a process of its own would not find the class.
-
-    Mesa starts its processes again and again for as long as they fail.
-    """
-    if current_process().name == _TRIAL:  # this script, imported by the trial below
-        sys.exit(_CALLED_AGAIN)
-    module, name = model_class.__module__, model_class.__qualname__
-    reason = ""
-    main = sys.modules["__main__"]
-    if "<locals>" in name:
-        reason = "it is defined within a function"
-    elif module == "__main__" and getattr(main, "__spec__", None) is None:
-        file = getattr(main, "__file__", None)
-        if file is None or not os.path.isfile(file):
-            reason = "it is defined in a notebook or at a prompt"
-    if not reason and module == "__main__":
-        reason = _tried(model_class)
-    if reason:
-        raise ModelError(
-            f"batch_run: other processes cannot import {name}: {reason}; expected a class of a "
-            "module, or number_processes=1"
-        )
-
-
-def _tried(model_class: type[mesa.Model]) -> str:
-    """Why a process that is started like those of Mesa does not find the class, or nothing."""
-    trial = get_context("spawn").Process(target=id, args=(model_class,), name=_TRIAL)
-    trial.start()
-    trial.join()
-    if trial.exitcode == _CALLED_AGAIN:
-        return "its script calls batch_run when it is imported, not below `if __name__ == ...`"
-    return "its script fails when it is imported" if trial.exitcode else ""
-
-
-def _takes_seeds() -> bool:
-    return "rng" in inspect.signature(mesa.batch_run).parameters
+    # In lists, or Mesa would take a list of values for several runs.
+    keywords = {name: [value] for name, value in values.items()}
+    try:
+        if "rng" in inspect.signature(mesa.batch_run).parameters:
+            return mesa.batch_run(model_class, keywords, rng=[seed], **options)
+        return mesa.batch_run(model_class, {**keywords, "rng": [seed]}, **options)
+    except Exception as error:
+        return " ".join(f"{type(error).__name__}: {error}".split())

@@ -1,4 +1,4 @@
-"""The commands of the command line, put together.
+"""The command line, assembled from its commands.
 
 Whatever is slow to import is imported where it is used, so that help and errors come at once.
 """
@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import typer
 
-from mesa_mobility.commands import mobility_map, plugins
+from mesa_mobility.commands import experiment, mobility_map, plugins
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
 
-# Some versions of Typer bring a Click of their own: theirs is known by what it derives from it.
+# Some versions of Typer contain a copy of Click, whose UsageError is a base class here.
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]
-"""What wrong usage of the command line raises."""
+"""Raised for wrong usage of the command line."""
 
 app = typer.Typer(
     name="mesa-mobility",
@@ -29,5 +29,6 @@ app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("dashboard")(dashboard)
 app.add_typer(mobility_map.app, name="map")
+app.add_typer(experiment.app, name="experiment")
 app.command("models")(plugins.models)
 app.command("behaviors")(plugins.behaviors)

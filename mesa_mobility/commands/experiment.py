@@ -1,0 +1,141 @@
+"""`mesa-mobility experiment`: many runs, kept in a store."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mesa_mobility.commands.console import (
+    answer_json,
+    answer_table,
+    counting_bar,
+    say,
+    some_path,
+)
+from mesa_mobility.errors import ModelError
+from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
+
+FAILED = 1
+
+app = typer.Typer(help="Many runs, kept in a store that can be gone on with.", no_args_is_help=True)
+StoreAt = Annotated[str, typer.Argument(metavar="STORE", help="Folder or URL of the store.")]
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
+
+
+@app.command("run")
+def run(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="The experiment in TOML.", parser=some_path)
+    ],
+    store: Annotated[
+        str | None,
+        typer.Option(
+            metavar="STORE", help="Folder or URL; by default the file's name without .toml."
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="Processes (one for each processor)."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Of a Dask scheduler, instead of processes."),
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what would be run, and run nothing.")
+    ] = False,
+) -> None:
+    """Run what is missing of an experiment.
+
+    Ends with status 1 if runs have failed or timed out.
+    """
+    from mesa_mobility.experiments import read_experiment, run_experiment
+    from mesa_mobility.experiments.driver import count_missing
+
+    if scheduler is not None and workers is not None:
+        raise ModelError("--workers: a scheduler has its own workers, expected one of the two")
+    experiment = read_experiment(file)
+    place = store if store is not None else str(file.with_suffix(""))
+    if dry_run:
+        missing = count_missing(experiment, place)
+        points = len(experiment.design)
+        answer_table(
+            {"Store": place, "Points": f"{points}", "Replications": f"{experiment.replications}",
+             "Runs to do": f"{missing}"}
+        )  # fmt: skip
+        return
+    interrupted = False
+    with gentle_interrupt() as stop_here, counting_bar() as report:
+        told: list[str] = []
+
+        def progress(now: Any) -> None:
+            if now.address and not told:
+                told.append(now.address)
+                say(f"dashboard of the scheduler: {now.address}")
+            report(f"{now.ended} of {now.total} runs, {now.failed} failed", now.ended, now.total)
+            stop_here()
+
+        try:
+            run_experiment(
+                experiment,
+                place,
+                executor="processes" if scheduler is None else scheduler,
+                workers=workers,
+                progress=progress,
+            )
+        except Stopped:
+            interrupted = True
+    counts = _said(place, as_json=False)
+    if interrupted:
+        say("interrupted: what has ended is kept; the same command goes on")
+        raise typer.Exit(INTERRUPTED)
+    if counts["failed"] or counts["timed_out"]:
+        raise typer.Exit(FAILED)
+
+
+@app.command("status")
+def status(store: StoreAt, as_json: AsJson = False) -> None:
+    """Say how far an experiment has come."""
+    _said(store, as_json=as_json)
+
+
+@app.command("report")
+def report(
+    store: StoreAt,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="The page; by default report.html in the store.", parser=some_path, metavar="PATH"
+        ),
+    ] = None,
+) -> None:
+    """Write an experiment's design, results, failures and versions as one HTML page."""
+    from mesa_mobility.experiments import open_store, write_report
+
+    say(f"written to {write_report(open_store(store), out)}")
+
+
+def _said(place: str, *, as_json: bool) -> dict[str, Any]:
+    from mesa_mobility.experiments import open_store
+
+    counts = open_store(place).status()
+    if as_json:
+        answer_json(counts)
+    else:
+        asked = counts["asked"]
+        answer_table(
+            {
+                "Store": counts["store"] + (" (being run)" if counts["running"] else ""),
+                "Asked for": "as many as it takes" if asked is None else f"{asked} runs",
+                "Missing": "-" if counts["missing"] is None else f"{counts['missing']}",
+                "Done": f"{counts['done']}",
+                "Stalled": f"{counts['stalled']}",
+                "Failed": f"{counts['failed']}",
+                "Timed out": f"{counts['timed_out']}",
+                "Time of the runs": f"{counts['runs_s']:.1f} s",
+                "Files": f"{counts['files']}",
+            }
+        )
+    return counts

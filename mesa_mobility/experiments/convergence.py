@@ -1,0 +1,223 @@
+"""How many runs are enough: intervals of figures, and convergence of the occupancy curve."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.errors import ModelError
+from mesa_mobility.experiments.intervals import (
+    Estimate,
+    check_confidence,
+    mean_interval,
+    quantile_interval,
+)
+
+_FIGURE = re.compile(r"(?P<how>mean|p\d{1,2}) (?P<column>\w+)")
+_GROWTH = 1.25
+"""Factor by which replications grow: few looks at the data keep the intervals honest."""
+
+
+@dataclass(frozen=True)
+class OccupancyConvergence:
+    """Functional convergence of the mean occupancy curve, measured run by run.
+
+    With each run the mean curve changes. Three measures compare it with the mean curve before:
+    the Euclidean relative difference, the Euclidean projection coefficient and the secant cosine,
+    which are 0, 1 and 1 for equal curves. Source: E. Ronchi, P. A. Reneke and R. D. Peacock, A
+    method for the analysis of behavioural uncertainty in evacuation modelling, Fire Technology 50
+    (2014).
+
+    Args:
+        tolerance: largest difference of each measure from its value for equal curves.
+        consecutive: number of runs, the last ones, for which that must hold.
+
+    Raises:
+        ModelError: a value out of range.
+    """
+
+    tolerance: float = 0.01
+    consecutive: int = 10
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.tolerance, int | float) and 0 < self.tolerance < 1):
+            raise ModelError(f"tolerance is {self.tolerance!r}, expected a number between 0 and 1")
+        if not isinstance(self.consecutive, int) or self.consecutive < 1:
+            raise ModelError(f"consecutive is {self.consecutive!r}, expected 1 or more")
+
+
+@dataclass(frozen=True)
+class Precision:
+    """What ``replications="auto"`` goes on for: figures known to a tolerance.
+
+    Args:
+        figures: such as "mean egress_s" or "p95 egress_s": the mean or a percentile of a column of
+            the store over the replications of a point.
+        tolerance: greatest half-width of each confidence interval, as a share of the figure.
+        confidence: of the intervals.
+        least: replications of each point at least.
+        most: replications of each point at most.
+        occupancy: convergence of the occupancy curve that is asked for as well, or None.
+
+    Raises:
+        ModelError: a value out of range or a figure that is none.
+    """
+
+    figures: tuple[str, ...] = ("mean egress_s", "p95 egress_s")
+    tolerance: float = 0.05
+    confidence: float = 0.95
+    least: int = 20
+    most: int = 1000
+    occupancy: OccupancyConvergence | None = field(default_factory=OccupancyConvergence)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "figures", tuple(self.figures))
+        for figure in self.figures:
+            if not (isinstance(figure, str) and _FIGURE.fullmatch(figure)):
+                raise ModelError(
+                    f'figure {figure!r}: expected one such as "mean egress_s" or "p95 egress_s"'
+                )
+        if not (isinstance(self.tolerance, int | float) and 0 < self.tolerance < 1):
+            raise ModelError(f"tolerance is {self.tolerance!r}, expected a number between 0 and 1")
+        check_confidence(self.confidence)
+        if not (isinstance(self.least, int) and isinstance(self.most, int)) or not (
+            2 <= self.least <= self.most
+        ):
+            raise ModelError(
+                f"replications from {self.least!r} to {self.most!r}, expected 2 or more, rising"
+            )
+
+    @property
+    def columns(self) -> list[str]:
+        """Columns of the store that the figures are of."""
+        return list(dict.fromkeys(figure.split(" ")[1] for figure in self.figures))
+
+    def next_count(self, count: int) -> int:
+        """Replications to have after ``count``."""
+        return min(max(self.least, math.ceil(count * _GROWTH)), self.most)
+
+    def definition(self) -> dict[str, Any]:
+        """What a file says of it."""
+        curve = self.occupancy
+        return {
+            "figures": list(self.figures),
+            "tolerance": self.tolerance,
+            "confidence": self.confidence,
+            "least": self.least,
+            "most": self.most,
+            "occupancy": False
+            if curve is None
+            else {"tolerance": curve.tolerance, "consecutive": curve.consecutive},
+        }
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """What is known of a point after so many runs.
+
+    Attributes:
+        runs: replications.
+        estimates: estimate and interval of each figure.
+        met: whether each figure is known well enough; "occupancy" stands for the curve.
+    """
+
+    runs: int
+    estimates: dict[str, Estimate]
+    met: dict[str, bool]
+
+    @property
+    def enough(self) -> bool:
+        """Whether everything asked for is known well enough."""
+        return all(self.met.values())
+
+
+def estimate(figure: str, values: NDArray[np.float64], confidence: float) -> Estimate:
+    """Estimate and interval of a figure such as "mean egress_s" from (n,) values."""
+    how = figure.split(" ")[0]
+    if how == "mean":
+        return mean_interval(values, confidence)
+    return quantile_interval(values, int(how[1:]) / 100, confidence)
+
+
+def assess(
+    precision: Precision,
+    runs: int,
+    values: Mapping[str, NDArray[np.float64]],
+    curves: Sequence[Sequence[int]],
+) -> Assessment:
+    """What the runs of a point tell.
+
+    Args:
+        precision: what is asked for.
+        runs: replications, failed ones included.
+        values: by column, (n,) values of the runs that have one, in the order of replications.
+        curves: people inside each second, by run in the same order.
+    """
+    estimates, met = {}, {}
+    for figure in precision.figures:
+        column = values.get(figure.split(" ")[1], np.empty(0))
+        found = estimate(figure, column, precision.confidence)
+        half, value = found.half_width, found.value
+        estimates[figure] = found
+        met[figure] = (
+            half is not None and value is not None and half <= precision.tolerance * abs(value)
+        )
+    if precision.occupancy is not None:
+        met["occupancy"] = converged(precision.occupancy, curves)
+    return Assessment(runs, estimates, met)
+
+
+def converged(asked: OccupancyConvergence, curves: Sequence[Sequence[int]]) -> bool:
+    """Whether the mean curve has converged with the last of the runs."""
+    if len(curves) < asked.consecutive + 1:
+        return False
+    steps = functional_changes(mean_curves(curves)[-asked.consecutive - 1 :])
+    return bool(np.all(np.abs(steps - [0.0, 1.0, 1.0]) <= asked.tolerance))
+
+
+def mean_curves(curves: Sequence[Sequence[int]]) -> NDArray[np.float64]:
+    """(n, seconds): the mean curve of the first run, of the first two, and so on.
+
+    Shorter curves go on with their last value.
+    """
+    seconds = max((len(curve) for curve in curves), default=0)
+    filled = np.array(
+        [[*curve, *[curve[-1]] * (seconds - len(curve))] for curve in curves], dtype=np.float64
+    )
+    return np.cumsum(filled, axis=0) / np.arange(1, len(filled) + 1)[:, None]
+
+
+def functional_changes(means: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n - 1, 3): relative difference, projection coefficient and secant cosine of each step.
+
+    The secant goes over a twentieth of the curve.
+
+    Args:
+        means: (n, seconds) curves, each of which is compared with the one before.
+    """
+    before, after = means[:-1], means[1:]
+    size2 = np.sum(before**2, axis=1)
+    window = max(1, means.shape[1] // 20)
+    rise_b, rise_a = (
+        before[:, window:] - before[:, :-window],
+        after[:, window:] - after[:, :-window],
+    )
+    slopes = np.sqrt(np.sum(rise_b**2, axis=1) * np.sum(rise_a**2, axis=1))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        changes = np.column_stack(
+            [
+                np.sqrt(np.sum((after - before) ** 2, axis=1) / size2),
+                np.sum(after * before, axis=1) / size2,
+                np.sum(rise_a * rise_b, axis=1) / slopes,
+            ]
+        )
+    # Curves without anybody, or without any change, are equal if they differ in nothing.
+    equal = np.all(before == after, axis=1)
+    changes[equal] = [0.0, 1.0, 1.0]
+    return np.nan_to_num(changes, nan=np.inf)

@@ -1,0 +1,112 @@
+"""Experiments as files: TOML that people write, and the JSON that a store keeps."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from mesa_mobility.errors import ModelError
+from mesa_mobility.experiments.convergence import OccupancyConvergence, Precision
+from mesa_mobility.experiments.designs import Design, Grid, LatinHypercube, SobolSequence, Table
+from mesa_mobility.experiments.experiment import Experiment, model_name
+from mesa_mobility.experiments.sensitivity_designs import MorrisTrajectories, SaltelliSamples
+from mesa_mobility.plugins.model_files import is_model_file
+from mesa_mobility.plugins.registry import did_you_mean
+
+_SCALARS = ("name", "model", "seed", "replications", "max_seconds", "time_limit", "keep")
+_TABLES = ("fixed", "precision")
+_DESIGNS: dict[str, Callable[[Any], Design]] = {
+    Grid.kind: Grid,
+    Table.kind: Table,
+    LatinHypercube.kind: lambda values: LatinHypercube(**values),
+    SobolSequence.kind: lambda values: SobolSequence(**values),
+    SaltelliSamples.kind: lambda values: SaltelliSamples(**values),
+    MorrisTrajectories.kind: lambda values: MorrisTrajectories(**values),
+}
+
+
+def read_experiment(path: str | os.PathLike[str]) -> Experiment:
+    """Read an experiment from a TOML file.
+
+    A model in a Python file is looked for beside the TOML file.
+
+    Raises:
+        ModelError: no such file, not TOML, or not an experiment.
+    """
+    file = Path(path)
+    try:
+        values = tomllib.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ModelError(f"{file}: no such file, expected an experiment in TOML") from None
+    except OSError as error:
+        raise ModelError(f"{file}: cannot be read: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ModelError(f"{file}: is not TOML: {' '.join(str(error).split())}") from error
+    model = values.get("model")
+    if isinstance(model, str) and is_model_file(model):
+        values["model"] = os.fspath(file.parent / model)
+    try:
+        return from_definition(values)
+    except ModelError as error:
+        raise ModelError(f"{file}: {error}") from error
+
+
+def from_definition(values: Mapping[str, Any]) -> Experiment:
+    """An experiment from what a file says.
+
+    Raises:
+        ModelError: an unknown key, a missing or wrong value, or several designs.
+    """
+    known = [*_SCALARS, *_TABLES, *_DESIGNS]
+    for key in values:
+        if key not in known:
+            raise ModelError(
+                f"unknown key {key!r}{did_you_mean(key, dict.fromkeys(known))}; "
+                f"expected {', '.join(known)}"
+            )
+    if not isinstance(values.get("model"), str):
+        raise ModelError(f"model is {values.get('model')!r}, expected the name of a model")
+    given = [kind for kind in _DESIGNS if kind in values]
+    if len(given) > 1:
+        raise ModelError(f"has the designs {' and '.join(given)}, expected one")
+    for key in (*_TABLES, *given):
+        wanted: type = list if key == Table.kind else dict
+        if not isinstance(values.get(key, wanted()), wanted):
+            raise ModelError(f"{key}: expected {'tables' if wanted is list else 'a table'}")
+    keywords: dict[str, Any] = {key: values[key] for key in _SCALARS if key in values}
+    keywords["fixed"] = values.get("fixed", {})
+    keywords["precision"] = _made("precision", _precision, values.get("precision", {}))
+    if given:
+        keywords["parameters"] = _made(given[0], _DESIGNS[given[0]], values[given[0]])
+    return Experiment(**keywords)
+
+
+def to_definition(experiment: Experiment) -> dict[str, Any]:
+    """What a file says of an experiment; ``from_definition`` makes the same one of it."""
+    said: dict[str, Any] = {key: getattr(experiment, key) for key in _SCALARS}
+    said["model"] = model_name(experiment.model)
+    said["keep"] = list(experiment.keep)
+    said["fixed"] = dict(experiment.fixed)
+    said["precision"] = experiment.precision.definition()
+    said[experiment.design.kind] = experiment.design.definition()
+    return said
+
+
+def _precision(values: Mapping[str, Any]) -> Precision:
+    keywords = dict(values)
+    occupancy = keywords.pop("occupancy", {})
+    if occupancy is not False and not isinstance(occupancy, dict):
+        raise ModelError(f"occupancy is {occupancy!r}, expected a table or false")
+    curve = None if occupancy is False else OccupancyConvergence(**occupancy)
+    return Precision(occupancy=curve, **keywords)
+
+
+def _made(key: str, maker: Callable[[Any], Any], values: Any) -> Any:
+    try:
+        return maker(values)
+    except TypeError as error:
+        # Python's own words for a missing or unknown keyword say which.
+        raise ModelError(f"{key}: {str(error).partition('() ')[2] or error}") from error

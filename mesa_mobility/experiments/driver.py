@@ -1,0 +1,342 @@
+"""Running an experiment: what is missing goes out in batches, a bounded number at a time."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import platform
+import time
+import uuid
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.experiments.experiment import (
+    Experiment,
+    check_parameters,
+    model_class,
+    model_name,
+)
+from mesa_mobility.experiments.points import Point, point_key, run_name
+from mesa_mobility.experiments.rows import DONE, RUNS, STALLED
+from mesa_mobility.experiments.store import Store
+from mesa_mobility.experiments.workers.batches import (
+    Batch,
+    Finished,
+    rows_of_lost_workers,
+    salvage,
+)
+from mesa_mobility.experiments.workers.choice import workers_for
+from mesa_mobility.experiments.workers.executors import WorkerDied, Workers
+from mesa_mobility.experiments.workers.one_run import Setup
+from mesa_mobility.plugins.model_files import is_model_file
+from mesa_mobility.processes import check_importable, check_main
+
+BATCH_SECONDS = 5.0
+"""Seconds that a batch should take: long beside its message, short beside a run lost."""
+
+_MOST_RUNS = 500
+"""Runs of a batch at most."""
+
+_LOOSE = 48
+"""Files of rows that come together before they are merged."""
+
+_ATTEMPTS = 3
+"""Workers that may die with a batch before its runs go out one by one, or count as failed."""
+
+_PACKAGES = ("mesa-mobility", "mesa", "numpy", "scipy", "numba", "llvmlite", "shapely", "pyarrow")
+
+Missing = Iterator[tuple[Point, int]]
+
+
+@dataclass
+class Progress:
+    """How far an experiment has come.
+
+    Attributes:
+        total: runs to do now, those that were there before left out.
+        ended: of them.
+        statuses: number of ended runs by status.
+        runs_s: seconds that the ended runs took, on all workers together.
+        address: of a page of the executor's own, or nothing.
+    """
+
+    total: int = 0
+    ended: int = 0
+    statuses: Counter[str] = field(default_factory=Counter)
+    runs_s: float = 0.0
+    address: str = ""
+
+    @property
+    def failed(self) -> int:
+        """Runs that are neither done nor stalled."""
+        return self.ended - self.statuses[DONE] - self.statuses[STALLED]
+
+    def add(self, finished: Finished) -> None:
+        """Add what a worker has finished."""
+        self.statuses.update(finished.statuses)
+        self.ended += sum(finished.statuses.values())
+        self.runs_s += finished.wall_s
+
+
+def run_experiment(
+    experiment: Experiment,
+    store: str | os.PathLike[str],
+    *,
+    executor: Any = "processes",
+    workers: int | None = None,
+    progress: Callable[[Progress], None] | None = None,
+) -> Store:
+    """Run what is missing of an experiment.
+
+    Args:
+        experiment: what is to be run. Points and replications may be added later.
+        store: path or fsspec URL of its folder, made if need be.
+        executor: "processes" (spawned), "serial", "dask" (a cluster on this machine), the address
+            of a Dask scheduler, a ``distributed.Client`` or cluster, or any
+            ``concurrent.futures.Executor``. Results do not depend on it.
+        workers: processes, or workers of a cluster on this machine; None for one a processor.
+        progress: called after each batch, and once a second. If it raises, the experiment stops,
+            and goes on where it stopped when it is run again.
+
+    Returns:
+        The store.
+
+    Raises:
+        ModelError: a model, parameter, executor or store that does not fit.
+        ResultsError: the store cannot be read or written, another process is running the
+            experiment, or all workers are gone.
+    """
+    check_parameters(experiment)
+    kept = Store(store)
+    told = progress or (lambda now: None)
+
+    if executor in ("processes", "dask"):  # before the lock: this may be a trial of the script
+        if isinstance(experiment.model, type):
+            check_importable(experiment.model, "run_experiment")
+        check_main("run_experiment")
+    with kept.locked():
+        kept.prepare(experiment, _session(experiment, executor))
+        kept.folder.remove_half_written(RUNS)
+        salvage(kept.folder, experiment.column_types(), f"salvaged-{time.time_ns()}")
+        crew, closing = workers_for(executor, workers)
+        driver = _Driver(experiment, kept, crew, told)
+        try:
+            with closing:
+                driver.run()
+        finally:
+            salvage(kept.folder, experiment.column_types(), f"salvaged-{time.time_ns()}")
+            kept.compact()
+    return kept
+
+
+def count_missing(experiment: Experiment, store: str | os.PathLike[str]) -> int:
+    """Runs that ``run_experiment`` would do now; with "auto", at first."""
+    kept = Store(store)
+    there = kept.folder.exists("experiment.json")
+    return _Driver(experiment, kept, None, lambda now: None).missing(there=there)[0]
+
+
+class _Driver:
+    def __init__(
+        self,
+        experiment: Experiment,
+        store: Store,
+        workers: Workers | None,
+        told: Callable[[Progress], None],
+    ) -> None:
+        self._experiment, self._store, self._told = experiment, store, told
+        self._workers = workers
+        self._attempts: Counter[str] = Counter()
+        self._per_run: float | None = None
+        self.progress = Progress(address=workers.address if workers else "")
+
+    def run(self) -> None:
+        """Do what is missing, round by round."""
+        assert self._workers is not None
+        setup = self._setup(self._workers.own_processes)
+        while True:
+            count, runs = self.missing(there=True)
+            if not count:
+                return
+            self.progress.total += count
+            self._told(self.progress)
+            self._do(setup, runs)
+            if self._experiment.replications != "auto":
+                return
+
+    def missing(self, *, there: bool) -> tuple[int, Missing]:
+        """Number of runs that are missing now, and the runs."""
+        experiment = self._experiment
+        points = range(len(experiment.design))
+        keys = np.array([point_key(experiment.point(index)) for index in points], dtype="S16")
+        # Whole numbers drawn between bounds may give a point twice.
+        _, first = np.unique(keys, return_index=True)
+        order = np.sort(first)
+        wanted = self._wanted(keys, order, there=there)
+        known = self._store.run_names() if there else np.empty(0, dtype="S40")
+
+        def runs() -> Missing:
+            for index in order.tolist():
+                key = keys[index].decode()
+                names = np.array(
+                    [run_name(key, number) for number in range(wanted[index])], dtype="S40"
+                )
+                present = np.isin(names, known)
+                for number in np.flatnonzero(~present).tolist():
+                    yield experiment.point(index), number
+
+        return sum(1 for _ in runs()), runs()
+
+    def _wanted(self, keys: Any, order: Any, *, there: bool) -> dict[int, int]:
+        """Replications that each point should have by now."""
+        experiment = self._experiment
+        if experiment.replications != "auto":
+            return dict.fromkeys(order.tolist(), experiment.replications)
+        found = self._store.assessments(experiment) if there else {}
+        precision = experiment.precision
+        wanted = {}
+        for index in order.tolist():
+            known = found.get(keys[index].decode())
+            have = known.runs if known else 0
+            wanted[index] = have if known and have >= precision.least and known.enough else (
+                max(have, precision.next_count(have))
+            )  # fmt: skip
+        return wanted
+
+    def _do(self, setup: Setup, runs: Missing) -> None:
+        workers = self._workers
+        assert workers is not None
+        under_way = 0
+        loose = 0
+        again: list[Batch] = []
+        while True:
+            while under_way < 2 * workers.count:
+                batch = again.pop() if again else self._batch(runs)
+                if batch is None:
+                    break
+                workers.submit(setup, batch)
+                under_way += 1
+            if not under_way:
+                return
+            for batch, answer in workers.ended(1.0):
+                under_way -= 1
+                if isinstance(answer, Finished):
+                    self._attempts.pop(batch.name, None)
+                    self._note(answer)
+                    loose += 1
+                elif isinstance(answer, WorkerDied):
+                    again += self._again(setup, batch)
+                else:
+                    raise self._as_told(answer) from answer
+            if loose >= _LOOSE:
+                self._store.compact()
+                loose = 0
+            self._told(self.progress)
+
+    def _batch(self, runs: Missing) -> Batch | None:
+        """The next batch; the first ones are single runs, which tell how long a run takes."""
+        size = 1
+        if self._per_run is not None:
+            size = max(1, min(_MOST_RUNS, math.floor(BATCH_SECONDS / max(self._per_run, 1e-6))))
+            left = self.progress.total - self.progress.ended
+            assert self._workers is not None
+            # Towards the end no worker waits for the batch of another.
+            size = min(size, max(1, left // (4 * self._workers.count)))
+        taken = tuple(islice(runs, size))
+        return Batch(uuid.uuid4().hex, taken) if taken else None
+
+    def _note(self, finished: Finished) -> None:
+        self.progress.add(finished)
+        runs = sum(finished.statuses.values())
+        now = finished.wall_s / runs
+        # Only a run of its own may contain compilation: later ones soon outweigh it.
+        self._per_run = now if self._per_run is None else 0.5 * (self._per_run + now)
+
+    def _again(self, setup: Setup, batch: Batch) -> list[Batch]:
+        """Batches to have done anew after the worker of one has died."""
+        self._attempts[batch.name] += 1
+        if self._attempts[batch.name] < _ATTEMPTS:
+            return [batch]
+        if len(batch.runs) > 1:
+            return [Batch(f"{batch.name}-{k}", (run,)) for k, run in enumerate(batch.runs)]
+        reason = f"{_ATTEMPTS} workers died during this run"
+        rows_of_lost_workers(setup, batch, reason)
+        self._note(Finished({"failed": 1}, 0.0))
+        return []
+
+    def _as_told(self, error: BaseException) -> BaseException:
+        done = f"{self.progress.ended} of {self.progress.total} runs have ended and are kept"
+        text = " ".join(f"{error}".split()) or type(error).__name__
+        if isinstance(error, ResultsError):
+            return ResultsError(f"{text}; {done}")
+        return ResultsError(
+            f"{self._store}: the workers fail: {type(error).__name__}: {text}; {done}"
+        )
+
+    def _setup(self, own_processes: bool) -> Setup:
+        experiment = self._experiment
+        folder = self._store.folder
+        return Setup(
+            model=experiment.model,
+            seed=experiment.seed,
+            max_seconds=experiment.max_seconds,
+            time_limit=experiment.time_limit,
+            occupancy=experiment.keeps_occupancy,
+            trajectories="trajectories" in experiment.keep,
+            column_types=experiment.column_types(),
+            # Workers may have been started in another folder.
+            store=os.path.abspath(folder.root) if folder.local else folder.url,
+            may_end=own_processes,
+        )
+
+
+def _session(experiment: Experiment, executor: Any) -> dict[str, Any]:
+    """What an experiment is run with: versions, maps and model file."""
+    versions = {"python": platform.python_version()}
+    for name in _PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return {
+        "began": datetime.now(UTC).isoformat(timespec="seconds"),
+        "executor": executor if isinstance(executor, str) else type(executor).__name__,
+        "machine": f"{platform.system()} {platform.machine()}",
+        "versions": versions,
+        "inputs": _inputs(experiment),
+    }
+
+
+def _inputs(experiment: Experiment) -> dict[str, str]:
+    """The sha256 of each file that results depend on, by its name."""
+    from mesa_mobility.mobility.mapfile import shipped_map_path
+
+    files = {"map able_bodied": shipped_map_path("able_bodied")}
+    name = model_name(experiment.model)
+    model_class(experiment.model)
+    if is_model_file(name):
+        files["model file"] = Path(name.partition(".py")[0] + ".py")
+    design = experiment.design
+    maps = {experiment.fixed.get("mobility_map")}
+    if "mobility_map" in design.column_types():
+        maps |= {design[index]["mobility_map"] for index in range(len(design))}
+    for path in sorted(str(each) for each in maps if isinstance(each, str)):
+        files[f"map {path}"] = Path(path)
+    inputs = {}
+    for label, file in files.items():
+        try:
+            with file.open("rb") as source:
+                inputs[label] = hashlib.file_digest(source, "sha256").hexdigest()
+        except OSError as error:
+            raise ResultsError(f"{file}: cannot be read: {error.strerror or error}") from error
+    return inputs

@@ -1,0 +1,162 @@
+"""An experiment: a model, points of its parameter space, replications and a seed."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from mesa_mobility.errors import ModelError
+from mesa_mobility.experiments.convergence import Precision
+from mesa_mobility.experiments.designs import Design, Grid
+from mesa_mobility.experiments.points import ARROW_TYPES, Point, Value, plain_value
+from mesa_mobility.plugins.parameters import parameters as parameters_of
+from mesa_mobility.plugins.registry import did_you_mean
+
+Kept = Literal["occupancy", "trajectories"]
+KEPT = ("occupancy", "trajectories")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Runs of a model over points of its parameter space, each with several seeds.
+
+    The seed of a run is derived from the experiment's seed, the point's values and the number of
+    the replication, and from nothing else. Executors, the order of runs, interruptions, and points
+    or replications added later change no result.
+
+    Args:
+        model: a class, the name of an installed model, ``FILE.py``, ``FILE.py:NAME`` or
+            ``module:NAME``. Its constructor takes ``rng``.
+        parameters: a design, or values by name, which are a ``Grid``.
+        replications: runs of each point, or "auto": as many as ``precision`` takes.
+        seed: of the experiment, from 0 on.
+        fixed: values of parameters that are the same in all runs.
+        max_seconds: simulated seconds at most; runs that take longer end with people inside.
+        time_limit: seconds of real time that a run may take; then it counts as timed out.
+        keep: beside the figures of each run, its "occupancy" (people inside each second) and its
+            "trajectories".
+        precision: with ``replications="auto"``, what is to be known how well.
+        name: title of the report.
+
+    Raises:
+        ModelError: a value out of range, an unknown parameter, or one that is fixed and varies.
+    """
+
+    model: type | str
+    parameters: Design | Mapping[str, Any] = field(default_factory=dict)
+    replications: int | Literal["auto"] = 1
+    seed: int = 0
+    fixed: Mapping[str, Value] = field(default_factory=dict)
+    max_seconds: float | None = None
+    time_limit: float | None = None
+    keep: tuple[Kept, ...] = ()
+    precision: Precision = field(default_factory=Precision)
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        if isinstance(self.parameters, Mapping):
+            put(self, "parameters", Grid(self.parameters))
+        put(self, "fixed", {name: plain_value(name, v) for name, v in self.fixed.items()})
+        put(self, "keep", tuple(self.keep))
+        if self.replications != "auto":
+            _check_whole("replications", self.replications, 1, '1 or more, or "auto"')
+        _check_whole("seed", self.seed, 0, "0 or more")
+        for name in ("max_seconds", "time_limit"):
+            _check_seconds(name, getattr(self, name))
+        for each in self.keep:
+            if each not in KEPT:
+                raise ModelError(f"experiment: keep has {each!r}, expected {' or '.join(KEPT)}")
+        if both := set(self.fixed) & set(self.design.column_types()):
+            raise ModelError(f"experiment: {sorted(both)[0]} is both fixed and varied")
+
+    @property
+    def design(self) -> Design:
+        """The points that vary."""
+        assert not isinstance(self.parameters, Mapping)
+        return self.parameters
+
+    @property
+    def keeps_occupancy(self) -> bool:
+        """Whether runs keep the number of people inside each second."""
+        return "occupancy" in self.keep or (
+            self.replications == "auto" and self.precision.occupancy is not None
+        )
+
+    def point(self, index: int) -> Point:
+        """All parameters of a point: those that are fixed, then those that vary."""
+        return {**self.fixed, **self.design[index]}
+
+    def column_types(self) -> dict[str, str]:
+        """Name of the Arrow type of each parameter."""
+        fixed = {name: ARROW_TYPES.get(type(value), "string") for name, value in self.fixed.items()}
+        return {**fixed, **self.design.column_types()}
+
+
+def model_class(model: type | str) -> type:
+    """The class of a model.
+
+    Raises:
+        ModelError: it cannot be found, or loaded.
+    """
+    if isinstance(model, type):
+        return model
+    from mesa_mobility.plugins.model_files import is_model_file, load_model_file
+    from mesa_mobility.plugins.registry import load_model
+
+    if is_model_file(model):
+        return load_model_file(model)
+    if ":" not in model:
+        return load_model(model)
+    from importlib import import_module
+
+    module, _, name = model.partition(":")
+    try:
+        found = getattr(import_module(module), name)
+    except (ImportError, AttributeError) as error:
+        raise ModelError(f"model {model}: cannot be loaded: {error}") from error
+    if not isinstance(found, type):
+        raise ModelError(f"model {model}: is not a class")
+    return found
+
+
+def check_parameters(experiment: Experiment) -> None:
+    """Raise ModelError if the model does not take a parameter of the experiment, or no ``rng``."""
+    kind = model_class(experiment.model)
+    called = model_name(experiment.model)
+    taken = parameters_of(kind)
+    if any(each.kind is each.VAR_KEYWORD for each in inspect.signature(kind).parameters.values()):
+        return
+    needed = ["rng", *(["record"] if "trajectories" in experiment.keep else [])]
+    for name in needed:
+        if name not in taken:
+            raise ModelError(f"model {called}: its constructor does not take {name}")
+    for name in experiment.column_types():
+        if name in ("rng", "record"):
+            raise ModelError(f"experiment: {name} is a parameter, but each run is given its own")
+        if name not in taken:
+            raise ModelError(
+                f"model {called}: unknown parameter {name!r}{did_you_mean(name, taken)}"
+            )
+
+
+def model_name(model: type | str) -> str:
+    """A model as a file names it."""
+    return model if isinstance(model, str) else f"{model.__module__}:{model.__qualname__}"
+
+
+def _check_whole(name: str, value: Any, least: int, expected: str) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise ModelError(f"experiment: {name} is {value!r}, expected a whole number, {expected}")
+
+
+def _check_seconds(name: str, value: Any) -> None:
+    if value is None:
+        return
+    if isinstance(value, bool) or not isinstance(value, int | float) or not (
+        math.isfinite(value) and value > 0
+    ):  # fmt: skip
+        raise ModelError(f"experiment: {name} is {value!r}, expected seconds above 0")

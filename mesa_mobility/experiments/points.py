@@ -1,0 +1,68 @@
+"""Points of the parameter space: their values, keys, and the seeds of their runs."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from mesa_mobility.errors import ModelError
+
+Value: TypeAlias = bool | int | float | str | None
+Point: TypeAlias = dict[str, Value]
+
+ARROW_TYPES: dict[type, str] = {bool: "bool", int: "int64", float: "double", str: "string"}
+"""Name of the Arrow type of each type of value."""
+
+
+def plain_value(name: str, value: Any) -> Value:
+    """A parameter's value as the store keeps it.
+
+    Raises:
+        ModelError: neither a finite number nor text, yes or no, or None.
+    """
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ModelError(f"parameter {name}: got {value}, expected a finite number")
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    raise ModelError(
+        f"parameter {name}: got {type(value).__name__}, expected a number, text, true or false, "
+        "or nothing"
+    )
+
+
+def point_key(point: Mapping[str, Value]) -> str:
+    """The name of a point: 16 hexadecimal digits of a hash of its names and values.
+
+    It depends on nothing else, neither on the order of the names nor on other points. Whole numbers
+    count the same with and without a decimal point.
+    """
+    values = {
+        name: int(value) if isinstance(value, float) and value.is_integer() else value
+        for name, value in point.items()
+    }
+    text = json.dumps(values, sort_keys=True, ensure_ascii=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def run_name(key: str, replication: int) -> str:
+    """The name of a run, by which it is known in a store."""
+    return f"{key}-{replication}"
+
+
+def seed_of_run(seed: int, key: str, replication: int) -> int:
+    """The seed of a run, from 0 to 2**63 - 1.
+
+    Args:
+        seed: of the experiment.
+        key: of the point.
+        replication: number of the replication, from 0 on.
+    """
+    sequence = np.random.SeedSequence([seed, int(key, 16), replication])
+    return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))

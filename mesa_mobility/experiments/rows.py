@@ -1,0 +1,17 @@
+"""What a row of the store says of a run, and where a store has its files."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+DONE, FAILED, STALLED, TIMED_OUT = "done", "failed", "stalled", "timed_out"
+STATUSES = (DONE, FAILED, STALLED, TIMED_OUT)
+
+SERIES = {"types", "occupancy"}
+"""Columns that hold lists."""
+
+Row: TypeAlias = dict[str, Any]
+
+RUNS = "runs"
+WORK = "work"
+TRAJECTORIES = "trajectories"

@@ -1,0 +1,304 @@
+"""The store of an experiment: a folder with its definition and the rows of its runs.
+
+experiment.json      the definition, and the versions and maps of each session
+runs/*.parquet       one row a run
+trajectories/        one file a run, where trajectories are kept
+work/                journals of batches under way
+driver.lock          held by the process that runs the experiment
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+from filelock import FileLock, Timeout
+from numpy.typing import NDArray
+
+from mesa_mobility.errors import ModelError, ResultsError
+from mesa_mobility.experiments.convergence import Assessment, assess
+from mesa_mobility.experiments.definition import from_definition, to_definition
+from mesa_mobility.experiments.experiment import Experiment
+from mesa_mobility.experiments.points import point_key
+from mesa_mobility.experiments.rows import DONE, RUNS, SERIES, STATUSES, TRAJECTORIES, WORK
+from mesa_mobility.experiments.shards import (
+    Folder,
+    joined,
+    read_table,
+    write_table,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DEFINITION = "experiment.json"
+FORMAT_VERSION = 1
+_SMALL = 4_000_000
+"""Bytes below which a file of rows is merged with others."""
+
+
+class Store:
+    """The store of an experiment.
+
+    Args:
+        url: path or fsspec URL of the folder.
+    """
+
+    def __init__(self, url: str | os.PathLike[str]) -> None:
+        self.folder = Folder(url)
+
+    def __str__(self) -> str:
+        return self.folder.url
+
+    def definition(self) -> dict[str, Any]:
+        """The content of ``experiment.json``.
+
+        Raises:
+            ResultsError: there is none, or it is damaged.
+        """
+        try:
+            values = json.loads(self.folder.read_bytes(DEFINITION))
+            if values["format_version"] != FORMAT_VERSION:
+                raise ResultsError(
+                    f"{self}: format version {values['format_version']}, expected {FORMAT_VERSION}"
+                )
+            return dict(values)
+        except (FileNotFoundError, NotADirectoryError) as error:
+            raise ResultsError(
+                f"{self}: has no {DEFINITION}, expected the store of an experiment"
+            ) from error
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise ResultsError(f"{self}/{DEFINITION}: damaged: {error}") from error
+
+    def experiment(self) -> Experiment:
+        """The experiment, as it was last run."""
+        return from_definition(self.definition()["experiment"])
+
+    def table(self, columns: Sequence[str] | None = None) -> pa.Table:
+        """Rows as an Arrow table, each run once, in no particular order.
+
+        Args:
+            columns: the columns to read beside ``run`` and ``status``; all by default.
+
+        Raises:
+            ResultsError: a damaged file.
+        """
+        wanted = None if columns is None else list(dict.fromkeys(["run", "status", *columns]))
+        while True:
+            tables = [read_table(self.folder, name, wanted) for name in self.shards()]
+            # Where files were merged meanwhile, their rows are in a file that was not listed.
+            if all(table is not None for table in tables):
+                return joined(table for table in tables if table is not None)
+
+    def frame(self, *, series: bool = False) -> pd.DataFrame:
+        """Rows as a pandas data frame, by point of the experiment's design and replication.
+
+        Args:
+            series: whether to include the columns that hold lists.
+        """
+        table = self.table()
+        if not series:
+            table = table.drop_columns([n for n in table.column_names if n in SERIES])
+        experiment = self.experiment()
+        place: dict[str, int] = {}
+        for index in range(len(experiment.design)):
+            place.setdefault(point_key(experiment.point(index)), index)
+        order = sorted(
+            zip(
+                (place.get(key, len(place)) for key in table["point"].to_pylist()),
+                table["point"].to_pylist(),
+                table["replication"].to_pylist(),
+                range(table.num_rows),
+                strict=True,
+            )
+        )
+        numbers = pa.array([number for *_, number in order], type=pa.int64())
+        return table.take(numbers).to_pandas()
+
+    def status(self) -> dict[str, Any]:
+        """Number of runs by status, and of those asked for and missing.
+
+        Runs that are in the store but no longer asked for count by their status alone. With
+        ``replications="auto"`` the number asked for is the number known so far.
+        """
+        experiment, table = self.experiment(), self.table(["point", "replication", "wall_s"])
+        counts = Counter(table["status"].to_pylist())
+        asked: int | None = None
+        missing: int | None = None
+        if experiment.replications != "auto":
+            keys = {point_key(experiment.point(i)) for i in range(len(experiment.design))}
+            asked = len(keys) * experiment.replications
+            there = zip(table["point"].to_pylist(), table["replication"].to_pylist(), strict=True)
+            missing = asked - sum(key in keys and n < experiment.replications for key, n in there)
+        return {
+            "store": str(self),
+            "asked": asked,
+            "missing": missing,
+            **{status: counts.get(status, 0) for status in STATUSES},
+            "runs_s": float(np.sum(table["wall_s"].to_numpy())),
+            "files": len(self.shards()),
+            "running": self.is_locked(),
+        }
+
+    def means(self, figure: str) -> dict[str, float]:
+        """Mean of a column of numbers over the finished replications of each point, by its key.
+
+        Raises:
+            ResultsError: no such column.
+        """
+        frame = self.table(["point", figure]).to_pandas()
+        if figure not in frame:
+            raise ResultsError(f"{self}: has no column {figure}")
+        frame = frame[(frame["status"] == DONE) & frame[figure].notna()]
+        return {str(k): float(v) for k, v in frame.groupby("point")[figure].mean().items()}
+
+    def assessments(self, experiment: Experiment | None = None) -> dict[str, Assessment]:
+        """How well the figures of ``replications="auto"`` are known, by key of the point.
+
+        Args:
+            experiment: with the precision asked for; by default that of the store.
+        """
+        precision = (experiment or self.experiment()).precision
+        columns = ["point", "replication", *precision.columns]
+        if precision.occupancy is not None:
+            columns.append("occupancy")
+        table = self.table(columns)
+        if not table.num_rows:
+            return {}
+        frame = table.to_pandas().sort_values(["point", "replication"])
+        found = {}
+        for key, rows in frame.groupby("point"):
+            done = rows[rows["status"] == DONE]
+            values = {
+                name: done[name].dropna().to_numpy(dtype=np.float64)
+                for name in precision.columns
+                if name in done
+            }
+            curves = done["occupancy"].dropna() if "occupancy" in done else ()
+            found[str(key)] = assess(precision, len(rows), values, list(curves))
+        return found
+
+    def run_names(self) -> NDArray[np.bytes_]:
+        """(n,) names of the runs that are there, in alphabetical order."""
+        return np.unique(np.array(self.table([])["run"].to_pylist(), dtype="S40"))
+
+    def shards(self) -> dict[str, int]:
+        """Bytes of the files of rows, by name."""
+        return self.folder.files(RUNS, ".parquet")
+
+    # What follows is for the process that runs the experiment.
+
+    def prepare(self, experiment: Experiment, session: dict[str, Any]) -> None:
+        """Write the definition, with a session added to those before.
+
+        Args:
+            experiment: to be run.
+            session: what it is run with; ``inputs`` must be those of the sessions before.
+
+        Raises:
+            ModelError: the store is of another experiment, or a map or model file has changed.
+            ResultsError: the store cannot be written.
+        """
+        said = to_definition(experiment)
+        sessions = []
+        if self.folder.exists(DEFINITION):
+            before = self.definition()
+            self._check_same(before["experiment"], said)
+            sessions = before["sessions"]
+            self._check_inputs(sessions[-1]["inputs"], session["inputs"])
+        for name in (RUNS, WORK, *([TRAJECTORIES] if "trajectories" in experiment.keep else [])):
+            self.folder.make(name)
+        values = {
+            "format_version": FORMAT_VERSION, "experiment": said, "sessions": [*sessions, session]
+        }  # fmt: skip
+        self.folder.write_bytes(DEFINITION, (json.dumps(values, indent=1) + "\n").encode())
+
+    def _check_same(self, before: dict[str, Any], said: dict[str, Any]) -> None:
+        for key in ("model", "seed", "max_seconds"):
+            if before.get(key) != said.get(key):
+                raise ModelError(
+                    f"{self}: holds runs with {key} {before.get(key)}, got {said.get(key)}; "
+                    "expected another store"
+                )
+
+    def _check_inputs(self, before: dict[str, str], now: dict[str, str]) -> None:
+        for name in sorted(set(before) & set(now)):
+            if before[name] != now[name]:
+                raise ModelError(
+                    f"{self}: holds runs with another {name} (sha256 {before[name][:16]}...), got "
+                    f"{now[name][:16]}...; expected the same, or another store"
+                )
+
+    def compact(self) -> None:
+        """Merge small files of rows into one."""
+        small, size = [], 0
+        for name, count in self.shards().items():
+            if count < _SMALL and size < 4 * _SMALL:
+                small.append(name)
+                size += count
+        if len(small) < 2:
+            return
+        tables = [read_table(self.folder, name) for name in small]
+        whole = joined(table for table in tables if table is not None)
+        write_table(self.folder, f"{RUNS}/merged-{time.time_ns()}.parquet", whole)
+        # Only now: rows are twice in the store for a moment, but never not at all.
+        for name in small:
+            self.folder.remove(name)
+
+    def is_locked(self) -> bool:
+        """Whether a process runs the experiment now, as far as this file system tells."""
+        path = Path(self.folder.path("driver.lock"))
+        if not self.folder.local or not path.exists():
+            return False
+        try:
+            with FileLock(path, timeout=0):
+                return False
+        except (Timeout, OSError):
+            return True
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Be the only process that runs the experiment; the lock ends with the process.
+
+        Object stores have no locks. Two drivers would there do runs twice, and count them once.
+
+        Raises:
+            ResultsError: another process runs it, or the folder cannot be written.
+        """
+        self.folder.make("")
+        if not self.folder.local:
+            yield
+            return
+        lock = FileLock(self.folder.path("driver.lock"), timeout=1.0)
+        try:
+            lock.acquire()
+        except Timeout as error:
+            raise ResultsError(f"{self}: another process is running this experiment") from error
+        except OSError as error:
+            raise ResultsError(f"{self}: cannot be written: {error.strerror or error}") from error
+        try:
+            yield
+        finally:
+            lock.release()
+
+
+def open_store(url: str | os.PathLike[str]) -> Store:
+    """Open the store of an experiment.
+
+    Args:
+        url: path or fsspec URL of the folder.
+
+    Raises:
+        ResultsError: there is no experiment.
+    """
+    store = Store(url)
+    store.definition()
+    return store

@@ -1,0 +1,1 @@
+"""Workers: one run, a batch of runs, and where batches are done."""

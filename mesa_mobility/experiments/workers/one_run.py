@@ -1,0 +1,193 @@
+"""One run of an experiment, and the row of the store that it gives."""
+
+from __future__ import annotations
+
+import math
+import socket
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from os import getpid
+from typing import Any
+
+from mesa_mobility.errors import ModelError
+from mesa_mobility.experiments.experiment import model_class
+from mesa_mobility.experiments.points import Point, point_key, run_name, seed_of_run
+from mesa_mobility.experiments.rows import DONE, FAILED, STALLED, TIMED_OUT, Row
+from mesa_mobility.plugins.parameters import parameters as parameters_of
+
+_LONGEST_ERROR = 500
+
+
+class TimedOut(Exception):
+    """A run has taken longer than its limit."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What all runs of an experiment share; sent to workers with each batch.
+
+    Attributes:
+        model: class, or name of a model.
+        seed: of the experiment.
+        max_seconds: simulated seconds at most, or None.
+        time_limit: seconds of real time at most, or None.
+        occupancy: whether rows keep the occupancy.
+        trajectories: whether trajectories are written.
+        column_types: name of the Arrow type of each parameter.
+        store: path or URL.
+        may_end: whether the process may be ended where a run does not return to Python in time.
+    """
+
+    model: type | str
+    seed: int
+    max_seconds: float | None
+    time_limit: float | None
+    occupancy: bool
+    trajectories: bool
+    column_types: dict[str, str]
+    store: str
+    may_end: bool
+
+
+def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
+    """Run a model at a point; whatever goes wrong is in the row.
+
+    Returns:
+        The row, and the model, or None where it could not be made.
+    """
+    row = first_columns(setup, point, replication)
+    wall, cpu = time.perf_counter(), time.process_time()
+    model = None
+    try:
+        model = _made(setup, point, row["seed"])
+        _advance(model, setup, wall)
+        row["status"] = STALLED if getattr(model, "stalled", False) else DONE
+        row |= _figures(model, set(row), occupancy=setup.occupancy)
+    except TimedOut as error:
+        row |= {"status": TIMED_OUT, "error": str(error)}
+    except KeyboardInterrupt:
+        raise
+    # A model of somebody else may fail in any way, and end with SystemExit as a script does.
+    except BaseException as error:
+        row |= {"status": FAILED, "error": one_line(error)}
+    row["wall_s"] = time.perf_counter() - wall
+    row["cpu_s"] = time.process_time() - cpu
+    return row, model
+
+
+def first_columns(setup: Setup, point: Point, replication: int) -> Row:
+    """The columns of a row that are known before the run; it counts as failed until it is not."""
+    key = point_key(point)
+    return {
+        "run": run_name(key, replication),
+        "point": key,
+        "replication": replication,
+        "seed": seed_of_run(setup.seed, key, replication),
+        "status": FAILED,
+        "error": None,
+        "began": time.time(),
+        "wall_s": 0.0,
+        "cpu_s": 0.0,
+        "worker": _this_process(getpid()),
+        **point,
+    }
+
+
+def one_line(error: BaseException) -> str:
+    """An error's type and message on one line."""
+    text = " ".join(f"{type(error).__name__}: {error}".split())
+    return text if len(text) <= _LONGEST_ERROR else text[:_LONGEST_ERROR] + "..."
+
+
+@lru_cache(maxsize=8)
+def _this_process(pid: int) -> str:
+    return f"{socket.gethostname()}:{pid}"
+
+
+@lru_cache(maxsize=8)
+def _class(model: type | str) -> tuple[type, dict[str, Any]]:
+    kind = model_class(model)
+    return kind, parameters_of(kind)
+
+
+def _made(setup: Setup, point: Point, seed: int) -> Any:
+    kind, taken = _class(setup.model)
+    keywords: dict[str, Any] = dict(point)
+    for name, value in point.items():
+        # A text for a parameter that takes none stands for a value, as with --set.
+        known = taken.get(name)
+        if isinstance(value, str) and known is not None and known.kinds and str not in known.kinds:
+            keywords[name] = known.convert(value)
+    if setup.trajectories:
+        keywords["record"] = True
+    return kind(**keywords, rng=seed)
+
+
+def _advance(model: Any, setup: Setup, began: float) -> None:
+    def check(*_: Any) -> None:
+        taken = time.perf_counter() - began
+        if setup.time_limit is not None and taken > setup.time_limit:
+            raise TimedOut(f"took longer than {setup.time_limit:g} s")
+
+    check()
+    if hasattr(model, "stall_reason"):
+        model.run(max_seconds=setup.max_seconds, progress=check)
+        return
+    if setup.max_seconds is not None:
+        raise ModelError("max_seconds: the model has no simulated seconds, expected none")
+    while model.running:
+        model.step()
+        check()
+
+
+def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
+    """Figures of a run: its summary, or else the last values that it has collected."""
+    if hasattr(model, "summary"):
+        summary: Mapping[str, Any] = model.summary()
+    else:
+        collected = model.datacollector.model_vars
+        summary = {name: values[-1] if values else None for name, values in collected.items()}
+    row: Row = {}
+    for name, value in summary.items():
+        value = value.item() if hasattr(value, "item") and not hasattr(value, "__len__") else value
+        if value is None or isinstance(value, bool | int | float | str):
+            row[f"summary_{name}" if name in taken else name] = value
+    if not hasattr(model, "population"):
+        return row
+    row |= _by_type(model)
+    if occupancy:
+        row["occupancy"] = [people for _, people in summary["occupancy"]]
+    return row
+
+
+def _by_type(model: Any) -> Row:
+    """How long people of each type took, and the flow, from who has left when."""
+    crowd, count = model.crowd, model.population.count
+    left = ~crowd.active[:count]
+    seconds = crowd.active_frames[:count] / model.frame_rate
+    types = []
+    for number in sorted(set(crowd.type_index[:count].tolist())):
+        of = crowd.type_index[:count] == number
+        times = seconds[of & left]
+        types.append(
+            {
+                "type": int(number),
+                "people": int(of.sum()),
+                "left": len(times),
+                "mean_s": float(times.mean()) if len(times) else None,
+                "longest_s": float(times.max()) if len(times) else None,
+            }
+        )
+    times = seconds[left]
+    flow = None
+    # Times inside are times of leaving where everybody has been there from the start.
+    if len(times) > 1 and not len(model.sources) and times.max() > times.min():
+        flow = (len(times) - 1) / float(times.max() - times.min())
+    mean = float(times.mean()) if len(times) else math.nan
+    return {
+        "types": types,
+        "mean_time_inside_s": None if math.isnan(mean) else mean,
+        "flow_per_s": flow,
+    }
