@@ -1,6 +1,6 @@
 """How well a map predicts people it has not seen: every seventh clip of each session is left out.
 
-python benchmarks/held_out_coverage.py captures/manifest.tsv [--type able_bodied] [--clusters 350]
+python benchmarks/held_out_coverage.py captures/manifest.tsv [--type able_bodied] [--clusters 200]
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("manifest")
     parser.add_argument("--type", default="able_bodied")
-    parser.add_argument("--clusters", type=int, default=350)
+    parser.add_argument("--clusters", type=int)
     given = parser.parse_args()
     recordings = load_clips(read_manifest(given.manifest), pedestrian_type=given.type).recordings
     sessions: dict[str, list[str]] = defaultdict(list)

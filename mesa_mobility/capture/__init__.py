@@ -10,7 +10,7 @@ from mesa_mobility.capture.manifest import Clip, Manifest, read_manifest
 from mesa_mobility.capture.reading import read_recording
 from mesa_mobility.capture.recording import Recording
 from mesa_mobility.capture.skeleton import Skeleton
-from mesa_mobility.capture.transforms import mirror, resample, trim
+from mesa_mobility.capture.transforms import mirror, resample, scale, trim
 
 __all__ = [
     "Clip",
@@ -30,6 +30,7 @@ __all__ = [
     "read_manifest",
     "read_recording",
     "resample",
+    "scale",
     "sound_parts",
     "trim",
 ]

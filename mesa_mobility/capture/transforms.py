@@ -1,4 +1,4 @@
-"""Cut, resample and mirror recordings."""
+"""Cut, resample, scale and mirror recordings."""
 
 from __future__ import annotations
 
@@ -78,6 +78,28 @@ def resample(recording: Recording, frame_rate: float = 30.0) -> Recording:
         root_position=(1 - share) * position[before] + share * position[after],
         rotations=rotations.reshape(len(times), joints, 4),
     )
+
+
+def scale(recording: Recording, length: float = 1.0, time: float = 1.0) -> Recording:
+    """The same movement by a smaller or larger body, and slower or quicker.
+
+    Lengths of the skeleton and of the root's path are multiplied by ``length``, times by ``time``;
+    joint angles and the frame rate stay.  ``time = sqrt(length)`` keeps the Froude number.
+
+    Raises:
+        CaptureError: a factor that is not positive, or one that gives too many frames.
+    """
+    for what, factor in (("length", length), ("time", time)):
+        if not (np.isfinite(factor) and factor > 0):
+            raise CaptureError(f"{recording.name}: {what} times {factor}, expected more than 0")
+    skeleton = replace(recording.skeleton, offsets=recording.skeleton.offsets * length)
+    slower = replace(
+        recording,
+        skeleton=skeleton,
+        frame_rate=recording.frame_rate / time,
+        root_position=recording.root_position * length,
+    )
+    return resample(slower, recording.frame_rate)
 
 
 def mirror(recording: Recording) -> Recording:

@@ -8,21 +8,30 @@ from typing import Any
 import numpy as np
 
 from mesa_mobility.capture import Recording
+from mesa_mobility.capture.transforms import MIRRORED
+from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import clusters as clustering
+from mesa_mobility.mobility import edits, paths
 from mesa_mobility.mobility import graph as graphs
-from mesa_mobility.mobility import paths
+from mesa_mobility.mobility.borrowing import borrow, missing
 from mesa_mobility.mobility.clusters import STANDING, Clusters, cluster_poses
+from mesa_mobility.mobility.edits import EDITS, HORIZON
 from mesa_mobility.mobility.graph import MotionGraph, motion_graph
 from mesa_mobility.mobility.map import CORE_RADIUS, MobilityMap
 from mesa_mobility.mobility.mapfile import quantise_costs, quantise_paths
 from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
-from mesa_mobility.mobility.poses import FRAME_RATE, pose_table
+from mesa_mobility.mobility.poses import FRAME_RATE, PoseTable, pose_table
 from mesa_mobility.mobility.provenance import acknowledgements, provenance
-
-DEFAULT_CLUSTERS = 350
+from mesa_mobility.mobility.ways_back import check_ways_back
 
 STAND_FRAMES = 12
 """Duration of the stand option: 1.5 s of standing would be absorbing, 0.4 s is not."""
+
+LEAST_SECONDS = 5.0
+"""Least time of all recordings together: a few steps of a walk, a start and a stop."""
+
+LEAST_WAY = 0.4
+"""Metres that somebody who walks covers within 1.5 s at some time."""
 
 Progress = Callable[[str, int, int], None]
 
@@ -31,7 +40,7 @@ def build_map(
     recordings: Sequence[Recording],
     *,
     type_name: str = "able_bodied",
-    clusters: int = DEFAULT_CLUSTERS,
+    clusters: int | None = None,
     metadata: dict[str, Any] | None = None,
     progress: Progress | None = None,
 ) -> MobilityMap:
@@ -40,36 +49,98 @@ def build_map(
     Args:
         recordings: clips, with their mirror images if these are wanted.
         type_name: name of the pedestrian type.
-        clusters: number of clusters, the standing one included.
+        clusters: number of clusters, the standing one included; by default in proportion to
+            the poses.
         metadata: further entries for the map's metadata, such as the command.
         progress: called as ``progress(stage, done, total)``.
 
+    Where nobody stands in the recordings, or turns on the spot, that is borrowed from the map that
+    ships, and the metadata says so.
+
     Raises:
-        MapError: the recordings do not give a map.
+        MapError: the recordings do not give a map, or one that traps people.
     """
-
-    def report(stage: str) -> Callable[[int, int], None] | None:
-        return None if progress is None else lambda done, total: progress(stage, done, total)
-
-    poses = pose_table(recordings, report("poses"))
-    graph = motion_graph(poses)
-    if progress is not None:
-        progress("motion graph", len(poses), len(poses))
-    grouped = cluster_poses(graph, clusters, report("clusters"))
-    options = reachable_options(graph, grouped, report("options"))
-    return _assemble(
+    graph, grouped, options = options_of_recordings(recordings, clusters, progress)
+    parameters = {"clusters_asked": clusters, **_build_parameters(graph, grouped, options)}
+    standing = "recorded"
+    lacks = missing(options, grouped)
+    if lacks:
+        lender = MobilityMap.load()
+        options, grouped = borrow(options, grouped, lender)
+        standing = f"{' and '.join(lacks)} borrowed from the map {lender.pedestrian_type!r}"
+    built = _assemble(
         options,
         grouped,
         {
             "pedestrian_type": type_name,
             "body": {"core_radius_m": CORE_RADIUS},
             "frame_rate_hz": FRAME_RATE,
-            "build": _build_parameters(graph, grouped),
+            "standing": standing,
+            "walking_speed_m_s": _walking_speeds(graph.poses),
+            "build": parameters,
             "provenance": provenance(recordings),
             "acknowledgements": acknowledgements(recordings),
             **(metadata or {}),
         },
     )
+    check_ways_back(built)
+    return built
+
+
+def options_of_recordings(
+    recordings: Sequence[Recording],
+    clusters: int | None = None,
+    progress: Progress | None = None,
+) -> tuple[MotionGraph, Clusters, ReachableOptions]:
+    """The motion graph of recordings, its clusters and their options, edited ones included.
+
+    Args:
+        recordings: as for ``build_map``.
+        clusters: as for ``build_map``.
+        progress: as for ``build_map``.
+
+    Raises:
+        MapError: too little is recorded, or nobody walks.
+    """
+
+    def report(stage: str) -> Callable[[int, int], None] | None:
+        return None if progress is None else lambda done, total: progress(stage, done, total)
+
+    _check_length(recordings)
+    poses = pose_table(recordings, report("poses"))
+    _check_walking(poses)
+    graph = motion_graph(poses)
+    if progress is not None:
+        progress("motion graph", len(poses), len(poses))
+    grouped = cluster_poses(graph, clusters, report("clusters"))
+    return graph, grouped, reachable_options(graph, grouped, EDITS, progress=report("options"))
+
+
+def _check_length(recordings: Sequence[Recording]) -> None:
+    frames = [r.frames for r in recordings if not r.name.endswith(MIRRORED)]
+    seconds = sum(frames) / FRAME_RATE
+    if frames and seconds < LEAST_SECONDS:
+        raise MapError(
+            f"{seconds:.1f} s of recordings: expected at least {LEAST_SECONDS:g} s of "
+            "people who walk, a minute for a map that serves a crowd"
+        )
+
+
+def _check_walking(poses: PoseTable) -> None:
+    rows = np.flatnonzero(poses.clip[:-HORIZON] == poses.clip[HORIZON:])
+    way = np.hypot(*(poses.position[rows + HORIZON] - poses.position[rows]).T)
+    if way.max(initial=0.0) < LEAST_WAY:
+        raise MapError(
+            f"nobody walks: they get {way.max(initial=0.0):.2f} m far within 1.5 s at most, "
+            "expected recordings of people who walk"
+        )
+
+
+def _walking_speeds(poses: PoseTable) -> dict[str, float]:
+    """Quantiles of the speed of those who move, m/s."""
+    shares = (5, 25, 50, 75, 95)
+    speeds = np.percentile(poses.speed[~poses.is_standing()], shares)
+    return {f"p{share}": round(float(v), 3) for share, v in zip(shares, speeds, strict=True)}
 
 
 def _assemble(
@@ -98,15 +169,17 @@ def _assemble(
     )
 
 
-def _build_parameters(graph: MotionGraph, grouped: Clusters) -> dict[str, Any]:
+def _build_parameters(
+    graph: MotionGraph, grouped: Clusters, options: ReachableOptions
+) -> dict[str, Any]:
     return {
         "poses": len(graph.poses),
         "poses_in_component": int(graph.kept.sum()),
         "share_in_component": round(graph.share_kept, 6),
         "largest_components": list(graph.component_sizes[:5]),
         "transitions": graph.transitions,
-        "transition_threshold": round(graph.threshold, 6),
-        "threshold_ratio": graphs.THRESHOLD_RATIO,
+        "transition_threshold": graphs.THRESHOLD,
+        "match_every_frames": graphs.STRETCH,
         "clusters_stopped_by": grouped.stopped_by,
         "acceptance_radius": clustering.ACCEPTANCE_RADIUS,
         "squash_ratio": clustering.SQUASH_RATIO,
@@ -114,4 +187,9 @@ def _build_parameters(graph: MotionGraph, grouped: Clusters) -> dict[str, Any]:
         "transition_penalty": paths.TRANSITION_PENALTY,
         "budget": paths.BUDGET,
         "cell": [round(float(size), 6) for size in paths.CELL],
+        "edits": {
+            "turns_deg_in_45_frames": list(edits.TURNS_DEG),
+            "strides": list(edits.STRIDES),
+            "options": int(options.edited.sum()),
+        },
     }

@@ -26,6 +26,12 @@ from mesa_mobility.mobility.graph import MotionGraph
 STANDING = 0
 """Number of the standing cluster."""
 
+POSES_PER_CLUSTER = 100
+"""Poses for each cluster where no number of clusters is asked for.
+
+Clusters of a few poses share no options; of many, they join poses that look different.
+"""
+
 ACCEPTANCE_RADIUS = 0.4
 """r_a of subtractive clustering, as a multiple of the poses' root mean square spread."""
 
@@ -40,9 +46,10 @@ class Clusters:
     Attributes:
         labels: (n,) int32; cluster of each pose, -1 where the pose is not in the graph.
         centres: (k, 36) float32; features of the centre of each cluster: the pose chosen
-            by subtractive clustering, the mean for the standing cluster (number 0).
+            by subtractive clustering, the mean for the standing cluster (number 0), which
+            is zero where nobody stands.
         mean_joints: (k, 9, 3) float32; mean pose, metres in the pelvis frame.
-        sizes: (k,) int64; poses in each cluster, all at least 1.
+        sizes: (k,) int64; poses in each cluster, at least 1 but for the standing one.
         mean_speeds: (k,) float64; mean root speed, m/s.
         stopped_by: which rule ended the search for centres.
     """
@@ -59,34 +66,35 @@ class Clusters:
 
 
 def cluster_poses(
-    graph: MotionGraph, clusters: int, progress: Callable[[int, int], None] | None = None
+    graph: MotionGraph,
+    clusters: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Clusters:
     """Cluster the poses of a motion graph.
 
     Args:
         graph: the motion graph; only poses in its component take part.
-        clusters: number of clusters wanted, the standing one included.
+        clusters: number of clusters wanted, the standing one included; by default one for
+            ``POSES_PER_CLUSTER`` poses.
         progress: called as ``progress(done, total)``.
 
     Raises:
-        MapError: fewer than two clusters asked for, no standing or no moving poses.
+        MapError: ``clusters`` below two, or no moving poses.
     """
+    if clusters is None:
+        clusters = max(int(graph.kept.sum()) // POSES_PER_CLUSTER, 2)
     if clusters < 2:
         raise MapError(f"clusters: got {clusters}, expected at least 2 (one for standing)")
     poses = graph.poses
     standing = graph.kept & poses.is_standing()
     moving = np.flatnonzero(graph.kept & ~standing)
-    for what, here, anywhere in (
-        ("moving", len(moving), int((~poses.is_standing()).sum())),
-        ("standing", int(standing.sum()), int(poses.is_standing().sum())),
-    ):
-        if not here:
-            among = f"the {int(graph.kept.sum())} that lead to each other and back"
-            found = f"; {anywhere} others are not connected with these" if anywhere else ""
-            raise MapError(
-                f"no {what} poses among {among}{found}: expected recordings that show people both "
-                "standing and walking, and going from one to the other"
-            )
+    if not len(moving):
+        anywhere = int((~poses.is_standing()).sum())
+        found = f"; {anywhere} others are not connected with these" if anywhere else ""
+        raise MapError(
+            f"no moving poses among the {int(graph.kept.sum())} that lead to each other and back"
+            f"{found}: expected recordings of people who walk"
+        )
     wanted = min(clusters - 1, len(moving))
     features = poses.features[moving]
     columns = np.ascontiguousarray(features.T)
@@ -109,12 +117,12 @@ def cluster_poses(
     nearest = nearest_centre(features, features[chosen])
     used, compact = np.unique(nearest, return_inverse=True)  # identical centres leave one empty
     labels[moving] = 1 + compact
-    centres = np.concatenate(
-        [poses.features[standing].mean(axis=0, keepdims=True), features[np.array(chosen)[used]]]
-    )
+    centre = poses.features[standing].sum(axis=0, keepdims=True) / max(standing.sum(), 1)
+    centres = np.concatenate([centre, features[np.array(chosen)[used]]])
     inside = np.flatnonzero(labels >= 0)
     k = 1 + len(used)
     sizes = np.bincount(labels[inside], minlength=k)
+    several = np.maximum(sizes, 1)
     joints = np.zeros((k, *poses.joints.shape[1:]))
     np.add.at(joints, labels[inside], poses.joints[inside])
     speeds = np.bincount(labels[inside], weights=poses.speed[inside], minlength=k)
@@ -124,9 +132,9 @@ def cluster_poses(
     return Clusters(
         labels=labels,
         centres=centres.astype(np.float32),
-        mean_joints=(joints / sizes[:, None, None]).astype(np.float32),
+        mean_joints=(joints / several[:, None, None]).astype(np.float32),
         sizes=sizes,
-        mean_speeds=speeds / sizes,
+        mean_speeds=speeds / several,
         stopped_by=stopped,
     )
 

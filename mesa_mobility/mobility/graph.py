@@ -2,8 +2,8 @@
 
 Pose j + 1 may follow pose i because pose j looks like pose i (Lee et al. 2002).
 A natural successor costs next to nothing.  The graph is pruned while it is
-built: only the best match of each clip, below a threshold, is ever kept, so
-that the full n x n matrix of distances never exists.
+built: only the best match of each stretch of 1.5 s of a clip, below a threshold,
+is ever kept, so that the full n x n matrix of distances never exists.
 """
 
 from __future__ import annotations
@@ -32,8 +32,15 @@ MIN_SEPARATION = 15
 MAX_TRANSITIONS = 10
 """Transitions kept from one pose, best first."""
 
-THRESHOLD_RATIO = 1.4
-"""Threshold of a transition, as a multiple of the median distance of consecutive frames."""
+THRESHOLD = 0.45
+"""Distance of two poses, in feature units, from which on there is no transition between them.
+
+It does not depend on the recordings.  A multiple of the distance of consecutive frames would: the
+slower the gait, the smaller that distance, and the tighter the threshold.
+"""
+
+STRETCH = 45
+"""Frames of a clip among which only the best match is kept: neighbours of it add nothing."""
 
 STILL = 1e-6
 """Distance of consecutive poses, in feature units, up to which the legs do not move."""
@@ -51,7 +58,6 @@ class MotionGraph:
             on a natural edge, the look-alike j on a transition i -> j + 1.
         costs: (e,) float32; distance over threshold (0 to 1) of a transition, 1e-4 if natural.
         kept: (n,) bool; poses of the largest strongly connected component.
-        threshold: distance above which a transition is pruned, in feature units.
         component_sizes: poses in each strongly connected component, largest first.
     """
 
@@ -61,7 +67,6 @@ class MotionGraph:
     via: NDArray[np.int32]
     costs: NDArray[np.float32]
     kept: NDArray[np.bool_]
-    threshold: float
     component_sizes: tuple[int, ...]
 
     @property
@@ -87,7 +92,7 @@ class MotionGraph:
         """
         import networkx as nx
 
-        graph = nx.DiGraph(threshold=self.threshold)
+        graph = nx.DiGraph(threshold=THRESHOLD)
         first = self.poses.first
         for node in np.flatnonzero(self.kept).tolist():
             clip = int(self.poses.clip[node])
@@ -122,12 +127,10 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
             f"nobody moves in the {n} poses of {len(poses.clip_names)} clips: "
             "expected recordings of people who walk"
         )
-    threshold = THRESHOLD_RATIO * float(np.median(gaps))
-
     columns = np.ascontiguousarray(poses.features.T)
     match, distance = _best_matches(
-        columns, poses.clip, poses.first, np.float32(threshold * threshold), MIN_SEPARATION,
-        MAX_TRANSITIONS,
+        columns, poses.clip, poses.first, np.float32(THRESHOLD * THRESHOLD), MIN_SEPARATION,
+        STRETCH, MAX_TRANSITIONS,
     )  # fmt: skip
     row, rank = np.nonzero(match >= 0)
     look_alike = match[row, rank].astype(np.int64)
@@ -135,7 +138,7 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
     successor = np.concatenate([natural + 1, look_alike + 1])
     via = np.concatenate([natural, look_alike])
     cost = np.concatenate(
-        [np.full(len(natural), NATURAL_COST), np.sqrt(distance[row, rank]) / threshold]
+        [np.full(len(natural), NATURAL_COST), np.sqrt(distance[row, rank]) / THRESHOLD]
     )
     order = np.lexsort((cost, source))
     source, successor, via, cost = source[order], successor[order], via[order], cost[order]
@@ -158,7 +161,6 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
         via=via[inside].astype(np.int32),
         costs=cost[inside].astype(np.float32),
         kept=kept,
-        threshold=threshold,
         component_sizes=tuple(sorted(sizes.tolist(), reverse=True)),
     )
 
@@ -183,9 +185,10 @@ def _best_matches(
     first: NDArray[np.int64],
     threshold2: np.float32,
     min_separation: int,
+    stretch: int,
     most: int,
 ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-    """Look-alikes of every pose: the best of each clip, at most ``most``, nearest first.
+    """Look-alikes of every pose: the best of each stretch of a clip, ``most`` at most.
 
     Every pose is compared with every other.  In 36 dimensions this scan, one
     vectorised pass over transposed columns, is quicker than a k-d tree, and its
@@ -195,12 +198,11 @@ def _best_matches(
     match = np.full((n, most), -1, np.int32)
     distance = np.full((n, most), np.inf, np.float32)
     for i in prange(n):
-        d2 = np.empty(512, np.float32)
+        d2 = np.empty(stretch, np.float32)
         for k in range(len(first) - 1):
-            best, best_d2 = -1, threshold2
             stop = first[k + 1] - 1  # the last frame of a clip has no successor to lead to
-            for start in range(first[k], stop, 512):
-                width = min(512, stop - start)
+            for start in range(first[k], stop, stretch):
+                width = min(stretch, stop - start)
                 for q in range(width):
                     d2[q] = 0.0
                 for d in range(dims):
@@ -208,17 +210,18 @@ def _best_matches(
                     for q in range(width):
                         delta = columns[d, start + q] - x
                         d2[q] += delta * delta
+                best, best_d2 = -1, threshold2
                 for q in range(width):
                     j = start + q
                     if d2[q] < best_d2 and (k != clip[i] or abs(j - i) >= min_separation):
                         best, best_d2 = j, d2[q]
-            if best < 0 or best_d2 >= distance[i, most - 1]:
-                continue
-            slot = most - 1
-            while slot > 0 and distance[i, slot - 1] > best_d2:
-                distance[i, slot] = distance[i, slot - 1]
-                match[i, slot] = match[i, slot - 1]
-                slot -= 1
-            distance[i, slot] = best_d2
-            match[i, slot] = best
+                if best < 0 or best_d2 >= distance[i, most - 1]:
+                    continue
+                slot = most - 1
+                while slot > 0 and distance[i, slot - 1] > best_d2:
+                    distance[i, slot] = distance[i, slot - 1]
+                    match[i, slot] = match[i, slot - 1]
+                    slot -= 1
+                distance[i, slot] = best_d2
+                match[i, slot] = best
     return match, distance

@@ -9,12 +9,13 @@ transition cost.  The layers at 12 and 24 frames give the shorter options.
 
 Poses of one cluster share their options (section 5 of the paper): the options
 of all poses of a cluster are thinned together, one for each cell of end point
-and end heading, the cheapest kept.
+and end heading, the cheapest kept.  Edited copies then fill cells that no
+recorded option ends in.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -24,22 +25,15 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.compiled.threads import THREADS
+from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit
+from mesa_mobility.mobility.thinning import BUDGET, DURATIONS, merge, with_edits
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.clusters import Clusters
     from mesa_mobility.mobility.graph import MotionGraph
 
-DURATIONS = (12, 24, 45)
-"""Option durations in frames; 45 frames, 1.5 s, is the paper's time step."""
-
-SAMPLE_EVERY = 3
-"""Frames between the stored samples of a path."""
-
 TRANSITION_PENALTY = 1.0
 """Fixed cost of leaving the recording, in units of the transition threshold."""
-
-BUDGET = 3.3
-"""Most that a path may cost: two transitions of some quality, or three that hardly show."""
 
 CELL = (0.10, 0.10, np.deg2rad(15.0))
 """Cell of thinning: metres, metres, radians of the end point and end heading."""
@@ -51,6 +45,8 @@ _CHUNK = 48
 class ReachableOptions:
     """Thinned options of all clusters, in order of cluster, duration and cell.
 
+    The standing cluster has none where nobody stands in the recordings.
+
     Attributes:
         offsets: (k + 1,) int64; options of cluster c are ``offsets[c]:offsets[c + 1]``.
         durations: (m,) int16; frames.
@@ -58,6 +54,7 @@ class ReachableOptions:
         paths: (m, 15, 3) float32; x, y in metres and heading in radians every 3 frames
             from the third on, relative to the start; rows past the end are zero.
         path_clusters: (m, 15) int32; cluster of the pose at each sample.
+        edited: (m,) bool; options that are edited copies of recorded ones.
     """
 
     offsets: NDArray[np.int64]
@@ -65,11 +62,14 @@ class ReachableOptions:
     costs: NDArray[np.float32]
     paths: NDArray[np.float32]
     path_clusters: NDArray[np.int32]
+    edited: NDArray[np.bool_]
 
 
 def reachable_options(
     graph: MotionGraph,
     clusters: Clusters,
+    edits: Sequence[Edit] = (),
+    cell: tuple[float, float, float] = CELL,
     progress: Callable[[int, int], None] | None = None,
 ) -> ReachableOptions:
     """Options of every cluster: all places its poses can reach, thinned.
@@ -77,6 +77,8 @@ def reachable_options(
     Args:
         graph: the motion graph.
         clusters: the clusters of its poses.
+        edits: how recorded options are edited to fill further cells.
+        cell: cell of thinning; metres, metres, radians.
         progress: called as ``progress(poses done, poses)``.
     """
     order = np.argsort(clusters.labels, kind="stable")
@@ -89,14 +91,14 @@ def reachable_options(
     ]
     step = graph.poses.step
     longest_step = float(np.hypot(step[:, 0], step[:, 1]).max())
-    half_cells = int(np.ceil(DURATIONS[-1] * longest_step / CELL[0])) + 1
+    half_cells = int(np.ceil(DURATIONS[-1] * longest_step / min(cell[:2]))) + 1
     durations = np.array(DURATIONS, dtype=np.int64)
-    cell = np.array(CELL)
+    cells = np.array(cell)
 
     def collect(chunk: NDArray[np.int32]) -> tuple[NDArray, ...]:
         return _collect(
             chunk, graph.offsets, graph.successors, graph.via, graph.costs, step,
-            clusters.labels, durations, BUDGET, TRANSITION_PENALTY, cell, half_cells,
+            clusters.labels, durations, BUDGET, TRANSITION_PENALTY, cells, half_cells,
         )  # fmt: skip
 
     found: list[list[tuple[NDArray, ...]]] = [[] for _ in range(len(clusters))]
@@ -110,29 +112,20 @@ def reachable_options(
             done += len(chunk)
             if progress is not None:
                 progress(done, len(order))
-    merged = [_merge(parts) for parts in found]
-    counts = [len(part[0]) for part in merged]
-    columns = [np.concatenate(column) for column in zip(*merged, strict=True)]
-    keys, costs, paths, path_clusters = columns
+    merged = [with_edits(merge(parts), edits) for parts in found if parts]
+    counts = np.zeros(len(clusters), dtype=np.int64)  # nobody may stand in the recordings
+    counts[[bool(parts) for parts in found]] = [len(part.layers) for part in merged]
+    layers, _, costs, paths, path_clusters, edited = (
+        np.concatenate(column) for column in zip(*merged, strict=True)
+    )
     return ReachableOptions(
-        offsets=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        durations=np.array(DURATIONS, dtype=np.int16)[keys],
+        offsets=np.concatenate([[0], np.cumsum(counts)]),
+        durations=np.array(DURATIONS, dtype=np.int16)[layers],
         costs=costs,
         paths=paths,
         path_clusters=path_clusters,
+        edited=edited,
     )
-
-
-def _merge(parts: list[tuple[NDArray, ...]]) -> tuple[NDArray, ...]:
-    """Thin the parts of one cluster together; earlier parts win ties."""
-    cells, layers, costs, paths, path_clusters = (
-        np.concatenate(column) for column in zip(*parts, strict=True)
-    )
-    order = np.lexsort((np.arange(len(cells)), costs, cells, layers))
-    first = np.ones(len(order), dtype=bool)
-    first[1:] = (np.diff(cells[order]) != 0) | (np.diff(layers[order]) != 0)
-    order = order[first]
-    return layers[order], costs[order], paths[order], path_clusters[order]
 
 
 @kept(nogil=True)

@@ -85,7 +85,7 @@ def test_a_bone_turns_about_its_own_axes_below_what_the_root_turned(amc):
     np.testing.assert_allclose(positions, [[3, 1, 2], [3, 1, 2], [0, 1, 2], [4, 1, 2]], atol=1e-14)
 
 
-def test_the_frame_rate_can_be_told(amc):
+def test_the_frame_rate_can_be_given(amc):
     assert read_amc(amc(), unit_to_m=1.0, frame_rate=60.0).frame_rate == 60.0
     assert read_recording(amc(), unit_to_m=1.0, frame_rate=60.0).frame_rate == 60.0
 

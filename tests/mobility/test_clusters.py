@@ -63,20 +63,37 @@ def test_one_cluster_is_refused(graph):
         cluster_poses(graph, 1)
 
 
-def test_recordings_without_anybody_standing_are_refused():
+def test_the_number_of_clusters_is_in_proportion_to_the_poses():
+    graph = motion_graph(random_poses(np.random.default_rng(2), clips=10, length=60))
+    assert 500 < graph.kept.sum() < 600
+    assert len(cluster_poses(graph)) == 5  # one for 100 poses
+
+
+def test_where_nobody_stands_the_standing_cluster_is_empty():
     poses = random_poses(np.random.default_rng(2))
     poses.speed[:] = 1.2
-    with pytest.raises(MapError, match="no standing poses"):
+    clusters = cluster_poses(motion_graph(poses), 5)
+    assert len(clusters) == 5
+    assert clusters.sizes[0] == 0
+    assert (clusters.sizes[1:] > 0).all()
+    assert (clusters.labels != 0).all()
+    assert np.isfinite(clusters.mean_joints).all()
+
+
+def test_recordings_without_anybody_moving_are_refused():
+    poses = random_poses(np.random.default_rng(2))
+    poses.speed[:] = 0.0
+    with pytest.raises(MapError, match="no moving poses among the"):
         cluster_poses(motion_graph(poses), 5)
 
 
-def test_standing_poses_that_are_not_connected_are_counted():
+def test_moving_poses_that_are_not_connected_are_counted():
     poses = random_poses(np.random.default_rng(2), clips=3, length=60)
-    # The third clip alone stands, in poses unlike all others, and drifts so that none recurs.
+    # The third clip alone moves, in poses unlike all others, and drifts so that none recurs.
     features = poses.features.copy()
     features[120:] = 50.0 + 0.01 * np.arange(60)[:, None]
     poses = dataclasses.replace(poses, features=features)
-    poses.speed[:120] = 1.2
-    poses.speed[120:] = 0.0
-    with pytest.raises(MapError, match=r"no standing .*; 60 others are not connected with these"):
+    poses.speed[:120] = 0.0
+    poses.speed[120:] = 1.2
+    with pytest.raises(MapError, match=r"no moving .*; 60 others are not connected with these"):
         cluster_poses(motion_graph(poses), 5)

@@ -1,0 +1,122 @@
+"""Standing and turning on the spot for recordings that do not show it: those of another map.
+
+Somebody who cannot stand cannot wait, nor set off from rest; somebody who cannot turn on the spot
+stays in a corner for ever. Where nobody stands, the other map gives its standing cluster with all
+options from there. Each cluster gets the options that end in it, from the pose most alike that has
+such options; so it does where people stand but options do not lead back to that. Where they do not
+turn on the spot, the other map gives its turns. Strides are shortened to the borrower's speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.mobility.clusters import STANDING, Clusters, nearest_centre
+from mesa_mobility.mobility.edits import Edit, edit_paths
+from mesa_mobility.mobility.map import MobilityMap
+from mesa_mobility.mobility.paths import DURATIONS, SAMPLE_EVERY, ReachableOptions
+from mesa_mobility.mobility.ways_back import ON_THE_SPOT, TURN, leads_back
+
+STANDING_STILL, STOPPING, TURNING = "standing", "stopping", "turning on the spot"
+"""What can be missing, and is then borrowed."""
+
+
+def missing(options: ReachableOptions, clusters: Clusters) -> tuple[str, ...]:
+    """What options lack: standing, a way to stop from each cluster, turning on the spot."""
+    if not clusters.sizes[STANDING]:
+        return (STANDING_STILL,)
+    last = options.durations // SAMPLE_EVERY - 1
+    rows = np.arange(len(last))
+    back = leads_back(options.offsets, options.path_clusters[rows, last], STANDING)
+    lacks = () if back.all() else (STOPPING,)
+    rows = rows[: options.offsets[STANDING + 1]]
+    ends = options.paths[rows, last[rows]]
+    turned = ends[np.hypot(ends[:, 0], ends[:, 1]) <= ON_THE_SPOT, 2]
+    both = turned.max(initial=0.0) >= TURN and turned.min(initial=0.0) <= -TURN
+    return lacks if both else (*lacks, TURNING)
+
+
+def borrow(
+    options: ReachableOptions, clusters: Clusters, lender: MobilityMap
+) -> tuple[ReachableOptions, Clusters]:
+    """Add what the standing cluster lacks from another map.
+
+    Args:
+        options: those of all clusters; the standing one may have none.
+        clusters: the clusters.
+        lender: the map that gives its own.
+
+    Returns:
+        Options and clusters with a standing cluster whose people turn on the spot.
+    """
+    lacks = missing(options, clusters)
+    stands = STANDING_STILL not in lacks
+    stride = _stride(clusters, lender)
+    stops = np.logical_or.reduceat(lender.end_clusters == lender.standing, lender.offsets[:-1])
+    stops[lender.standing] = False
+    who_stop = np.flatnonzero(stops)
+    theirs = who_stop[nearest_centre(clusters.centres[1:], lender.centres[who_stop])]
+    ours = np.concatenate(
+        [[STANDING], 1 + nearest_centre(np.asarray(lender.centres[1:]), clusters.centres[1:])]
+    ).astype(np.int32)
+    parts, sizes = [], []
+    for cluster, like in enumerate([lender.standing, *theirs.tolist()]):
+        rows = np.asarray(lender.options_of(like))
+        if cluster != STANDING:
+            stopping = lender.end_clusters[rows] == lender.standing
+            rows = rows[stopping & (lacks != (TURNING,))]
+        elif stands:
+            turns = np.hypot(*lender.end_points[rows].T) <= ON_THE_SPOT
+            turns &= np.abs(lender.end_headings[rows]) >= TURN
+            rows = rows[turns & (TURNING in lacks)]
+        own = np.arange(options.offsets[cluster], options.offsets[cluster + 1])
+        parts += [_taken(options, own), _borrowed(lender, rows, ours, stride)]
+        sizes.append(len(own) + len(rows))
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    joined = ReachableOptions(np.concatenate([[0], np.cumsum(sizes)]), *columns)
+    return joined, clusters if stands else _standing_as(clusters, lender)
+
+
+def _stride(clusters: Clusters, lender: MobilityMap) -> float:
+    """Speed of the moving poses of the one over that of the other, at most 1."""
+    own, other = (
+        float(np.average(each.mean_speeds[1:], weights=each.sizes[1:]))
+        for each in (clusters, lender)
+    )
+    return min(1.0, own / other)
+
+
+def _borrowed(
+    lender: MobilityMap, rows: NDArray[np.integer], ours: NDArray[np.int32], stride: float
+) -> tuple[NDArray, ...]:
+    samples = lender.durations[rows].astype(np.int64) // SAMPLE_EVERY
+    longest = DURATIONS[-1] // SAMPLE_EVERY
+    present = np.arange(longest) < samples[:, None]
+    at = np.minimum(lender.path_offsets[rows][:, None] + np.arange(longest), len(lender.paths) - 1)
+    paths = edit_paths(lender.paths[at], Edit(0.0, stride)) * present[..., None]
+    clusters = np.where(present, ours[lender.path_clusters[at]], 0)
+    return (
+        lender.durations[rows],
+        lender.costs[rows],
+        paths.astype(np.float32),
+        clusters.astype(np.int32),
+        np.zeros(len(rows), dtype=bool),
+    )
+
+
+def _taken(options: ReachableOptions, rows: NDArray[np.integer]) -> tuple[NDArray, ...]:
+    columns = (options.durations, options.costs, options.paths, options.path_clusters)
+    return tuple(column[rows] for column in (*columns, options.edited))
+
+
+def _standing_as(clusters: Clusters, lender: MobilityMap) -> Clusters:
+    centres, joints = clusters.centres.copy(), clusters.mean_joints.copy()
+    sizes, speeds = clusters.sizes.copy(), clusters.mean_speeds.copy()
+    centres[STANDING] = lender.centres[lender.standing]
+    joints[STANDING] = lender.mean_poses[lender.standing]
+    sizes[STANDING] = lender.sizes[lender.standing]
+    speeds[STANDING] = lender.mean_speeds[lender.standing]
+    return replace(clusters, centres=centres, mean_joints=joints, sizes=sizes, mean_speeds=speeds)

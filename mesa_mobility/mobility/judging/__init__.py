@@ -1,0 +1,1 @@
+"""How good a map is: what its people can do, and what it covers of people it has not seen."""

@@ -1,0 +1,1 @@
+"""The recordings that a map is built from: clips, mirror images, scaled ones for derived types."""

@@ -1,0 +1,95 @@
+"""The recordings that a map of a type is built from: which clips, and whether they are mirrored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from mesa_mobility.capture import LoadedClips, Manifest, Recording, load_clips, mirror
+from mesa_mobility.mobility.poses import pose_table
+from mesa_mobility.mobility.preparing.symmetry import SYMMETRIC, mirrored_share
+
+STANDING_TYPE = "standing"
+"""Type of a manifest's clips that are added for people of whom no clip shows them standing."""
+
+BOTH, ALONE = "both sides", "mirror images alone"
+"""How a map's metadata calls recordings with their mirror images, and mirror images alone."""
+
+
+@dataclass(frozen=True)
+class PreparedRecordings:
+    """Result of :func:`prepare_recordings`.
+
+    Attributes:
+        recordings: with mirror images where they are used.
+        clips: what was loaded, and what was skipped or split.
+        remarks: what was decided, one line each.
+        choices: the same for a map's metadata: ``mirrored`` ("both sides", "as recorded" or
+            "mirror images alone"), ``mirrored_share`` where that was detected, and the numbers
+            of ``acted_clips`` and ``standing_clips``, if there are any.
+    """
+
+    recordings: list[Recording]
+    clips: LoadedClips
+    remarks: list[str] = field(default_factory=list)
+    choices: dict[str, str | float] = field(default_factory=dict)
+
+
+def prepare_recordings(
+    manifest: Manifest,
+    type_name: str,
+    *,
+    mirrored: bool | None = None,
+    other_side: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> PreparedRecordings:
+    """Load the clips of a type, with their mirror images if the gait is alike on both sides.
+
+    Where none of them shows anybody standing, the manifest's clips of type "standing" are added.
+
+    Args:
+        manifest: the clips.
+        type_name: pedestrian type.
+        mirrored: whether mirror images are added; None to find out.
+        other_side: only mirror images: people whose gait differs on the other side.
+        progress: called as ``progress(done, total)`` after each clip.
+
+    Raises:
+        CaptureError: as ``load_clips`` does.
+    """
+    loaded = load_clips(manifest, pedestrian_type=type_name, mirrored=False, progress=progress)
+    prepared = PreparedRecordings([], loaded)
+    acted = sum("acted" in r.clip.tags for r in loaded.recordings if r.clip is not None)
+    if acted:
+        prepared.choices["acted_clips"] = acted
+        prepared.remarks.append(f"{acted} of {len(loaded.recordings)} clips are acted")
+    poses = pose_table(loaded.recordings)
+    images = [mirror(recording) for recording in loaded.recordings]
+    if mirrored is None and not other_side:
+        share = mirrored_share(poses, pose_table(images))
+        mirrored = share >= SYMMETRIC
+        prepared.choices["mirrored_share"] = round(share, 3)
+        if not mirrored:
+            prepared.remarks.append(
+                f"not mirrored: {share:.0%} of the poses look like one of a mirror image, "
+                f"a gait alike on both sides has {SYMMETRIC:.0%} or more"
+            )
+    if other_side:
+        prepared.choices["mirrored"] = ALONE
+        prepared.recordings.extend(images)
+    elif mirrored:
+        prepared.choices["mirrored"] = BOTH
+        pairs = zip(loaded.recordings, images, strict=True)
+        prepared.recordings.extend(each for pair in pairs for each in pair)
+    else:
+        prepared.choices["mirrored"] = "as recorded"
+        prepared.recordings.extend(loaded.recordings)
+    if not poses.is_standing().any() and any(clip.type == STANDING_TYPE for clip in manifest):
+        added = load_clips(manifest, pedestrian_type=STANDING_TYPE)
+        prepared.recordings.extend(added.recordings)
+        prepared.choices["standing_clips"] = len(added.recordings)
+        prepared.remarks.append(
+            f"nobody stands in the clips of type {type_name!r}: "
+            f"{len(added.recordings)} of type {STANDING_TYPE!r} added"
+        )
+    return prepared

@@ -1,0 +1,90 @@
+"""Recordings in which nobody stands, or turns, borrow that from the map that ships."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from mesa_mobility.mobility import build_map, cluster_poses, motion_graph, reachable_options
+from mesa_mobility.mobility.borrowing import borrow, missing
+from mesa_mobility.mobility.ways_back import check_ways_back
+from tests.fixtures.maps import shipped_map
+
+from .conftest import random_poses
+
+
+@pytest.fixture(scope="module")
+def walking():
+    """Options and clusters of people who never stand, at 1.2 m/s."""
+    poses = random_poses(np.random.default_rng(4))
+    poses.speed[:] = 1.2
+    graph = motion_graph(poses)
+    clusters = cluster_poses(graph, 6)
+    return reachable_options(graph, clusters), clusters
+
+
+def test_a_standing_cluster_is_borrowed_whole(walking):
+    options, clusters = walking
+    lender = shipped_map()
+    assert missing(options, clusters) == ("standing",)
+    joined, complete = borrow(options, clusters, lender)
+    theirs = np.asarray(lender.options_of(lender.standing))
+    assert joined.offsets[1] == len(theirs)
+    np.testing.assert_array_equal(joined.durations[: len(theirs)], lender.durations[theirs])
+    # Own people walk at 1.2 m/s; those of the other map at their clusters' mean speeds.
+    other = np.average(lender.mean_speeds[1:], weights=lender.sizes[1:])
+    stride = min(1.0, 1.2 / other)
+    ends = joined.paths[np.arange(len(theirs)), joined.durations[: len(theirs)] // 3 - 1]
+    np.testing.assert_allclose(ends[:, :2], stride * lender.end_points[theirs], atol=1e-4)
+    np.testing.assert_allclose(ends[:, 2], lender.end_headings[theirs], atol=1e-4)
+    assert complete.sizes[0] == lender.sizes[0]
+    assert joined.path_clusters.max() < len(complete)
+    assert missing(joined, complete) == ()
+
+
+def test_each_cluster_keeps_its_own_options_and_gets_ways_to_stop(walking):
+    options, clusters = walking
+    joined, _ = borrow(options, clusters, shipped_map())
+    for cluster in range(1, len(clusters)):
+        own = slice(*options.offsets[cluster : cluster + 2])
+        now = slice(*joined.offsets[cluster : cluster + 2])
+        kept = options.offsets[cluster + 1] - options.offsets[cluster]
+        np.testing.assert_array_equal(joined.paths[now][:kept], options.paths[own])
+        added = slice(now.start + kept, now.stop)
+        last = joined.durations[added] // 3 - 1
+        assert (joined.path_clusters[added][np.arange(len(last)), last] == 0).all()
+
+
+def test_standers_who_never_turn_borrow_turns_alone():
+    # A step has no turn at all here.
+    poses = random_poses(np.random.default_rng(4))
+    poses = dataclasses.replace(poses, step=poses.step * [1.0, 1.0, 0.0])
+    graph = motion_graph(poses)
+    clusters = cluster_poses(graph, 6)
+    options = reachable_options(graph, clusters)
+    assert missing(options, clusters) == ("turning on the spot",)
+    joined, same = borrow(options, clusters, shipped_map())
+    assert same is clusters
+    np.testing.assert_array_equal(np.diff(joined.offsets)[1:], np.diff(options.offsets)[1:])
+    added = slice(options.offsets[1], joined.offsets[1])
+    ends = joined.paths[added][
+        np.arange(added.stop - added.start), joined.durations[added] // 3 - 1
+    ]
+    assert len(ends) > 0
+    assert (np.abs(ends[:, 2]) >= np.deg2rad(29.9)).all()
+    assert missing(joined, clusters) == ()
+
+
+@pytest.mark.captures
+def test_a_walk_without_a_stop_becomes_a_map_that_traps_nobody(captures_dir):
+    from mesa_mobility.capture import load_clips, read_manifest, trim
+
+    clips = load_clips(
+        read_manifest(captures_dir / "manifest.tsv"), pedestrian_type="slow", mirrored=False
+    ).recordings
+    # The middle of each clip, in which she walks to and fro; then only frames without a stop.
+    walks = [trim(clip, 90, 240) for clip in clips]
+    built = build_map(walks, type_name="walking")
+    check_ways_back(built)
+    assert built.sizes[0] >= 1
+    assert "stopping" in built.metadata["standing"]
