@@ -1,5 +1,6 @@
 """The shipped behaviours, each a plug-in like any other."""
 
+from mesa_mobility.behaviors.anticipation import Anticipation
 from mesa_mobility.behaviors.exit_choice import Choosing, ExitChoice
 from mesa_mobility.behaviors.familiar_exit import FamiliarExit
 from mesa_mobility.behaviors.headway import Headway
@@ -8,14 +9,20 @@ from mesa_mobility.behaviors.nearest_exit import NearestExit
 from mesa_mobility.behaviors.quickest_exit import QuickestExit
 from mesa_mobility.behaviors.random_utility import RandomUtility
 from mesa_mobility.behaviors.right_of_way import RightOfWay
+from mesa_mobility.behaviors.room_ahead import RoomAhead
 from mesa_mobility.behaviors.social_influence import SocialInfluence
-from mesa_mobility.behaviors.speed import Displacement, PreferredSpeed
 from mesa_mobility.behaviors.stepping import Stepping
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
-from mesa_mobility.behaviors.velocity import PreferredVelocity
+from mesa_mobility.behaviors.velocity import (
+    Displacement,
+    PreferredSpeed,
+    PreferredVelocity,
+    VelocityChange,
+)
 from mesa_mobility.behaviors.walk_together import WalkTogether
 
 __all__ = [
+    "Anticipation",
     "Choosing",
     "Displacement",
     "ExitChoice",
@@ -29,8 +36,10 @@ __all__ = [
     "QuickestExit",
     "RandomUtility",
     "RightOfWay",
+    "RoomAhead",
     "SocialInfluence",
     "Stepping",
     "TargetDistance",
+    "VelocityChange",
     "WalkTogether",
 ]

@@ -10,7 +10,7 @@ from mesa_mobility.errors import ModelError
 def _interference(  # type: ignore[no-untyped-def]
     x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
 ):
-    # Read before anything is asked, so that it is read once for all neighbours.
+    # Read first, so that it is read once for all neighbours.
     a = p[0]
     dx = nx + nvx * duration - x
     dy = ny + nvy * duration - y

@@ -49,7 +49,7 @@ class RandomUtility(ExitChoice):
         return (utility + self._tastes_of(choosing)).argmax(axis=1)
 
     def _tastes_of(self, choosing: Choosing) -> NDArray[np.float64]:
-        """(k, e) tastes; those of people who are asked for the first time are drawn."""
+        """(k, e) tastes; those of people without any yet are drawn."""
         rows, exits = choosing.pedestrians, choosing.distances.shape[1]
         more = int(rows.max(initial=-1)) + 1 - len(self._tastes)
         if more > 0:

@@ -14,7 +14,7 @@ OPPOSED = 0.5
 def _right_of_way(  # type: ignore[no-untyped-def]
     x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
 ):
-    # Read before anything is asked, so that they are read once for all neighbours.
+    # Read first, so that they are read once for all neighbours.
     width = p[0]
     bias = p[1]
     reach = p[2]

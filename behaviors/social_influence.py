@@ -16,7 +16,7 @@ class SocialInfluence(RandomUtility):
 
     The share of the people in view who head for an exit is worth up to ``influence`` metres of
     way. That others' choices count beside distance was seen in experiments (Kinateder, Comunale
-    and Warren 2018, Safety Science 106: 170-175) and is asked for by NIST TN 1822 (Verif.3.2); how
+    and Warren 2018, Safety Science 106: 170-175) and is required by NIST TN 1822 (Verif.3.2); how
     much they count is to be calibrated: 5 m by default.
 
     Args:

@@ -1,8 +1,59 @@
-"""The preferred velocity: speed and direction."""
+"""Speed and velocity of an option: as fast as possible, as preferred, or as before."""
 
 import math
 
 from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
+from mesa_mobility.errors import ModelError
+
+
+@option_kernel
+def _displacement(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+    return -speed * duration
+
+
+@option_kernel
+def _preferred_speed(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+    return 1.5 * abs(speed - preferred)
+
+
+@bound_kernel
+def _displacement_bound(  # type: ignore[no-untyped-def]
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
+):
+    return -fastest * duration
+
+
+@bound_kernel
+def _preferred_speed_bound(  # type: ignore[no-untyped-def]
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
+):
+    return 1.5 * max(slowest - preferred, preferred - fastest, 0.0)
+
+
+class Displacement(CompiledTerm):
+    """Prefers options that go far, and so rewards speed without limit.
+
+    -S of equation (1): minus the displacement in metres.
+    On its own it makes everybody walk as fast as the recorded person ever did.
+    """
+
+    name = "displacement"
+    kernel = _displacement
+    bound = _displacement_bound
+
+
+class PreferredSpeed(CompiledTerm):
+    """Prefers options near the pedestrian's preferred speed.
+
+    ``|S - v0 t| x 1.5 / t``: S is the displacement, v0 the preferred speed, t the
+    option's duration.  In metres over the paper's 1.5 s whatever the duration, so that options of
+    different durations compare.  Takes the place of ``Displacement``.
+    """
+
+    name = "preferred_speed"
+    default_weight = 2.0
+    kernel = _preferred_speed
+    bound = _preferred_speed_bound
 
 
 @option_kernel
@@ -43,3 +94,56 @@ class PreferredVelocity(CompiledTerm):
     default_weight = 2.0
     kernel = _preferred_velocity
     bound = _preferred_velocity_bound
+
+
+@option_kernel(own_velocity=True)
+def _velocity_change(  # type: ignore[no-untyped-def]
+    x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, p
+):
+    vx = (x - sx) / duration - own_vx
+    vy = (y - sy) / duration - own_vy
+    walking = min(math.sqrt(own_vx * own_vx + own_vy * own_vy) * (1.0 / p[0]), 1.0)
+    return walking * math.sqrt(vx * vx + vy * vy)
+
+
+@bound_kernel(own_velocity=True)
+def _velocity_change_bound(  # type: ignore[no-untyped-def]
+    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, own_vx,
+    own_vy, p,
+):  # fmt: skip
+    vx = (x - sx) / duration - own_vx
+    vy = (y - sy) / duration - own_vy
+    walking = min(math.sqrt(own_vx * own_vx + own_vy * own_vy) * (1.0 / p[0]), 1.0)
+    return walking * max(math.sqrt(vx * vx + vy * vy) - radius / duration, 0.0)
+
+
+class VelocityChange(CompiledTerm):
+    """Prefers to walk on as before.
+
+    ``|v - u| min(|u| / w, 1)``: v is the mean velocity of the option, u that of the movement that
+    has just ended, m/s, and w is ``walking``.  Changes of speed and of direction take effort.
+    Somebody who stands or creeps sets off at little cost: with the full difference, people who had
+    stopped in a crowd stayed back, and waves of standing people lasted.
+
+    Args:
+        weight: factor in the sum.
+        walking: speed from which on the difference counts in full, m/s.
+
+    Raises:
+        ModelError: a speed that is not finite and positive.
+    """
+
+    name = "velocity_change"
+    default_weight = 1.0
+    kernel = _velocity_change
+    bound = _velocity_change_bound
+
+    def __init__(self, weight: float | None = None, walking: float = 0.6) -> None:
+        super().__init__(weight)
+        if not (math.isfinite(walking) and walking > 0.0):
+            raise ModelError(f"velocity_change: walking is {walking}, expected more than 0")
+        self.walking = walking
+
+    def parameters(self) -> tuple[float, ...]:
+        """``(walking,)``."""
+        return (self.walking,)

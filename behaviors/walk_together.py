@@ -16,7 +16,7 @@ class WalkTogether(SpeedRule):
     (N - 1) / 2 m for a group of N, the distance beyond which Moussaid et al. (2010, PLoS ONE
     5: e10047) have members drawn to the group's centre, but 1 m at least.
 
-    Only members with the same destination wait for one another. Who walks beside whom is left to
+    Only members with the same destination wait for one another. The formation is left to
     the other terms.
     """
 

@@ -12,7 +12,13 @@ from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.costs.candidates import Candidates
-    from mesa_mobility.crowd.costs.kernels import bound_kernel, option_kernel, pair_kernel
+    from mesa_mobility.crowd.costs.kernels import (
+        bound_kernel,
+        option_kernel,
+        pair_bound_kernel,
+        pair_kernel,
+        wall_kernel,
+    )
     from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
     from mesa_mobility.crowd.model import PedestrianModel
     from mesa_mobility.crowd.options.capability import Capability
@@ -46,7 +52,9 @@ _MODULES = {
     "Watch": "planning.explanation",
     "bound_kernel": "costs.kernels",
     "option_kernel": "costs.kernels",
+    "pair_bound_kernel": "costs.kernels",
     "pair_kernel": "costs.kernels",
+    "wall_kernel": "costs.kernels",
 }
 
 __all__ = [
@@ -71,7 +79,9 @@ __all__ = [
     "Watch",
     "bound_kernel",
     "option_kernel",
+    "pair_bound_kernel",
     "pair_kernel",
+    "wall_kernel",
 ]
 
 __getattr__, __dir__ = names_of(__name__, _MODULES)

@@ -12,13 +12,14 @@ from mesa_mobility.crowd.insertion import Newcomers
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.pedestrian import Pedestrian
 from mesa_mobility.crowd.planning.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.decision_order import decision_order, due
 from mesa_mobility.crowd.planning.explanation import Explanation, judge, weigh
 from mesa_mobility.crowd.planning.grid import Grid, build_grid
 from mesa_mobility.crowd.planning.replanning import stop_where_blocked
 from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.sources import PLACES_TRIED
-from mesa_mobility.crowd.state.advance import LONG_AFTER, move, select_due
+from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Steps, Tactics
 from mesa_mobility.floorplan import Targets
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Dynamics:
-    """What happens to a model's people, frame by frame.
+    """Advances a model's people, frame by frame.
 
     Args:
         model: the model, whose behaviours may change at any time.
@@ -112,14 +113,18 @@ class Dynamics:
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows`` if they decided now."""
         scene = self._scene
-        return make_candidates(rows, scene.repertoire.table, scene.crowd, self._grid(), scene.rules)
+        return make_candidates(
+            rows, scene.repertoire.table, scene.crowd, self._grid(),
+            scene.environment.surroundings, scene.rules,
+        )  # fmt: skip
 
     def explain(self, row: int) -> Explanation:
         """The decision of the person in ``row`` if it decided now, before all others."""
         scene, model = self._scene, self._model
         weighed = weigh(
-            row, model.frame, scene.repertoire, scene.crowd, self._grid(), scene.rules, model.terms
-        )
+            row, model.frame, scene.repertoire, scene.crowd, self._grid(),
+            scene.environment.surroundings, scene.rules, model.terms,
+        )  # fmt: skip
         return judge(
             weighed,
             scene.repertoire.table,
@@ -129,7 +134,7 @@ class Dynamics:
         )
 
     def _let_in(self) -> None:
-        """Let in those who have come by a source, as far as there is room."""
+        """Insert arrivals of the sources where there is room."""
         model = self._model
         for inflow in model.sources:
             inflow.count(model.frame)
@@ -162,13 +167,11 @@ class Dynamics:
         """Take the decisions of those whose movement has ended; note when the next event is."""
         rows, now = self._model.population.present, self._model.frame
         state = self._scene.crowd.records
-        deciding, self._next = np.empty_like(rows), LONG_AFTER
-        count, soonest = select_due(rows, now, state, deciding)
-        if count:
-            deciding = deciding[:count]
+        deciding, soonest = due(rows, now, state)
+        self._next = LONG_AFTER  # brought forward if a behaviour adds people meanwhile
+        if len(deciding):
             self._decide(deciding)
-            theirs = select_due(deciding, now, state, np.empty_like(deciding))[1]
-            soonest = min(soonest, theirs)
+            soonest = min(soonest, due(deciding, now, state)[1])
         self._next = min(self._next, soonest)
 
     def _decide(self, deciding: NDArray[np.int64]) -> None:
@@ -176,9 +179,8 @@ class Dynamics:
         inside = people.present
         scene.journeys.advance(deciding, model.frame, scene.crowd, scene.repertoire.table)
         model.waits.ask(deciding, model.frame, scene.crowd)
-        # Those nearest to their destination decide first, which frees space for those behind. The
-        # crowd has the rest of the targets by now, so they can be freed here.
-        order = deciding[self._set_targets(deciding, inside).nearest_first]
+        # The crowd has the rest of the targets by then, so they can be freed here.
+        order = decision_order(deciding, self._set_targets(deciding, inside))
         self._scheduler.take(
             order,
             model.frame,

@@ -29,7 +29,7 @@ TOUCHING = 1e-6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Newcomers:
-    """Who is put on the floor, in the words of ``PedestrianModel.add_pedestrians``.
+    """Newcomers, described as in ``PedestrianModel.add_pedestrians``.
 
     Raises:
         ModelError: exits that are one text, a loop without a route, or a group without a name.
@@ -85,7 +85,7 @@ class Newcomers:
 
 @dataclass(frozen=True)
 class Assigned:
-    """What newcomers are assigned in common: type index, core radius in metres, standing cluster,
+    """Values that newcomers have in common: type index, core radius in metres, standing cluster,
     destination, and numbers of the journey and the group, 0 for none."""
 
     type_index: int

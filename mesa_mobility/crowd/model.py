@@ -291,13 +291,13 @@ class PedestrianModel(mesa.Model):
         endless = self.journeys.endless(self.rows, self.crowd) or self.sources.endless
         if max_seconds is None and endless:
             raise ModelError("max_seconds: got none, but people go round or come for ever")
-        told = 0
+        reported = 0
         self._stall_watch, self.stalled = StallWatch(), False
         self.running = True
         while self.running and (max_seconds is None or self.elapsed < max_seconds - 1e-9):
             self.step()
-            if progress is not None and int(self.elapsed) > told:
-                told = int(self.elapsed)
+            if progress is not None and int(self.elapsed) > reported:
+                reported = int(self.elapsed)
                 progress(self.elapsed, self.inside)
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:

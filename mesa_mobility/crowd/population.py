@@ -1,4 +1,4 @@
-"""The people in a model: who they are, and who is inside."""
+"""The people in a model: their agents and groups, and the rows of those inside."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all parts of a model share: a floor, the people's types and options, and their records."""
+"""Objects that all parts of a model share: the floor, the people's types, options and records."""
 
 from __future__ import annotations
 

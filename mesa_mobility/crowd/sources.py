@@ -118,7 +118,7 @@ class Source:
         return self.rate is not None and self.until > LATEST and self.number is None
 
     def newcomers(self) -> Newcomers:
-        """Who comes."""
+        """The newcomers."""
         return Newcomers(
             preferred_speeds=self.preferred_speeds,
             pre_movement=self.pre_movement,
@@ -167,7 +167,7 @@ class Inflow:
 
     @property
     def waiting(self) -> int:
-        """People who have come and are held back for lack of room."""
+        """Number of arrivals that wait for a free place."""
         return self.arrived - self.entered
 
     @property
@@ -176,7 +176,7 @@ class Inflow:
         return self.waiting == 0 and self._next == np.inf
 
     def count(self, frame: int) -> None:
-        """Count those who have come by ``frame``."""
+        """Count the arrivals until ``frame``."""
         now = frame * FRAME_SECONDS + 1e-9
         while self._next <= now:
             self.arrived += 1

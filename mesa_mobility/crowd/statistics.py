@@ -41,7 +41,7 @@ class Statistics:
         self.occupancy.append((self._model.elapsed, len(self._model.population.present)))
 
     def add(self, moved: Moved, frames: int) -> None:
-        """Add what happened in the last so many frames."""
+        """Add the results of the last frames."""
         for _ in range(frames):  # rounding must not depend on how many frames are skipped
             self._walked += moved.speeds
         self._person_frames += frames * (len(moved.stay) + len(moved.gone))

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesa_mobility.behaviors import (
+    Anticipation,
     Displacement,
     FacingDeviation,
     Headway,
@@ -18,7 +19,10 @@ from mesa_mobility.behaviors import (
     PreferredSpeed,
     PreferredVelocity,
     RightOfWay,
+    RoomAhead,
+    Stepping,
     TargetDistance,
+    VelocityChange,
 )
 
 from mesa_mobility import CostTerm
@@ -28,7 +32,7 @@ from tests.fixtures.options import Ending, crowded, one_option
 
 TERMS = [
     TargetDistance, FacingDeviation, Displacement, Interference, PreferredSpeed, PreferredVelocity,
-    Headway, RightOfWay,
+    Headway, RightOfWay, Anticipation, RoomAhead, Stepping, VelocityChange,
 ]  # fmt: skip
 
 
@@ -60,6 +64,7 @@ def test_weight_is_not_part_of_the_cost(term):
         Ending(displacement=0.7, duration=0.4, heading=0.3),
         target=(2.0, 1.0),
         neighbours=[((0.1, 0.0), (0.0, 0.0))],
+        walls=[(0.4, -1.0, 0.4, 1.0)],
     )
     assert term(7.0).cost(options).tolist() == term(1.0).cost(options).tolist()
     assert term(7.0).weight == 7.0
@@ -124,7 +129,16 @@ def _only(options, k: int):
     }
     fields |= {
         name: getattr(options, name)[k : k + 1]
-        for name in ("pedestrians", "positions", "facings", "targets", "preferred_speeds", "types")
+        for name in (
+            "pedestrians",
+            "positions",
+            "facings",
+            "targets",
+            "preferred_speeds",
+            "velocities",
+            "cores",
+            "types",
+        )
     }
     fields |= {
         name: getattr(options, name)[near]
@@ -136,10 +150,13 @@ def _only(options, k: int):
             "leads",
         )
     }
+    walls = options.walls[options.wall_offsets[k] : options.wall_offsets[k + 1]]
     n, q = rows.stop - rows.start, near.stop - near.start
     return type(options)(
         owner=np.zeros(n, dtype=np.int64),
         offsets=np.array([0, n]),
         neighbour_offsets=np.array([0, q]),
+        wall_offsets=np.array([0, len(walls)]),
+        walls=walls,
         **fields,
     )

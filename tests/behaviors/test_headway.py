@@ -42,7 +42,7 @@ def cost(ending: Ending, *neighbours, **numbers) -> float:
         (A_METRE_A_SECOND, (0.25, 0.0), 1.875),
         # A metre over 1.5 s costs what it costs over 0.4 s.
         (Ending(displacement=0.4, duration=0.4), (1.0, 0.0), 0.75),
-        # Who stands has room from half a metre on, but not nearer.
+        # A standing person has room from half a metre on, but not nearer.
         (STANDING, (0.5, 0.0), 0.0),
         (STANDING, (0.25, 0.0), 0.375),
         # Beside: half a width off counts half; a width off, nothing. Either side.
@@ -130,7 +130,7 @@ def pairs(options):
 
 
 def decided(options):
-    """(n,) where rounding does not decide which neighbours are ahead, nor who stands."""
+    """(n,) where rounding does not decide which neighbours are ahead, or which stand."""
     rows, ahead, _ = pairs(options)
     beside = np.bincount(rows[np.abs(ahead) < EDGE], minlength=len(options)) > 0
     aim = np.hypot(*(options.targets - options.positions)[options.owner].T)

@@ -15,7 +15,7 @@ def test_displacement_lowers_the_cost_by_its_metres():
     [
         (1.5, 1.5, 1.2, 0.3),  # |1.5 - 1.8| x 1.5 / 1.5
         (0.6, 0.4, 1.2, 0.45),  # |0.6 - 0.48| x 1.5 / 0.4
-        (0.0, 0.4, 1.2, 1.8),  # |0 - 0.48| x 1.5 / 0.4: who stands misses all of it
+        (0.0, 0.4, 1.2, 1.8),  # |0 - 0.48| x 1.5 / 0.4: a standing person misses all of it
         (1.0, 0.8, 1.25, 0.0),
         (0.8, 0.8, 1.4, 0.6),  # |0.8 - 1.12| x 1.5 / 0.8
     ],

@@ -9,7 +9,7 @@ from tests.fixtures.options import Ending, one_option
 
 @pytest.mark.parametrize(
     ("metres", "seconds", "expected"),
-    # Of a length of 0.4 m: nothing for who stands, nearly all for the least step, half at half.
+    # Of 0.4 m: nothing for standing, nearly all for the shortest step, half for half of 0.4 m.
     [(0.0, 0.4, 0.0), (0.009, 0.4, 0.0), (0.009, 1.5, 0.0), (0.02, 0.4, 0.95), (0.1, 0.4, 0.75),
      (0.2, 0.4, 0.5), (0.2, 1.5, 0.5), (0.4, 0.4, 0.0), (0.5, 0.8, 0.0), (1.9, 1.5, 0.0)],
 )  # fmt: skip

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mesa_mobility.behaviors import PreferredVelocity
+from mesa_mobility.behaviors import PreferredVelocity, VelocityChange
 
 from mesa_mobility import MobilityMap
 from mesa_mobility.crowd.options.option_groups import (
@@ -20,6 +20,7 @@ from mesa_mobility.crowd.options.option_groups import (
 )
 from mesa_mobility.crowd.options.repertoire import repertoire
 from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.errors import ModelError
 from tests.fixtures.options import (
     Chooser,
     Ending,
@@ -153,3 +154,94 @@ def test_bounds_hold_for_the_groups_of_the_map_that_ships(preferred):
             cost(float(o.x), float(o.y), target, preferred, int(o.frames) / 30.0) for o in group
         ]
         assert least <= min(costs) + 1e-5
+
+
+# -- the velocity of the movement before --------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("point", "start", "velocity", "duration", "expected"),
+    [
+        ((1.5, 0.0), (0.0, 0.0), (1.0, 0.0), 1.5, 0.0),  # on as before
+        ((0.4, 0.0), (0.0, 0.0), (1.0, 0.0), 0.4, 0.0),  # for however long
+        ((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), 0.4, 1.0),  # halting
+        ((0.8, 0.0), (0.0, 0.0), (0.0, 0.0), 0.8, 0.0),  # setting off costs nothing
+        # 0.9 and 0.5 m/s more, after 0.1 and 0.5 m/s: a sixth and five sixths count.
+        ((0.8, 0.0), (0.0, 0.0), (0.1, 0.0), 0.8, 0.15),
+        ((0.8, 0.0), (0.0, 0.0), (0.5, 0.0), 0.8, 2.5 / 6.0),
+        # From 0.6 m/s on, in whatever direction, it counts in full.
+        ((0.8, 0.0), (0.0, 0.0), (0.6, 0.0), 0.8, 0.4),
+        ((0.0, 0.0), (0.0, 0.0), (-0.36, 0.48), 0.8, 0.6),
+        ((0.0, 0.0), (0.0, 0.0), (0.18, -0.24), 0.8, 0.15),  # halting after 0.3: half of it
+        ((-1.5, 0.0), (0.0, 0.0), (1.0, 0.0), 1.5, 2.0),  # back
+        ((0.0, 1.5), (0.0, 0.0), (1.0, 0.0), 1.5, math.sqrt(2.0)),  # round a corner
+        ((2.9, 1.0), (2.5, 1.0), (0.7, 0.4), 0.4, 0.5),  # 1 m/s after 0.7 and 0.4 aside
+    ],
+)
+def test_changes_worked_out_by_hand(point, start, velocity, duration, expected):
+    shown = Chooser(
+        [Ending(point, displacement=math.dist(point, start), duration=duration)],
+        position=start, velocity=velocity,
+    )  # fmt: skip
+    assert VelocityChange().cost(candidates(shown)) == pytest.approx([expected], abs=1e-12)
+
+
+def test_each_ones_own_velocity_counts():
+    on = Ending((1.5, 0.0), displacement=1.5, duration=1.5)
+    first, second = Chooser([on], velocity=(1.0, 0.0)), Chooser([on] * 2, velocity=(0.3, 0.0))
+    costs = VelocityChange().cost(candidates(first, second))
+    # 0.7 m/s more, of which half counts after half of 0.6 m/s.
+    assert costs == pytest.approx([0.0, 0.35, 0.35], abs=1e-12)
+
+
+def test_the_walking_speed_given_is_used():
+    # On at 1 m/s after 0.8 m/s: all of 0.2 m/s, and half of it where walking is 1.6 m/s.
+    options = one_option(Ending((1.5, 0.0), displacement=1.5, duration=1.5), velocity=(0.8, 0.0))
+    assert VelocityChange().cost(options) == pytest.approx([0.2], abs=1e-12)
+    assert VelocityChange(walking=1.6).cost(options) == pytest.approx([0.1], abs=1e-12)
+
+
+@pytest.mark.parametrize("walking", [0.0, -0.6, math.nan, math.inf])
+def test_a_walking_speed_out_of_range_is_refused_in_one_line(walking):
+    says = r"^velocity_change: walking is .*expected more than 0$"
+    with pytest.raises(ModelError, match=says) as caught:
+        VelocityChange(walking=walking)
+    assert "\n" not in str(caught.value)
+
+
+@given(crowded)
+@settings(deadline=None)
+def test_change_of_any_batch(options):
+    moved = options.points - options.positions[options.owner]
+    velocity = moved / options.durations[:, None]
+    before = options.velocities[options.owner]
+    share = np.minimum(np.linalg.norm(before, axis=1) / 0.6, 1.0)
+    expected = share * np.linalg.norm(velocity - before, axis=1)
+    np.testing.assert_allclose(VelocityChange().cost(options), expected, rtol=1e-9, atol=1e-9)
+
+
+@given(crowded, turns, shifts)
+@settings(deadline=None)
+def test_a_change_does_not_depend_on_where_north_is(options, angle, by):
+    costs = VelocityChange().cost(turned_and_moved(options, angle, by))
+    np.testing.assert_allclose(costs, VelocityChange().cost(options), atol=1e-9)
+
+
+def change_at_least(x, y, radius, duration, velocity):
+    return VelocityChange.bound.function(
+        x, y, radius, 1.0, 0.0, 0.3, duration, 0.0, 2.0, 0.0, 0.0, 9.0, 0.0, 1.0, *velocity, (0.6,)
+    )
+
+
+def test_the_bound_of_a_change_is_worth_something():
+    # 1.5 m in 1.5 s after 2 m/s; somewhere within 0.3 m of there, which is 0.2 m/s.
+    assert change_at_least(1.5, 0.0, 0.3, 1.5, (2.0, 0.0)) == pytest.approx(0.8)
+    assert change_at_least(1.5, 0.0, 0.0, 1.5, (0.0, -1.0)) == pytest.approx(math.sqrt(2.0))
+    # 0.7 and 0.5 m/s more than the 0.3 m/s before, of which half counts.
+    assert change_at_least(1.5, 0.0, 0.0, 1.5, (0.3, 0.0)) == pytest.approx(0.35)
+    assert change_at_least(1.5, 0.0, 0.3, 1.5, (0.3, 0.0)) == pytest.approx(0.25)
+    # Nothing counts after standing.
+    assert change_at_least(1.5, 0.0, 0.0, 1.5, (0.0, 0.0)) == 0.0
+    # As before is among what a wide group offers.
+    assert change_at_least(1.5, 0.0, 0.3, 1.5, (1.1, 0.0)) == 0.0
+    assert change_at_least(0.4, 0.0, 0.3, 0.4, (1.0, 0.7)) == 0.0

@@ -145,3 +145,22 @@ def test_a_script_as_it_should_be(tmp_path):
     source = NOTEBOOK + "if __name__ == '__main__':" + CALL.replace("\n", "\n    ")
     done = script(tmp_path, source=source, as_file=True)
     assert done.stdout == "2\n", done.stderr
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_a_run_that_fails_does_not_lose_the_others(processes):
+    walks = {"pedestrians": [2, -1, 3], "length": 6.0}
+    with pytest.warns(RuntimeWarning, match="2 of 6 runs fail, the first with ModelError: "):
+        rows = mesa_mobility.batch_run(
+            StraightWalk, walks, rng=[1, 2], display_progress=False, number_processes=processes
+        )
+    assert [row["RunId"] for row in rows] == list(range(6))
+    assert [row["iteration"] for row in rows] == [0, 0, 0, 1, 1, 1]
+    failed = [row for row in rows if "error" in row]
+    assert [row["pedestrians"] for row in failed] == [-1, -1]
+    assert all(row["inside"] == 0 for row in rows if "error" not in row)
+
+
+def test_runs_that_all_fail_are_an_error():
+    with pytest.raises(ModelError, match=r"batch_run: 2 of 2 runs fail, the first with TypeError"):
+        mesa_mobility.batch_run(StraightWalk, {"no": 1}, rng=[1, 2], display_progress=False)

@@ -95,7 +95,8 @@ def test_each_has_people_and_a_floor_plan_of_its_own():
     assert all(agent.model is copied and agent.space is copied.space for agent in theirs)
     kept = state(model)
     copied.remove_pedestrians(list(copied.agents)[:10])
-    copied.floor_plan.add_obstacle(box(0.5, 0.5, 1.0, 1.0))
+    x, y = a_free_place(copied)[0]
+    copied.floor_plan.add_obstacle(box(x - 0.1, y - 0.1, x + 0.1, y + 0.1))
     newcomer = copied.add_pedestrians(a_free_place(copied))[0]
     assert newcomer.unique_id == 61
     assert (model.inside, copied.inside) == (60, 51)

@@ -103,9 +103,9 @@ def test_run_stops_in_time(model):
 
 
 def test_run_tells_of_its_progress_each_second(model):
-    told = []
-    model.run(max_seconds=4.0, progress=lambda elapsed, inside: told.append((elapsed, inside)))
-    seconds, inside = zip(*told, strict=True)
+    reports = []
+    model.run(max_seconds=4.0, progress=lambda elapsed, inside: reports.append((elapsed, inside)))
+    seconds, inside = zip(*reports, strict=True)
     assert seconds == pytest.approx((1.0, 2.0, 3.0, 4.0), abs=0.11)
     assert inside == (2, 2, 2, 2)
 

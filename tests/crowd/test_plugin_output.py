@@ -14,8 +14,8 @@ from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.scenes import advance, corridor, model_of, put
 
 
-class Told(NearestExit):
-    """The nearest exit, with some of what it tells in another way."""
+class Changed(NearestExit):
+    """The nearest exit, with some of its output changed."""
 
     def __init__(self, **changed) -> None:
         super().__init__()
@@ -32,7 +32,7 @@ class Silent(NearestExit):
         return None
 
 
-def refuses(model, message: str, choice: Told | None = None) -> None:
+def refuses(model, message: str, choice: Changed | None = None) -> None:
     person = put(model, 2.0, 2.0) if not model.inside else model.agents[0]
     if choice is not None:
         choice.on = True
@@ -71,7 +71,7 @@ def refuses(model, message: str, choice: Told | None = None) -> None:
     ],
 )
 def test_targets(changed, message):
-    choice = Told(**changed)
+    choice = Changed(**changed)
     refuses(model_of(corridor(), strider(), target_choice=choice), message, choice)
 
 

@@ -1,18 +1,17 @@
+import numpy as np
 import pytest
 from mesa_mobility.behaviors import (
     Displacement,
     FacingDeviation,
-    Headway,
     Interference,
     PreferredVelocity,
-    RightOfWay,
-    Stepping,
     TargetDistance,
 )
 
 from mesa_mobility import PedestrianModel
 from mesa_mobility.crowd import PRESETS
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins.registry import load_behavior
 from tests.fixtures.counting import overlaps
 from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
 from tests.fixtures.scenes import advance, corridor, model_of, put, two_doors
@@ -22,8 +21,8 @@ def weights(model):
     return {type(term): term.weight for term in model.terms}
 
 
-def test_there_are_two():
-    assert set(PRESETS) == {"default", "paper"}
+def test_there_are_three():
+    assert set(PRESETS) == {"default", "paper", "steady"}
 
 
 def test_the_papers_terms_and_its_options_of_45_frames():
@@ -39,21 +38,22 @@ def test_the_papers_terms_and_its_options_of_45_frames():
 def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_shorter_options():
     model = model_of(corridor(), strider())
     assert model.preset == "default"
-    assert weights(model) == {
-        TargetDistance: 1.0, FacingDeviation: 1.2, Interference: 1.0, PreferredVelocity: 2.0,
-        Headway: 1.5, RightOfWay: 3.0, Stepping: 1.0,
-    }  # fmt: skip
-    (headway,) = (term for term in model.terms if isinstance(term, Headway))
-    assert (headway.distance, headway.time, headway.width) == (0.33, 1.2, 0.35)
-    (step,) = (term for term in model.terms if isinstance(term, Stepping))
-    assert step.length == 0.4
-    (way,) = (term for term in model.terms if isinstance(term, RightOfWay))
-    assert (way.width, way.bias, way.ahead, way.beside) == (0.4, 0.1, 0.5, 0.5)
-    person = put(model, 1.0, 2.0)
-    # Stand and half a metre in 12 frames, whole and in parts of a half, a quarter and nothing.
-    options = person.movement_options()
-    assert sorted(options.durations) == pytest.approx([0.4] * 7 + [0.8, 1.5])
-    assert sorted(options.displacements)[4:7] == pytest.approx([0.125, 0.25, 0.5])
+    rules = PRESETS["default"]
+    assert weights(model) == {load_behavior(name): rules.terms[name] for name in rules.terms}
+    assert PreferredVelocity in weights(model)
+    assert Displacement not in weights(model)
+    assert min(rules.terms.values()) > 0.0
+    # Stand and half a metre in 12 frames, a metre in 24 and 1.875 in 45; whole, and each part of
+    # those of its rank. Parts that leave nothing of the ground end in place alike: one is kept.
+    options = put(model, 1.0, 2.0).movement_options()
+    ranks = [(0.4, [0.0, 0.5]), (0.8, [1.0]), (1.5, [1.875])]
+    expected = [(seconds, metres) for seconds, whole in ranks for metres in whole]
+    for (seconds, whole), own in zip(ranks, rules.shares, strict=False):
+        for share in own:
+            kept = whole if share > 0.0 else whole[:1]
+            expected += [(seconds, share * metres) for metres in kept]
+    found = zip(options.durations.tolist(), options.displacements.tolist(), strict=True)
+    np.testing.assert_allclose(sorted(found), sorted(expected), atol=1e-6)
 
 
 def test_only_in_the_default_do_people_look_for_a_way_round():

@@ -117,7 +117,7 @@ def test_a_run_is_not_over_while_somebody_is_to_come():
     assert 100.0 + 4.0 < model.summary()["egress_s"] < 100.0 + 9.0
 
 
-def test_what_they_are_told_is_as_when_they_are_added():
+def test_people_of_a_source_get_what_added_people_get():
     model = model_of(corridor(both_ends=True), strider(), rng=3)
     model.add_source(Source(area=WEST, times=[0.0, 0.0], exits=["east"], group="tour",
                             preferred_speeds=Uniform(0.8, 1.0), pre_movement=2.0))  # fmt: skip

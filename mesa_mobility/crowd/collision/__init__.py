@@ -1,1 +1,1 @@
-"""What is in the way: walls and people, tested exactly or in bulk."""
+"""Collision tests against walls and people, exact or in bulk."""

@@ -22,6 +22,12 @@ from mesa_mobility.floorplan.walls.geometry import segment_segment_distance2
 
 
 @internal()
+def wall_reach(farthest: float, core: float) -> float:
+    """Distance in metres within which walls matter to somebody whose options lead ``farthest``."""
+    return farthest + core + 0.01
+
+
+@internal()
 def near_walls(
     around: Surroundings,
     x: float,

@@ -1,4 +1,4 @@
-"""What the choice does for several options, groups or people at once.
+"""Collision tests of several options, groups or people at once.
 
 Arrays are given whole, with the place where a row of theirs starts: to take a part of one
 takes as long as to look at 16 of its numbers. Hand-written code reads and writes whole vectors.

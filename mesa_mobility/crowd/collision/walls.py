@@ -65,7 +65,7 @@ def walls_to_ego(
         me: the pedestrian.
         walls: (w, 5) walls within reach, with squared distances.
         farthest: reach of its options, metres.
-        radius: whoever is closer touches, metres.
+        radius: distance to a wall at which a body touches it, metres.
         to: (5, n) is written.
 
     Returns:

@@ -1,1 +1,1 @@
-"""What a cost term is made of."""
+"""The parts of a cost term."""

@@ -29,6 +29,8 @@ class Candidates:
         facings: (b,) headings, radians.
         targets: (b, 2) metres.
         preferred_speeds: (b,) m/s; 0 for somebody without a route.
+        velocities: (b, 2) mean velocity of the movement that has just ended, m/s.
+        cores: (b,) core radius, metres.
         types: (b,) index of the pedestrian type in ``model.pedestrian_types``.
         neighbour_offsets: (b + 1,) neighbours of pedestrian i are rows
             ``neighbour_offsets[i]:neighbour_offsets[i + 1]`` of the arrays below.
@@ -38,6 +40,10 @@ class Candidates:
         neighbour_directions: (q, 2) unit vector to their target; (0, 0) at the target.
         leads: (q,) metres by which their route is shorter than the pedestrian's; not a number if
             neither has a route.
+        wall_offsets: (b + 1,) walls of pedestrian i are rows
+            ``wall_offsets[i]:wall_offsets[i + 1]`` of ``walls``.
+        walls: (w, 4) x1, y1, x2, y2 of walls and closed exits, metres: those no farther than the
+            farthest that an option leads, the core radius and a centimetre.
     """
 
     points: NDArray[np.float64]
@@ -53,6 +59,8 @@ class Candidates:
     facings: NDArray[np.float64]
     targets: NDArray[np.float64]
     preferred_speeds: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    cores: NDArray[np.float64]
     types: NDArray[np.int64]
     neighbour_offsets: NDArray[np.int64]
     neighbours: NDArray[np.int64]
@@ -60,6 +68,8 @@ class Candidates:
     neighbour_velocities: NDArray[np.float64]
     neighbour_directions: NDArray[np.float64]
     leads: NDArray[np.float64]
+    wall_offsets: NDArray[np.int64]
+    walls: NDArray[np.float64]
 
     def __post_init__(self) -> None:
         for array in vars(self).values():

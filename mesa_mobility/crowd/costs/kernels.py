@@ -11,41 +11,39 @@ new kernel is compiled alone.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from types import FunctionType
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, overload
 
-from llvmlite import ir
 from numba import njit, types
-from numba.core import cgutils
-from numba.extending import intrinsic
 
 from mesa_mobility.compiled.cache import kept_cfunc
 
 _F = types.float64
-_A = types.CPointer(_F)
+FLOATS = types.CPointer(_F)
 _N = types.int64
 
 _OPTION_LOOP = """
 def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, preferred, p, weight, out
+    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, p,
+    weight, out
 ):
     for k in range(n):
         out[k] += weight * each(
             x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, preferred,
-            p
+            {own}p
         )
 """
 
 _BOUND_LOOP = """
 def {name}(
     n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, sx, sy, tx, ty,
-    preferred, p, weight, out
+    preferred, own_vx, own_vy, p, weight, out
 ):
     for k in range(n):
         out[k] += weight * each(
             x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
-            fastest[k], sx, sy, tx, ty, preferred, p
+            fastest[k], sx, sy, tx, ty, preferred, {own}p
         )
 """
 
@@ -75,6 +73,35 @@ def {name}(
             )
 """
 
+_PAIR_BOUND_LOOP = """
+def {name}(
+    m, n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, sx, sy, tx, ty, nx,
+    ny, nvx, nvy, nex, ney, lead, p, weight, out
+):
+    for a in range(m):
+        ax, ay, avx, avy, aex, aey, alead = nx[a], ny[a], nvx[a], nvy[a], nex[a], ney[a], lead[a]
+        for k in range(n):
+            out[k] += weight * each(
+                x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
+                fastest[k], sx, sy, tx, ty, ax, ay, avx, avy, aex, aey, alead, p
+            )
+"""
+
+_WALL_LOOP = """
+def {name}(
+    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, core, walls, p
+):
+    worst = 0.0
+    for k in range(n):
+        cost = each(
+            x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, walls[5 * k],
+            walls[5 * k + 1], walls[5 * k + 2], walls[5 * k + 3], core, p
+        )
+        # A cost that is not a number stays the worst.
+        worst = cost if worst == worst and not cost <= worst else worst
+    return worst
+"""
+
 
 class CostKernel:
     """A function that is compiled with a loop around it when its address is first needed."""
@@ -82,8 +109,9 @@ class CostKernel:
     loop: ClassVar[str]
     signature: ClassVar[Any]
 
-    def __init__(self, function: Callable[..., float]) -> None:
+    def __init__(self, function: Callable[..., float], *, own_velocity: bool = False) -> None:
         self.function = function
+        self._own = "own_vx, own_vy, " if own_velocity else ""
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """Itself: its machine code stays where it is."""
@@ -105,7 +133,9 @@ class CostKernel:
             "each": njit(error_model="numpy")(self.function),
             "__name__": self.function.__module__,
         }
-        source = "\n" * (code.co_firstlineno - 1) + source.format(name=name).lstrip("\n")
+        source = "\n" * (code.co_firstlineno - 1) + source.format(name=name, own=self._own).lstrip(
+            "\n"
+        )
         exec(compile(source, code.co_filename, "exec"), space)
         loop = space[name]
         assert isinstance(loop, FunctionType)
@@ -122,14 +152,14 @@ class OptionKernel(CostKernel):
     """Cost of one movement option."""
 
     loop = _OPTION_LOOP
-    signature = types.void(_N, *[_A] * 6, *[_F] * 5, _A, _F, _A)
+    signature = types.void(_N, *[FLOATS] * 6, *[_F] * 7, FLOATS, _F, FLOATS)
 
 
 class BoundKernel(CostKernel):
     """Lower bound of the cost of a group of movement options."""
 
     loop = _BOUND_LOOP
-    signature = types.void(_N, *[_A] * 9, *[_F] * 5, _A, _F, _A)
+    signature = types.void(_N, *[FLOATS] * 9, *[_F] * 7, FLOATS, _F, FLOATS)
 
 
 class PairKernel(CostKernel):
@@ -140,8 +170,10 @@ class PairKernel(CostKernel):
     """
 
     loop = _PAIR_LOOP
-    signature = types.void(_N, *[_F] * 10, *[_A] * 9)
-    all_pairs: ClassVar[Any] = types.void(_N, _N, *[_A] * 6, *[_F] * 4, *[_A] * 8, _F, _A)
+    signature = types.void(_N, *[_F] * 10, *[FLOATS] * 9)
+    all_pairs: ClassVar[Any] = types.void(
+        _N, _N, *[FLOATS] * 6, *[_F] * 4, *[FLOATS] * 8, _F, FLOATS
+    )
 
     @cached_property
     def _compiled_pairs(self) -> Any:
@@ -153,7 +185,31 @@ class PairKernel(CostKernel):
         return int(self._compiled_pairs.address)
 
 
-def option_kernel(function: Callable[..., float]) -> OptionKernel:
+class PairBoundKernel(CostKernel):
+    """Lower bound of the cost of a group of movement options with respect to one neighbour."""
+
+    loop = _PAIR_BOUND_LOOP
+    signature = types.void(_N, _N, *[FLOATS] * 9, *[_F] * 4, *[FLOATS] * 8, _F, FLOATS)
+
+
+class WallKernel(CostKernel):
+    """Cost of one movement option with respect to one wall."""
+
+    loop = _WALL_LOOP
+    signature = types.float64(_N, *[_F] * 11, FLOATS, FLOATS)
+
+
+@overload
+def option_kernel(function: Callable[..., float]) -> OptionKernel: ...
+
+
+@overload
+def option_kernel(*, own_velocity: bool) -> Callable[[Callable[..., float]], OptionKernel]: ...
+
+
+def option_kernel(
+    function: Callable[..., float] | None = None, *, own_velocity: bool = False
+) -> OptionKernel | Callable[[Callable[..., float]], OptionKernel]:
     """Make a kernel of one movement option.
 
     The function takes ``(x, y, facing_x, facing_y, duration, speed, start_x, start_y, target_x,
@@ -162,11 +218,28 @@ def option_kernel(function: Callable[..., float]) -> OptionKernel:
     in m/s; speed times duration is the displacement - and returns a float.  ``parameters[i]`` are
     the numbers of the term's ``parameters()``.  It must be compilable by Numba (``math``, no
     Python objects).
+
+    Args:
+        function: the function.
+        own_velocity: whether it also takes ``own_vx, own_vy`` before ``parameters``: the mean
+            velocity of the movement that has just ended, m/s.
     """
-    return OptionKernel(function)
+    if function is None:
+        return partial(OptionKernel, own_velocity=own_velocity)
+    return OptionKernel(function, own_velocity=own_velocity)
 
 
-def bound_kernel(function: Callable[..., float]) -> BoundKernel:
+@overload
+def bound_kernel(function: Callable[..., float]) -> BoundKernel: ...
+
+
+@overload
+def bound_kernel(*, own_velocity: bool) -> Callable[[Callable[..., float]], BoundKernel]: ...
+
+
+def bound_kernel(
+    function: Callable[..., float] | None = None, *, own_velocity: bool = False
+) -> BoundKernel | Callable[[Callable[..., float]], BoundKernel]:
     """Make a lower bound of an option kernel over a group of similar options.
 
     The function takes ``(x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest,
@@ -174,8 +247,14 @@ def bound_kernel(function: Callable[..., float]) -> BoundKernel:
     the option kernel does not fall below for any option that ends within ``radius`` metres of
     (x, y), faces within ``turn`` radians of the unit vector there, takes ``duration`` seconds and
     has a speed from ``slowest`` to ``fastest``.
+
+    Args:
+        function: the function.
+        own_velocity: as for ``option_kernel``.
     """
-    return BoundKernel(function)
+    if function is None:
+        return partial(BoundKernel, own_velocity=own_velocity)
+    return BoundKernel(function, own_velocity=own_velocity)
 
 
 def pair_kernel(function: Callable[..., float]) -> PairKernel:
@@ -190,73 +269,26 @@ def pair_kernel(function: Callable[..., float]) -> PairKernel:
     return PairKernel(function)
 
 
-def _caller(signature: Any) -> Any:
-    """Calls what is at an address; numbers as such, float arrays by their data.
+def pair_bound_kernel(function: Callable[..., float]) -> PairBoundKernel:
+    """Make a lower bound of a pair kernel over a group of similar options, for one neighbour.
 
-    Plain Numba has no such call, so there is no twin of it (see ``compiled/twins.py``).
+    The function takes ``(x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest,
+    start_x, start_y, target_x, target_y, neighbour_x, neighbour_y, neighbour_vx, neighbour_vy,
+    neighbour_ex, neighbour_ey, lead, parameters)``: the group as for ``bound_kernel``, the
+    neighbour as for ``pair_kernel``.
     """
-
-    def typing(address: Any, *given: Any) -> Any:
-        def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            wanted = [context.get_value_type(kind) for kind in signature.args]
-            called = ir.FunctionType(ir.VoidType(), wanted)
-            function = builder.inttoptr(args[0], called.as_pointer())
-            passed = []
-            for value, kind, want in zip(args[1:], sig.args[1:], signature.args, strict=True):
-                if want == _A:
-                    array = cgutils.create_struct_proxy(kind)(context, builder, value)
-                    passed.append(array.data)
-                else:
-                    passed.append(context.cast(builder, value, kind, want))
-            builder.call(function, passed)
-            return context.get_dummy_value()
-
-        return signature.return_type(address, *given), codegen
-
-    return typing
+    return PairBoundKernel(function)
 
 
-@intrinsic
-def call_option_loop(  # type: ignore[no-untyped-def]
-    typingctx, address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p, weight, out
-):
-    """Add the weighted cost of n options to ``out``; arguments after the address as the loop's."""
-    return _caller(OptionKernel.signature)(
-        address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p, weight, out
-    )
+def wall_kernel(function: Callable[..., float]) -> WallKernel:
+    """Make a kernel of one movement option and one wall; the worst wall counts.
 
-
-@intrinsic
-def call_pair_loop(  # type: ignore[no-untyped-def]
-    typingctx, address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex,
-    ney, lead, p, out,
-):  # fmt: skip
-    """Write the cost of one option for each of n neighbours; arguments as the loop's."""
-    return _caller(PairKernel.signature)(
-        address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-        p, out,
-    )  # fmt: skip
-
-
-@intrinsic
-def call_pairs_loop(  # type: ignore[no-untyped-def]
-    typingctx, address, m, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex,
-    ney, lead, p, weight, out,
-):  # fmt: skip
-    """Add the weighted costs of n options for each of m neighbours; arguments as the loop's."""
-    return _caller(PairKernel.all_pairs)(
-        address, m, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney,
-        lead, p, weight, out,
-    )  # fmt: skip
-
-
-@intrinsic
-def call_bound_loop(  # type: ignore[no-untyped-def]
-    typingctx, address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty,
-    preferred, p, weight, out,
-):  # fmt: skip
-    """Add the weighted bounds of n groups to ``out``; arguments after the address as the loop's."""
-    return _caller(BoundKernel.signature)(
-        address, n, x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty,
-        preferred, p, weight, out,
-    )  # fmt: skip
+    The function takes ``(x, y, facing_x, facing_y, duration, speed, start_x, start_y, target_x,
+    target_y, wall_x1, wall_y1, wall_x2, wall_y2, core, parameters)``.  After the arguments of an
+    option kernel but the preferred speed come the ends of the wall and the core radius of the
+    pedestrian, metres.  Walls, closed exits among them, are those no farther from where the
+    pedestrian is now than the farthest that its options lead, its core radius and a centimetre.
+    The cost of an option is that of its worst wall, 0 if there are none.  It must not be negative,
+    as with pair kernels.
+    """
+    return WallKernel(function)

@@ -15,12 +15,17 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.kernel_calls import (
+    call_option_loop,
+    call_pair_loop,
+    call_wall_loop,
+)
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
     CostKernel,
+    PairBoundKernel,
     PairKernel,
-    call_option_loop,
-    call_pair_loop,
+    WallKernel,
 )
 from mesa_mobility.crowd.costs.layout import (
     COST,
@@ -97,15 +102,18 @@ class CompiledTerm(CostTerm):
     """A term given as a kernel, evaluated inside the compiled search.
 
     Attributes:
-        kernel: an ``option_kernel``, or a ``pair_kernel`` that is summed over the neighbours.
-            A pair kernel must never be negative: the other terms are then a lower bound of
-            the sum, and pairs are evaluated only for options that can still win.
-        bound: a ``bound_kernel`` of an option kernel, or None.  Without a bound, this and
-            every other term is evaluated for all options, not only for those that can still win.
+        kernel: an ``option_kernel``, a ``pair_kernel`` that is summed over the neighbours, or a
+            ``wall_kernel`` that counts for the worst wall.  Pair and wall kernels must never be
+            negative: the other terms are then a lower bound of the sum, and pairs and walls are
+            evaluated only for options that can still win.
+        bound: a ``bound_kernel`` of an option kernel, a ``pair_bound_kernel`` of a pair kernel, or
+            None.  Without a bound of an option kernel, every term is evaluated for all options,
+            not only for those that can still win.  A bound of a pair kernel saves time where the
+            kernel often decides which option wins.
     """
 
     kernel: ClassVar[CostKernel]
-    bound: ClassVar[BoundKernel | None] = None
+    bound: ClassVar[BoundKernel | PairBoundKernel | None] = None
 
     def parameters(self) -> tuple[float, ...]:
         """Numbers that the kernel reads as ``parameters[0]``, ``parameters[1]``, ..."""
@@ -133,9 +141,15 @@ class CompiledTerm(CostTerm):
                 np.array([x, y, vx, vy, ex, ey, candidates.leads, np.empty_like(x)]),
                 numbers,
             )  # fmt: skip
+        if isinstance(self.kernel, WallKernel):
+            return _each_wall(
+                self.kernel.address, candidates.owner, ends, candidates.positions,
+                candidates.targets, candidates.cores, candidates.wall_offsets,
+                np.pad(candidates.walls, ((0, 0), (0, 1))), numbers,
+            )  # fmt: skip
         return _each_option(
             self.kernel.address, candidates.offsets, ends, candidates.positions,
-            candidates.targets, candidates.preferred_speeds, numbers,
+            candidates.targets, candidates.preferred_speeds, candidates.velocities, numbers,
         )  # fmt: skip
 
 
@@ -147,6 +161,7 @@ def _each_option(
     starts: NDArray[np.float64],
     targets: NDArray[np.float64],
     preferred: NDArray[np.float64],
+    own: NDArray[np.float64],
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     out = np.zeros(ends.shape[1])
@@ -155,8 +170,8 @@ def _each_option(
         call_option_loop(
             address, offsets[b + 1] - offsets[b], ends[END_X, at], ends[END_Y, at],
             ends[END_UX, at], ends[END_UY, at], ends[SECONDS, at], ends[SPEED, at],
-            starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1], preferred[b], numbers, 1.0,
-            out[at],
+            starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1], preferred[b], own[b, 0],
+            own[b, 1], numbers, 1.0, out[at],
         )  # fmt: skip
     return out
 
@@ -188,4 +203,28 @@ def _each_pair(
         for cost in others[COST, at]:
             summed += cost
         out[k] = summed
+    return out
+
+
+@kept()
+def _each_wall(
+    address: int,
+    owner: NDArray[np.int64],
+    ends: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    targets: NDArray[np.float64],
+    cores: NDArray[np.float64],
+    offsets: NDArray[np.int64],
+    walls: NDArray[np.float64],
+    numbers: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    out = np.empty(len(owner))
+    for k in range(len(owner)):
+        b = owner[k]
+        out[k] = call_wall_loop(
+            address, offsets[b + 1] - offsets[b], ends[END_X, k], ends[END_Y, k],
+            ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k],
+            starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1], cores[b],
+            walls[offsets[b] : offsets[b + 1]], numbers,
+        )  # fmt: skip
     return out

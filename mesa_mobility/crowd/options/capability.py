@@ -24,7 +24,8 @@ class Capability:
     Args:
         mobility_map: the type's clustered mobility map.
         durations: option durations in frames to use; None for all that the map has.
-        shares: shortened copies of the shortest options to add, as shares of their ground.
+        shares: shortened copies to add, as shares of the ground covered: those of the shortest
+            options of each cluster, then of the next longer ones, and so on.
 
     Attributes:
         table: the options.
@@ -38,7 +39,7 @@ class Capability:
         self,
         mobility_map: MobilityMap,
         durations: Sequence[int] | None = None,
-        shares: Sequence[float] = (),
+        shares: Sequence[Sequence[float]] = (),
     ) -> None:
         self.map = mobility_map
         used = np.ones(mobility_map.n_options, dtype=bool)

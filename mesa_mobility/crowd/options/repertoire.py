@@ -46,14 +46,16 @@ class Repertoire:
 
 @cached_once(maxsize=4)
 def repertoire(
-    maps: tuple[MobilityMap, ...], durations: tuple[int, ...], shares: tuple[float, ...] = ()
+    maps: tuple[MobilityMap, ...],
+    durations: tuple[int, ...],
+    shares: tuple[tuple[float, ...], ...] = (),
 ) -> Repertoire:
     """The repertoire of these maps; models with the same maps share it.
 
     Args:
         maps: one for each type.
         durations: option durations in frames.
-        shares: shortened copies of the shortest options, as shares of their ground.
+        shares: shortened copies, as for ``Capability``.
 
     Raises:
         ModelError: a cluster has no option of these durations.

@@ -41,7 +41,7 @@ from mesa_mobility.crowd.planning.neighbour_costs import (
     pair_costs_at_least,
     pick_between,
 )
-from mesa_mobility.crowd.planning.option_costs import Terms, option_costs
+from mesa_mobility.crowd.planning.option_costs import Terms, option_costs, wall_cost
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
 from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
 from mesa_mobility.crowd.state.records import CrowdState
@@ -81,6 +81,7 @@ def _open_groups(
     count: int,
     opened: int,
     most: float,
+    walls: NDArray[np.float64],
     extra: NDArray[np.float64],
     table: OptionTable,
     groups: OptionGroups,
@@ -139,10 +140,11 @@ def _open_groups(
             work.costs[k] += pair_cost(
                 me, k, work.ends, now.neighbours, work.others, np.inf, state, terms, work.sums,
                 work.most_selective_term,
-            )  # fmt: skip
+            ) + wall_cost(me, k, work.ends, walls, state, terms)  # fmt: skip
             bad |= int(not abs(work.costs[k]) < np.inf)
     if bad != 0:
         return NOT_A_NUMBER
+    has_walls = len(terms.wall_address) > 0 and not now.has_negative_pairs
     fill_ends(count, kept, work.ends)
     pair_costs_at_least(
         me, count, kept, work.ends, now.foremost, now.approximate, work.foremost, work.marks,
@@ -151,6 +153,7 @@ def _open_groups(
     for k in range(count, kept):
         work.least[k] += work.costs[k]
         work.approximate[k] = now.approximate
+        work.unwalled[k] = has_walls
     for k in range(kept, kept + AT_ONCE):
         work.least[k] = np.inf
     return kept
@@ -178,7 +181,7 @@ def standing(count: int, work: Workspace) -> int:
 
 @internal()
 def _enough(most: float, cost: float) -> float:
-    """What may be added to ``cost`` until it exceeds ``most``, rounding aside."""
+    """The most that can be added to ``cost`` without exceeding ``most``, rounding aside."""
     return most - cost + _ROUNDING * (abs(most) + abs(cost))
 
 
@@ -246,7 +249,7 @@ def cheapest_free(
                 opened = pick_between(bounds, above, up_to, first, work.picked)
             if opened > 0:
                 count = _open_groups(
-                    me, now, count, opened, most, extra, table, groups, state, terms, work
+                    me, now, count, opened, most, walls, extra, table, groups, state, terms, work
                 )
             if count < 0:
                 return NOT_A_NUMBER, -1
@@ -262,13 +265,23 @@ def cheapest_free(
                 dearest = work.least[k]
         if dearest > most or dearest > DEAREST:
             return best, leaving
-        o, this = work.rows[k], k
+        o, this, least = work.rows[k], k, dearest
         work.least[this] = np.inf
         k = place_of_least(work.least, count)
         dearest = work.least[k]
         # This one is likely to be next.
         prefetch(table.path, work.rows[k], 192)
         prefetch(table.options, work.rows[k], 32)
+        if work.unwalled[this]:
+            work.unwalled[this] = False
+            more = wall_cost(me, this, work.ends, walls, state, terms)
+            if not abs(more) < np.inf:
+                return NOT_A_NUMBER, -1
+            work.costs[this] += more
+            bound = least + LITTLE_LESS * more
+            if min(dearest, most) < bound:
+                work.least[this] = bound
+                continue
         if work.approximate[this]:
             # All relevant neighbours.
             work.approximate[this] = False

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.crowd.collision.exact import near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.planning.grid import Grid, people_within
 from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 
 
@@ -30,9 +32,10 @@ def make_candidates(
     table: OptionTable,
     state: Crowd,
     grid: Grid,
+    around: Surroundings,
     rules: Rules,
 ) -> Candidates:
-    """The options and neighbours of the pedestrians in ``rows``."""
+    """The options, neighbours and walls of the pedestrians in ``rows``."""
     clusters = state.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]
     offsets = np.concatenate([[0], np.cumsum(counts)])
@@ -44,6 +47,7 @@ def make_candidates(
     neighbour_offsets, neighbours = _all_neighbours(
         rows, grid, state.x, state.y, rules.search_radius
     )
+    wall_offsets, walls = _all_walls(rows, table.farthest, around, state.records)
     durations = table.options.frames[options] * FRAME_SECONDS
     speeds = table.options.speed[options].astype(np.float64)
     return Candidates(
@@ -60,6 +64,8 @@ def make_candidates(
         facings=state.heading[rows],
         targets=np.column_stack([state.target_x[rows], state.target_y[rows]]),
         preferred_speeds=np.where(np.isfinite(state.route[rows]), state.preferred[rows], 0.0),
+        velocities=np.column_stack([state.vx[rows], state.vy[rows]]),
+        cores=state.core[rows],
         types=state.type_index[rows].astype(np.int64),
         neighbour_offsets=neighbour_offsets,
         neighbours=neighbours,
@@ -67,6 +73,8 @@ def make_candidates(
         neighbour_velocities=np.column_stack([state.vx[neighbours], state.vy[neighbours]]),
         neighbour_directions=_directions(neighbours, state),
         leads=_leads(np.repeat(rows, np.diff(neighbour_offsets)), neighbours, state),
+        wall_offsets=wall_offsets,
+        walls=walls,
     )
 
 
@@ -124,3 +132,25 @@ def _all_neighbours(
         count = people_within(grid, x[rows[d]], y[rows[d]], rows[d], radius, found)
         everyone[offsets[d] : offsets[d + 1]] = grid.people[found[:count]]
     return offsets, everyone
+
+
+@kept()
+def _all_walls(
+    rows: NDArray[np.int64],
+    farthest: NDArray[np.float64],
+    around: Surroundings,
+    state: CrowdState,
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """(len(rows) + 1,) offsets, and (w, 4) walls within reach of each pedestrian."""
+    found = np.empty((len(around.segments) + len(around.exits), 5))
+    offsets = np.zeros(len(rows) + 1, np.int64)
+    walls = np.empty((max(len(found), 1), 4))
+    for k in range(len(rows)):
+        i = rows[k]
+        reach = wall_reach(farthest[state.cluster[i]], state.core[i])
+        n = near_walls(around, state.x[i], state.y[i], state.destination[i], reach, found)
+        offsets[k + 1] = offsets[k] + n
+        while offsets[k + 1] > len(walls):
+            walls = np.concatenate((walls, np.empty_like(walls)))
+        walls[offsets[k] : offsets[k + 1]] = found[:n, :4]
+    return offsets, walls[: offsets[-1]].copy()

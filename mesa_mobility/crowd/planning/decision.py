@@ -11,7 +11,7 @@ from mesa_mobility.compiled.decorators import entry_point, inlined
 from mesa_mobility.compiled.intrinsics import store_release, take_number
 from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
 from mesa_mobility.crowd.collision.broad_phase import cull_groups
-from mesa_mobility.crowd.collision.exact import exit_distance, near_walls
+from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
 from mesa_mobility.crowd.collision.walls import walls_to_ego
 from mesa_mobility.crowd.costs.layout import LEAD
@@ -27,13 +27,14 @@ from mesa_mobility.crowd.planning.branch_and_bound import (
 from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.planning.grid import Grid, cover_in, neighbours_within, place_in
 from mesa_mobility.crowd.planning.neighbour_costs import (
+    add_pair_bounds,
     fill_lane,
     least,
     mark_relevant,
     select_relevant,
 )
 from mesa_mobility.crowd.planning.option_costs import Terms, group_bounds
-from mesa_mobility.crowd.planning.work_queue import Queue, await_neighbours
+from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Rules, Workspace
 from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
 from mesa_mobility.crowd.state.paths import commit, to_world
@@ -86,7 +87,7 @@ def decide(
         Index in ``rows`` of a pedestrian for whom a cost was not a number, or ``len(rows)``.  The
         least over all threads is the first such pedestrian.
     """
-    has_negative_pairs = least(terms.pair_weight) < 0.0
+    has_negative_pairs = least(terms.pair_weight) < 0.0 or least(terms.wall_weight) < 0.0
     bounded = len(extra) == 0 and not has_negative_pairs
     for address in terms.bound_address:
         bounded = bounded and address != 0
@@ -141,7 +142,8 @@ def _decide_one(
         lead[a] = route - lead[a]
     fill_lane(count, others)
     farthest = table.farthest[cluster]
-    walls = work.walls[: near_walls(around, x, y, destination, farthest + core + 0.01, work.walls)]
+    reach = wall_reach(farthest, core)
+    walls = work.walls[: near_walls(around, x, y, destination, reach, work.walls)]
     n_clear_walls = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
     exits_from = exit_distance(around, x, y, destination)
     # The box that the options and the fallback can reach.
@@ -164,6 +166,17 @@ def _decide_one(
         bounds[:] = 0.0
         if bounded:
             group_bounds(me, first, last, groups, state, terms, work.ends, bounds)
+        foremost = 0
+        if not has_negative_pairs and len(terms.pair_address) > 0:
+            foremost = select_relevant(
+                me, others, count, state, work.unsure, work.dropped, work.foremost
+            )
+            # In a jam they take longer than they save.
+            if bounded and foremost < CROWD:
+                add_pair_bounds(
+                    me, first, last, groups, foremost, work.foremost, state, terms, work.ends,
+                    work.lane_costs, bounds,
+                )  # fmt: skip
         bad = 0
         for a in range(len(bounds)):
             bad |= int(dropped[a] == 0) & int(not abs(bounds[a]) < np.inf)
@@ -173,11 +186,6 @@ def _decide_one(
         # Padding: bounds are read this many at a time.
         work.bounds[len(bounds) : len(bounds) + AT_ONCE] = np.inf
         lowest = bounds[place_of_least(work.bounds, len(bounds))]
-        foremost = 0
-        if not has_negative_pairs and len(terms.pair_address) > 0:
-            foremost = select_relevant(
-                me, others, count, state, work.unsure, work.dropped, work.foremost
-            )
         approximate = bounded and mark_relevant(
             me, first, bounds, lowest, work.ends, groups, foremost, work.foremost, state, terms,
             work.picked, work.marks,

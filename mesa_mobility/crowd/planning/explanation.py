@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.collision.exact import exit_distance, near_walls
+from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
@@ -101,11 +101,14 @@ def weigh(
     known: Repertoire,
     crowd: Crowd,
     grid: Grid,
+    around: Surroundings,
     rules: Rules,
     terms: Sequence[CostTerm],
 ) -> Explanation:
-    """What the options of the pedestrian in ``row`` cost; whether they are free is still open."""
-    candidates = make_candidates(np.array([row], dtype=np.int64), known.table, crowd, grid, rules)
+    """Costs of the options of the pedestrian in ``row``, before collision tests."""
+    candidates = make_candidates(
+        np.array([row], dtype=np.int64), known.table, crowd, grid, around, rules
+    )
     n = len(candidates)
     costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
     return Explanation(
@@ -173,7 +176,7 @@ def _judge(
 ) -> None:
     x, y, destination = state.x[i], state.y[i], state.destination[i]
     farthest = table.farthest[state.cluster[i]]
-    count = near_walls(around, x, y, destination, farthest + state.core[i] + 0.01, walls)
+    count = near_walls(around, x, y, destination, wall_reach(farthest, state.core[i]), walls)
     exits_from = exit_distance(around, x, y, destination)
     spacing = np.int64(SAMPLE_FRAMES)
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])

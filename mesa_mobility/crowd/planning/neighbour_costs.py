@@ -11,7 +11,11 @@ from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.simd import LANES, any_of, bits_set, press_numbers
 from mesa_mobility.crowd.collision.sampled import EgoPose
 from mesa_mobility.crowd.collision.simd_tests import numbers_between
-from mesa_mobility.crowd.costs.kernels import call_pair_loop, call_pairs_loop
+from mesa_mobility.crowd.costs.kernel_calls import (
+    call_pair_bound_loop,
+    call_pair_loop,
+    call_pairs_loop,
+)
 from mesa_mobility.crowd.costs.layout import (
     COST,
     END_UX,
@@ -28,7 +32,14 @@ from mesa_mobility.crowd.costs.layout import (
     SECONDS,
     SPEED,
 )
-from mesa_mobility.crowd.options.option_groups import DURATION, FASTEST, SLOWEST, OptionGroups
+from mesa_mobility.crowd.options.option_groups import (
+    DURATION,
+    FASTEST,
+    RADIUS,
+    SLOWEST,
+    TURN,
+    OptionGroups,
+)
 from mesa_mobility.crowd.planning.option_costs import Terms, preferred_now
 from mesa_mobility.crowd.state.records import CrowdState
 
@@ -163,6 +174,42 @@ def pair_costs_at_least(
     for k in range(last - first):
         # A value that is not a number is found by the sum over all neighbours.
         least[k] = least[k] * LITTLE_LESS if least[k] < np.inf else 0.0
+
+
+@force_inlined()
+def add_pair_bounds(
+    me: EgoPose,
+    first: int,
+    last: int,
+    groups: OptionGroups,
+    count: int,
+    others: NDArray[np.float64],
+    state: CrowdState,
+    terms: Terms,
+    ends: NDArray[np.float64],
+    some: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """Add lower bounds of the pair terms of groups ``first`` to ``last`` over the first ``count``
+    neighbours of ``others``.
+
+    ``ends`` has the ends of the groups; ``some``, of one number for each group, is workspace.
+    """
+    of, n = groups.ends, last - first
+    some[:n] = 0.0
+    for t in range(len(terms.pair_bound_address)):
+        if terms.pair_bound_address[t] != 0:
+            call_pair_bound_loop(
+                terms.pair_bound_address[t], count, n, ends[END_X], ends[END_Y],
+                of[RADIUS, first:], ends[END_UX], ends[END_UY], of[TURN, first:],
+                of[DURATION, first:], of[SLOWEST, first:], of[FASTEST, first:], me.x, me.y,
+                state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
+                others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY],
+                others[LEAD], terms.pair_parameters[t], terms.pair_weight[t], some,
+            )  # fmt: skip
+    for k in range(n):
+        # A value that is not a number is found when options are tested.
+        out[k] += some[k] * LITTLE_LESS if some[k] < np.inf else 0.0
 
 
 @force_inlined()

@@ -9,7 +9,11 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.crowd.collision.sampled import EgoPose
-from mesa_mobility.crowd.costs.kernels import call_bound_loop, call_option_loop
+from mesa_mobility.crowd.costs.kernel_calls import (
+    call_bound_loop,
+    call_option_loop,
+    call_wall_loop,
+)
 from mesa_mobility.crowd.costs.layout import END_UX, END_UY, END_X, END_Y, SECONDS, SPEED
 from mesa_mobility.crowd.options.option_groups import (
     DURATION,
@@ -31,7 +35,9 @@ class Terms(NamedTuple):
     """Compiled cost terms: addresses, weights and parameters (row per term).
 
     ``bound_address`` belongs to the option terms, 0 for those without a lower bound.
-    ``pairs_address`` belongs to the pair terms: the loop over some neighbours and many options.
+    ``pairs_address`` belongs to the pair terms: the loop over some neighbours and many options;
+    so does ``pair_bound_address``, 0 for those without a lower bound.
+    Wall terms count the worst wall.
     """
 
     bound_address: NDArray[np.int64]
@@ -42,6 +48,10 @@ class Terms(NamedTuple):
     pair_weight: NDArray[np.float64]
     pair_parameters: NDArray[np.float64]
     pairs_address: NDArray[np.int64]
+    pair_bound_address: NDArray[np.int64]
+    wall_address: NDArray[np.int64]
+    wall_weight: NDArray[np.float64]
+    wall_parameters: NDArray[np.float64]
 
 
 @internal()
@@ -98,8 +108,8 @@ def group_bounds(
         call_bound_loop(
             terms.bound_address[t], last - first, to_x, to_y, of[RADIUS, first:], to_ux, to_uy,
             of[TURN, first:], of[DURATION, first:], of[SLOWEST, first:], of[FASTEST, first:],
-            px, py, state.target_x[me.row], state.target_y[me.row], preferred,
-            terms.option_parameters[t], terms.option_weight[t], out,
+            px, py, state.target_x[me.row], state.target_y[me.row], preferred, state.vx[me.row],
+            state.vy[me.row], terms.option_parameters[t], terms.option_weight[t], out,
         )  # fmt: skip
 
 
@@ -120,5 +130,36 @@ def option_costs(
             terms.option_address[t], last - first, ends[END_X, first:], ends[END_Y, first:],
             ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
             me.x, me.y, state.target_x[me.row], state.target_y[me.row], preferred,
-            terms.option_parameters[t], terms.option_weight[t], out[first:],
+            state.vx[me.row], state.vy[me.row], terms.option_parameters[t], terms.option_weight[t],
+            out[first:],
         )  # fmt: skip
+
+
+@internal()
+def wall_cost(
+    me: EgoPose,
+    k: int,
+    ends: NDArray[np.float64],
+    walls: NDArray[np.float64],
+    state: CrowdState,
+    terms: Terms,
+) -> float:
+    """Weighted sum of the wall terms of option k, each for its worst wall.
+
+    Args:
+        me: the pedestrian.
+        k: the option.
+        ends: (6, n) ends of options.
+        walls: (w, 5) walls within reach, with squared distances.
+        state: the crowd.
+        terms: compiled terms.
+    """
+    total = 0.0
+    for t in range(len(terms.wall_address)):
+        total += terms.wall_weight[t] * call_wall_loop(
+            terms.wall_address[t], len(walls), ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
+            ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
+            state.target_x[me.row], state.target_y[me.row], me.core, walls,
+            terms.wall_parameters[t],
+        )  # fmt: skip
+    return total

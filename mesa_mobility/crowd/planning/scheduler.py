@@ -19,7 +19,7 @@ from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
 from mesa_mobility.crowd.planning.grid import build_grid, headways
 from mesa_mobility.crowd.planning.term_table import NO_EXTRA, CompiledTerms, extra_costs
-from mesa_mobility.crowd.planning.work_queue import new_queue
+from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
 from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.records import Crowd
@@ -84,7 +84,9 @@ class DecisionScheduler:
         extra, extra_offsets = NO_EXTRA
         grid = build_grid(rows, crowd.x, crowd.y)
         if others:
-            extra, extra_offsets = extra_costs(others, order, table, crowd, grid, self._rules)
+            extra, extra_offsets = extra_costs(
+                others, order, table, crowd, grid, around, self._rules
+            )
         moving = headways(grid, crowd.records)
         threads = 1 if PLAIN else threads_for(len(order))
         works = self._works_for(threads, len(rows), around, len(terms))
@@ -111,9 +113,11 @@ class DecisionScheduler:
         if watch is None or watch.pedestrian not in order:
             part(0, len(order))
             return
-        # Costs see the crowd as it is before anybody decides, collisions what those before have
-        # committed to. To decide in two parts changes nothing.
-        weighed = weigh(watch.pedestrian, frame, self._repertoire, crowd, grid, self._rules, terms)
+        # Costs use the crowd before any decision, collision tests the paths committed so far. So
+        # deciding in two parts gives the same result.
+        weighed = weigh(
+            watch.pedestrian, frame, self._repertoire, crowd, grid, around, self._rules, terms
+        )
         at = int(np.flatnonzero(order == watch.pedestrian)[0])
         if at > 0:
             part(0, at)

@@ -7,13 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.costs.kernels import PairKernel
+from mesa_mobility.crowd.costs.kernels import (
+    BoundKernel,
+    CostKernel,
+    PairBoundKernel,
+    PairKernel,
+    WallKernel,
+)
 from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.planning.candidate_batch import make_candidates, pairs_of
 from mesa_mobility.crowd.planning.grid import Grid
 from mesa_mobility.crowd.planning.option_costs import Terms
 from mesa_mobility.crowd.planning.workspace import Rules
+from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_given
@@ -29,27 +36,41 @@ def compile_terms(terms: Sequence[CostTerm]) -> tuple[Terms, list[CostTerm]]:
     """Split terms into a table of compiled terms and a list of the others."""
     option: list[CompiledTerm] = []
     pair: list[CompiledTerm] = []
+    wall: list[CompiledTerm] = []
     others: list[CostTerm] = []
     for term in terms:
         if not isinstance(term, CompiledTerm):
             others.append(term)
         elif isinstance(term.kernel, PairKernel):
             pair.append(term)
+        elif isinstance(term.kernel, WallKernel):
+            wall.append(term)
         else:
             option.append(term)
-    # A negative weight turns a lower bound into an upper one.
-    bounds = [term.bound if term.weight >= 0.0 else None for term in option]
-    bound_address = [0 if bound is None else bound.address for bound in bounds]
     pairs_address = [
         term.kernel.pairs_address for term in pair if isinstance(term.kernel, PairKernel)
     ]
     compiled = Terms(
-        np.array(bound_address, dtype=np.int64),
+        np.array(_bounds(option, BoundKernel), dtype=np.int64),
         *_table(option),
         *_table(pair),
         np.array(pairs_address, dtype=np.int64),
+        np.array(_bounds(pair, PairBoundKernel), dtype=np.int64),
+        *_table(wall),
     )
     return compiled, others
+
+
+def _bounds(terms: Sequence[CompiledTerm], kind: type[CostKernel]) -> list[int]:
+    """Addresses of the lower bounds; 0 for none, or where a negative weight turns one over."""
+    for term in terms:
+        if not isinstance(term.bound, kind | None):
+            raise ModelError(
+                f"behaviour {term.name!r}: its bound is a {type(term.bound).__name__}, "
+                f"expected a {kind.__name__}"
+            )
+    bounds = [term.bound if term.weight >= 0.0 else None for term in terms]
+    return [0 if bound is None else bound.address for bound in bounds]
 
 
 class CompiledTerms:
@@ -95,6 +116,7 @@ def extra_costs(
     table: OptionTable,
     state: Crowd,
     grid: Grid,
+    around: Surroundings,
     rules: Rules,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Weighted sum of terms in NumPy over all options of the pedestrians in ``rows``.
@@ -110,7 +132,7 @@ def extra_costs(
     counts = []
     batch = np.cumsum(pairs_of(rows, table, state, grid, rules)) // BATCH_PAIRS
     for part in np.split(rows, np.flatnonzero(np.diff(batch)) + 1):
-        candidates = make_candidates(part, table, state, grid, rules)
+        candidates = make_candidates(part, table, state, grid, around, rules)
         total = np.zeros(len(candidates))
         for term in terms:
             giver = f"behaviour {term.name!r}"

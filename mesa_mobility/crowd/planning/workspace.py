@@ -16,7 +16,7 @@ from mesa_mobility.crowd.options.table import LEVELS, SAMPLES
 
 
 class DecisionContext(NamedTuple):
-    """What the search knows about one decision.
+    """The inputs of the search for one decision.
 
     Attributes:
         frame: now.
@@ -28,7 +28,8 @@ class DecisionContext(NamedTuple):
         foremost: number of columns of ``Workspace.foremost``.
         approximate: whether bounds count marked neighbours only.
         exits_from: metres to the nearest open exit.
-        has_negative_pairs: whether pair terms may be negative, so that every option needs them.
+        has_negative_pairs: whether pair or wall terms may be negative, so that every option needs
+            them.
         ranked: whether groups are opened in rising order of their bounds.
     """
 
@@ -72,7 +73,8 @@ class Workspace(NamedTuple):
         ends: its end.
         costs: its cost without pair terms.
         least: lower bound of its whole cost.
-        approximate: whether the bound can still be raised.
+        approximate: whether the bound can still be raised by more neighbours.
+        unwalled: whether the wall terms are left out of the cost so far.
         sums: cost by pair term.
         most_selective_term: the pair term to evaluate first.
         path: one path.
@@ -102,6 +104,7 @@ class Workspace(NamedTuple):
     costs: NDArray[np.float64]
     least: NDArray[np.float64]
     approximate: NDArray[np.bool_]
+    unwalled: NDArray[np.bool_]
     sums: NDArray[np.float64]
     most_selective_term: NDArray[np.int64]
     path: NDArray[np.float64]
@@ -140,6 +143,7 @@ def make_workspace(people: int, walls: int, options: int, groups: int, terms: in
         costs=np.empty(options + LANES),
         least=np.empty(options + AT_ONCE),
         approximate=np.empty(options, np.bool_),
+        unwalled=np.empty(options, np.bool_),
         sums=np.empty(terms),
         most_selective_term=np.zeros(1, np.int64),
         path=np.empty((3, SAMPLES)),

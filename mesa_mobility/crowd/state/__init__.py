@@ -1,1 +1,1 @@
-"""The crowd's records and what moves them."""
+"""The crowd's records, and movement along committed paths."""

@@ -67,27 +67,8 @@ def move(
     )
 
 
-@entry_point()
-def select_due(
-    active: NDArray[np.int64], frame: int, state: CrowdState, found: NDArray[np.int64]
-) -> tuple[int, int]:
-    """Write the rows of those in ``active`` whose movement has ended by ``frame``.
-
-    Returns their number, and the next frame in which a movement of the others ends or one of them
-    leaves.
-    """
-    count, soonest = 0, LONG_AFTER
-    for i in active:
-        found[count] = i
-        if state.end[i] <= frame:
-            count += 1
-        else:
-            soonest = min(soonest, _next_event(i, frame, state))
-    return count, soonest
-
-
 @internal()
-def _next_event(i: int, frame: int, state: CrowdState) -> int:
+def next_event(i: int, frame: int, state: CrowdState) -> int:
     """Frame in which pedestrian i leaves, or in which its movement ends if it stays."""
     gone: int = state.gone[i]
     return gone if gone > frame else state.end[i]
@@ -138,5 +119,5 @@ def _move(
         else:
             sorted_out[staying] = i
             staying += 1
-            soonest = min(soonest, _next_event(i, frame, state))
+            soonest = min(soonest, next_event(i, frame, state))
     return staying, left, speeds, fallen, soonest

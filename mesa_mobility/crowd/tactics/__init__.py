@@ -1,1 +1,1 @@
-"""What a pedestrian wants before it chooses: target, speed, waiting."""
+"""Desired motion before a decision: target, speed, waiting."""

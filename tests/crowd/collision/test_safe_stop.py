@@ -14,12 +14,12 @@ from tests.fixtures.scenes import advance, corridor, model_of, put, statues
 
 
 @pytest.mark.parametrize(("gap", "metres"), [(1.0, 0.5), (2.0, 1.875)])
-def test_a_neighbour_held_at_its_end_while_mine_goes_on(gap, metres):
+def test_a_neighbour_held_at_its_end_while_mine_goes_on(gap, metres, whole):
     # The one in front commits to half a metre; were it to stop there, 1.875 m of mine, 1 m
     # behind, would run into it - although at a steady walk it would be long gone.
     short = make_map([[straight(0.5, 12, to=0)]])
     either = make_map([[straight(0.5, 12, to=0), straight(1.875, 45, to=0)]])
-    model = model_of(corridor(), [short, either], behaviors=[Displacement()])
+    model = model_of(corridor(), [short, either], behaviors=[Displacement()], preset=whole)
     put(model, 5.0 + gap, 2.0)
     behind = put(model, 5.0, 2.0, type_index=1)
     advance(model, 1)
@@ -49,12 +49,13 @@ def test_mine_held_at_its_end_while_the_neighbours_goes_on(walker_y, stays, whol
 
 
 @pytest.mark.parametrize(("length", "follows"), [(6.0, False), (5.7, True)])
-def test_somebody_who_leaves_is_there_behind_the_exit_too(length, follows):
+def test_somebody_who_leaves_is_there_behind_the_exit_too(length, follows, whole):
     # The one in front leaves within 0.4 s, and its movement ends at 6.1 m: 0.125 m beyond where
     # the other's would, unless that one has left by then as well.
     short = make_map([[straight(0.5, 12, to=0)]])
     either = make_map([[stand(), straight(1.875, 45, to=0)]])
-    model = model_of(corridor(length=length), [short, either], behaviors=[Displacement()])
+    maps, terms = [short, either], [Displacement()]
+    model = model_of(corridor(length=length), maps, behaviors=terms, preset=whole)
     put(model, 5.6, 2.0)
     behind = put(model, 4.1, 2.0, type_index=1)
     advance(model, 1)

@@ -136,7 +136,7 @@ def test_circles_within_a_body_are_dropped(rng, n, known):
 
 
 @pytest.mark.parametrize("known", [0, 1, 6])
-def test_places_within_a_body_are_told_by_their_bits(rng, known):
+def test_places_within_a_body_are_marked_by_bits(rng, known):
     places = rng.uniform(-1.0, 1.0, (4, 5, LANES)).astype(np.float32)
     bodies = rng.uniform(-1.0, 1.0, (3, 9)).astype(np.float32)
     bodies[2] = rng.uniform(0.1, 0.6, 9)
@@ -146,7 +146,7 @@ def test_places_within_a_body_are_told_by_their_bits(rng, known):
     assert [bool(bits >> lane & 1) for lane in range(LANES)] == within.tolist()
 
 
-def test_circles_that_reach_into_a_box_are_told_by_their_bits(rng):
+def test_circles_that_reach_into_a_box_are_marked_by_bits(rng):
     circles = rng.uniform(-2.0, 2.0, (3, 50)).astype(np.float32)
     circles[2] = rng.uniform(0.0, 1.0, 50)
     bits = _near(circles, 20, 50, -0.5, -1.0, 0.75, 0.25)
@@ -169,7 +169,7 @@ def test_a_box_is_drawn_around_the_circles_that_are_left(rng, n):
     assert _extent(circles, first, row, n, np.ones_like(dropped)) == (np.inf,) * 2 + (-np.inf,) * 2
 
 
-def test_the_levels_at_which_somebody_is_near_a_box_are_told_by_their_bits():
+def test_levels_at_which_a_person_is_near_a_box_are_marked_by_bits():
     ahead = np.full((3, 2, SAMPLES), 9.0, dtype=np.float32)
     boxes = np.array([[-1.0, -2.0, 1.0, 2.0]] * len(LEVELS), dtype=np.float32)
     # Within it; 0.5 m beside it; 0.5 m off its corner either way, 0.71 m; 2 m ahead of it.
@@ -198,7 +198,7 @@ def test_the_lowest_bit_is_found():
     assert [_lowest(bits) for bits in (1, 2, 12, 1 << 15)] == [0, 1, 2, 15]
 
 
-def test_what_is_at_most_so_much_is_told_by_its_bits():
+def test_numbers_of_at_most_a_limit_are_marked_by_bits():
     values = np.array([9.0, 1.0, 2.0, 2.5, np.nan, np.inf, -np.inf, 2.0, 3.0, 0.0])
     # 2 is at most 2; nan is reported whatever the limit.
     assert _little(values, 2, 2.0) == 0b10111101
@@ -239,7 +239,7 @@ def test_numbers_of_bits_are_written_side_by_side():
     assert to[:6].tolist() == [0, 0, 100, 102, 106, 107]
 
 
-def test_places_near_another_are_told_by_their_bits(rng):
+def test_places_near_another_are_marked_by_bits(rng):
     x, y = rng.uniform(-2.0, 2.0, (2, 20))
     x[5], y[5] = 0.5 + 3.0 * 0.25, 0.25 + 4.0 * 0.25
     bits = _near_place(x, y, 4, 0.5, 0.25, 1.25)
@@ -248,7 +248,7 @@ def test_places_near_another_are_told_by_their_bits(rng):
     assert [bool(bits >> lane & 1) for lane in range(LANES)] == near[4:12].tolist()
 
 
-def test_numbers_between_two_are_told_by_their_bits():
+def test_numbers_between_two_are_marked_by_bits():
     values = np.array([9.0, 1.0, 2.0, 2.5, np.inf, -np.inf, 3.0, 1.5, 1.0, 9.0])
     assert _between(values, 1, 1.0, 2.5) == 0b01000110
     assert _between(values, 1, -np.inf, 1e300) == 0b11100111

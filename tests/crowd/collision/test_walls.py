@@ -84,7 +84,7 @@ def test_circles_within_a_wall_are_dropped(rng, barriers, n):
     assert dropped[:n].astype(bool).tolist() == expected.tolist()
 
 
-def test_places_beside_a_wall_are_told_by_their_bits(rng, barriers):
+def test_places_beside_a_wall_are_marked_by_bits(rng, barriers):
     for _ in range(20):
         places = rng.uniform(-1.2, 1.2, (2, 3, LANES)).astype(np.float32)
         size = barriers.shape[1]

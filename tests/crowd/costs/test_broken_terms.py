@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from mesa_mobility.behaviors import TargetDistance
+from mesa_mobility.behaviors import Interference, Stepping, TargetDistance
 
-from mesa_mobility import CompiledTerm, CostTerm, pair_kernel
+from mesa_mobility import CompiledTerm, CostTerm, pair_kernel, wall_kernel
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import strider
 from tests.fixtures.scenes import corridor, model_of, put
@@ -30,8 +30,8 @@ def test_costs_that_are_not_one_finite_number_an_option_are_refused(wrong):
             return wrong(candidates)
 
     model = model_of(corridor(), strider(), behaviors=[TargetDistance(), Broken()])
-    put(model, 1.0, 2.0)
-    with pytest.raises(ModelError, match=r"broken_term.*9") as refused:
+    n = len(put(model, 1.0, 2.0).movement_options())
+    with pytest.raises(ModelError, match=rf"broken_term.*\b{n}\b") as refused:
         model.step()
     assert "\n" not in str(refused.value)
 
@@ -44,7 +44,7 @@ def _broken_beside_others(
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_a_cost_that_is_no_number_is_told_with_term_and_option(value):
+def test_the_error_of_a_cost_that_is_no_number_names_term_and_option(value):
     class Broken(CostTerm):
         name = "broken_term"
 
@@ -74,9 +74,47 @@ def test_a_kernel_over_neighbours_that_gives_no_number_is_refused(away):
         model.step()
 
 
+@wall_kernel
+def _broken_beside_walls(x, y, ux, uy, duration, speed, sx, sy, tx, ty, x1, y1, x2, y2, core, p):
+    return 1.0 / math.sqrt(p[0] * (y1 - 2.0))
+
+
+@pytest.mark.parametrize("weight", [1.0, -1.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0, 0.0])
+def test_a_kernel_over_walls_that_gives_no_number_is_refused(sign, weight):
+    # Of the walls at y = 0 and y = 4 one gives no number and the other 0.71; or both infinity.
+    class Broken(CompiledTerm):
+        name = "broken_kernel"
+        kernel = _broken_beside_walls
+
+        def parameters(self):
+            return (sign,)
+
+    model = model_of(corridor(), strider(), behaviors=[TargetDistance(), Broken(weight)])
+    person = put(model, 5.0, 2.0)
+    assert not np.isfinite(Broken().cost(person.movement_options())).any()
+    with pytest.raises(ModelError, match=r"pedestrian 0: not a number.*broken_kernel") as refused:
+        model.step()
+    assert "\n" not in str(refused.value)
+
+
 def test_a_term_must_say_what_it_costs():
     class Vague(CostTerm):
         name = "vague"
 
     with pytest.raises(TypeError):
         Vague()
+
+
+def test_a_bound_of_another_kind_of_kernel_is_refused():
+    class Mixed(CompiledTerm):
+        name = "mixed"
+        kernel = Interference.kernel
+        bound = Stepping.bound
+
+    model = model_of(corridor(), strider(), behaviors=[Mixed()])
+    put(model, 2.0, 2.0)
+    with pytest.raises(
+        ModelError, match=r"^behaviour 'mixed': its bound is a BoundKernel, expected"
+    ):
+        model.step()

@@ -41,8 +41,8 @@ def test_options_are_those_of_the_cluster_the_person_is_in(whole):
     assert person.movement_options().displacements.tolist() == [0.5, 0.0, 1.0, 1.875]
 
 
-def test_the_shortest_options_come_in_parts_too():
-    person = put(model_of(corridor(), strider()), 1.0, 2.0)
+def test_the_shortest_options_come_in_parts_too(in_parts):
+    person = put(model_of(corridor(), strider(), preset=in_parts), 1.0, 2.0)
     options = person.movement_options()
     # Of stand and half a metre in 12 frames: a half, a quarter, and nothing of either.
     order = np.argsort(options.displacements, kind="stable")
@@ -104,6 +104,56 @@ def test_neighbours_come_with_where_they_go_and_how_much_less_way_they_have():
     assert options.leads[order] == pytest.approx([2.0, 13.5])
 
 
+def test_everybody_comes_with_its_core_and_the_mean_velocity_of_its_movement():
+    stout = make_map([[stand()]], core_radius=0.25)
+    model = model_of(corridor(), [strider(), stout])
+    walker, stands = (
+        put(model, 1.0, 2.0, preferred_speeds=[1.25]),
+        put(model, 9.0, 2.0, type_index=1),
+    )
+    batch = model.candidates(np.array([walker.row, stands.row]))
+    assert batch.cores.tolist() == [0.15, 0.25]
+    assert batch.velocities.tolist() == [[0.0, 0.0], [0.0, 0.0]]
+    advance(model, 12)
+    assert walker.movement_options().velocities == pytest.approx(np.array([(1.25, 0.0)]), abs=1e-6)
+    assert stands.movement_options().velocities.tolist() == [[0.0, 0.0]]
+
+
+def walls_of(batch, k: int) -> set[frozenset]:
+    """Walls near one pedestrian of a batch, each as its two ends."""
+    own = batch.walls[batch.wall_offsets[k] : batch.wall_offsets[k + 1]]
+    walls = [frozenset([(x1, y1), (x2, y2)]) for x1, y1, x2, y2 in own.tolist()]
+    assert len(walls) == len(set(walls))
+    return set(walls)
+
+
+BELOW, ABOVE = frozenset([(0.0, 0.0), (20.0, 0.0)]), frozenset([(0.0, 4.0), (20.0, 4.0)])
+WEST, EAST = frozenset([(0.0, 0.0), (0.0, 4.0)]), frozenset([(20.0, 0.0), (20.0, 4.0)])
+
+
+def test_walls_within_reach_come_with_each_person():
+    # Longest option 1.875 m, core 0.15 m: within 2.035 m. People who only stand reach 0.16 m.
+    model = model_of(corridor(), [strider(), statues()])
+    places = [(5.0, 2.0), (7.0, 1.96), (2.03, 1.0), (19.5, 1.0)]
+    rows = [put(model, *place).row for place in places]
+    rows += [put(model, *place, type_index=1).row for place in ((9.0, 0.155), (9.0, 0.8))]
+    batch = model.candidates(np.array(rows))
+    expected = [{BELOW, ABOVE}, {BELOW}, {BELOW, WEST}, {BELOW}, {BELOW}, set()]
+    assert [walls_of(batch, k) for k in range(6)] == expected
+    assert batch.wall_offsets.tolist() == [0, 2, 3, 5, 6, 7, 7]
+    # Whatever the order, and the part of a batch.
+    assert walls_of(model.candidates(np.array(rows[2:3])), 0) == {BELOW, WEST}
+
+
+def test_exits_that_do_not_lead_out_are_walls():
+    model = model_of(corridor(both_ends=True), strider())
+    places = ((19.0, 2.0, ["west"]), (19.0, 3.0, ["east"]), (19.0, 1.0, None), (1.0, 2.0, ["east"]))
+    rows = [put(model, x, y, exits=exits).row for x, y, exits in places]
+    batch = model.candidates(np.array(rows))
+    expected = [{BELOW, ABOVE, EAST}, {ABOVE}, {BELOW}, {BELOW, ABOVE, WEST}]
+    assert [walls_of(batch, k) for k in range(4)] == expected
+
+
 def test_everybody_within_reach_is_a_neighbour_however_many():
     model = model_of(corridor(), strider(), preset="paper")  # bodies may overlap there
     rng = np.random.default_rng(3)
@@ -153,3 +203,6 @@ def test_arrays_are_read_only():
         options.points[0] = 0.0
     with pytest.raises(ValueError, match="read-only"):
         options.targets[0] = 0.0
+    for name in ("velocities", "cores", "walls", "wall_offsets"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(options, name)[:] = 0

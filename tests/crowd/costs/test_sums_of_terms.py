@@ -1,28 +1,48 @@
 """Terms add up, whatever their order, compiled or in plain NumPy."""
 
+import math
+
 import pytest
 from mesa_mobility.behaviors import (
+    Anticipation,
     FacingDeviation,
     Headway,
     Interference,
     PreferredSpeed,
     PreferredVelocity,
     RightOfWay,
+    RoomAhead,
     TargetDistance,
+    VelocityChange,
 )
+from shapely import Point, box
 
 from mesa_mobility import CostTerm, FloorPlan
 from tests.fixtures.maps import shipped_map, wanderer
-from tests.fixtures.numpy_terms import Deviation, Distance, Near, Room, Speed, Velocity, Way
+from tests.fixtures.numpy_terms import (
+    Change,
+    Clearance,
+    Deviation,
+    Distance,
+    Encounters,
+    Near,
+    Room,
+    Speed,
+    StraightOn,
+    Velocity,
+    Way,
+)
 from tests.fixtures.oracle import Oracle
 from tests.fixtures.oracle_costs import equation_one
-from tests.fixtures.plugin_terms import CompiledKeepRight, KeepRight, SameSpeed
-from tests.fixtures.scenes import model_of, two_doors
+from tests.fixtures.plugin_terms import CompiledKeepRight, KeepOff, KeepRight, SameSpeed
+from tests.fixtures.scenes import corridor, model_of, two_doors
 
 
-def walk(plan: FloorPlan, map_, terms, people: int = 12, seconds: float = 40.0) -> bytes:
+def walk(
+    plan: FloorPlan, map_, terms, people: int = 12, seconds: float = 40.0, preset: str = "default"
+) -> bytes:
     """All positions and headings of a run, as bytes."""
-    model = model_of(plan, map_, behaviors=terms, rng=7, frames_per_step=3)
+    model = model_of(plan, map_, behaviors=terms, preset=preset, rng=7, frames_per_step=3)
     model.add_pedestrians(plan.random_points(people, model.rng, spacing=0.6, clearance=0.3))
     model.run(max_seconds=seconds)
     rows = model.recorder.arrays()
@@ -77,6 +97,26 @@ def test_terms_of_the_default_give_the_same_trajectories_in_numpy(place, twin):
     assert walk(two_doors(), shipped_map(), others) != compiled
 
 
+@pytest.mark.parametrize(
+    ("place", "twin"),
+    [(4, Change(1.0)), (5, Encounters(6.0)), (6, StraightOn(3.0)), (7, Clearance(0.5))],
+)
+def test_terms_of_what_lies_ahead_give_the_same_trajectories_in_numpy(place, twin):
+    def terms():
+        return [TargetDistance(1.0), FacingDeviation(0.5), PreferredVelocity(2.0),
+                Interference(1.0), VelocityChange(1.0), Anticipation(6.0), RoomAhead(3.0),
+                KeepOff(0.5)]  # fmt: skip
+
+    # Round a wall across the way, which people face at times.
+    plan = corridor(12.0, obstacles=[box(6.0, 0.8, 6.2, 3.2)])
+    compiled = walk(plan, shipped_map(), terms(), preset="steady")
+    others = terms()
+    others[place] = twin
+    assert walk(plan, shipped_map(), others, preset="steady") == compiled
+    del others[place]
+    assert walk(plan, shipped_map(), others, preset="steady") != compiled
+
+
 def test_costs_add_up():
     # A term twice at half its weight is the term once.
     terms = [TargetDistance(0.5), FacingDeviation(0.5), TargetDistance(0.5), PreferredSpeed(2.0),
@@ -85,7 +125,7 @@ def test_costs_add_up():
 
 
 def test_a_term_of_weight_nought_counts_for_nothing():
-    terms = [*ours(), KeepRight(0.0), CompiledKeepRight(0.0), SameSpeed(0.0)]
+    terms = [*ours(), KeepRight(0.0), CompiledKeepRight(0.0), SameSpeed(0.0), KeepOff(0.0)]
     assert walk(two_doors(), shipped_map(), terms) == walk(two_doors(), shipped_map(), ours())
 
 
@@ -98,6 +138,25 @@ def test_interference_of_any_weight_is_chosen_by_the_whole_sum(near, weight):
     model = model_of(plan, wanderer(31), behaviors=terms, rng=3)
     model.add_pedestrians(plan.random_points(12, model.rng, spacing=0.5, clearance=0.3))
     oracle = Oracle(model, equation_one(w_d=1.0, w_theta=0.5, w_v=2.0, w_p=weight))
+    while model.running and model.frame < 120:
+        for decision in oracle.step():
+            assert decision.fault() is None, (decision.frame, decision.person.row)
+
+
+@pytest.mark.parametrize("walls", [KeepOff, Clearance])
+@pytest.mark.parametrize("weight", [-0.5, 3.0])
+def test_wall_terms_of_any_weight_are_chosen_by_the_whole_sum(walls, weight):
+    others = equation_one(w_d=1.0, w_theta=0.5, w_v=2.0, w_p=1.0)
+
+    def cost(body, end, seconds, about, preferred):
+        away = min((wall.distance(Point(end[:2])) for wall in body.walls), default=math.inf)
+        nearer = max(1.0 - (away - body.core), 0.0)
+        return others(body, end, seconds, about, preferred) + weight * nearer
+
+    plan = two_doors()
+    model = model_of(plan, wanderer(31), behaviors=[*ours(), walls(weight)], rng=3)
+    model.add_pedestrians(plan.random_points(12, model.rng, spacing=0.5, clearance=0.3))
+    oracle = Oracle(model, cost)
     while model.running and model.frame < 120:
         for decision in oracle.step():
             assert decision.fault() is None, (decision.frame, decision.person.row)

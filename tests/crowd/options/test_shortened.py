@@ -1,4 +1,4 @@
-"""Shortened copies of the shortest options."""
+"""Shortened copies of the shorter options."""
 
 import math
 from dataclasses import replace
@@ -22,11 +22,11 @@ from tests.fixtures.maps import (
 )
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put, statues
 
-SHARES = (0.5, 0.0)
+SHARES = ((0.5, 0.0),)
 
 
 def by_hand():
-    """Options 0 to 3 of who stands, 4 to 6 of who walks; 1 and 2 end in one cell of thinning."""
+    """Options 0 to 3 are of a standing person, 4 to 6 of a walking one; 1 and 2 end in one cell."""
     standing = [stand(), straight(0.5, 12), straight(0.53125, 12), straight(1.0, 24)]
     walking = [straight(0.0625, 12), straight(0.0625, 12, turn=0.25), straight(0.5, 12)]
     costs = np.array([0.0, 2.0, 1.0, 0.0, 0.5, 3.0, 0.25], dtype=np.float32)
@@ -92,6 +92,42 @@ def test_the_shortest_are_those_of_each_cluster():
     assert shortened(parts, 0.0) == [(0, STANDING), (2, STANDING)]
 
 
+def test_each_rank_of_duration_has_its_own_shares():
+    # By cluster: 12, 24 and 45 frames; 24 and 45; 45 alone.
+    three = [stand(), straight(0.5, 12), straight(1.0, 24), straight(2.0, 45)]
+    two = [straight(1.25, 24), straight(1.75, 45)]
+    map_ = make_map([three, two, [straight(1.5, 45)]])
+    parts = Capability(map_, shares=((0.5,), (0.75, 0.25), ())).parts
+    assert shortened(parts, 0.5) == [(0, STANDING), (1, WALKING), (4, WALKING), (6, WALKING)]
+    assert shortened(parts, 0.75) == [(2, WALKING), (5, WALKING)]
+    assert shortened(parts, 0.25) == [(2, WALKING), (5, WALKING)]
+    assert len(parts.rows) == 7 + 4 + 2 + 2
+    # Durations that are not in use have no rank: the 24 frames of the first are its shortest now.
+    parts = Capability(map_, (24, 45), shares=((0.5,), (0.75,))).parts
+    assert shortened(parts, 0.5) == [(2, WALKING), (4, WALKING), (6, WALKING)]
+    assert shortened(parts, 0.75) == [(3, WALKING), (5, WALKING)]
+
+
+def test_a_longer_option_is_as_long_when_shortened_and_stands_below_the_same_speed():
+    # 0.28 m in 24 frames: 0.35 m/s; a quarter of it is 0.0875 m/s, three quarters 0.26 m/s.
+    map_ = make_map([[stand(), straight(0.5, 12), straight(0.28125, 24)], [stand()]])
+    capability = Capability(map_, shares=((), (0.75, 0.25)))
+    parts, options = capability.parts, capability.table.options
+    assert shortened(parts, 0.75) == [(2, WALKING)]
+    assert shortened(parts, 0.25) == [(2, STANDING)]
+    [k] = np.flatnonzero(parts.share == 0.75)
+    assert options.frames[k] == 24
+    assert options.x[k] == 0.2109375
+    assert options.speed[k] == pytest.approx(0.2109375 / 0.8)
+
+
+def test_more_shares_than_durations_are_those_of_options_that_a_cluster_does_not_have():
+    map_ = make_map([[stand(), straight(0.5, 12, to=0)]])
+    one, many = (Capability(map_, shares=((0.5,), *more)) for more in ((), ((0.25,), (0.75,))))
+    assert one.parts.share.tolist() == many.parts.share.tolist()
+    assert one.parts.rows.tolist() == many.parts.rows.tolist()
+
+
 def check(capability, shares):
     """All properties of shortened options, looked up one by one."""
     map_, parts, table = capability.map, capability.parts, capability.table
@@ -113,14 +149,16 @@ def check(capability, shares):
         scaled = path * np.array([share, share, share if share > 0.0 else 1.0])
         np.testing.assert_allclose(table.path[k, :, 1 : len(path) + 1].T, scaled, atol=1e-6)
 
-    shortest = np.minimum.reduceat(map_.durations, map_.offsets[:-1])
-    short = np.flatnonzero(map_.durations == shortest[cluster]).tolist()
-    for share in set(shares):
+    rising = [sorted(set(map_.durations[cluster == c].tolist())) for c in range(map_.n_clusters)]
+    rank = np.array([rising[c].index(d) for c, d in zip(cluster, map_.durations, strict=True)])
+    assert {float(s) for s in parts.share} <= {1.0, *(s for own in shares for s in own)}
+    for wanted, share in ((n, share) for n, own in enumerate(shares) for share in own):
+        short = np.flatnonzero(rank == wanted).tolist()
         cheapest: dict[tuple[int, ...], float] = {}
         for row in short:
             cell = _cell(cluster[row], x[row], y[row], turn[row], share)
             cheapest[cell] = min(cheapest.get(cell, math.inf), map_.costs[row])
-        kept = np.flatnonzero(parts.share == share).tolist()
+        kept = np.flatnonzero((parts.share == share) & (rank[parts.rows] == wanted)).tolist()
         cells = [_cell(cluster[r], x[r], y[r], turn[r], share) for r in parts.rows[kept]]
         assert sorted(cells) == sorted(cheapest)
         assert [map_.costs[r] for r in parts.rows[kept]] == [cheapest[cell] for cell in cells]
@@ -130,8 +168,8 @@ def check(capability, shares):
             stands = slow and (share * abs(turn[row]) / seconds < 0.35 or share == 0.0)
             assert parts.clusters[k] == (map_.standing if stands else ends_in[row])
 
-    if 0.0 in shares:
-        in_place = parts.share == 0.0
+    if shares and 0.0 in shares[0]:
+        in_place = (parts.share == 0.0) & (rank[parts.rows] == 0)
         assert not table.path[in_place][:, :2].any()
         assert (parts.clusters[in_place] == map_.standing).all()
         assert set(mine[in_place].tolist()) == set(range(capability.n_clusters))
@@ -145,12 +183,15 @@ def _cell(cluster, x, y, turn, share):
 @settings(deadline=None, max_examples=50)  # compiled at the first
 @given(
     seed=st.integers(0, 2**16),
-    shares=st.lists(st.sampled_from([0.75, 0.5, 0.3, 0.1, 0.0]), unique=True, max_size=3),
+    shares=st.lists(
+        st.lists(st.sampled_from([0.75, 0.5, 0.3, 0.1, 0.0]), unique=True, max_size=3).map(tuple),
+        max_size=4,
+    ).map(tuple),
 )
 def test_any_map(seed, shares):
     map_ = wanderer(seed)
     costs = np.random.default_rng(seed).integers(0, 4, map_.n_options).astype(np.float32)
-    check(Capability(replace(map_, costs=costs), shares=tuple(shares)), shares)
+    check(Capability(replace(map_, costs=costs), shares=shares), shares)
 
 
 def test_the_map_that_ships_with_the_shares_of_the_default_preset():
@@ -167,7 +208,7 @@ def test_the_paper_has_none():
 
 
 def test_who_was_never_recorded_to_stop_stands_behind_somebody_who_does():
-    # Its map has no option that stays in place but the one of who stands already.
+    # Its map has no option that stays in place but that of a person who stands already.
     restless = make_map([[stand(), straight(0.5, 12)], [straight(0.5, 12)]])
     model = model_of(corridor(12.0, 0.5), [restless, statues()])
     walker = put(model, 1.0, 0.25)

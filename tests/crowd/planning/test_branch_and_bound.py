@@ -9,11 +9,15 @@ from mesa_mobility.behaviors import (
     PreferredSpeed,
     PreferredVelocity,
     RightOfWay,
+    RoomAhead,
     TargetDistance,
+    VelocityChange,
 )
 from mesa_mobility.models import Doorway
 
 from mesa_mobility import CostTerm
+from tests.fixtures.numpy_terms import Clearance, StraightOn
+from tests.fixtures.plugin_terms import KeepOff
 
 
 class Distance(TargetDistance):
@@ -29,6 +33,10 @@ class Speed(PreferredSpeed):
 
 
 class Velocity(PreferredVelocity):
+    bound = None
+
+
+class Change(VelocityChange):
     bound = None
 
 
@@ -73,6 +81,27 @@ def test_a_weight_below_zero_takes_the_bound_away():
     usual = (TargetDistance(), FacingDeviation(), PreferredSpeed())
     reward = run(*usual, TargetDistance(weight=-0.25))
     assert reward == run(*usual, Distance(weight=-0.25))
+
+
+def test_a_run_is_the_same_without_the_bound_of_the_change_of_velocity():
+    usual = (TargetDistance(), PreferredVelocity())
+    changes = run(*usual, VelocityChange())
+    assert changes == run(*usual, Change())
+    assert changes != run(*usual)
+
+
+@pytest.mark.parametrize(
+    ("compiled", "plain", "weight"),
+    [(RoomAhead, StraightOn, 3.0), (KeepOff, Clearance, 1.0), (KeepOff, Clearance, -0.25)],
+)
+def test_a_run_is_the_same_if_walls_are_looked_at_for_every_option(compiled, plain, weight):
+    # A kernel waits until an option may win; terms in NumPy are computed for all options before.
+    # Where the weight is negative, neither may wait.
+    usual = (TargetDistance(), FacingDeviation(), PreferredVelocity())
+    walled = run(*usual, compiled(weight))
+    assert walled == run(*usual, plain(weight))
+    assert walled == run(Distance(), Facing(), Velocity(), compiled(weight))
+    assert walled != run(*usual)
 
 
 def test_other_terms_give_another_run(bounded):

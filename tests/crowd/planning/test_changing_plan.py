@@ -14,8 +14,8 @@ from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.scenes import advance, core_of, corridor, dead_end, model_of, put, two_doors
 
 
-def test_an_obstacle_is_seen_by_the_next_decision():
-    model = model_of(corridor(), strider(), behaviors=[Displacement()])
+def test_an_obstacle_is_seen_by_the_next_decision(in_parts):
+    model = model_of(corridor(), strider(), behaviors=[Displacement()], preset=in_parts)
     person = put(model, 1.0, 2.0)
     advance(model, 20)
     model.floor_plan.add_obstacle(box(3.5, 1.0, 4.0, 3.0))

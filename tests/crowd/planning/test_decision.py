@@ -4,19 +4,19 @@ import math
 
 import numpy as np
 import pytest
-from mesa_mobility.behaviors import Displacement, Interference, TargetDistance
+from mesa_mobility.behaviors import Displacement, Interference, PreferredVelocity, TargetDistance
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from tests.fixtures.maps import make_map, stand, straight, strider, through, wanderer
 from tests.fixtures.oracle import Oracle
-from tests.fixtures.oracle_costs import PAPER_COST, default_cost
+from tests.fixtures.oracle_costs import PAPER_COST, cost_of
 from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, statues
 
 
-def farthest(plan, maps):
+def farthest(plan, maps, preset):
     """A model in which everybody goes as far as there is room."""
-    return model_of(plan, maps, behaviors=[Displacement()])
+    return model_of(plan, maps, behaviors=[Displacement()], preset=preset)
 
 
 def commits_to(model, person) -> float:
@@ -42,10 +42,10 @@ def commits_to(model, person) -> float:
         (0.273, 0.0),
     ],
 )
-def test_walls_keep_clear_of_the_core(wall, metres):
+def test_walls_keep_clear_of_the_core(wall, metres, in_parts):
     # An option of length s needs s + 0.15 m of floor ahead; the shortest comes in a half and a
     # quarter as well.
-    model = farthest(dead_end(x=5.0), strider())
+    model = farthest(dead_end(x=5.0), strider(), in_parts)
     assert commits_to(model, put(model, 5.0 - wall, 2.0)) == pytest.approx(metres, abs=1e-6)
 
 
@@ -65,64 +65,66 @@ def test_walls_keep_clear_of_the_core(wall, metres):
         (0.5, -0.298, 0.25),  # 0.39 m from it
     ],
 )
-def test_bodies_keep_clear_of_each_other(ahead, aside, metres):
-    model = farthest(corridor(), [strider(), statues()])
+def test_bodies_keep_clear_of_each_other(ahead, aside, metres, in_parts):
+    model = farthest(corridor(), [strider(), statues()], in_parts)
     put(model, 5.0 + ahead, 2.0 + aside, type_index=1)
     assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(metres, abs=1e-6)
 
 
-def test_cores_of_different_types_add_up():
+def test_cores_of_different_types_add_up(in_parts):
     thin, stout = make_map([[stand()]], core_radius=0.1), make_map([[stand()]], core_radius=0.4)
     for blocker, ahead, metres in ((1, 1.252, 1.0), (1, 1.248, 0.5), (2, 1.552, 1.0),
                                    (2, 1.548, 0.5)):  # fmt: skip
-        model = farthest(corridor(), [strider(), thin, stout])
+        model = farthest(corridor(), [strider(), thin, stout], in_parts)
         put(model, 5.0 + ahead, 2.0, type_index=blocker)
         assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(metres, abs=1e-6)
 
 
-def test_bodies_are_kept_clear_between_the_samples_of_a_path():
+def test_bodies_are_kept_clear_between_the_samples_of_a_path(in_parts):
     # 2 m in 12 frames: half a metre from sample to sample.  0.2 m beside the middle of one
     # piece is 0.32 m from either end of it, and a quarter of the path ends there.
     runner = make_map([[stand(), straight(2.0, 12, to=0)]])
     for aside, metres in ((0.2, 0.5), (0.302, 2.0)):
-        model = farthest(corridor(), [runner, statues()])
+        model = farthest(corridor(), [runner, statues()], in_parts)
         put(model, 5.75, 2.0 + aside, type_index=1)
         assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(metres, abs=1e-6)
 
 
-def test_walls_are_kept_clear_between_the_samples_of_a_path():
+def test_walls_are_kept_clear_between_the_samples_of_a_path(in_parts):
     # The tip of a thin wall 0.1 m beside the middle of a piece, 0.26 m from its ends; a quarter of
     # the path leads to the nearer one.
     runner = make_map([[stand(), straight(2.0, 12, to=0)]])
     for tip, metres in ((2.1, 0.5), (2.16, 2.0)):
-        model = farthest(corridor(obstacles=[box(5.74, tip, 5.76, 3.5)]), runner)
+        model = farthest(corridor(obstacles=[box(5.74, tip, 5.76, 3.5)]), runner, in_parts)
         assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(metres, abs=1e-6)
 
 
-def test_the_whole_path_counts_not_only_its_end():
+def test_the_whole_path_counts_not_only_its_end(in_parts):
     # Out to the left by 0.8 m and back; its end is the same as that of the straight one.  Half of
-    # it, out by 0.4 m, keeps 0.47 m away from who stands at the turn of the whole.
+    # it, out by 0.4 m, keeps 0.47 m away from the person at the turn of the whole option.
     detour = through([(0.25, 0.4, 0.0), (0.5, 0.8, 0.0), (0.75, 0.4, 0.0), (1.0, 0.0, 0.0)], to=0)
-    model = farthest(corridor(), [make_map([[stand(), detour]]), statues()])
+    model = farthest(corridor(), [make_map([[stand(), detour]]), statues()], in_parts)
     put(model, 5.5, 2.8, type_index=1)
     assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(0.5, abs=1e-6)
     assert commits_to(model, put(model, 10.0, 2.0)) == pytest.approx(1.0, abs=1e-6)
 
 
-def test_alone_and_free_the_cheapest_option_is_taken():
-    # All lead on at 1.25 m/s and cost 0.75 for it at 1 m/s preferred; the longest is nearest
+def test_alone_and_free_the_cheapest_option_is_taken(whole):
+    # All lead on at 1.25 m/s and cost the same for it at 1 m/s preferred; the longest is nearest
     # to the target.
-    model = model_of(corridor(), strider())
+    model = model_of(corridor(), strider(), preset=whole)
     person = put(model, 1.0, 2.0, preferred_speeds=[1.0])
     assert commits_to(model, person) == pytest.approx(1.875, abs=1e-6)
 
 
-def test_preferred_speed_decides_between_slow_and_fast():
+def test_preferred_speed_decides_between_slow_and_fast(whole):
     # Slow costs D - 1.2 + 2 |1.2 - 1.5 v0|, fast D - 1.8 + 2 |1.8 - 1.5 v0|; they are equal
     # where 2 ((1.8 - 1.5 v0) - (1.5 v0 - 1.2)) = 0.6, that is at v0 = 0.9 m/s.
     slow, fast = straight(1.2, 45, to=0), straight(1.8, 45, to=0)
     for preferred, metres in ((0.85, 1.2), (0.95, 1.8)):
-        model = model_of(corridor(), make_map([[stand(), slow, fast]]))
+        terms = [TargetDistance(1.0), PreferredVelocity(2.0)]
+        map_ = make_map([[stand(), slow, fast]])
+        model = model_of(corridor(), map_, behaviors=terms, preset=whole)
         person = put(model, 1.0, 2.0, preferred_speeds=[preferred])
         assert commits_to(model, person) == pytest.approx(metres, abs=1e-6)
 
@@ -141,7 +143,7 @@ def test_interference_turns_away_from_a_neighbour(side):
 
 def test_neighbours_behind_the_mobility_point_do_not_interfere():
     # The left option ends 0.45 m past a neighbour that stands 0.3 m beside its path, 0.54 m from
-    # it; the right one 0.6 m short of a neighbour.  Only the latter is ahead of who goes there.
+    # it; the right one 0.6 m short of a neighbour. Only the latter is ahead at the end.
     left, right = (straight(1.5, 45, towards=t, turn=t, to=0) for t in (0.5, -0.5))
     model = model_of(corridor(), [make_map([[stand(), left, right]]), statues()],
                      behaviors=[Interference(), Displacement(0.01)])  # fmt: skip
@@ -156,9 +158,9 @@ def test_neighbours_behind_the_mobility_point_do_not_interfere():
 
 
 @pytest.mark.parametrize("nearer_first", [True, False])
-def test_who_is_nearest_to_the_exit_decides_first(nearer_first):
+def test_who_is_nearest_to_the_exit_decides_first(nearer_first, in_parts):
     # 0.5 m behind another the longest option is free only once the other has committed to go.
-    model = farthest(corridor(), strider())
+    model = farthest(corridor(), strider(), in_parts)
     places = [(6.5, 2.0), (6.0, 2.0)] if nearer_first else [(6.0, 2.0), (6.5, 2.0)]
     model.add_pedestrians(places, headings=[0.0, 0.0])
     advance(model, 45)
@@ -221,7 +223,7 @@ def test_brute_force_would_tell_another_choice():
         model = model_of(plan, wanderer(3), behaviors=terms, preset=preset, rng=3)
         model.add_pedestrians(plan.random_points(10, model.rng, spacing=0.5, clearance=0.3))
         if terms:
-            oracle = Oracle(model, default_cost())
+            oracle = Oracle(model, cost_of("default"))
         else:
             oracle = Oracle(model, PAPER_COST, durations=(45,), shares=())
         found = []
@@ -229,3 +231,27 @@ def test_brute_force_would_tell_another_choice():
             found += [d for d in oracle.step() if d.fault() and not d.fell_back]
         faults.append(len(found))
     assert min(faults) > 0
+
+
+def test_the_cheapest_option_is_taken_with_all_terms_that_look_ahead():
+    plan = FloorPlan(ROOM, exits=[Exit("east", (6, 1), (6, 1.8))], obstacles=[PILLAR])
+    for seed in (8, 9, 10):
+        model = model_of(plan, wanderer(seed), preset="steady", rng=seed)
+        model.add_pedestrians(plan.random_points(10, model.rng, spacing=0.5, clearance=0.3))
+        oracle = Oracle(model)
+        while model.running and model.frame < 240:
+            for decision in oracle.step():
+                assert decision.fault() is None, (seed, decision.frame, decision.person.row)
+
+
+@pytest.mark.parametrize("name", ["velocity_change", "anticipation", "room_ahead"])
+def test_brute_force_would_tell_that_a_term_is_missing(name):
+    plan = FloorPlan(ROOM, exits=[Exit("east", (6, 1), (6, 1.8))], obstacles=[PILLAR])
+    model = model_of(plan, wanderer(8), preset="steady", rng=8)
+    model.terms[:] = [term for term in model.terms if term.name != name]
+    model.add_pedestrians(plan.random_points(10, model.rng, spacing=0.5, clearance=0.3))
+    oracle = Oracle(model)
+    found = []
+    while model.running and model.frame < 150:
+        found += [d for d in oracle.step() if d.fault() and not d.fell_back]
+    assert found

@@ -11,6 +11,8 @@ from mesa_mobility.crowd import FREE, PERSON, WALL, Watch
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit
 from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
+from tests.fixtures.numpy_terms import Clearance
+from tests.fixtures.plugin_terms import KeepOff
 from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, statues
 
 ROOM = "POLYGON((0 0,6 0,6 5,0 5,0 0))"
@@ -44,15 +46,15 @@ ENDS = ("from", "to")
 def decisions_of(model, row, frames):
     """(decision, start and end of what it commits to) of a watched pedestrian, one by one."""
     model.watch = Watch(row)
-    told = []
+    explained = []
     while model.running and model.frame < frames and model.crowd.active[row]:
         before = model.watch.decision
         advance(model, 1)
         if model.watch.decision is not before:
             person = model.crowd.records[row]
             poses = [[person[f"{end}_{of}"] for of in ("x", "y", "heading")] for end in ENDS]
-            told.append((model.watch.decision, np.array(poses).T))
-    return told
+            explained.append((model.watch.decision, np.array(poses).T))
+    return explained
 
 
 @pytest.mark.parametrize("preset", ["default", "paper"])
@@ -77,7 +79,24 @@ def test_the_cheapest_of_the_free_options_is_what_the_engine_commits_to(preset, 
     assert taken >= 10
 
 
-def test_where_nothing_is_free_the_fallback_is_told(whole):
+@pytest.mark.parametrize("weight", [2.0, -2.0])
+def test_a_term_over_walls_counts_in_the_explanation_as_in_the_decision(weight):
+    taken = beside = 0
+    for row in range(5):
+        model = room(1, extra=[KeepOff(weight)])
+        for decision, _ in decisions_of(model, row, 200):
+            taken += 1
+            expected = Clearance().cost(decision.candidates)
+            beside += int(expected.any())
+            np.testing.assert_allclose(decision.costs[-1], expected, atol=1e-9)
+            assert decision.terms[-1] == "keep_off"
+            free = decision.verdicts == FREE
+            cheapest = np.flatnonzero(free)[np.argmin(decision.totals[free])]
+            assert decision.chosen == cheapest
+    assert min(taken, beside) >= 10
+
+
+def test_where_nothing_is_free_the_explanation_names_the_fallback(whole):
     # Nothing but two metres ahead, and a wall at one.
     model = model_of(dead_end(x=5.0), make_map([[straight(2.0, 12, to=0)]]), preset=whole)
     person = put(model, 4.0, 2.0, preferred_speeds=[0.5])
@@ -106,44 +125,49 @@ def test_costs_are_those_of_each_term_with_its_weight(whole):
     model = model_of(corridor(), make_map([[stand(), *speed_rules]]), behaviors=terms, preset=whole)
     person = put(model, 2.0, 2.0)
     model.crowd.target_x[person.row], model.crowd.target_y[person.row] = 5.0, 2.0
-    told = model.explain(person.row)
-    assert not told.taken
-    assert told.terms == ("target_distance", "keep_low", "displacement")
-    order = np.argsort(told.candidates.displacements)
-    assert told.weights.tolist() == [2.0, 3.0, 0.5]
-    assert told.costs[0][order] == pytest.approx([3.0, 2.5, 2.0], abs=1e-6)
-    assert told.costs[1][order] == pytest.approx([1.0, 1.0, 1.0], abs=1e-6)
-    assert told.costs[2][order] == pytest.approx([0.0, -0.5, -1.0], abs=1e-6)
-    assert told.totals[order] == pytest.approx([9.0, 7.75, 6.5], abs=1e-5)
-    assert told.chosen == order[2]
+    explained = model.explain(person.row)
+    assert not explained.taken
+    assert explained.terms == ("target_distance", "keep_low", "displacement")
+    order = np.argsort(explained.candidates.displacements)
+    assert explained.weights.tolist() == [2.0, 3.0, 0.5]
+    assert explained.costs[0][order] == pytest.approx([3.0, 2.5, 2.0], abs=1e-6)
+    assert explained.costs[1][order] == pytest.approx([1.0, 1.0, 1.0], abs=1e-6)
+    assert explained.costs[2][order] == pytest.approx([0.0, -0.5, -1.0], abs=1e-6)
+    assert explained.totals[order] == pytest.approx([9.0, 7.75, 6.5], abs=1e-5)
+    assert explained.chosen == order[2]
 
 
-def test_walls_and_people_in_the_way_are_told_apart():
+def test_walls_and_people_in_the_way_have_different_verdicts(in_parts):
     # A strider may go 0.5, 1 or 1.875 m; bodies of 0.15 m stay clear of each other and of walls.
-    model = model_of(dead_end(x=5.0), [strider(), statues()], behaviors=[Displacement()])
+    maps, terms = [strider(), statues()], [Displacement()]
+    model = model_of(dead_end(x=5.0), maps, behaviors=terms, preset=in_parts)
     person = put(model, 3.4, 2.0)
-    told = model.explain(person.row)
-    by_reach = dict(zip(np.round(told.candidates.displacements, 2), told.verdicts, strict=True))
+    explained = model.explain(person.row)
+    by_reach = dict(
+        zip(np.round(explained.candidates.displacements, 2), explained.verdicts, strict=True)
+    )
     parts = {0.0: FREE, 0.12: FREE, 0.25: FREE}
     assert by_reach == parts | {0.5: FREE, 1.0: FREE, 1.88: WALL}
     other = put(model, 4.25, 2.0, type_index=1)
-    told = model.explain(person.row)
-    by_reach = dict(zip(np.round(told.candidates.displacements, 2), told.verdicts, strict=True))
+    explained = model.explain(person.row)
+    by_reach = dict(
+        zip(np.round(explained.candidates.displacements, 2), explained.verdicts, strict=True)
+    )
     assert by_reach == parts | {0.5: FREE, 1.0: PERSON, 1.88: WALL}
-    assert set(told.blockers[told.verdicts == PERSON]) == {other.row}
-    assert (told.blockers[told.verdicts != PERSON] == -1).all()
-    assert told.candidates.displacements[told.chosen] == pytest.approx(0.5, abs=1e-6)
+    assert set(explained.blockers[explained.verdicts == PERSON]) == {other.row}
+    assert (explained.blockers[explained.verdicts != PERSON] == -1).all()
+    assert explained.candidates.displacements[explained.chosen] == pytest.approx(0.5, abs=1e-6)
 
 
 def test_paths_lead_from_where_the_person_stands_to_the_mobility_points():
     model = room(1)
-    told = model.explain(2)
+    explained = model.explain(2)
     x, y = model.crowd.x[2], model.crowd.y[2]
-    assert told.paths[:, 0, 0] == pytest.approx(np.full(len(told.knots), x))
-    assert told.paths[:, 1, 0] == pytest.approx(np.full(len(told.knots), y))
-    ends = told.paths[np.arange(len(told.knots)), :2, told.knots - 1]
-    assert ends == pytest.approx(told.candidates.points, abs=1e-6)
-    assert (told.knots - 1) * 0.1 == pytest.approx(told.candidates.durations)
+    assert explained.paths[:, 0, 0] == pytest.approx(np.full(len(explained.knots), x))
+    assert explained.paths[:, 1, 0] == pytest.approx(np.full(len(explained.knots), y))
+    ends = explained.paths[np.arange(len(explained.knots)), :2, explained.knots - 1]
+    assert ends == pytest.approx(explained.candidates.points, abs=1e-6)
+    assert (explained.knots - 1) * 0.1 == pytest.approx(explained.candidates.durations)
 
 
 def test_what_those_before_have_committed_to_counts_and_their_velocities_do_not():

@@ -57,8 +57,9 @@ def test_nothing_changes_the_movement_under_way():
     np.testing.assert_allclose(track[:, 0], 1.0 + 1.25 / 30 * np.arange(5, 46), atol=1e-9)
 
 
-def test_what_is_told_of_the_movement_under_way(swayer):
-    model = model_of(corridor(), make_map([[straight(1.5, 24, to=1)], [straight(0.25, 12, to=0)]]))
+def test_the_description_of_the_committed_movement(whole):
+    map_ = make_map([[straight(1.5, 24, to=1)], [straight(0.25, 12, to=0)]])
+    model = model_of(corridor(), map_, preset=whole)
     person = put(model, 2.0, 2.0)
     assert person.next_decision == 0.0
     assert person.speed == 0.0

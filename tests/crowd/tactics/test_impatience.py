@@ -160,7 +160,7 @@ def test_only_the_impatient_among_those_who_decide_are_turned():
     assert np.any(turned, axis=0).tolist() == [True, False, False, True]
 
 
-def test_who_was_told_to_stand_is_patient():
+def test_people_who_wait_are_patient():
     crowd = people()
     crowd.agenda["waits_until"] = 900  # 30 s
     for elapsed in (0.0, 10.0, 29.0, 30.0, 30.0 + PATIENCE - 0.1):
@@ -203,16 +203,16 @@ def test_nobody_is_turned_in_the_papers_preset():
     assert (drawn(model, before), aim(person)) == (False, straight_on)
 
 
-@pytest.mark.parametrize("how", ["at once", "pre-movement", "told", "told until"])
-def test_who_gets_on_once_it_sets_off_draws_nothing(how):
+@pytest.mark.parametrize("how", ["at once", "pre-movement", "wait", "wait until"])
+def test_a_person_who_makes_progress_after_setting_off_draws_nothing(how):
     model = model_of(corridor(), strider(), rng=3)
     ready = 6.0 * PATIENCE
     waits = {"pre_movement": ready} if how == "pre-movement" else {}
     person = put(model, 1.0, 2.0, preferred_speeds=1.25, **waits)
     before = model.rng.bit_generator.state
-    if how == "told":
+    if how == "wait":
         person.wait(ready)
-    if how == "told until":
+    if how == "wait until":
         person.wait(until=lambda: model.elapsed >= ready)
     model.run(120.0)
     assert model.inside == 0

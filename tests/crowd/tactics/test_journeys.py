@@ -209,7 +209,7 @@ def test_routes_that_cannot_be(keywords, error, match):
     assert model.inside == 0
 
 
-def test_a_run_without_end_wants_to_be_told_its_end():
+def test_a_run_without_end_needs_a_time_limit():
     model = model_of(hall(), strider())
     put(model, 2.0, 2.0, route=["a", "b"], loop=True)
     with pytest.raises(ModelError, match="max_seconds"):

@@ -14,7 +14,7 @@ PLACES = [(8.0 + 1.5 * (k % 5), 30.0 + 1.5 * (k // 5)) for k in range(20)]
 
 
 class Strided(NearestExit):
-    """The nearest exit, told in arrays that are not contiguous or of other numbers."""
+    """The nearest exit, in arrays that are not contiguous or of other types."""
 
     def targets(self, deciding):
         found = super().targets(deciding)

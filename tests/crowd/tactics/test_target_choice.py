@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mesa_mobility.behaviors import TargetDistance
 
 from mesa_mobility.crowd import Deciding, TargetChoice
 from mesa_mobility.floorplan import Targets
@@ -45,7 +46,7 @@ class AfterAWhile(TargetChoice):
 def test_people_head_for_the_targets_given():
     choice = ToPoint((5.0, 20.0))
     fork = make_map([[stand(), *(straight(1.5, 45, towards=t, to=0) for t in (0.5, -0.5))]])
-    model = model_of(corridor(), fork, target_choice=choice)
+    model = model_of(corridor(), fork, target_choice=choice, behaviors=[TargetDistance()])
     person = put(model, 5.0, 2.0, 0.0, preferred_speeds=[1.34])
     assert person.target.tolist() == [5.0, 20.0]
     advance(model, 45)
@@ -58,7 +59,7 @@ def test_by_default_people_face_the_target_given():
     assert person.heading == pytest.approx(np.pi / 2)
 
 
-def test_asked_about_those_who_decide_and_told_who_and_where_they_are():
+def test_a_target_choice_gets_those_who_decide_and_their_places():
     choice = ToPoint((99.0, 2.0))
     model = model_of(corridor(length=90.0), [strider(), statues()], target_choice=choice)
     walker, statue = (
@@ -68,8 +69,8 @@ def test_asked_about_those_who_decide_and_told_who_and_where_they_are():
     choice.asked.clear()
     advance(model, 45)
     # Both at the start; the statue each 12 frames, the walker not before its 45 are over.
-    told = [(round(d.elapsed * 30), d.pedestrians.tolist()) for d in choice.asked]
-    assert told == [(0, [walker.row, statue.row]), *((f, [statue.row]) for f in (12, 24, 36))]
+    asked = [(round(d.elapsed * 30), d.pedestrians.tolist()) for d in choice.asked]
+    assert asked == [(0, [walker.row, statue.row]), *((f, [statue.row]) for f in (12, 24, 36))]
     first = choice.asked[0]
     assert first.positions.tolist() == [[1.0, 1.0], [3.0, 3.0]]
     assert first.types.tolist() == [0, 1]
@@ -80,8 +81,11 @@ def test_asked_about_those_who_decide_and_told_who_and_where_they_are():
 
 
 def test_people_decide_in_rising_order_of_the_distance_given():
-    # As under `nearest first`, but the choice says that who is farther right is nearer.
-    model = model_of(corridor(both_ends=True), strider(), target_choice=ToPoint((99.0, 2.0)))
+    # As under `nearest first`, but the choice says that who is farther right is nearer. All go as
+    # far as there is room, which the one in front makes if it decides first.
+    choice = ToPoint((99.0, 2.0))
+    model = model_of(corridor(both_ends=True), strider(), behaviors=[TargetDistance()],
+                     target_choice=choice)  # fmt: skip
     model.add_pedestrians([(6.0, 2.0), (6.5, 2.0)], headings=0.0, preferred_speeds=1.25)
     advance(model, 45)
     assert sorted(p.position[0] for p in model.agents) == pytest.approx([7.875, 8.375])

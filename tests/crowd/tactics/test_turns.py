@@ -10,7 +10,7 @@ from tests.fixtures.scenes import two_rooms
 
 
 def crowds(width: float, depth: float, people: int, seed: int = 1, **keywords) -> PedestrianModel:
-    """So many people on either side, each of whom wants to the other."""
+    """So many people on either side; all want to get to the other side."""
     plan = two_rooms(width, depth)
     model = PedestrianModel(plan, rng=seed, **keywords)
     rng = np.random.default_rng(seed)

@@ -43,7 +43,7 @@ def test_waits_until_something_is_so():
     assert still(model, person) == pytest.approx((0.0, 70.0), abs=0.41)
 
 
-def test_told_again_the_last_word_counts():
+def test_the_last_of_several_waits_counts():
     model = model_of(corridor(), strider())
     person = put(model, 2.0, 2.0)
     person.wait(until=lambda: False)
@@ -102,7 +102,7 @@ def test_people_who_wait_do_not_turn_round_and_round():
     assert model.explain(person.row).chosen >= 0
 
 
-def test_what_is_told_of_somebody_who_waits_is_what_it_does():
+def test_the_description_of_a_waiting_person_is_true():
     model = model_of(corridor(), shipped_map(), rng=1)
     person = put(model, 2.0, 2.0)
     person.wait(60.0)

@@ -1,9 +1,9 @@
-"""The work queue by which threads share the decisions of a frame.
+"""The queue by which threads share the decisions of a frame.
 
-People decide in order, since each sees what its predecessors have committed to. But nobody looks
-farther than the search radius: two people farther apart may decide in either order, or at once,
-with the same result to the last bit. So each thread takes the next pedestrian, and waits for
-undecided predecessors within that radius.
+People decide in order, since each depends on the paths that its predecessors have committed to.
+Nothing beyond the search radius matters: two people farther apart may decide in either order, or
+at once, with the same result to the last bit. So each thread takes the next pedestrian, and waits
+for undecided predecessors within that radius.
 """
 
 from __future__ import annotations

@@ -1,0 +1,68 @@
+"""Keeping room to walk on: not to end a movement facing a wall."""
+
+import math
+
+from mesa_mobility import CompiledTerm, wall_kernel
+from mesa_mobility.errors import ModelError
+
+
+@wall_kernel
+def _room_ahead(  # type: ignore[no-untyped-def]
+    x, y, ux, uy, duration, speed, sx, sy, tx, ty, x1, y1, x2, y2, core, p
+):
+    wx = x2 - x1
+    wy = y2 - y1
+    length = math.sqrt(wx * wx + wy * wy)
+    slope = ux * wy - uy * wx
+    if abs(slope) <= 1e-9 * length:
+        return 0.0
+    along = ((x1 - x) * wy - (y1 - y) * wx) / slope
+    where = ((x1 - x) * uy - (y1 - y) * ux) / slope * length
+    # How far the way straight on passes beside the end of the wall, at right angles to the way.
+    beside = max(-where, where - length, 0.0) * abs(slope) / length
+    if along <= 0.0 or beside >= core:
+        return 0.0
+    # The body touches the wall earlier, the more so the more gently the two meet.
+    room = max(along - core * length / abs(slope), 0.0)
+    return (1.0 - beside / core) * max(1.0 - room / max(speed * p[0], p[1]), 0.0)
+
+
+class RoomAhead(CompiledTerm):
+    """Prefers options after which one can walk on in the direction faced.
+
+    (1 - r / l) (1 - b / c) of the worst wall, as far as r is less than l and b less than c: r is
+    how far a body that walks straight on from the mobility point, the way it faces, gets before
+    its core, of radius c, touches the line of the wall, and l what it covers in ``time`` at the
+    speed of the option, at least ``least``.  b is how far beside the end of the wall that way
+    passes, 0 if it crosses the wall: the more of the core misses the wall, the less the wall
+    counts, or people would not find into gaps little wider than they are.  ``wall_kernel`` says
+    which walls are looked at.
+
+    Without this term people end movements beside a wall and facing it, in states from which every
+    next movement but standing hits the wall: the inevitable collision states of motion planning
+    (Fraichard and Asama, Advanced Robotics 18 (2004) 1001-1024).
+
+    Args:
+        weight: factor in the sum.
+        time: seconds.
+        least: metres.
+
+    Raises:
+        ModelError: a number that is not finite and positive.
+    """
+
+    name = "room_ahead"
+    default_weight = 3.0
+    kernel = _room_ahead
+
+    def __init__(self, weight: float | None = None, time: float = 1.0, least: float = 0.5) -> None:
+        super().__init__(weight)
+        for name, value in (("time", time), ("least", least)):
+            if not (math.isfinite(value) and value > 0.0):
+                raise ModelError(f"room_ahead: {name} is {value}, expected more than 0")
+        self.time = time
+        self.least = least
+
+    def parameters(self) -> tuple[float, ...]:
+        """``(time, least)``."""
+        return (self.time, self.least)
