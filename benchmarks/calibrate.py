@@ -1,4 +1,4 @@
-"""How well do the numbers of the default preset fit what was measured, and what if not those?
+"""How well the numbers of the default preset, and other numbers, fit the measurements.
 
 python benchmarks/calibrate.py calibration.jsonl [--seeds 2] [--jobs 2] [--minutes 9]
 
@@ -50,7 +50,7 @@ DEFAULT: dict[str, float] = {
     },
     "core radius": CORE_RADIUS,
 }
-"""What was chosen. The weight of target_distance is the unit."""
+"""The numbers of the default preset. The weight of target_distance is the unit."""
 
 GRID: dict[str, tuple[float, float]] = {
     **{name: (0.5 * value, 1.5 * value) for name, value in DEFAULT.items()},
@@ -70,7 +70,7 @@ def settings() -> list[dict[str, float]]:
 
 
 def rules(changes: dict[str, float]) -> dict[str, Any]:
-    """What a model gets for these numbers."""
+    """The model's arguments for these numbers."""
     of = DEFAULT | changes
     terms = [
         load_behavior(name)(
@@ -105,7 +105,7 @@ def measure(changes: dict[str, float], seed: int) -> dict[str, float]:
 
 
 def wanted() -> dict[str, tuple[float, float]]:
-    """Middle and half the width of what was measured."""
+    """Middle and half the width of the measured range."""
     middle, half = np.mean(DENSITY_IN_FRONT), np.ptp(DENSITY_IN_FRONT) / 2
     bands = {f"flow {w:g} m": (bottleneck_fit(w), BOTTLENECK_TOLERANCE) for w in WIDTHS}
     bands[f"density before {IN_FRONT_OF:g} m"] = (float(middle), float(half))
@@ -116,7 +116,7 @@ def wanted() -> dict[str, tuple[float, float]]:
 
 
 def main() -> None:
-    """Run what is missing, then print the table."""
+    """Run the settings without results yet, then print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", type=Path, help="one JSON line a setting and seed")
     parser.add_argument("--seeds", type=int, default=2)

@@ -39,7 +39,7 @@ ROUND: tuple[Case, ...] = (
     case(counterflow, opposing=100),
     case(shipped, model="auditorium"),
 )
-"""What is run in turn: in 500 runs 84 doorways, 251 bottlenecks, 124 counterflows, 41 halls."""
+"""Scenarios, run in turn: in 500 runs 84 doorways, 251 bottlenecks, 124 counterflows, 41 halls."""
 
 PLANS: tuple[Case, ...] = tuple(
     case(random_plan, shape=shape, both_ways=both_ways)
@@ -60,7 +60,7 @@ COUNTED = ("pedestrians", "left_inside", "overlaps", "wall_crossings", "off_floo
 
 
 def main() -> None:
-    """Run what is missing, then say what came out."""
+    """Run the seeds without results yet, then print the results."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", type=Path, help="one JSON line a run")
     parser.add_argument("--runs", type=int, default=500)

@@ -235,7 +235,7 @@ def screenshots(browser: Browser, folder: Path) -> None:
 
 
 def main() -> None:
-    """Measure what the arguments ask for."""
+    """Run the measurements that the arguments name."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("what", choices=("frames", "start", "memory", "screenshots"))
     parser.add_argument("folder", nargs="?", type=Path, help="for screenshots")

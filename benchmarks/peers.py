@@ -29,14 +29,14 @@ PEERS = ("mesa-mobility", "jupedsim")
 
 
 def our_model(scenario: Scenario, mobility_map: Any = None) -> Any:
-    """Our model of a scenario, with what it needs compiled but for what its first steps compile.
+    """Our model of a scenario; all it needs is compiled, except what its first steps compile.
 
     The package is imported here, as the other's runs do without.
     """
     from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
     from mesa_mobility.crowd.precompile import compile_the_rest
 
-    # What people who walk freely do not need: a jam would compile it while it is timed.
+    # Code that free walkers do not need. A jam would compile it while it is timed.
     compile_the_rest()
     plan = FloorPlan(
         scenario.floor,

@@ -1,4 +1,4 @@
-"""Work out the figures and pictures of docs/validation.md again and put them in their places.
+"""Compute the figures and pictures of docs/validation.md again and insert them.
 
 python benchmarks/validation_page.py verify --seeds 10
 python benchmarks/validation_page.py validate --seeds 5
@@ -46,7 +46,7 @@ def main() -> None:
 
 
 def answer(command: str, seeds: int, *more: str) -> dict[str, Any]:
-    """What a command says with --json, whether or not anything fails."""
+    """The JSON output of a command, whether or not a test fails."""
     line = [sys.executable, "-m", "mesa_mobility", command, "--seeds", str(seeds), "--json", *more]
     done = subprocess.run(line, stdout=subprocess.PIPE, text=True)
     if done.returncode > 1:
@@ -110,7 +110,7 @@ def campaign_table(file: Path) -> str:
 
 
 def put(part: str, text: str) -> None:
-    """Replace what stands between the page's two marks of a part."""
+    """Replace the text between the page's two marks of a part."""
     page = PAGE.read_text(encoding="utf-8")
     begin, end = f"<!-- {part} -->\n", f"<!-- end of {part} -->"
     head, found, rest = page.partition(begin)

@@ -59,7 +59,7 @@ def _display_math(self: Any, node: Any) -> None:
 
 
 def _write_command_line(_: Sphinx) -> None:
-    """Write what each command says of itself, for the reference."""
+    """Write each command's help, for the reference."""
     page = HERE / "reference" / "command_line_generated.md"
     words = [
         "mesa_mobility.commands.app",

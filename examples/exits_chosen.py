@@ -1,4 +1,4 @@
-"""Exits chosen: by distance, by walk and queue, and by what people know."""
+"""Exits chosen: by distance, by walk and queue, and by familiarity."""
 
 from mesa_mobility.behaviors import FamiliarExit, NearestExit, QuickestExit
 

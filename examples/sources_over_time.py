@@ -15,7 +15,7 @@ class Concourse(PedestrianModel):
         super().__init__(plan, rng=rng)
         # Half a person a second, at random times, for forty seconds.
         self.add_source(Source(area="POLYGON ((0 7, 2 7, 2 10, 0 10, 0 7))", rate=0.5, until=40))
-        # A train arrives after 15 s: thirty people within ten seconds, some of whom dawdle.
+        # A train arrives after 15 s: thirty people within ten seconds; some of them dawdle.
         self.add_source(
             Source(
                 area="POLYGON ((0 0, 3 0, 3 4, 0 4, 0 0))",

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
         TargetChoice,
         bound_kernel,
         option_kernel,
+        pair_bound_kernel,
         pair_kernel,
+        wall_kernel,
     )
     from mesa_mobility.errors import MobilityError
     from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone, Targets
@@ -62,7 +64,9 @@ _ROOMS = {
     "batch_run": "batch",
     "bound_kernel": "crowd",
     "option_kernel": "crowd",
+    "pair_bound_kernel": "crowd",
     "pair_kernel": "crowd",
+    "wall_kernel": "crowd",
 }
 
 __all__ = [
@@ -92,7 +96,9 @@ __all__ = [
     "batch_run",
     "bound_kernel",
     "option_kernel",
+    "pair_bound_kernel",
     "pair_kernel",
+    "wall_kernel",
 ]
 
 __path__ += beside_in_a_checkout(__path__[0], "models")

@@ -1,4 +1,4 @@
-"""A cache that computes each value once, also if several threads ask for it together."""
+"""A cache that computes each value once, also if several threads need it at the same time."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Distributions that speeds and times are drawn from, built or read from a text.
 
 A crowd is drawn in strata: its members share out the distribution among them, so that even a
-small crowd has the spread that was asked for, and runs differ by who is fast and not by how many
-are. What SciPy has to do with it is loaded when the first is drawn.
+small crowd has the spread of the distribution. Runs differ in which people are fast, not in how
+many. SciPy is loaded when the first one is drawn.
 """
 
 from __future__ import annotations

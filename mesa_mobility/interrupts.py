@@ -21,7 +21,7 @@ _GRACE = 0.3
 
 
 class Stopped(Exception):
-    """The user asked to stop, and the computation has come to a point where it can."""
+    """Ctrl-C was pressed, and the computation has come to a point where it can stop."""
 
 
 class _Interrupts:

@@ -53,7 +53,7 @@ class Auditorium(PedestrianModel):
     Args:
         pedestrians: people; a twelfth of them, but no more than ten an office, are in the offices.
         pre_movement: seconds before people set off, or their distribution.
-        preset: "default" or "paper".
+        preset: "default", "steady" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         frames_per_step: frames that one step advances; 3 are 0.1 s.
         record: keep every frame.
@@ -102,7 +102,7 @@ class Auditorium(PedestrianModel):
 
 
 def seat_places() -> NDArray[np.float64]:
-    """(n, 2) where those who sit stand up: in front of each seat, in the gap between two rows."""
+    """(n, 2) where seated people stand up: in front of each seat, in the gap between rows."""
     places = []
     for row in range(ROWS):
         y = FIRST_ROW + ROW_PITCH * row - (ROW_PITCH - SEAT_DEPTH) / 2

@@ -21,7 +21,7 @@ class StraightWalk(PedestrianModel):
         slowest: preferred speed of the first, m/s.
         fastest: preferred speed of the last, m/s; the others lie evenly between.
         length: metres to walk.
-        preset: "default" or "paper".
+        preset: "default", "steady" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         frames_per_step: frames that one step advances; 3 are 0.1 s.
         record: keep every frame.

@@ -42,6 +42,16 @@ def whole(monkeypatch) -> str:
     return "whole"
 
 
+@pytest.fixture
+def in_parts(monkeypatch) -> str:
+    """A preset for one test: the default one with a half, a quarter and none of short options."""
+    shares = ((0.5, 0.25, 0.0),)
+    monkeypatch.setitem(
+        PRESETS, "in_parts", replace(PRESETS["default"], name="in_parts", shares=shares)
+    )
+    return "in_parts"
+
+
 @pytest.fixture(scope="session")
 def captures_dir() -> Path:
     """Folder of the real recordings that may be shipped from."""

@@ -1,4 +1,4 @@
-"""A cache whose values are computed once, whoever asks for them."""
+"""A cache that computes each value once."""
 
 import threading
 import time

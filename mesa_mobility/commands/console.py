@@ -1,4 +1,4 @@
-"""What commands say, and where: answers on standard output, the rest on standard error."""
+"""Output of commands: answers on standard output, messages on standard error."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from rich.console import Console
 from rich.progress import (
     BarColumn,
     Progress,
+    ProgressColumn,
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
+    TimeRemainingColumn,
 )
 from rich.table import Table
 
@@ -23,7 +25,7 @@ from mesa_mobility.interrupts import cleaning_up
 
 
 class Report(Protocol):
-    """Tells how far a long work has come."""
+    """Shows the progress of long work."""
 
     def __call__(self, what: str, done: float, total: float) -> None:
         """`what` is being done, `done` of `total`."""
@@ -50,7 +52,7 @@ def answer_json(values: Mapping[str, Any]) -> None:
 
 
 def answer_table(rows: Mapping[str, str]) -> None:
-    """A table of two columns, what and how much, on standard output."""
+    """Print a table of two columns, names and values, on standard output."""
     table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
@@ -62,6 +64,19 @@ def answer_table(rows: Mapping[str, str]) -> None:
 @contextmanager
 def progress_bar(*, shown: bool = True) -> Iterator[Report]:
     """A progress bar on standard error; nothing is drawn where that is not a terminal."""
+    with _bar(TimeElapsedColumn(), shown=shown) as report:
+        yield report
+
+
+@contextmanager
+def counting_bar() -> Iterator[Report]:
+    """A progress bar with the time left."""
+    with _bar(TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()) as report:
+        yield report
+
+
+@contextmanager
+def _bar(*times: ProgressColumn, shown: bool = True) -> Iterator[Report]:
     console = Console(stderr=True)
     if not shown or not console.is_terminal:
         # Older versions of Rich end a disabled bar with an empty line.
@@ -71,7 +86,7 @@ def progress_bar(*, shown: bool = True) -> Iterator[Report]:
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
-        TimeElapsedColumn(),
+        *times,
         console=console,
         transient=True,
     )

@@ -8,7 +8,7 @@ from mesa_mobility.errors import MobilityError
 
 
 def check_environment() -> None:
-    """Refuse what Numba would not run with, and have pictures drawn without a window.
+    """Refuse settings that Numba cannot run with, and have pictures drawn without a window.
 
     Raises:
         MobilityError: NUMBA_DISABLE_JIT is set, or NUMBA_NUM_THREADS is not a number of threads.

@@ -1,4 +1,4 @@
-"""`mesa-mobility models` and `mesa-mobility behaviors`: what is installed."""
+"""`mesa-mobility models` and `mesa-mobility behaviors`: list the installed ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`mesa-mobility run`: run a model, check it, say and write what came out."""
+"""`mesa-mobility run`: run a model, check it, print and write the results."""
 
 from __future__ import annotations
 
@@ -36,13 +36,14 @@ def run(
         typer.Option(help="Simulated time at most; without it until everybody is out."),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(min=0, help="Makes a run repeatable; drawn and told if left out.")
+        int | None,
+        typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
     ] = None,
     settings: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
     ] = None,
-    preset: Annotated[str, typer.Option(help="default or paper.")] = "default",
+    preset: Annotated[str, typer.Option(help="default, steady or paper.")] = "default",
     map_file: Annotated[
         Path | None,
         typer.Option(
@@ -163,7 +164,7 @@ def _create(
 
 
 def _origin(given: dict[str, Any], map_file: Path | None) -> dict[str, Any]:
-    """What is needed, beside model, preset and seed, to run the same again."""
+    """All that repeating the run needs besides model, preset and seed."""
     from mesa_mobility._version import __version__
     from mesa_mobility.mobility.mapfile import shipped_map_path
 
@@ -190,7 +191,7 @@ def _simulate(
     with progress_bar(shown=shown) as report:
 
         def progress(elapsed: float, inside: int) -> None:
-            # Whichever end comes first, that of the time or that of the people.
+            # The share of the time or that of the people, whichever is larger.
             done = 1.0 - inside / people if people else 1.0
             if seconds is not None:
                 done = max(done, elapsed / seconds)

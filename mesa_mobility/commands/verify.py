@@ -66,12 +66,12 @@ def verify(
 
 
 def processes(jobs: int | None) -> int:
-    """Processes to use where `jobs` were asked for."""
+    """Number of processes to use: `jobs`, or all processors if it is None."""
     import os
 
     if jobs is not None:
         return jobs
-    # Only Linux tells which processors this process may use.
+    # Only Linux has a call for the processors that this process may use.
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

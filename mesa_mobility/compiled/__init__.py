@@ -1,1 +1,1 @@
-"""How the hot path is compiled; nothing here knows about people."""
+"""How the hot path is compiled; nothing here is about people."""

@@ -1,4 +1,4 @@
-"""What a processor can do and Numba has no name for: memory ahead of time, and between threads."""
+"""Processor instructions that Numba does not offer: prefetching, and memory shared by threads."""
 
 # Intrinsics take their arguments by name and give Numba types.
 # mypy: disable-error-code="no-untyped-def"
@@ -93,7 +93,7 @@ def _plain_yield_thread() -> None:
 
 @with_twin(_plain_yield_thread)
 def yield_thread(typingctx):
-    """Let whoever else wants it have the processor: to wait for another thread takes two."""
+    """Yield the processor, since another thread may need it to finish."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         name = "SwitchToThread" if sys.platform == "win32" else "sched_yield"

@@ -22,7 +22,7 @@ _WIDTH = 8
 
 
 def _compiles() -> bool:
-    """Whether LLVM takes what hand-written code is made of."""
+    """Whether LLVM compiles the instructions of hand-written code."""
     try:
         module = ir.Module()
         taken = [vectors.DOUBLE.as_pointer(), vectors.LONG.as_pointer(), vectors.LONG]
@@ -45,7 +45,7 @@ def _compiles() -> bool:
         seen = vectors.load_acquire(builder, place)
         builder.ret(builder.add(seen, builder.extract_element(lane, ir.Constant(vectors.INT, 0))))
         binding.parse_assembly(str(module)).verify()
-    # Whatever another llvmlite may raise.
+    # Another llvmlite may raise any exception.
     except Exception:
         return False
     return True

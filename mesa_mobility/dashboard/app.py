@@ -1,4 +1,4 @@
-"""The dashboard's page, put together."""
+"""The dashboard's page, assembled from its parts."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ STYLE = (
     # Labels of lists stand above them, and need that room where the row is wrapped.
     ".mm-time > div { row-gap: 20px; }"
 )
-"""Look of what is drawn with HTML."""
+"""Styles of the HTML."""
 
 
 @solara.component

@@ -48,7 +48,7 @@ def ParameterForm(
     nothing: tuple[Recipe, str] | None = None
     asking, ask = solara.use_state(nothing)
     texts_now = solara.use_ref(texts)
-    told = descriptions(kind)
+    explanations = descriptions(kind)
 
     def make(recipe: Recipe, changed: str) -> None:
         made_of = texts_now.current
@@ -86,7 +86,7 @@ def ParameterForm(
         _Field(
             parameter,
             "seed" if name == "rng" else name.replace("_", " "),
-            told.get(name, ""),
+            explanations.get(name, ""),
             texts[name],
             errors.get(name, ""),
             partial(change, name),

@@ -59,7 +59,7 @@ class Guard:
             await _answer(scope, send, 403, refusal)
         elif not self._token or self._has_cookie(headers):
             await self._app(scope, receive, _with_headers(send))
-        elif self._told(scope):
+        elif self._has_token(scope):
             await _answer(scope, send, 303, "", self._exchange(scope))
         else:
             await _answer(scope, send, 403, "open the address that the command has printed")
@@ -89,7 +89,7 @@ class Guard:
             return False
         return found is not None and _same(found.value, self._token)
 
-    def _told(self, scope: Any) -> bool:
+    def _has_token(self, scope: Any) -> bool:
         if scope["type"] != "http":
             return False
         given = dict(parse_qsl(scope["query_string"].decode("latin-1"))).get(TOKEN, "")

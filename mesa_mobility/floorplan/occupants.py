@@ -63,7 +63,7 @@ def check_vacant(plan: FloorPlan, obstacle: Polygon, name: str, free: BaseGeomet
 
 
 def _in_the_way(plan: FloorPlan, obstacle: Polygon, free: BaseGeometry) -> int | None:
-    """Lowest number of a person whom the obstacle would touch, or who would be off the floor."""
+    """Lowest number of a person that the obstacle would touch or leave off the floor."""
     found: list[int] = []
     for people in _OCCUPANTS.get(plan, ()):
         numbers, places, radii = people.bodies()

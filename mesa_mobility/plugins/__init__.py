@@ -1,1 +1,1 @@
-"""What is installed, what is in files, and what parameters a model takes."""
+"""Installed models and behaviours, models in files, and the parameters of models."""

@@ -1,4 +1,4 @@
-"""`--set NAME=VALUE` against what a model's constructor takes."""
+"""Values of `--set NAME=VALUE`, checked against a model's constructor."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def parameters(model: type) -> dict[str, Parameter]:
 
 
 def descriptions(model: type) -> dict[str, str]:
-    """What a model's docstring says of each parameter, under `Args:`, on one line each."""
+    """The description of each parameter in a model's docstring, under `Args:`, on one line each."""
     found: dict[str, list[str]] = {}
     name, indent = "", 0
     lines = iter((inspect.getdoc(model) or "").splitlines())
@@ -188,8 +188,8 @@ def _kinds(annotation: Any) -> Iterable[Any]:
     elif origin is typing.Annotated:
         yield from _kinds(typing.get_args(annotation)[0])
     elif origin in (typing.Union, types.UnionType):
-        # None and numbers before what any text fits, and before a distribution, which says
-        # itself what is wrong with a text.
+        # None and numbers come before types that accept any text, and before a distribution,
+        # whose own message names the fault of a text.
         members = [kind for each in typing.get_args(annotation) for kind in _kinds(each)]
         yield from sorted(members, key=lambda kind: kind in (str, Path, Distribution))
     elif origin is typing.Literal:
@@ -201,7 +201,7 @@ def _kinds(annotation: Any) -> Iterable[Any]:
 
 
 def _kinds_of_default(default: Any) -> tuple[Any, ...]:
-    """What a parameter without an annotation takes."""
+    """The types of a parameter without an annotation."""
     if default is inspect.Parameter.empty:
         return (str,)
     if default is None:
@@ -214,7 +214,7 @@ def _kinds_of_default(default: Any) -> tuple[Any, ...]:
 
 
 def _said(annotation: Any) -> Iterable[Any]:
-    """What stands beside the types in an annotation."""
+    """The metadata beside the types in an annotation."""
     if typing.get_origin(annotation) is typing.Annotated:
         yield from annotation.__metadata__
     for each in typing.get_args(annotation):
@@ -236,7 +236,7 @@ def _convert(text: str, kind: Any) -> Any:
         if math.isfinite(value := float(text)):
             return value
     elif kind is Distribution:
-        # Whatever is wrong with it, its own message says so.
+        # The class's own message names the fault.
         return parse(text)
     elif kind is Path and not text:
         raise ValueError(text)

@@ -1,7 +1,7 @@
 """Models and behaviours that are installed, plug-ins of other packages included.
 
 A package offers a model or a behaviour by an entry point in the group `mesa_mobility.models` or
-`mesa_mobility.behaviors`; nothing is imported before it is asked for by name.
+`mesa_mobility.behaviors`; each is imported when it is first loaded by name.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Plugin:
             )
         try:
             loaded = self._entry.load()
-        # A plug-in may fail in any way; whichever it is, its name is what the user needs.
+        # A plug-in may fail in any way; the user always needs its name.
         except Exception as error:
             reason = " ".join(str(error).split())
             raise ModelError(
@@ -96,7 +96,7 @@ def load_behavior(name: str) -> type:
 def _installed(group: str) -> dict[str, Plugin]:
     plugins: dict[str, Plugin] = {}
     entries = sorted(entry_points(group=group), key=lambda each: (each.name, each.value))
-    # To ask a distribution for its name reads a file, and most bring several.
+    # Reading a distribution's name opens a file, and most offer several plug-ins.
     packages: dict[Distribution | None, str] = {}
     for entry in entries:
         dist = entry.dist

@@ -22,9 +22,10 @@ from mesa_mobility.results.measures import (
     speeds,
     speeds_along,
 )
+from mesa_mobility.results.overlaps import Overlap
 from mesa_mobility.results.parquet import write_parquet
 from mesa_mobility.results.run import write_run
-from mesa_mobility.results.safety import Overlap, SafetyReport, WallCrossing, check_safety
+from mesa_mobility.results.safety import SafetyReport, WallCrossing, check_safety
 from mesa_mobility.results.trajectories import Trajectories, read_parquet
 from mesa_mobility.results.voronoi import individual_densities, voronoi_cells, voronoi_density
 

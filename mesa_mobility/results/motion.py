@@ -23,6 +23,22 @@ SETTLED_S = 0.9
 """Ends of a track in which its smoothing is not settled yet: three deviations, seconds."""
 
 
+@dataclass(frozen=True)
+class Selection:
+    """The part of a run that counts.
+
+    Attributes:
+        area: polygon in which tracks count, metres; by default everywhere.
+        after: seconds from which on tracks count.
+    """
+
+    area: shapely.Polygon | None = None
+    after: float = 0.0
+
+
+WHOLE_RUN = Selection()
+
+
 @dataclass(frozen=True, eq=False)
 class Steps:
     """Steps of equal duration, and how each differs from the one before.
@@ -39,19 +55,13 @@ class Steps:
     speed_changes: FloatArray
     successive: FloatArray
 
-    @property
-    def correlation(self) -> float:
-        """Correlation of ``across`` between successive steps; negative where people zigzag."""
-        return float(np.corrcoef(*self.successive.T)[0, 1])
-
 
 def steps_between(
     trajectories: Trajectories,
     direction: ArrayLike,
     *,
     interval: float = 1.5,
-    area: shapely.Polygon | None = None,
-    after: float = 0.0,
+    selection: Selection = WHOLE_RUN,
 ) -> Steps:
     """Cut the part of each track inside an area into steps of equal duration.
 
@@ -59,8 +69,7 @@ def steps_between(
         trajectories: the run.
         direction: (2,) of the crowd, of any length.
         interval: duration of a step, seconds.
-        area: polygon in which a step starts and ends, metres; by default everywhere.
-        after: seconds from which on tracks count.
+        selection: part of the run that counts; a step starts and ends in its area.
 
     Raises:
         ResultsError: an interval shorter than a frame, or a direction without length.
@@ -69,7 +78,7 @@ def steps_between(
     along, length = checked_direction(direction, "steps")
     ex, ey = along / length
     across, turns, changes, successive = [], [], [], []
-    for places, _ in _tracks(trajectories, area, after):
+    for places, _ in _tracks(trajectories, selection):
         dx, dy = np.diff(places[::frames], axis=0).T
         aside = ex * dy - ey * dx
         angle, speed = np.arctan2(dy, dx), np.hypot(dx, dy) / interval
@@ -80,20 +89,28 @@ def steps_between(
     return Steps(_joined(across), _joined(turns), _joined(changes), _joined(successive, (0, 2)))
 
 
+def lateral_correlation(successive: ArrayLike) -> float:
+    """Correlation of the lateral component of successive steps; negative where people zigzag.
+
+    Args:
+        successive: (k, 2) metres, as in :class:`Steps`, of one run or of several together.
+    """
+    first, second = np.asarray(successive, dtype=np.float64).T
+    return float(np.corrcoef(first, second)[0, 1])
+
+
 def accelerations(
     trajectories: Trajectories,
     *,
     smoothing: float = 0.3,
-    area: shapely.Polygon | None = None,
-    after: float = 0.0,
+    selection: Selection = WHOLE_RUN,
 ) -> FloatArray:
     """Second derivative of positions smoothed by a Gaussian.
 
     Args:
         trajectories: the run.
         smoothing: standard deviation of the Gaussian, seconds.
-        area: polygon in which tracks count, metres; by default everywhere.
-        after: seconds from which on tracks count.
+        selection: part of the run that counts.
 
     Returns:
         (k,) m/s2, of every frame but the first and last 0.9 s of each track.
@@ -101,7 +118,7 @@ def accelerations(
     rate = trajectories.frame_rate
     edge = round(SETTLED_S * rate)
     found = []
-    for places, _ in _tracks(trajectories, area, after):
+    for places, _ in _tracks(trajectories, selection):
         smooth = gaussian_filter1d(places, smoothing * rate, axis=0, mode="nearest")
         second = np.diff(smooth, 2, axis=0)[edge:-edge] * rate**2
         found.append(np.hypot(second[:, 0], second[:, 1]))
@@ -113,8 +130,7 @@ def speed_jumps(
     *,
     interval: float = 0.1,
     least_speed: float = 0.5,
-    area: shapely.Polygon | None = None,
-    after: float = 0.0,
+    selection: Selection = WHOLE_RUN,
 ) -> FloatArray:
     """Norm of the change of mean velocity between successive intervals of people who walk.
 
@@ -122,8 +138,7 @@ def speed_jumps(
         trajectories: the run.
         interval: seconds.
         least_speed: in both intervals, m/s.
-        area: polygon in which tracks count, metres; by default everywhere.
-        after: seconds from which on tracks count.
+        selection: part of the run that counts.
 
     Returns:
         (k,) m/s.
@@ -133,7 +148,7 @@ def speed_jumps(
     """
     frames = frames_in(interval, trajectories, "interval")
     found = []
-    for places, _ in _tracks(trajectories, area, after):
+    for places, _ in _tracks(trajectories, selection):
         velocity = np.diff(places[::frames], axis=0) / interval
         fast = np.hypot(velocity[:, 0], velocity[:, 1]) > least_speed
         change = np.diff(velocity, axis=0)[fast[1:] & fast[:-1]]
@@ -146,8 +161,7 @@ def facing_angles(
     *,
     interval: float = 0.5,
     least_speed: float = 0.5,
-    area: shapely.Polygon | None = None,
-    after: float = 0.0,
+    selection: Selection = WHOLE_RUN,
 ) -> FloatArray:
     """Angle between the direction of travel and the facing direction of people who walk.
 
@@ -155,15 +169,14 @@ def facing_angles(
         trajectories: the run.
         interval: over which travel is measured, seconds; facing is that in its middle.
         least_speed: m/s.
-        area: polygon in which tracks count, metres; by default everywhere.
-        after: seconds from which on tracks count.
+        selection: part of the run that counts.
 
     Returns:
         (k,) radians from 0 to pi, one for each interval in which somebody walks.
     """
     frames = frames_in(interval, trajectories, "interval")
     found = []
-    for places, headings in _tracks(trajectories, area, after):
+    for places, headings in _tracks(trajectories, selection):
         dx, dy = np.diff(places[::frames], axis=0).T
         facing = headings[frames // 2 :: frames][: len(dx)]
         fast = np.hypot(dx, dy) > least_speed * interval
@@ -184,7 +197,7 @@ def walked_back(trajectories: Trajectories, point: ArrayLike) -> FloatArray:
     """
     x, y = np.asarray(point, dtype=np.float64)
     found = []
-    for places, _ in _tracks(trajectories, None, 0.0):
+    for places, _ in _tracks(trajectories, WHOLE_RUN):
         away = np.hypot(places[:, 0] - x, places[:, 1] - y)
         # Once through, people move away from the door because they have passed it.
         until = int(np.argmin(away)) + 1
@@ -193,14 +206,14 @@ def walked_back(trajectories: Trajectories, point: ArrayLike) -> FloatArray:
 
 
 def _tracks(
-    trajectories: Trajectories, area: shapely.Polygon | None, after: float
+    trajectories: Trajectories, selection: Selection
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Places (n, 2) and headings (n,) of each unbroken piece of a track inside the area."""
+    """Places (n, 2) and headings (n,) of each unbroken piece of a track in the selection."""
     rows = trajectories.by_person
-    kept = trajectories.frame[rows] >= after * trajectories.frame_rate
-    if area is not None:
-        shapely.prepare(area)
-        kept &= shapely.contains_xy(area, trajectories.x[rows], trajectories.y[rows])
+    kept = trajectories.frame[rows] >= selection.after * trajectories.frame_rate
+    if selection.area is not None:
+        shapely.prepare(selection.area)
+        kept &= shapely.contains_xy(selection.area, trajectories.x[rows], trajectories.y[rows])
     rows = rows[kept]
     breaks = np.flatnonzero(
         (np.diff(trajectories.person[rows]) != 0) | (np.diff(trajectories.frame[rows]) != 1)

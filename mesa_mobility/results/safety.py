@@ -1,7 +1,7 @@
-"""Bodies that overlap and steps through walls, counted over finished trajectories.
+"""The safety check of finished trajectories: overlaps, steps through walls, places off the floor.
 
-The count shares no code with the collision tests of the simulation: it takes positions
-as they were written and uses SciPy's k-d tree and shapely.
+It shares no code with the collision tests of the simulation: it takes positions as they were
+written and uses shapely and, for overlaps, SciPy's k-d tree.
 """
 
 from __future__ import annotations
@@ -11,16 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.overlaps import NAMED, Overlap, count_overlaps
 from mesa_mobility.results.trajectories import Trajectories
 
-# Rounding of floats may bring two bodies that just touch this much closer, metres.
-TOLERANCE_M = 1e-5
-# Overlaps and crossings that a report lists individually, at most.
-NAMED = 10
 # Least width of the squares by which steps near walls are found, metres.
 SQUARE_M = 0.25
 # An exit may lie 1 cm off the edge of the floor, and people beyond that edge before they cross it.
@@ -29,16 +25,6 @@ EXIT_OFF_M = 0.02
 MOST_SQUARES = 4000
 # Steps tested at once, which bounds the memory for shapely's objects.
 CHUNK = 200_000
-
-
-@dataclass(frozen=True)
-class Overlap:
-    """Two bodies closer than the sum of their cores in one frame; distance in metres."""
-
-    frame: int
-    first: int
-    second: int
-    distance_m: float
 
 
 @dataclass(frozen=True)
@@ -100,7 +86,7 @@ def check_safety(
         segments = segments.reshape(0, 4)
     if segments.ndim != 2 or segments.shape[1] != 4 or not np.all(np.isfinite(segments)):
         raise ResultsError(f"walls have shape {segments.shape}, expected (m, 4) finite numbers")
-    overlaps, pairs, nearest = _overlaps(trajectories)
+    overlaps, pairs, nearest = count_overlaps(trajectories)
     count, crossings = _wall_crossings(trajectories, segments)
     return SafetyReport(
         overlaps=overlaps,
@@ -123,35 +109,6 @@ def _off_floor(trajectories: Trajectories, floor: BaseGeometry) -> int:
     shapely.prepare(floor)
     off = ~shapely.intersects_xy(floor, x, y)
     return int((shapely.distance(shapely.points(x[off], y[off]), floor) > EXIT_OFF_M).sum())
-
-
-def _overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | None]:
-    offsets = trajectories.frame_offsets
-    positions = np.column_stack((trajectories.x, trajectories.y))
-    radii = trajectories.radii[trajectories.person]
-    reach = 2.0 * float(radii.max(initial=0.0))
-    count, named, nearest = 0, list[Overlap](), np.inf
-    for frame in range(trajectories.frames):
-        rows = slice(offsets[frame], offsets[frame + 1])
-        if rows.stop - rows.start < 2:
-            continue
-        points, cores = positions[rows], radii[rows]
-        tree = cKDTree(points)
-        if not np.isfinite(nearest):
-            nearest = float(tree.query(points, k=2)[0][:, 1].min())
-        # Ignore people who are neither within reach nor nearer than the nearest pair so far.
-        a, b = tree.query_pairs(max(reach, nearest), output_type="ndarray").T
-        if not len(a):
-            continue
-        distance = np.hypot(*(points[a] - points[b]).T)
-        nearest = min(nearest, float(distance.min()))
-        close = np.flatnonzero(distance < cores[a] + cores[b] - TOLERANCE_M)
-        count += len(close)
-        people = trajectories.person[rows]
-        for k in close[: NAMED - len(named)] if len(named) < NAMED else ():
-            pair = sorted((int(people[a[k]]), int(people[b[k]])))
-            named.append(Overlap(frame, pair[0], pair[1], float(distance[k])))
-    return count, named, float(nearest) if np.isfinite(nearest) else None
 
 
 def _wall_crossings(

@@ -40,12 +40,12 @@ def crossing(seed: int) -> Figures:
 
 
 def past_standing(seed: int) -> Figures:
-    """Somebody walks past somebody who stands; ``closest`` (20,) as for ``head_on``."""
+    """A person walks past a standing person; ``closest`` (20,) as for ``head_on``."""
     return _meet(seed, [((1.0, MIDDLE), "east")], (0.0, 1.0), standing=[(MIDDLE, MIDDLE)])
 
 
 def past_group(seed: int) -> Figures:
-    """Somebody comes upon five who stand in a circle; ``through`` counts who walked through."""
+    """A person meets five people who stand in a circle; ``through`` counts walks through it."""
     angles = np.linspace(0.0, 2.0 * np.pi, 5, endpoint=False) + 0.3
     circle = GROUP_RADIUS * np.column_stack([np.cos(angles), np.sin(angles)]) + MIDDLE
     runs = _runs(seed, [((1.0, MIDDLE), "east")], (0.0, 1.0), circle.tolist())

@@ -12,13 +12,15 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from shapely import Polygon, box
+from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, Source
 from mesa_mobility.plugins.registry import load_model
 from mesa_mobility.results.motion import (
+    Selection,
     accelerations,
     facing_angles,
+    lateral_correlation,
     speed_jumps,
     steps_between,
     walked_back,
@@ -88,12 +90,12 @@ def one_way(seed: int, *, density: float, speed: float, exit_width: float) -> Fi
     model.add_source(Source(area=ENTRY, rate=density * speed * WIDTH, preferred_speeds=RECORDED))
     while model.elapsed < SETTLE_S + MEASURE_S:
         model.step()
-    return _moved(Run(model, plan.walls), BOX, SETTLE_S)
+    return _moved(Run(model, plan.walls), Selection(BOX, SETTLE_S))
 
 
 def both_ways(seed: int, *, density: float) -> Figures:
     """People walk both ways in a corridor 4 m wide; figures as of ``one_way``."""
-    return _moved(both_ways_run(seed, density=density), BOTH_WAYS_BOX, SETTLE_S)
+    return _moved(both_ways_run(seed, density=density), Selection(BOTH_WAYS_BOX, SETTLE_S))
 
 
 def alone(seed: int, *, people: int = 25) -> Figures:
@@ -108,7 +110,7 @@ def alone(seed: int, *, people: int = 25) -> Figures:
         places, headings=np.zeros(people), preferred_speeds=RECORDED.draw(people, model.rng)
     )
     run = evacuate(model, 3.0 * LENGTH)
-    return _moved(run, box(4.0, 0.0, LENGTH - 2.0, 3.0 * people), 0.0)
+    return _moved(run, Selection(box(4.0, 0.0, LENGTH - 2.0, 3.0 * people)))
 
 
 def before_door(seed: int, *, width: float) -> Figures:
@@ -118,23 +120,23 @@ def before_door(seed: int, *, width: float) -> Figures:
 
 
 def faced(seed: int, *, model: str) -> Figures:
-    """A model that ships; ``angles`` (k,) in radians between facing and travel of who walks."""
+    """A shipped model; ``angles`` (k,) radians between facing and travel of walking people."""
     made = load_model(model)(record=True, rng=seed)
     run = evacuate(made, 120.0)
     return {**run.figures(), "angles": facing_angles(run.trajectories)}
 
 
-def _moved(run: Run, area: Polygon, after: float) -> Figures:
+def _moved(run: Run, selection: Selection) -> Figures:
     tracks = run.trajectories
-    steps = steps_between(tracks, (1.0, 0.0), area=area, after=after)
+    steps = steps_between(tracks, (1.0, 0.0), selection=selection)
     return {
         **run.figures(),
         "turns": steps.turns,
         "across": steps.across,
         "speed_changes": steps.speed_changes,
         "successive": steps.successive,
-        "accelerations": accelerations(tracks, area=area, after=after),
-        "jumps": speed_jumps(tracks, area=area, after=after),
+        "accelerations": accelerations(tracks, selection=selection),
+        "jumps": speed_jumps(tracks, selection=selection),
     }
 
 
@@ -161,8 +163,7 @@ def judge(runs: Runs) -> Verdict:
             checks.append(within(f"{name}: sd of {figure}", value, least, most))
         figures[f"{name}: turns"] = np.degrees(own["turns"]).tolist()
         if of is free:
-            pairs = _joined(of, "successive")
-            lag = float(np.corrcoef(*pairs.T)[0, 1])
+            lag = lateral_correlation(_joined(of, "successive"))
             checks.append(within(f"{name}: correlation of lateral steps", lag, -0.5, -0.15))
             continue
         checks += _against(f"{name}: acceleration m/s2", _joined(of, "accelerations"),

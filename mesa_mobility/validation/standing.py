@@ -123,9 +123,9 @@ def judge(runs: Runs) -> Verdict:
         at_most("closed door: greatest pelvis speed m/s", worst(closed, "speed_max"), MOST_SPEED),
         at_most("closed door: greatest turn in 1.5 s deg", worst(closed, "turn_max"),
                 MOST_TURN_DEG),
-        at_most("jam: greatest pelvis speed of who stands m/s", worst(jam, "speed_max"),
+        at_most("jam: greatest pelvis speed of standing people m/s", worst(jam, "speed_max"),
                 MOST_SPEED, gates=False),
-        at_most("jam: greatest turn of who stands deg", worst(jam, "turn_max"),
+        at_most("jam: greatest turn of standing people deg", worst(jam, "turn_max"),
                 MOST_TURN_DEG, gates=False),
     )  # fmt: skip
     figures = {
@@ -141,8 +141,8 @@ def draw(figures: dict[str, Any]) -> Figure:
     """Residual motion of people who stand."""
     figure, axes = drawing.panels(2)
     for each, name, bound, label in (
-        (axes[0], "speed_p99", MOST_SPEED, "pelvis speed of who stands, p99 (m/s)"),
-        (axes[1], "turn_p99", MOST_TURN_DEG, "turn of who stands within 1.5 s, p99 (deg)"),
+        (axes[0], "speed_p99", MOST_SPEED, "pelvis speed of standing people, p99 (m/s)"),
+        (axes[1], "turn_p99", MOST_TURN_DEG, "turn of standing people within 1.5 s, p99 (deg)"),
     ):
         places = ("closed door", "jam")
         values = [figures.get(f"{place}: {name}", float("nan")) for place in places]

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
-from multiprocessing import get_context, parent_process, resource_tracker
 from typing import Any, TypeAlias
 
 from mesa_mobility.interrupts import deaf_children
+from mesa_mobility.processes import one_thread_each, spawned_pool
 
 Figures: TypeAlias = dict[str, Any]
 Scenario: TypeAlias = Callable[..., Figures]
-
-THREADS = "NUMBA_NUM_THREADS"
 
 
 @dataclass(frozen=True)
@@ -83,7 +79,7 @@ def run_units(units: Iterable[tuple[Case, int]], jobs: int) -> Iterator[tuple[Ca
     Units are begun in their order; one is taken when a process is free for it.
     """
     ahead = iter(units)
-    with _one_thread_each(), _pool(jobs) as pool:
+    with one_thread_each(), _pool(jobs) as pool:
         # Processes are started when a unit is submitted.
         with deaf_children():
             waiting = {pool.submit(_run, *unit): unit for unit in islice(ahead, jobs)}
@@ -104,40 +100,10 @@ def _run(each: Case, seed: int) -> Figures:
         return {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
 
 
-def _end_with_parent() -> None:
-    """End this process when the one that has started it ends, however it does."""
-    parent = parent_process()
-    assert parent is not None
-
-    def follow() -> None:
-        parent.join()
-        os._exit(1)
-
-    threading.Thread(target=follow, name="mesa-mobility parent", daemon=True).start()
-
-
 @contextmanager
 def _pool(jobs: int) -> Iterator[ProcessPoolExecutor]:
-    # Python's own helper for such processes lets Ctrl-C through again when it is started.
-    resource_tracker.ensure_running()
-    pool = ProcessPoolExecutor(
-        max_workers=jobs, mp_context=get_context("spawn"), initializer=_end_with_parent
-    )
+    pool = spawned_pool(jobs)
     try:
         yield pool
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
-
-
-@contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Processes started in this block use one thread each, since they share the processors."""
-    before = os.environ.get(THREADS)
-    os.environ[THREADS] = "1"
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[THREADS]
-        else:
-            os.environ[THREADS] = before

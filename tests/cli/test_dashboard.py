@@ -24,7 +24,7 @@ def test_without_solara_it_says_what_to_install(command, monkeypatch):
 
 
 @pytest.mark.skipif(importlib.util.find_spec("solara") is None, reason="no solara")
-def test_a_port_that_is_taken_is_told(command):
+def test_a_port_that_is_taken_gives_an_error(command):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

@@ -36,7 +36,8 @@ def test_help_imports_nothing_slow():
         "from mesa_mobility.cli import main\n"
         "try:\n    main()\n"
         "except SystemExit: pass\n"
-        "slow = {'mesa', 'numba', 'scipy', 'matplotlib', 'pyarrow', 'pandas', 'numpy', 'shapely'}\n"
+        "slow = {'mesa', 'numba', 'scipy', 'matplotlib', 'pyarrow', 'pandas', 'numpy', 'shapely',\n"
+        "        'fsspec', 'filelock', 'distributed', 'dask', 'SALib'}\n"
         "print(sorted(slow & set(sys.modules)))\n"
     )
     done = subprocess.run(

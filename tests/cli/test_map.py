@@ -39,6 +39,33 @@ def test_mirror_images_can_be_left_out(command, recordings, tmp_path):
     assert last_line(outcome)["build"]["poses"] == 2 * 270
 
 
+def test_the_other_side_alone_turns_the_other_way(command, recordings, map_file, tmp_path):
+    path = tmp_path / "other.npz"
+    outcome = command("map", "build", recordings, "-o", path, "--other-side", "--json")
+    answer = last_line(outcome)
+    assert answer["recordings"] == 2
+    assert answer["preparation"]["mirrored"] == "mirror images alone"
+    left_out = answer["clips_left_out_one_at_a_time"]
+    assert [clip["clip"] for clip in left_out["clips"]] == ["brisk", "slow"]
+    assert answer["command"].endswith("--other-side")
+    both = command("map", "build", recordings, "-o", path, "--other-side", "--mirror")
+    assert both.status == 2
+
+
+def test_a_map_that_cannot_be_judged_is_written(command, recordings, tmp_path):
+    """Without the walk, somebody who only stands is left: no map, but with it there is one."""
+    folder = tmp_path / "recordings"
+    folder.mkdir()
+    shutil.copy(recordings / "slow.bvh", folder)
+    head, time, motion = rows_of(recordings)
+    (folder / "still.bvh").write_text("\n".join([*head, "Frames: 60", time, *motion[:60]]))
+    outcome = command("map", "build", folder, "-o", tmp_path / "a.npz", "--json")
+    assert outcome.status == 0, outcome.err
+    assert "clips are not left out one at a time: without slow: 2.0 s of" in outcome.err
+    assert "clips_left_out_one_at_a_time" not in last_line(outcome)
+    assert MobilityMap.load(tmp_path / "a.npz").n_options > 0
+
+
 def test_the_map_says_how_it_was_made(command, recordings, map_file):
     answer = last_line(command("map", "info", map_file, "--json"))
     assert answer["command"] == (
@@ -46,6 +73,40 @@ def test_the_map_says_how_it_was_made(command, recordings, map_file):
         "--clusters 12"
     )
     assert {clip["clip"] for clip in answer["provenance"]} == {"slow", "brisk"}
+
+
+def test_a_derived_type_says_what_it_is_derived_from(command, recordings, tmp_path):
+    path = tmp_path / "child.npz"
+    outcome = command("map", "build", recordings, "-o", path, "--derive", "child")
+    assert outcome.status == 0, outcome.err
+    made = MobilityMap.load(path)
+    assert made.pedestrian_type == "child"
+    assert made.metadata["derived"]["from"] == "able_bodied"
+    assert made.metadata["derived"]["length_factor"] == pytest.approx(1.25 / 1.75, abs=1e-4)
+    assert made.metadata["body"]["core_radius_m"] == pytest.approx(0.128)
+    assert made.metadata["command"].endswith("-o child.npz --derive child")
+    figures = last_line(command("map", "coverage", path, recordings, "--leave-one-out", "--json"))
+    assert [clip["clip"] for clip in figures["clips"]] == ["brisk", "slow"]
+    assert 0.0 <= figures["precision"] <= 1.0
+    both = command("map", "build", recordings, "-o", path, "--derive", "child", "--type", "slow")
+    assert both.status == 2
+    unknown = command("map", "build", recordings, "-o", path, "--derive", "giant")
+    assert unknown.err == (
+        "error: no derived type 'giant', expected one of child, older_adult, "
+        "frail_older_adult, cane, crutches, walking_frame\n"
+    )
+
+
+def test_what_people_of_a_map_can_do_is_said(command, recordings, map_file):
+    outcome = command("map", "info", map_file, "--json")
+    answer = last_line(outcome)
+    # The figure only walks straight on.
+    assert answer["standing"] == "turning on the spot borrowed from the map 'able_bodied'"
+    assert answer["standing"] in outcome.err
+    assert min(answer["abilities"]["turn_on_the_spot_deg"]) >= 30
+    assert "warning: nobody steps to the left" in outcome.err
+    # It walks at 1 and 1.3 m/s, and starts and stops.
+    assert 0.9 < answer["walking_speed_m_s"]["p75"] < 1.35
 
 
 def test_info_for_people_to_read(command, map_file):
@@ -140,12 +201,14 @@ def rows_of(recordings):
 @pytest.mark.parametrize(
     ("rows", "says"),
     [
-        (lambda rows: rows[:1] * 90, "nobody moves in the 180 poses of 2 clips"),
-        # 3 s of walking.  The figure stands in the first 2 s of 9 and in the last 2.
+        # A T-pose held for 9 s: the arms are no part of the figure, the legs are straight.
+        (lambda rows: rows[:1] * 270, "nobody walks: they get 0.00 m far within 1.5 s"),
         (
             lambda rows: rows[90:180],
-            "that lead to each other and back: expected recordings that show people both standing",
+            "3.0 s of recordings: expected at least 5 s of people",
         ),
+        # The first 2 s, in which the figure stands, three times.
+        (lambda rows: rows[:60] * 3, "nobody walks: they get"),
         (lambda rows: rows[:44], "slow cannot be used: 44 frames at 30 Hz, 45 needed"),
     ],
 )

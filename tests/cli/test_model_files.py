@@ -60,9 +60,7 @@ def test_imported_models_do_not_count_and_neighbours_are_found(tmp_path):
         ("raise SystemExit(3)\n", "", "room.py:1: cannot be loaded: SystemExit: 3"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_meant_is_told_in_one_line(
-    tmp_path, monkeypatch, command, text, name, message
-):
+def test_bad_model_files_give_one_line(tmp_path, monkeypatch, command, text, name, message):
     pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "room.py").write_text(text)

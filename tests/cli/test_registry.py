@@ -6,7 +6,8 @@ from mesa_mobility.plugins import registry
 SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium"}
 SHIPPED_BEHAVIORS = {
     "target_distance", "facing_deviation", "displacement", "interference", "preferred_speed",
-    "preferred_velocity", "headway", "right_of_way", "stepping",
+    "preferred_velocity", "headway", "right_of_way", "stepping", "anticipation", "room_ahead",
+    "velocity_change",
 }  # fmt: skip
 
 
@@ -47,7 +48,7 @@ def test_a_broken_plug_in_is_named_with_its_package(name, reason):
 
 
 @pytest.mark.usefixtures("plugins")
-def test_a_plug_in_that_fails_in_several_lines_is_told_in_one(tmp_path):
+def test_a_plug_in_that_fails_in_several_lines_gives_one(tmp_path):
     site = tmp_path / "site" / "corridors"
     (site / "no_such_module.py").write_text("raise RuntimeError('first line\\nsecond line')\n")
     with pytest.raises(ModelError, match="RuntimeError: first line second line"):

@@ -61,7 +61,6 @@ def test_out_holds_the_run(command, tmp_path):
 
 
 def test_the_checks_are_made_over_what_was_recorded(command):
-    # Three people in one lane 0.5 m apart, of whom the fourth starts where the first does.
     outcome = command(
         "run", "corridor", "--json", "--seconds", 0.5, "--set", "people=7", "--set", "lane=shared"
     )
@@ -103,7 +102,7 @@ def test_settings_preset_map_and_seed_reach_the_model(command, tmp_path):
     assert {key: summary[key] for key in expected} == expected
 
 
-def test_a_seed_is_drawn_and_told(command):
+def test_a_seed_is_drawn_and_printed(command):
     seeds = {last_line(command("run", "corridor", "--json"))["seed"] for _ in range(3)}
     assert len(seeds) == 3
 

@@ -152,11 +152,11 @@ def test_no_worker_more_than_threads_are_allowed(recordings, tmp_path):
         "futures.ThreadPoolExecutor = Pool\n"
         "from mesa_mobility.cli import main\n"
         "try: main()\n"
-        "except SystemExit as ended: print(ended.code, made)"
+        "except SystemExit as ended: print(ended.code, set(made))"
     )
     arguments = ["map", "build", str(recordings), "-o", str(tmp_path / "m.npz"), "--clusters", "12"]
     done = subprocess.run(
         [sys.executable, "-c", source, *arguments], capture_output=True, text=True,
         env=os.environ | {"NUMBA_NUM_THREADS": "1"},
     )  # fmt: skip
-    assert done.stdout.splitlines()[-1] == "0 [1]", done.stderr
+    assert done.stdout.splitlines()[-1] == "0 {1}", done.stderr

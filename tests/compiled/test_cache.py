@@ -139,7 +139,7 @@ def folder():
 
 
 def block(path):
-    """A file instead of a folder: nobody can write there, whoever they are."""
+    """A file instead of a folder, where not even the superuser can write."""
     if path.is_dir():
         path.rmdir()
     path.write_text("")

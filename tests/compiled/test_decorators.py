@@ -1,4 +1,4 @@
-"""Calls of compiled functions without a look at the types of what they are given."""
+"""Calls of compiled functions without looking up the types of arguments."""
 
 import numpy as np
 from numba import njit

@@ -20,6 +20,7 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 
+from tests.dashboard.selectors import CANVAS, DECISION, SHOWN
 from tests.fixtures.waiting import until
 
 VARIABLE = "MESA_MOBILITY_BROWSER"
@@ -42,9 +43,6 @@ IMPATIENCE_MS = 15_000
 
 SILENT: set[str] = set()
 """Servers that have not shown a page yet, by address."""
-
-CANVAS = "document.querySelector('.mm-crowd-canvas')"
-DECISION = "document.querySelector('.mm-decision canvas')"
 
 
 @pytest.fixture(scope="session")
@@ -187,7 +185,7 @@ class Dashboard:
 
     def shown(self) -> dict[str, Any]:
         """The state drawn on the crowd's canvas."""
-        return self.page.evaluate(f"() => {CANVAS}.shown()")
+        return self.page.evaluate(f"() => {SHOWN}")
 
     def people(self) -> np.ndarray:
         """(n, 5) row, x, y, heading, value of everybody on the canvas."""
@@ -206,7 +204,7 @@ class Dashboard:
 
     def at_rest(self, elapsed: float) -> None:
         """Wait until the canvas shows the crowd at a time, and nothing between two times."""
-        self.wait(f"(t) => Math.abs({CANVAS}.shown().elapsed - t) < 1e-6", elapsed)
+        self.wait(f"(t) => Math.abs({SHOWN}.elapsed - t) < 1e-6", elapsed)
 
     def step(self, times: int = 1) -> None:
         for _ in range(times):
@@ -221,7 +219,7 @@ class Dashboard:
     def pause(self) -> None:
         self.button("Pause").click()
         self.button("Play").wait_for()
-        self.wait(f"() => !{CANVAS}.shown().moving")
+        self.wait(f"() => !{SHOWN}.moving")
 
     def set(self, name: str, text: str) -> None:
         """Type into the field of a parameter."""

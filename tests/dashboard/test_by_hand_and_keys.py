@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-DECISION = "document.querySelector('.mm-decision canvas')"
-CANVAS = "document.querySelector('.mm-crowd-canvas')"
-SELECTED = f"() => {CANVAS}.shown().selected"
+from tests.dashboard.selectors import CANVAS, CLUSTER, DECISION, SHOWN
+
+SELECTED = f"() => {SHOWN}.selected"
 
 
 def view(tab):
@@ -52,7 +52,7 @@ def test_a_door_is_closed_by_its_name_although_people_stand_there(tab):
 
 def test_only_the_wheel_with_ctrl_zooms_and_the_page_scrolls_without(tab):
     tab.page.set_viewport_size({"width": 1100, "height": 600})
-    tab.wait(f"() => !{CANVAS}.shown().moving")
+    tab.wait(f"() => !{SHOWN}.moving")
     tab.page.mouse.move(*middle(tab))
     before, top = view(tab), box(tab)["y"]
     tab.page.mouse.wheel(0, 120)
@@ -62,7 +62,7 @@ def test_only_the_wheel_with_ctrl_zooms_and_the_page_scrolls_without(tab):
     tab.page.keyboard.down("Control")
     tab.page.mouse.wheel(0, -250)
     tab.page.keyboard.up("Control")
-    tab.wait(f"(s) => {CANVAS}.shown().view.scale > s", before["scale"])
+    tab.wait(f"(s) => {SHOWN}.view.scale > s", before["scale"])
     assert view(tab)["scale"] == pytest.approx(before["scale"] * np.exp(0.5))
 
 
@@ -141,7 +141,7 @@ def test_a_phone_shows_the_crowd_and_two_fingers_zoom(open_tab):
     fingers("touchMove", (x - 75, y), (x + 75, y))
     fingers("touchMove", (x - 100, y), (x + 100, y))
     fingers("touchEnd")
-    tab.wait(f"(s) => {CANVAS}.shown().view.scale > s", before["scale"])
+    tab.wait(f"(s) => {SHOWN}.view.scale > s", before["scale"])
     assert view(tab)["scale"] == pytest.approx(2.0 * before["scale"])
     # One finger is the page's.
     before = view(tab)
@@ -177,8 +177,7 @@ def test_a_dark_page_has_a_dark_decision_and_a_dark_cluster(open_tab):
     tab.click_person(int(tab.people()[0, 0]))
     tab.wait(f"() => ({DARK_GROUND})({DECISION})")
     tab.page.get_by_role("tab", name="Mobility map").click()
-    cluster = "document.querySelector('.mm-cluster canvas')"
-    tab.wait(f"() => {cluster}?.shown?.().options > 0 && ({DARK_GROUND})({cluster})")
+    tab.wait(f"() => {CLUSTER}?.shown?.().options > 0 && ({DARK_GROUND})({CLUSTER})")
     spine = tab.page.locator(".mm-cluster svg line").last
     assert spine.get_attribute("stroke") == "#eeeeee"
 

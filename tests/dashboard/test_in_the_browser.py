@@ -8,6 +8,7 @@ import pytest
 from mesa_mobility.models import Auditorium, Doorway
 
 from mesa_mobility.crowd import FREE, Watch
+from tests.dashboard.selectors import CANVAS, CLUSTER, DECISION, SHOWN
 
 SEED = 1  # what the page starts with
 
@@ -33,7 +34,7 @@ def test_it_plays_and_people_move(tab):
     assert tab.shown()["inside"] == 60
     before, places = tab.pixels(), tab.people()
     tab.play()
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().elapsed > 1.5")
+    tab.wait(f"() => {SHOWN}.elapsed > 1.5")
     tab.pause()
     assert tab.pixels() != before
     moved = np.hypot(*(tab.people()[:, 1:3] - places[: len(tab.people()), 1:3]).T)
@@ -58,7 +59,7 @@ def test_reset_and_seed_bring_the_same_first_frames(tab):
     assert np.array_equal(tab.people(), first)
     run = tab.shown()["run"]
     tab.set("seed", "7")
-    tab.wait("(run) => document.querySelector('.mm-crowd-canvas').shown().run > run", run)
+    tab.wait(f"(run) => {SHOWN}.run > run", run)
     tab.step(4)
     assert same_people(tab.people(), ahead(Doorway(rng=7), 4))
     tab.set("seed", str(SEED))
@@ -69,17 +70,17 @@ def test_reset_and_seed_bring_the_same_first_frames(tab):
 
 def test_a_parameter_takes_effect(tab):
     tab.set("pedestrians", "17")
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 17")
+    tab.wait(f"() => {SHOWN}.inside === 17")
     assert same_people(tab.people(), Doorway(pedestrians=17, rng=SEED))
 
 
 def test_another_model_and_another_preset(tab):
     tab.choose("model", "auditorium")
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 750")
+    tab.wait(f"() => {SHOWN}.inside === 750")
     assert same_people(tab.people(), Auditorium(rng=SEED))
     run = tab.shown()["run"]
     tab.choose("preset", "paper")
-    tab.wait("(run) => document.querySelector('.mm-crowd-canvas').shown().run > run", run)
+    tab.wait(f"(run) => {SHOWN}.run > run", run)
     tab.step(2)
     assert same_people(tab.people(), ahead(Auditorium(preset="paper", rng=SEED), 2))
 
@@ -91,17 +92,17 @@ def test_another_model_and_another_preset(tab):
         ("-3", "pedestrians: got -3, expected 1 or more"),
     ],
 )
-def test_bad_input_is_told_beside_its_control_and_the_run_goes_on(tab, text, message):
+def test_bad_input_gives_a_message_beside_its_control_and_the_run_goes_on(tab, text, message):
     tab.play()
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().elapsed > 0.5")
+    tab.wait(f"() => {SHOWN}.elapsed > 0.5")
     tab.set("pedestrians", text)
     field = tab.page.locator(".v-input", has=tab.page.get_by_label("pedestrians", exact=True))
     field.get_by_text(message).wait_for()
     elapsed = tab.shown()["elapsed"]
-    tab.wait("(t) => document.querySelector('.mm-crowd-canvas').shown().elapsed > t + 0.5", elapsed)
+    tab.wait(f"(t) => {SHOWN}.elapsed > t + 0.5", elapsed)
     assert tab.shown()["inside"] > 17
     tab.set("pedestrians", "17")
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 17")
+    tab.wait(f"() => {SHOWN}.inside === 17")
     assert field.get_by_text(message).count() == 0
 
 
@@ -109,33 +110,29 @@ def test_a_click_opens_the_decision_with_its_numbers(tab):
     tab.step(8)
     model = ahead(Doorway(rng=SEED), 8)
     tab.click_person(23)
-    told, shown = model.explain(23), tab.decision()
+    explained, shown = model.explain(23), tab.decision()
     assert not shown["taken"]
     assert tab.page.get_by_text("If it decided now, at 0.80 s").is_visible()
-    assert shown["terms"] == list(told.terms)
-    assert shown["totals"] == pytest.approx(told.totals, rel=1e-5)
-    assert np.array_equal(shown["verdicts"], told.verdicts)
-    assert shown["chosen"] == told.chosen
+    assert shown["terms"] == list(explained.terms)
+    assert shown["totals"] == pytest.approx(explained.totals, rel=1e-5)
+    assert np.array_equal(shown["verdicts"], explained.verdicts)
+    assert shown["chosen"] == explained.chosen
 
     # The numbers of the option under the pointer.
     table = tab.page.get_by_role("table", name="costs")
-    option = int(np.argmax(np.where(told.verdicts == FREE, told.totals, -np.inf)))
-    where = [float(x) for x in told.candidates.points[option]]
-    tab.page.mouse.move(
-        *tab.page.evaluate(
-            "([x, y]) => document.querySelector('.mm-decision canvas').onPage(x, y)", where
-        )
-    )
+    option = int(np.argmax(np.where(explained.verdicts == FREE, explained.totals, -np.inf)))
+    where = [float(x) for x in explained.candidates.points[option]]
+    tab.page.mouse.move(*tab.page.evaluate(f"([x, y]) => {DECISION}.onPage(x, y)", where))
     table.get_by_text("option under the pointer").wait_for()
     pointed = tab.decision()["pointed"]
-    assert told.candidates.points[pointed] == pytest.approx(where, abs=0.02)
-    costs = told.weights * told.costs[:, pointed]
-    for name, cost in zip(told.terms, costs, strict=True):
+    assert explained.candidates.points[pointed] == pytest.approx(where, abs=0.02)
+    costs = explained.weights * explained.costs[:, pointed]
+    for name, cost in zip(explained.terms, costs, strict=True):
         assert table.get_by_role("row", name=re.compile(name)).inner_text().split()[-1] == (
             f"{cost:.3f}"
         )
     total = table.get_by_role("row", name=re.compile("^total")).inner_text().split()[-1]
-    assert total == f"{told.totals[pointed]:.3f}"
+    assert total == f"{explained.totals[pointed]:.3f}"
 
 
 def test_one_pedestrian_is_clicked_after_another(tab):
@@ -145,10 +142,9 @@ def test_one_pedestrian_is_clicked_after_another(tab):
         assert tab.shown()["selected"] == row
     # A decision that is open outlasts the other tab, and goes with another run.
     tab.page.get_by_role("tab", name="Mobility map").click()
-    canvas = "document.querySelector('.mm-crowd-canvas')"
-    tab.wait(f"() => {canvas}.offsetParent === null")
+    tab.wait(f"() => {CANVAS}.offsetParent === null")
     tab.page.get_by_role("tab", name="Simulation").click()
-    tab.wait(f"() => {canvas}.offsetParent !== null")
+    tab.wait(f"() => {CANVAS}.offsetParent !== null")
     # The tab slides in: a click on the way would miss.
     tab.page.wait_for_timeout(500)
     tab.click_person(11)
@@ -156,11 +152,11 @@ def test_one_pedestrian_is_clicked_after_another(tab):
     tab.click_person(7)
     tab.button("Reset").click()
     tab.at_rest(0.0)
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().selected === -1")
+    tab.wait(f"() => {SHOWN}.selected === -1")
     tab.click_person(11)
     tab.click_person(23)
     tab.choose("model", "straight_walk")
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 50")
+    tab.wait(f"() => {SHOWN}.inside === 50")
     tab.click_person(3)
     tab.click_person(4)
 
@@ -215,9 +211,9 @@ def test_a_door_closes_and_opens_by_a_click(tab):
 def test_two_tabs_do_not_disturb_each_other(open_tab):
     one, other = open_tab(), open_tab()
     one.set("pedestrians", "25")
-    one.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 25")
+    one.wait(f"() => {SHOWN}.inside === 25")
     one.play()
-    one.wait("() => document.querySelector('.mm-crowd-canvas').shown().elapsed > 0.5")
+    one.wait(f"() => {SHOWN}.elapsed > 0.5")
     assert other.shown()["elapsed"] == 0.0
     assert other.shown()["inside"] == 60
     other.step(3)
@@ -243,15 +239,14 @@ def test_charts_and_pictures_are_saved(tab, tmp_path):
     assert (tmp_path / "crowd.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
-def test_the_map_view_tells_clusters_and_where_they_come_from(tab):
+def test_the_map_view_shows_clusters_and_their_sources(tab):
     tab.page.get_by_role("tab", name="Mobility map").click()
     map_ = Doorway(pedestrians=1).pedestrian_types[0].mobility_map
-    canvas = "document.querySelector('.mm-cluster canvas')"
-    tab.wait(f"() => {canvas}?.shown().options === {len(map_.options_of(0))}")
+    tab.wait(f"() => {CLUSTER}?.shown().options === {len(map_.options_of(0))}")
     tab.page.get_by_label(f"cluster, 0 to {map_.n_clusters - 1}").fill("5")
     tab.page.get_by_label(f"cluster, 0 to {map_.n_clusters - 1}").press("Enter")
-    tab.wait(f"() => {canvas}.shown().number === 5")
-    options = tab.page.evaluate(f"() => {canvas}.shown().options")
+    tab.wait(f"() => {CLUSTER}.shown().number === 5")
+    options = tab.page.evaluate(f"() => {CLUSTER}.shown().options")
     assert options == len(map_.options_of(5))
     tab.page.get_by_text("Recordings and licences").click()
     tab.page.get_by_role("cell", name=map_.metadata["provenance"][0]["clip"]).first.wait_for()

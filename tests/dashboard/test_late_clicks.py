@@ -37,7 +37,7 @@ def wait(condition, seconds=60.0):
 
 
 def stepped(session):
-    """Whether the page's thread still does what it is told."""
+    """Whether the page's thread still executes commands."""
     before = session.status.value.elapsed
     session.step()
     wait(lambda: session.status.value.elapsed > before)

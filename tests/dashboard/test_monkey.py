@@ -11,9 +11,10 @@ import re
 
 import pytest
 
+from tests.dashboard.selectors import CANVAS, SHOWN
+
 SEEDS, ACTIONS = map(int, os.environ.get("MESA_MOBILITY_MONKEY", "1x60").split("x"))
 MODELS = ("doorway", "auditorium", "open_space", "straight_walk")
-CANVAS = "document.querySelector('.mm-crowd-canvas')"
 DECISION = "document.querySelector('.mm-decision')"
 TYPED = (
     "-1",
@@ -168,7 +169,7 @@ class Monkey:
         # The view shows the clicked person's decision, or that the person has left, or another run.
         self.tab.wait(
             f"""([rows, run]) => {{
-                const shown = {DECISION}.__vue__.decision, now = {CANVAS}.shown();
+                const shown = {DECISION}.__vue__.decision, now = {SHOWN};
                 return rows.includes(shown.pedestrian) && rows.includes(now.selected)
                     || rows.includes(shown.left) || now.run !== run;
             }}""",
@@ -276,7 +277,7 @@ def test_nothing_breaks_whatever_is_done_in_two_tabs(open_tab, model, seed):
         if model != "doorway":
             run = tab.shown()["run"]
             tab.choose("model", model)
-            tab.wait(f"(run) => {CANVAS}.shown().run > run", run)
+            tab.wait(f"(run) => {SHOWN}.run > run", run)
         monkeys.append(Monkey(tab, rng))
     for number in range(ACTIONS):
         monkey = rng.choice(monkeys)

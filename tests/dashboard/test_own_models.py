@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.dashboard.selectors import SHOWN
+
 README = Path(__file__).parents[2] / "README.md"
-SHOWN = "document.querySelector('.mm-crowd-canvas').shown()"
 
 PLAIN = """
 from mesa_mobility import Exit, FloorPlan, PedestrianModel

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from mesa_mobility.models import Doorway
 
+from tests.dashboard.selectors import SHOWN
+
 MODEL = '''
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
 
@@ -32,18 +34,18 @@ MESA = (
     + "from mesa_mobility.dashboard import make_crowd_view\n\n"
     + "page = SolaraViz(Room(rng=5), components=[make_crowd_view('density')])\n"
 )
-ELAPSED = "document.querySelector('.mm-crowd-canvas').shown().elapsed"
+ELAPSED = f"{SHOWN}.elapsed"
 
 
 def test_a_model_of_somebodys_own_has_a_page(start_server, open_tab):
     tab = open_tab(start_server(OWN).address)
     assert tab.shown()["inside"] == 9
     tab.set("pedestrians", "4")
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 4")
+    tab.wait(f"() => {SHOWN}.inside === 4")
     tab.step(2)
     tab.click_person(2)
     tab.choose("model", "straight_walk")
-    tab.wait("() => document.querySelector('.mm-crowd-canvas').shown().inside === 50")
+    tab.wait(f"() => {SHOWN}.inside === 50")
 
 
 def test_the_crowd_view_is_a_component_for_mesas_own_page(start_server, open_tab):
@@ -62,7 +64,7 @@ def test_two_models_and_twenty_resets_leave_nothing_behind(open_tab, server):
 
     def play_and_reset(model, people, times):
         tab.choose("model", model)
-        tab.wait("(n) => document.querySelector('.mm-crowd-canvas').shown().inside === n", people)
+        tab.wait(f"(n) => {SHOWN}.inside === n", people)
         for _ in range(times):
             tab.play()
             tab.wait(f"() => {ELAPSED} > 0.3")

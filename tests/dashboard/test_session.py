@@ -78,7 +78,7 @@ def test_frames_carry_the_crowd(session):
     )
 
 
-def test_a_term_that_fails_stops_the_run_and_is_told(caplog):
+def test_a_term_that_fails_stops_the_run_with_a_message(caplog):
     session = Session()
     session.start()
     session.build(Recipe(DoorwayWithAFault, {"rng": 1}))
@@ -129,7 +129,7 @@ def test_a_page_that_no_longer_answers_holds_the_run(session, monkeypatch):
     until(lambda: session.status.value.state == "finished")
 
 
-def test_decisions_are_told_as_taken_and_as_they_would_be(session):
+def test_decisions_are_shown_as_taken_and_as_they_would_be(session):
     session.step()
     session.select(4)
     until(lambda: session.decision.value.get("pedestrian") == 4)

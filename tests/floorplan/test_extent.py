@@ -41,7 +41,7 @@ def test_plans_of_another_size(width, height, says):
     assert "\n" not in str(error.value)
 
 
-def test_degrees_are_told_by_where_they_are():
+def test_degrees_are_recognised_by_their_values():
     house = box(13.3761, 52.5186, 13.3773, 52.5191)
     with pytest.raises(FloorPlanError, match="look like degrees of longitude and latitude"):
         FloorPlan(house, exits=[Exit("e", (13.3761, 52.5187), (13.3761, 52.5188))])

@@ -10,8 +10,10 @@ from shapely import box
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories
 from mesa_mobility.results.motion import (
+    Selection,
     accelerations,
     facing_angles,
+    lateral_correlation,
     speed_jumps,
     steps_between,
     walked_back,
@@ -51,22 +53,25 @@ def test_steps_by_hand():
 
 def test_a_zigzag_has_a_correlation_of_minus_one():
     run = tracks(corners((0, 0), (2, 0.1), (4, -0.1), (6, 0.1), (8, -0.1)))
-    assert steps_between(run, (1, 0)).correlation == pytest.approx(-1.0, abs=0.06)
+    steps = steps_between(run, (1, 0))
+    assert lateral_correlation(steps.successive) == pytest.approx(-1.0, abs=0.06)
 
 
-def test_steps_start_and_end_in_the_area_and_after_the_time_asked_for():
+def test_steps_start_and_end_in_the_area_and_after_the_given_time():
     straight = corners((0, 0), (2, 0), (4, 0), (6, 0))
     run = tracks(straight)
     assert len(steps_between(run, (1, 0)).across) == 3
-    assert len(steps_between(run, (1, 0), area=box(-1, -1, 4.5, 1)).across) == 2
-    assert len(steps_between(run, (1, 0), after=1.6).across) == 1
+    near = Selection(area=box(-1, -1, 4.5, 1))
+    assert len(steps_between(run, (1, 0), selection=near).across) == 2
+    assert len(steps_between(run, (1, 0), selection=Selection(after=1.6)).across) == 1
 
 
 def test_a_track_that_leaves_the_area_and_comes_back_is_two():
     there_and_back = corners((0, 0), (4, 0), (0, 0), seconds=3.0)
     run = tracks(there_and_back)
     # 1.33 m/s: inside x < 2 for the first and the last 1.5 s, with 1.5 s outside between.
-    assert len(steps_between(run, (1, 0), area=box(-1, -1, 2.01, 1)).turns) == 0
+    near = Selection(area=box(-1, -1, 2.01, 1))
+    assert len(steps_between(run, (1, 0), selection=near).turns) == 0
 
 
 @given(radius=st.floats(1.0, 5.0), speed=st.floats(0.4, 1.8))
@@ -96,7 +101,7 @@ def test_people_who_stand_have_no_jumps():
 @pytest.mark.parametrize(
     ("heading", "off"), [(0.0, 0.0), (1.0, 1.0), (-3.0, 3.0), (9.0, 9 - 2 * math.pi)]
 )
-def test_facing_is_told_from_travel(heading, off):
+def test_angle_between_facing_and_travel(heading, off):
     walk = corners((0, 0), (2, 0))
     angles = facing_angles(tracks(walk, headings=[np.full(len(walk), heading)]))
     assert angles.tolist() == pytest.approx([off] * 3)
@@ -119,6 +124,6 @@ def test_bad_input_is_refused():
 
 def test_no_tracks_give_no_figures():
     run = tracks(corners((0, 0), (2, 0)))
-    nowhere = box(10, 10, 11, 11)
-    assert len(accelerations(run, area=nowhere)) == 0
-    assert steps_between(run, (1, 0), area=nowhere).successive.shape == (0, 2)
+    nowhere = Selection(area=box(10, 10, 11, 11))
+    assert len(accelerations(run, selection=nowhere)) == 0
+    assert steps_between(run, (1, 0), selection=nowhere).successive.shape == (0, 2)

@@ -26,8 +26,8 @@ def test_equal_cases_are_one_whatever_effort_they_are_said_to_take(timeless):
 def test_each_case_runs_once_a_seed_in_processes_of_one_thread(timeless):
     product = timeless.product
     cases = [case(product, factor=2.0), case(product, factor=3.0), case(product, factor=2.0)]
-    told = []
-    results = run_cases(cases, [5, 7], 1, lambda what, done, total: told.append((done, total)))
+    reports = []
+    results = run_cases(cases, [5, 7], 1, lambda what, done, total: reports.append((done, total)))
     assert {(str(c), seed): figures["product"] for (c, seed), figures in results.items()} == {
         ("product(factor 2.0)", 5): 10.0,
         ("product(factor 2.0)", 7): 14.0,
@@ -35,7 +35,7 @@ def test_each_case_runs_once_a_seed_in_processes_of_one_thread(timeless):
         ("product(factor 3.0)", 7): 21.0,
     }
     assert {figures["threads"] for figures in results.values()} == {"1"}
-    assert told == [(1.0, 4.0), (2.0, 4.0), (3.0, 4.0), (4.0, 4.0)]
+    assert reports == [(1.0, 4.0), (2.0, 4.0), (3.0, 4.0), (4.0, 4.0)]
 
 
 def test_a_case_that_breaks_says_so_and_the_others_run(timeless):

@@ -70,7 +70,7 @@ class Behaviours:
 
     def apply(self, model: PedestrianModel) -> None:
         """Apply the changes to the model."""
-        # A page's address may name what is not installed here.
+        # A page's address may name behaviours that are not installed here.
         for name in self.wanted.keys() & self._terms.keys():
             self._set(model, name, *self.wanted[name])
         if self.wanted_choice in self._choices:
@@ -123,7 +123,7 @@ def _installed() -> list[CostTerm | TargetChoice]:
             kind = plugin.load()
             if issubclass(kind, CostTerm | TargetChoice):
                 made.append(kind())
-        # A broken plug-in, or one that needs arguments: `mesa-mobility behaviors` says which.
+        # A broken plug-in, or one that needs arguments; `mesa-mobility behaviors` lists them.
         except (MobilityError, TypeError):
             continue
     return made

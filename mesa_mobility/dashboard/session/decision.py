@@ -19,7 +19,7 @@ BONES = [
 """Pairs of joints between which the stick figure has a bone: left leg, right leg, hips."""
 
 
-def described(told: Explanation, model: PedestrianModel) -> dict[str, Any]:
+def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     """Data of a decision for its view.
 
     Numbers of options are base64 float32, options in the order of the explanation's: ``costs``
@@ -27,52 +27,52 @@ def described(told: Explanation, model: PedestrianModel) -> dict[str, Any]:
     ``speeds``, ``paths`` (n, 16, 2) and ``knots``. A neighbour is row, x, y, core radius, and x, y
     of where its movement leads.
     """
-    row, crowd, candidates = told.pedestrian, model.crowd, told.candidates
+    row, crowd, candidates = explained.pedestrian, model.crowd, explained.candidates
     kind = model.pedestrian_types[int(crowd.type_index[row])]
     return {
         "pedestrian": row,
-        "when": _when(told, model),
-        "taken": told.taken,
-        "frame": told.frame,
+        "when": _when(explained, model),
+        "taken": explained.taken,
+        "frame": explained.frame,
         "type": kind.name,
-        "cluster": told.cluster,
-        "poses": int(kind.mobility_map.sizes[told.cluster]),
-        "pose": kind.mobility_map.mean_poses[told.cluster].tolist(),
+        "cluster": explained.cluster,
+        "poses": int(kind.mobility_map.sizes[explained.cluster]),
+        "pose": kind.mobility_map.mean_poses[explained.cluster].tolist(),
         "bones": BONES,
         "core": float(crowd.core[row]),
         "preferred": float(candidates.preferred_speeds[0]),
         "position": candidates.positions[0].tolist(),
         "heading": float(candidates.facings[0]),
         "target": candidates.targets[0].tolist(),
-        "chosen": told.chosen,
-        "terms": list(told.terms),
-        "weights": told.weights.tolist(),
+        "chosen": explained.chosen,
+        "terms": list(explained.terms),
+        "weights": explained.weights.tolist(),
         "options": len(candidates),
-        "costs": packed(told.weights[:, None] * told.costs),
-        "totals": packed(told.totals),
-        "verdicts": packed(told.verdicts),
-        "blockers": packed(told.blockers),
+        "costs": packed(explained.weights[:, None] * explained.costs),
+        "totals": packed(explained.totals),
+        "verdicts": packed(explained.verdicts),
+        "blockers": packed(explained.blockers),
         "ends": packed(candidates.points),
         "durations": packed(candidates.durations),
         "speeds": packed(candidates.speeds),
-        "paths": packed(np.moveaxis(told.paths[:, :2], 1, 2)),
-        "knots": packed(told.knots),
+        "paths": packed(np.moveaxis(explained.paths[:, :2], 1, 2)),
+        "knots": packed(explained.knots),
         "neighbours": [
             [int(j), *place, float(crowd.core[j]), *end]
             for j, place, end in zip(
                 candidates.neighbours,
                 candidates.neighbour_positions.tolist(),
-                told.neighbour_ends.tolist(),
+                explained.neighbour_ends.tolist(),
                 strict=True,
             )
         ],
     }
 
 
-def _when(told: Explanation, model: PedestrianModel) -> str:
-    at = told.frame / model.frame_rate
-    if told.taken:
+def _when(explained: Explanation, model: PedestrianModel) -> str:
+    at = explained.frame / model.frame_rate
+    if explained.taken:
         return f"Decision as taken at {at:.2f} s"
-    due = max(int(model.crowd.end[told.pedestrian]) - told.frame, 0) / model.frame_rate
+    due = max(int(model.crowd.end[explained.pedestrian]) - explained.frame, 0) / model.frame_rate
     when = "in this step" if due == 0 else f"in {due:.2f} s, when its movement ends"
     return f"If it decided now, at {at:.2f} s, before everybody else; it will decide {when}"

@@ -176,14 +176,14 @@ class Engine(Shown):
 
     def _wait_for(self, making: Making) -> PedestrianModel | None:
         """The model, or None if it is given up."""
-        started = told = time.monotonic()
+        started = updated = time.monotonic()
         while not making.done.wait(0.05):
             if self._given_up.is_set() or self._closed:
                 making.give_up()
                 return None
-            if time.monotonic() - told >= 1.0:
-                told = time.monotonic()
-                self.making.set(told - started)
+            if time.monotonic() - updated >= 1.0:
+                updated = time.monotonic()
+                self.making.set(updated - started)
         return making.model()
 
     def _take(self, run: Run) -> None:

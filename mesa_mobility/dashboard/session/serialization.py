@@ -1,4 +1,4 @@
-"""What goes to the browser: numbers as base64 of float32, all else as JSON."""
+"""Data for the browser: numbers as base64 of float32, all else as JSON."""
 
 from __future__ import annotations
 

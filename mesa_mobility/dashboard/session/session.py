@@ -20,7 +20,7 @@ AS_TAKEN, IF_NOW = "as taken", "if it decided now"
 
 
 class Session(Engine):
-    """What a page asks of its model; all of it returns at once."""
+    """The commands of a page to its model; each returns at once."""
 
     def enter(self, key: str) -> None:
         """Take over the run of a key, if there is one; before anything is built.
@@ -36,7 +36,7 @@ class Session(Engine):
         self._commands.put(command)
 
     def build(self, recipe: Recipe, answer: Answer | None = None) -> None:
-        """Make a model anew; if it cannot be made, the run that there is goes on.
+        """Make a new model; if that fails, the current run continues.
 
         A run that has been taken over goes on if it was made so.
 
@@ -55,7 +55,7 @@ class Session(Engine):
         self._want(command)
 
     def give_up(self) -> None:
-        """Make no model after all; the run that there is goes on."""
+        """Cancel the making of a model; the current run continues."""
         self._given_up.set()
 
     def reset(self) -> None:
@@ -65,12 +65,12 @@ class Session(Engine):
             self.build(recipe)
 
     def post(self, command: Callable[[Run], None], shown: int | None = None) -> None:
-        """Have the thread do something with the run, between two steps.
+        """Execute a command on the run in the thread, between two steps.
 
         Args:
-            command: what to do.
-            shown: number of the run that the page showed when it asked for this. Nothing is done
-                if it is another by now: its people and doors are others.
+            command: called with the run.
+            shown: number of the run that the page showed when the command was given. Nothing is
+                done if the run is another by now, with other people and doors.
         """
 
         def guarded() -> None:
@@ -122,7 +122,7 @@ class Session(Engine):
         self._commands.put(command)
 
     def select(self, row: int, shown: int | None = None) -> None:
-        """Tell the decisions of the person in ``row``; nobody's if it is negative.
+        """Show the decisions of the person in ``row``; none if it is negative.
 
         For ``shown`` see `post`.
         """
@@ -134,7 +134,7 @@ class Session(Engine):
         self.post(command, shown)
 
     def tell(self, what: str) -> None:
-        """Tell decisions "as taken", or each moment the one "if it decided now"."""
+        """Show decisions "as taken", or continually the one "if it decided now"."""
 
         def command(_: Run) -> None:
             self.hypothetical = what == IF_NOW

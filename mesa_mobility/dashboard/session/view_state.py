@@ -1,4 +1,4 @@
-"""What a page shows of a run, and how often each part of it is sent."""
+"""The state of a run that a page shows, and how often each part of it is sent."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ PATIENCE = 5.0
 
 @dataclass(frozen=True)
 class Status:
-    """What the page says of a run.
+    """The status of a run on the page.
 
     Attributes:
         state: "no model", "building", "ready", "playing", "finished", "stalled" or "failed".
@@ -57,7 +57,7 @@ class Status:
 
 
 class Shown:
-    """What a page shows.
+    """The state of a page.
 
     What changes many times a second is a ``Feed``; the rest is reactive: components that read it
     are drawn anew when it changes.
@@ -68,7 +68,7 @@ class Shown:
         frame: the crowd as the canvas draws it.
         floor: the floor plan as the canvas draws it.
         behaviours: ``TermState`` of each cost term.
-        choice: ``ChoiceState`` of who goes where.
+        choice: ``ChoiceState`` of the exits chosen.
         series: a number that grows, and the ``Observer`` of the run; each second.
         decision: the decision of the selected person as its view draws it, or {}; ``left``
             alone has the row of somebody who was selected and has left.
@@ -98,7 +98,7 @@ class Shown:
         self.together: AbstractContextManager[Any] = nullcontext()
         self.run_number = 0
         self._sent = self._seen = self._series_number = 0
-        self._told: Explanation | None = None
+        self._explained: Explanation | None = None
         self._frame_at = self._series_at = self._decision_at = 0.0
 
     def seen(self, number: int) -> None:
@@ -129,8 +129,8 @@ class Shown:
         self.selected.set(row)
 
     def forget_decision(self) -> None:
-        """Show the selected person's decision anew, whatever was shown."""
-        self._told = None
+        """Show the selected person's decision again."""
+        self._explained = None
 
     def show(
         self, model: PedestrianModel, observer: Observer, status: Status, *, always: bool
@@ -158,16 +158,16 @@ class Shown:
     def _tell_decision(self, model: PedestrianModel) -> None:
         if model.watch is None:
             return
-        row, told = model.watch.pedestrian, model.watch.decision
+        row, explained = model.watch.pedestrian, model.watch.decision
         if not model.crowd.active[row]:
             model.watch = None
             self.mark(-1)
             self.decision.set({"left": row})
             return
-        if told is None or self.hypothetical:
-            if self._told is not None and self._told.frame == model.frame:
+        if explained is None or self.hypothetical:
+            if self._explained is not None and self._explained.frame == model.frame:
                 return
-            told = model.explain(row)
-        if told is not None and told is not self._told:
-            self._told = told
-            self.decision.set(described(told, model))
+            explained = model.explain(row)
+        if explained is not None and explained is not self._explained:
+            self._explained = explained
+            self.decision.set(described(explained, model))

@@ -1,1 +1,1 @@
-"""What a page draws: crowd, decision, map and charts."""
+"""The views of a page: crowd, decision, map and charts."""

@@ -1,4 +1,4 @@
-"""One pedestrian's decision: its options, what they cost and why."""
+"""One pedestrian's decision: its options and their costs by term."""
 
 from __future__ import annotations
 

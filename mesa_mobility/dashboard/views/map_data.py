@@ -1,4 +1,4 @@
-"""What the map view shows of a mobility map."""
+"""Data of a mobility map for the map view."""
 
 from __future__ import annotations
 

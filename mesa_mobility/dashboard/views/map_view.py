@@ -1,4 +1,4 @@
-"""A mobility map: its clusters, what it covers, and where it comes from."""
+"""A mobility map: its clusters, coverage and sources."""
 
 from __future__ import annotations
 

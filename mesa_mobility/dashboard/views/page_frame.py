@@ -1,4 +1,4 @@
-"""What is around the dashboard: language of the page, way past the controls, drawer on a phone."""
+"""Around the dashboard: language of the page, link past the controls, drawer on a phone."""
 
 from __future__ import annotations
 

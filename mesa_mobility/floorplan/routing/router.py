@@ -21,8 +21,8 @@ from mesa_mobility.floorplan.routing.route_nodes import (
     Nodes,
     find_nodes,
 )
-from mesa_mobility.floorplan.routing.target_cache import nothing_told
-from mesa_mobility.floorplan.routing.target_search import ALL_TOLD, NO_TABLE, UNSEEN, aim
+from mesa_mobility.floorplan.routing.target_cache import empty_cache
+from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
 from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
 from mesa_mobility.floorplan.walls.line_of_sight import Sight, sight_of
@@ -96,7 +96,7 @@ class Router:
         self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
         self._follow: dict[int, NDArray[np.int64]] = {}
         self._views: Views
-        self._told: NDArray[np.void]
+        self._cache: NDArray[np.void]
         self._update()
 
     @property
@@ -176,7 +176,7 @@ class Router:
 
         def aims(own: slice, learn: bool) -> int:
             outcome: int = aim(
-                self._sight, self._ways, self._views, self._told, xy[own], numbers[own],
+                self._sight, self._ways, self._views, self._cache, xy[own], numbers[own],
                 self._lengths, self._nexts, learn, points[own], gates[own], distances[own],
                 corners[own],
             )  # fmt: skip
@@ -186,7 +186,7 @@ class Router:
         if len(parts) > 1 and NO_TABLE in in_threads(lambda own: aims(own, False), parts):
             self._tabulate(numbers)
             in_threads(lambda own: aims(own, False), parts)
-        while (outcome := aims(slice(n), True)) != ALL_TOLD:
+        while (outcome := aims(slice(n), True)) != ALL_FOUND:
             if outcome == NO_TABLE:
                 self._tabulate(numbers)
             else:
@@ -270,7 +270,7 @@ class Router:
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
         self._graph = self._network(nodes)
         self._views = no_views(plan.bounds, len(nodes.kind))
-        self._told = nothing_told()
+        self._cache = empty_cache()
         self._distances, self._follow = {}, {}
         self._lengths = self._lengths[:0]
         self._version = plan.version

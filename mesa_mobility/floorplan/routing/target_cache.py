@@ -33,7 +33,7 @@ _SLOT_BITS = 14
 _SPREAD = np.uint64(0x9E3779B97F4A7C15)
 
 
-def nothing_told() -> NDArray[np.void]:
+def empty_cache() -> NDArray[np.void]:
     """An empty cache."""
     return np.zeros(1 << _SLOT_BITS, dtype=ANSWER)
 
@@ -54,7 +54,7 @@ def _slot_of(x: float, y: float, destination: int) -> np.int64:
 
 @internal()
 def recall(
-    told: NDArray[np.void],
+    cache: NDArray[np.void],
     x: float,
     y: float,
     destination: int,
@@ -66,7 +66,7 @@ def recall(
 ) -> bool:
     """Write the cached target of (x, y), if there is one, and return whether; see `aim`."""
     slot = _slot_of(x, y, destination)
-    kept = told[slot]
+    kept = cache[slot]
     if kept["destination"] != destination + 1 or kept["x"] != _bits(x) or kept["y"] != _bits(y):
         return False
     points[person, 0], points[person, 1] = kept["target_x"], kept["target_y"]
@@ -77,7 +77,7 @@ def recall(
 
 @internal()
 def keep(
-    told: NDArray[np.void],
+    cache: NDArray[np.void],
     x: float,
     y: float,
     destination: int,
@@ -89,9 +89,9 @@ def keep(
 ) -> None:
     """Cache the target of a person at (x, y), in place of the entry in its slot."""
     slot = _slot_of(x, y, destination)
-    told[slot]["x"], told[slot]["y"] = _bits(x), _bits(y)
-    told[slot]["target_x"], told[slot]["target_y"] = points[person, 0], points[person, 1]
-    told[slot]["length"] = lengths[person]
-    told[slot]["destination"] = destination + 1
-    told[slot]["gate"] = gates[person]
-    told[slot]["corner"], told[slot]["next_corner"] = corners[person, 0], corners[person, 1]
+    cache[slot]["x"], cache[slot]["y"] = _bits(x), _bits(y)
+    cache[slot]["target_x"], cache[slot]["target_y"] = points[person, 0], points[person, 1]
+    cache[slot]["length"] = lengths[person]
+    cache[slot]["destination"] = destination + 1
+    cache[slot]["gate"] = gates[person]
+    cache[slot]["corner"], cache[slot]["next_corner"] = corners[person, 0], corners[person, 1]

@@ -48,7 +48,7 @@ _PAST_CORNER = (0.5, 0.25, 0.125)
 UNSEEN = -2
 """Gate of a person whose target is not known yet."""
 
-ALL_TOLD, SOME_UNSEEN, NO_TABLE = 0, 1, 2
+ALL_FOUND, SOME_UNSEEN, NO_TABLE = 0, 1, 2
 """Results of `aim`: everybody has a target; some are left `UNSEEN`; all are, for lack of distances
 to a destination."""
 
@@ -58,7 +58,7 @@ def aim(
     sight: Sight,
     ways: Ways,
     views: Views,
-    told: NDArray[np.void],
+    cache: NDArray[np.void],
     positions: NDArray[np.float64],
     destinations: NDArray[np.int64],
     distances: NDArray[np.float64],
@@ -73,14 +73,14 @@ def aim(
 
     See `Router.targets`. For every destination and node, `distances` is the route length in metres
     and `follow` the next node of the route (-1 where it ends). A thread that may
-    `learn` computes new views and caches targets in `told`; no other thread may read them at the
+    `learn` computes new views and caches targets in `cache`; no other thread may read them at the
     time. Without `learn`, or without room for views, people who need a view are left `UNSEEN`.
     Returns one of the results above.
     """
     for number in destinations:
         if not 0 <= number < len(distances):
             return NO_TABLE
-    outcome = ALL_TOLD
+    outcome = ALL_FOUND
     nodes = len(ways.kind)
     keys = np.empty(nodes + AT_ONCE)
     seen = np.empty(nodes, dtype=np.int64)
@@ -90,16 +90,16 @@ def aim(
         number = destinations[person]
         if gates[person] != UNSEEN:
             if learn:
-                keep(told, x, y, number, person, points, gates, lengths, corners)
+                keep(cache, x, y, number, person, points, gates, lengths, corners)
             continue
-        if recall(told, x, y, number, person, points, gates, lengths, corners):
+        if recall(cache, x, y, number, person, points, gates, lengths, corners):
             continue
         to_go = distances[number]
         after = follow[number]
         own = wall_distance(sight, x, y, ways.view_clearance)
         view = ways.view_clearance
         node = -1
-        # Computing what is hidden from a square takes a while and serves everybody who comes by.
+        # Computing the view from a square takes long, and serves all people who pass.
         hidden_known = is_known(views, x, y)
         if not hidden_known:
             node = _first_in_view(
@@ -129,7 +129,7 @@ def aim(
                 corners[person, 0] = corner
                 corners[person, 1] = after[corner]
         if learn:
-            keep(told, x, y, number, person, points, gates, lengths, corners)
+            keep(cache, x, y, number, person, points, gates, lengths, corners)
     return outcome
 
 

@@ -1,4 +1,4 @@
-"""Walls in boxes, eight to a box: most are far from most lines, and many at once are told so.
+"""Walls in boxes, eight to a box. Most are far from a line, and a box excludes eight at once.
 
 A box is kept as its middle and half its extent, eight boxes side by side for the registers of a
 processor: first those around eight walls each, then those of the walls themselves.

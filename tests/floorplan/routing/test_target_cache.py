@@ -16,8 +16,8 @@ def aim(router: Router, x: float, destination: int = 0) -> float:
 
 
 def lie(router: Router) -> None:
-    """Change every answer that is kept, so that those that are used can be told."""
-    router._told["target_x"] = 99.0
+    """Change every answer that is kept, so that their use shows."""
+    router._cache["target_x"] = 99.0
 
 
 def test_an_answer_is_given_again_for_the_same_place_and_destination(plans) -> None:
@@ -31,7 +31,7 @@ def test_an_answer_is_given_again_for_the_same_place_and_destination(plans) -> N
     assert aim(router, 15.0) == EAST
 
 
-def test_a_kept_answer_is_all_that_was_told(plans) -> None:
+def test_a_kept_answer_is_complete(plans) -> None:
     router = Router(plans["l_corridor"]())
     places = [(1.0, 1.0), (11.0, 5.0), (11.0, 5.0), (-3.0, -3.0)]
     first = router.targets(places, [0] * 4)
@@ -49,9 +49,9 @@ def test_where_another_answer_is_kept_it_is_worked_out(plans) -> None:
     router = Router(plans["corridor"]())
     east = router.destination(("east",))
     aim(router, 5.0)
-    kept = router._told[router._told["destination"] > 0][0]
+    kept = router._cache[router._cache["destination"] > 0][0]
     # The cache is full of answers for (5, 2), which serve no other place.
-    router._told[:] = kept
+    router._cache[:] = kept
     lie(router)
     assert aim(router, 5.0) == 99.0
     assert [aim(router, x, to) for x, to in ((6.0, 0), (5.0, east), (2.0, 0))] == [WEST, EAST, WEST]

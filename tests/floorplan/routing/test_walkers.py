@@ -34,15 +34,15 @@ def test_everybody_gets_out(plans, places_in, walkers, name: str, step: float) -
 
 
 @pytest.mark.parametrize("name", ["room", "l_corridor", "two_rooms", "hall", "bend"])
-def test_nobody_walks_farther_than_told(plans, places_in, walkers, name: str) -> None:
+def test_nobody_walks_farther_than_expected(plans, places_in, walkers, name: str) -> None:
     plan = plans[name]()
     starts = places_in(plan, 0.25, 0.15)
-    told = Router(plan).targets(starts, np.zeros(len(starts), int)).distances
+    expected = Router(plan).targets(starts, np.zeros(len(starts), int)).distances
     lengths = walkers(plan, starts).lengths
     # Steps end up to 0.1 m behind the exit, and pass corners a little late or early; doors are
     # crossed up to 0.25 m farther from the jamb than the shortest way does.
-    assert (lengths <= 1.05 * told + 0.25).all()
-    assert (lengths >= 0.97 * told - 0.1).all()
+    assert (lengths <= 1.05 * expected + 0.25).all()
+    assert (lengths >= 0.97 * expected - 0.1).all()
 
 
 def test_everybody_in_the_first_room_goes_through_the_door_once(plans, places_in, walkers) -> None:

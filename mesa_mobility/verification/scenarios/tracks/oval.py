@@ -113,7 +113,7 @@ def oval_model(
     clearance: float,
     **rules: Any,
 ) -> PedestrianModel:
-    """People distributed over an oval who walk round it endlessly, counter-clockwise."""
+    """People distributed over an oval; they walk round it without end, counter-clockwise."""
     plan = oval.plan()
     model = crowd_model(plan, seed, **rules)
     places = plan.random_points(people, model.rng, spacing=spacing, clearance=clearance)

@@ -1,0 +1,60 @@
+"""Bodies that overlap, counted over finished trajectories by SciPy's k-d tree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from mesa_mobility.results.trajectories import Trajectories
+
+# Rounding of floats may bring two bodies that just touch this much closer, metres.
+TOLERANCE_M = 1e-5
+# Overlaps, or wall crossings, that a report lists individually, at most.
+NAMED = 10
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """Two bodies closer than the sum of their cores in one frame; distance in metres."""
+
+    frame: int
+    first: int
+    second: int
+    distance_m: float
+
+
+def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | None]:
+    """Pairs of bodies closer than their cores, over all frames.
+
+    Returns:
+        Their number, the first few of them, and the smallest distance between the centres of two
+        people in any frame, metres; None when two people were never inside together.
+    """
+    offsets = trajectories.frame_offsets
+    positions = np.column_stack((trajectories.x, trajectories.y))
+    radii = trajectories.radii[trajectories.person]
+    reach = 2.0 * float(radii.max(initial=0.0))
+    count, named, nearest = 0, list[Overlap](), np.inf
+    for frame in range(trajectories.frames):
+        rows = slice(offsets[frame], offsets[frame + 1])
+        if rows.stop - rows.start < 2:
+            continue
+        points, cores = positions[rows], radii[rows]
+        tree = cKDTree(points)
+        if not np.isfinite(nearest):
+            nearest = float(tree.query(points, k=2)[0][:, 1].min())
+        # Ignore people who are neither within reach nor nearer than the nearest pair so far.
+        a, b = tree.query_pairs(max(reach, nearest), output_type="ndarray").T
+        if not len(a):
+            continue
+        distance = np.hypot(*(points[a] - points[b]).T)
+        nearest = min(nearest, float(distance.min()))
+        close = np.flatnonzero(distance < cores[a] + cores[b] - TOLERANCE_M)
+        count += len(close)
+        people = trajectories.person[rows]
+        for k in close[: NAMED - len(named)] if len(named) < NAMED else ():
+            pair = sorted((int(people[a[k]]), int(people[b[k]])))
+            named.append(Overlap(frame, pair[0], pair[1], float(distance[k])))
+    return count, named, float(nearest) if np.isfinite(nearest) else None

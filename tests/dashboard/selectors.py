@@ -1,0 +1,10 @@
+"""JavaScript for the canvases of a dashboard's page."""
+
+CANVAS = "document.querySelector('.mm-crowd-canvas')"
+"""The crowd's canvas."""
+SHOWN = f"{CANVAS}.shown()"
+"""The state drawn on it."""
+DECISION = "document.querySelector('.mm-decision canvas')"
+"""The canvas of a decision."""
+CLUSTER = "document.querySelector('.mm-cluster canvas')"
+"""The canvas of a cluster of the mobility map."""
