@@ -24,9 +24,11 @@ if TYPE_CHECKING:
     from mesa_mobility.mobility.poses import POSE_JOINTS, PoseTable, pose_table
     from mesa_mobility.mobility.preparing.clips import PreparedRecordings, prepare_recordings
     from mesa_mobility.mobility.preparing.derived import DerivedType, derived_type
+    from mesa_mobility.mobility.preparing.wheelchairs import WHEELCHAIRS, Wheelchair
 
 _MODULES = {
     "POSE_JOINTS": "poses",
+    "WHEELCHAIRS": "preparing.wheelchairs",
     "Clusters": "clusters",
     "DerivedType": "preparing.derived",
     "MobilityMap": "map",
@@ -35,6 +37,7 @@ _MODULES = {
     "PreparedRecordings": "preparing.clips",
     "ReachableOptions": "paths",
     "ShortestPaths": "apsp",
+    "Wheelchair": "preparing.wheelchairs",
     "abilities_of": "judging.abilities",
     "build_map": "build",
     "cluster_poses": "clusters",
@@ -51,6 +54,7 @@ _MODULES = {
 
 __all__ = [
     "POSE_JOINTS",
+    "WHEELCHAIRS",
     "Clusters",
     "DerivedType",
     "MobilityMap",
@@ -59,6 +63,7 @@ __all__ = [
     "PreparedRecordings",
     "ReachableOptions",
     "ShortestPaths",
+    "Wheelchair",
     "abilities_of",
     "build_map",
     "cluster_poses",
