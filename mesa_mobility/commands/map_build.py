@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,7 +22,15 @@ from mesa_mobility.errors import MapError
 from mesa_mobility.interrupts import putting_in_place
 
 if TYPE_CHECKING:
-    from mesa_mobility.mobility import MobilityMap
+    from mesa_mobility.mobility import OptionFamilies
+
+
+class Options(StrEnum):
+    """What a map file keeps."""
+
+    STORED = "stored"
+    DISTRIBUTION = "distribution"
+
 
 MOST_LEFT_OUT = 12
 """Clips up to which a build also leaves each out in turn: so many builds more."""
@@ -70,10 +79,22 @@ def build(
             "wheelchair_manual, wheelchair_powered or wheelchair_assisted.",
         ),
     ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option("--name", help="Name of the type in the map (as --type or --derive)."),
+    ] = None,
+    kept: Annotated[
+        Options,
+        typer.Option(
+            "--options",
+            help="Store every option, or the recorded ones alone, each of which stands for a "
+            "distribution of edited ones: the same options from a smaller file.",
+        ),
+    ] = Options.STORED,
     as_json: AsJson = False,
 ) -> None:
     """Compute a mobility map from recordings, or from the limits of a wheelchair."""
-    from mesa_mobility.mobility import WHEELCHAIRS
+    from mesa_mobility.mobility import WHEELCHAIRS, map_of_families
     from mesa_mobility.results import check_writable
 
     if other_side and mirrored:
@@ -85,20 +106,29 @@ def build(
     check_writable(output.parent)
     wall, cpu = time.perf_counter(), time.process_time()
     if derived in WHEELCHAIRS:
-        choices = (source, clusters, mirrored)
-        if other_side or any(choice is not None for choice in choices):
+        choices = (source, clusters, mirrored, name)
+        if other_side or kept != Options.STORED or any(each is not None for each in choices):
             raise typer.BadParameter(f"{derived}: takes no recordings, and nothing but --output")
         words = ["mesa-mobility", "map", "build", "--derive", derived, "-o", f"{derived}.npz"]
         built = WHEELCHAIRS[derived].build(derived, {"command": shlex.join(words)})
-        info = {}
+        save, info = built.save, {}
     elif source is None:
         raise typer.BadParameter("MANIFEST_OR_DIR: expected recordings; only wheelchairs need none")
     else:
-        built, info = _from_recordings(
-            source, type_name, clusters, mirrored=mirrored, other_side=other_side, derived=derived
+        families, info = _from_recordings(
+            source,
+            type_name,
+            clusters,
+            mirrored=mirrored,
+            other_side=other_side,
+            derived=derived,
+            name=name,
+            kept=kept,
         )
+        built = map_of_families(families)
+        save = built.save if kept == Options.STORED else families.save
     with putting_in_place():
-        built.save(output)
+        save(output)
     say(f"written to {output}")
     spent = {
         "file": str(output),
@@ -116,11 +146,13 @@ def _from_recordings(
     mirrored: bool | None,
     other_side: bool,
     derived: str | None,
-) -> tuple[MobilityMap, dict[str, Any]]:
-    """A map, and what to say of its recordings."""
+    name: str | None,
+    kept: Options,
+) -> tuple[OptionFamilies, dict[str, Any]]:
+    """The recorded options of a map, and what to say of the recordings."""
     from mesa_mobility.capture import find_clips
     from mesa_mobility.mobility import (
-        build_map,
+        build_families,
         derived_type,
         left_out_one_at_a_time,
         prepare_recordings,
@@ -143,9 +175,17 @@ def _from_recordings(
         metadata: dict[str, Any] = {}
         if plan is not None:
             recordings, metadata = plan.derive(recordings, plan.time_factor(recordings))
-        name = derived or recorded
-        command = _command(source, name, clusters, mirrored, other_side, derived is not None)
-        built = build_map(
+        name = name or derived or recorded
+        words = ["mesa-mobility", "map", "build", source.name, "-o", f"{name}.npz"]
+        words += ["--type", recorded] if derived is None else ["--derive", derived]
+        words += [] if name == (derived or recorded) else ["--name", name]
+        words += [] if clusters is None else ["--clusters", str(clusters)]
+        words += [] if mirrored is None else ["--mirror" if mirrored else "--no-mirror"]
+        words += ["--other-side"] if other_side else []
+        words += [] if kept == Options.STORED else ["--options", kept.value]
+        # Files without folders: the same recordings give the same map wherever they lie.
+        command = shlex.join(words)
+        families = build_families(
             recordings,
             type_name=name,
             clusters=clusters,
@@ -163,21 +203,4 @@ def _from_recordings(
                 info["clips_left_out_one_at_a_time"] = left_out
             except MapError as error:  # the map itself is good
                 say(f"clips are not left out one at a time: {error}")
-    return built, info
-
-
-def _command(
-    source: Path,
-    type_name: str,
-    clusters: int | None,
-    mirrored: bool | None,
-    other_side: bool,
-    derived: bool,
-) -> str:
-    # Names without folders: the same recordings give the same map wherever they lie.
-    words = ["mesa-mobility", "map", "build", source.name, "-o", f"{type_name}.npz"]
-    words += ["--derive" if derived else "--type", type_name]
-    words += [] if clusters is None else ["--clusters", str(clusters)]
-    words += [] if mirrored is None else ["--mirror" if mirrored else "--no-mirror"]
-    words += ["--other-side"] if other_side else []
-    return shlex.join(words)
+    return families, info

@@ -10,15 +10,18 @@ turn on the spot, the other map gives its turns. Strides are shortened to the bo
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.mobility.clusters import STANDING, Clusters, nearest_centre
 from mesa_mobility.mobility.edits import Edit, edit_paths
-from mesa_mobility.mobility.map import MobilityMap
-from mesa_mobility.mobility.paths import DURATIONS, SAMPLE_EVERY, ReachableOptions
+from mesa_mobility.mobility.paths import DURATIONS, MOST_JUMPS, SAMPLE_EVERY, ReachableOptions
 from mesa_mobility.mobility.ways_back import ON_THE_SPOT, TURN, leads_back
+
+if TYPE_CHECKING:
+    from mesa_mobility.mobility.map import MobilityMap
 
 STANDING_STILL, STOPPING, TURNING = "standing", "stopping", "turning on the spot"
 """What can be missing, and is then borrowed."""
@@ -104,12 +107,15 @@ def _borrowed(
         paths.astype(np.float32),
         clusters.astype(np.int32),
         np.zeros(len(rows), dtype=bool),
+        np.full(len(rows), -1, dtype=np.int32),
+        np.full((len(rows), MOST_JUMPS), -1, dtype=np.int64),
     )
 
 
 def _taken(options: ReachableOptions, rows: NDArray[np.integer]) -> tuple[NDArray, ...]:
     columns = (options.durations, options.costs, options.paths, options.path_clusters)
-    return tuple(column[rows] for column in (*columns, options.edited))
+    marks = (options.edited, options.sources, options.jumps)
+    return tuple(column[rows] for column in (*columns, *marks))
 
 
 def _standing_as(clusters: Clusters, lender: MobilityMap) -> Clusters:

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from mesa_mobility.mobility.clusters import STANDING
 from mesa_mobility.mobility.edits import SAMPLE_EVERY
 from mesa_mobility.mobility.map import MobilityMap
-from mesa_mobility.mobility.mapfile import quantise_costs, quantise_paths
 from mesa_mobility.mobility.poses import FRAME_RATE
+from mesa_mobility.mobility.storing.assembly import STAND_FRAMES
+from mesa_mobility.mobility.storing.steps import quantise_costs, quantise_paths
 from mesa_mobility.mobility.thinning import DURATIONS, EDIT_CELL
 from mesa_mobility.mobility.ways_back import check_ways_back
 
@@ -34,9 +35,6 @@ PARTS = {12: 1, 24: 2, 45: 3}
 
 TURNS = (0.0, 0.15, -0.15, 0.4, -0.4, 1.0, -1.0)
 """Rates of turn, as shares of the greatest that the speed allows."""
-
-STAND_FRAMES = 12
-"""Duration of the option to stay, as in maps of recordings."""
 
 _SEATED = [
     [0.0, 0.0, 0.5],

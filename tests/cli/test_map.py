@@ -93,7 +93,8 @@ def test_a_derived_type_says_what_it_is_derived_from(command, recordings, tmp_pa
     unknown = command("map", "build", recordings, "-o", path, "--derive", "giant")
     assert unknown.err == (
         "error: no derived type 'giant', expected one of child, older_adult, "
-        "frail_older_adult, cane, crutches, walking_frame\n"
+        "frail_older_adult, cane, crutches, walking_frame, wheelchair_manual, wheelchair_powered, "
+        "wheelchair_assisted\n"
     )
 
 

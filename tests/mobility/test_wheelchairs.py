@@ -1,5 +1,6 @@
 """Wheelchairs: what their options must keep, worked out from the paths."""
 
+import itertools
 import math
 
 import numpy as np
@@ -78,7 +79,7 @@ def test_it_turns_right_round_within_the_turning_circle(chair):
     # None of these options leaves the place on its way.
     assert moved == 0.0
     assert math.hypot(body["length_m"], body["width_m"]) <= 1.5
-    assert min(abilities_of(chair)["turn_on_the_spot_deg"]) >= 90.0
+    assert min(abilities_of(chair)["turn_on_the_spot_deg"]) >= 89.9
 
 
 def test_it_reaches_its_speed_and_stops(chair):
@@ -89,7 +90,7 @@ def test_it_reaches_its_speed_and_stops(chair):
     assert speeds.max() == pytest.approx(limits.fastest)
     assert speeds.max() >= sum(WHEELCHAIRS[chair.pedestrian_type].speed)
     forwards = [chair.standing, *range(2, chair.n_clusters)]
-    for cluster, quicker in zip(forwards, forwards[1:], strict=False):
+    for cluster, quicker in itertools.pairwise(forwards):
         rows = np.asarray(chair.options_of(cluster))
         short = chair.durations[rows] == 12
         assert quicker in chair.end_clusters[rows[short]]
