@@ -92,7 +92,7 @@ def read_map_once(path: str | Path, make: Callable[..., Map]) -> Map:
     return _read_version(path.resolve(), status.st_mtime_ns, status.st_size, make)
 
 
-@cached_once(maxsize=4)
+@cached_once(maxsize=16)
 def _read_version(path: Path, changed: int, size: int, make: Callable[..., Map]) -> Map:
     return read_map(path, make)
 
