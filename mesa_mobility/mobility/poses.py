@@ -38,6 +38,9 @@ gait, not to where the person is facing, and would otherwise turn whole paths.
 SPEED_SMOOTHING = 0.10
 """Standard deviation, in seconds, of the Gaussian used for root speed and turn rate."""
 
+MOTION_STEP = 2e-5
+"""Motion from one pose to the next is rounded to so many metres and radians, as files keep it."""
+
 STANDING_SPEED, STANDING_TURN_RATE = 0.10, 0.35
 """A person slower than both counts as standing; m/s and rad/s."""
 
@@ -173,6 +176,7 @@ def _clip_poses(recording: Recording) -> tuple[NDArray[np.float64], ...]:
     step = np.zeros((len(root), 3))
     step[:-1, :2] = _rotate(np.diff(root, axis=0), -facing[:-1])
     step[:-1, 2] = np.diff(facing)
+    step = np.rint(step / MOTION_STEP) * MOTION_STEP
 
     velocity = np.gradient(root, axis=0) * FRAME_RATE
     smooth = SPEED_SMOOTHING * FRAME_RATE
