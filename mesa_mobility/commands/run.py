@@ -44,6 +44,12 @@ def run(
         typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
     ] = None,
     preset: Annotated[str, typer.Option(help="default, steady or paper.")] = "default",
+    population: Annotated[
+        str | None,
+        typer.Option(
+            help="Types of people: mixed, care_home, or such as 'able_bodied: 0.9, child: 0.1'."
+        ),
+    ] = None,
     map_file: Annotated[
         Path | None,
         typer.Option(
@@ -77,7 +83,10 @@ def run(
         from mesa_mobility.crowd.precompile import compiling_ahead
 
         with compiling_ahead():
-            simulation, given = _create(model, settings or [], preset, map_file, seed)
+            settings = list(settings or [])
+            if population is not None:
+                settings.append(f"population={population}")
+            simulation, given = _create(model, settings, preset, map_file, seed)
 
     from mesa_mobility.results import (
         Trajectories,

@@ -160,6 +160,17 @@ class MobilityMap:
 
         return read_map_once(shipped_map_path("able_bodied") if path is None else path, cls)
 
+    @classmethod
+    def named(cls, name: str) -> MobilityMap:
+        """A map that ships with the package.
+
+        Raises:
+            MapError: there is no such map.
+        """
+        from mesa_mobility.mobility.mapfile import shipped_map_path
+
+        return cls.load(shipped_map_path(name))
+
 
 def check_map(map_: MobilityMap) -> None:
     """Check that the arrays of a map fit together.

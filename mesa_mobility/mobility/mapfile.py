@@ -64,17 +64,24 @@ _DTYPES: dict[str, str] = {
 }
 
 
+def shipped_maps() -> Path:
+    """Folder of the maps that ship with the package."""
+    return Path(str(files("mesa_mobility.maps")))
+
+
 def shipped_map_path(name: str) -> Path:
     """Path of a map that ships with the package.
 
     Raises:
         MapError: there is no such map.
     """
-    folder = Path(str(files("mesa_mobility.maps")))
+    folder = shipped_maps()
     path = folder / f"{name}.npz"
     if not path.is_file():
         known = sorted(p.stem for p in folder.glob("*.npz"))
-        raise MapError(f"no map named {name!r} ships with the package, expected one of {known}")
+        raise MapError(
+            f"no map named {name!r} ships with the package, expected one of {', '.join(known)}"
+        )
     return path
 
 
@@ -145,7 +152,7 @@ def read_map_once(path: str | Path, make: Callable[..., Map]) -> Map:
     return _read_version(path.resolve(), status.st_mtime_ns, status.st_size, make)
 
 
-@cached_once(maxsize=4)
+@cached_once(maxsize=16)
 def _read_version(path: Path, changed: int, size: int, make: Callable[..., Map]) -> Map:
     return read_map(path, make)
 
