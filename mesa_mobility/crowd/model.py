@@ -337,6 +337,21 @@ class PedestrianModel(mesa.Model):
             raise ModelError(f"pedestrian {row}: expected the row of somebody inside")
         return self._dynamics.explain(row)
 
+    def person_fields(self) -> dict[str, ArrayLike]:
+        """What trajectories say of each person besides its place; a model may add fields.
+
+        Returns:
+            (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.
+            The group is an empty text for people without one.
+        """
+        crowd, count = self.crowd, self.population.count
+        types = np.array([kind.name for kind in self.pedestrian_types])
+        groups = np.array(["", *map(str, self.population.groups)])
+        return {
+            "type": types[crowd.type_index[:count]],
+            "group": groups[crowd.agenda["group"][:count]],
+        }
+
     def summary(self) -> dict[str, Any]:
         """Figures of the run so far, ready for JSON.
 

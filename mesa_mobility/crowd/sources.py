@@ -149,7 +149,8 @@ class Inflow:
 
     Args:
         source: the source.
-        entrances: where people of each type come in, by its index.
+        newcomers: people of each type, by its index.
+        entrances: where they come in, likewise.
         population: whose shares they have, or None for those of ``source.type_index``.
         frame: the current frame, before which nobody comes.
         rng: the model's generator.
@@ -163,6 +164,7 @@ class Inflow:
     def __init__(
         self,
         source: Source,
+        newcomers: Mapping[int, Newcomers],
         entrances: Mapping[int, Entrance],
         population: Population | None,
         frame: int,
@@ -172,7 +174,7 @@ class Inflow:
         self.arrived = 0
         self.entered = 0
         self._entrances = entrances
-        self._newcomers = {kind: source.newcomers(kind) for kind in entrances}
+        self._newcomers = newcomers
         self._kinds = list(entrances)
         self._population = population
         self._deck: list[int] = []
@@ -280,8 +282,9 @@ class Sources(Sequence[Inflow]):
         kinds = check_types(source.type_index, 1, scene.types)
         if population is not None:
             kinds = indices_of(population, scene.types)
+        newcomers = {kind: source.newcomers(kind) for kind in kinds.tolist()}
         entrances: dict[int, Entrance] = {}
-        for kind in kinds.tolist():
+        for kind in newcomers:
             core = scene.types[kind].core_radius
             entrances[kind] = Entrance(
                 scene.plan, area, clearance=core + 0.01, passing=passing_of(core)
@@ -289,6 +292,6 @@ class Sources(Sequence[Inflow]):
             destination, _ = scene.journeys.start(source.exits, source.route, source.loop, kind)
             somewhere = entrances[kind].room.representative_point()
             scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
-        inflow = Inflow(source, entrances, population, frame, rng)
+        inflow = Inflow(source, newcomers, entrances, population, frame, rng)
         self._inflows.append(inflow)
         return inflow
