@@ -337,8 +337,8 @@ class PedestrianModel(mesa.Model):
             raise ModelError(f"pedestrian {row}: expected the row of somebody inside")
         return self._dynamics.explain(row)
 
-    def person_fields(self) -> dict[str, ArrayLike]:
-        """What trajectories say of each person besides its place; a model may add fields.
+    def person_data(self) -> dict[str, ArrayLike]:
+        """What trajectories say of each person besides its place; models may add to it.
 
         Returns:
             (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.

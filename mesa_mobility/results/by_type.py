@@ -1,4 +1,4 @@
-"""Figures of a run by type of people, or by another field."""
+"""Figures of a run by type of people, or by other data."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 COLUMNS = ("people", "left", "mean_egress_s", "p95_egress_s", "mean_speed_mps")
 
 
-def by_type(trajectories: Trajectories, field: str = "type") -> pd.DataFrame:
+def by_type(trajectories: Trajectories, key: str = "type") -> pd.DataFrame:
     """How many people of each type there were, how many left and when, and how fast they walked.
 
     Args:
         trajectories: the run.
-        field: by which field people are told apart; ``"group"`` for instance.
+        key: by which of ``person_data`` people are told apart; ``"group"`` for instance.
 
     Returns:
         A row for each type, by name: ``people``, ``left``; ``mean_egress_s`` and ``p95_egress_s``,
@@ -30,19 +30,19 @@ def by_type(trajectories: Trajectories, field: str = "type") -> pd.DataFrame:
         who left; ``mean_speed_mps``, as ``mean_speed`` has it. nan where there is nothing to count.
 
     Raises:
-        ResultsError: the trajectories have no such field.
+        ResultsError: the trajectories have no such data.
     """
     import pandas as pd
 
     rows = []
     seconds = _egress_seconds(trajectories)
-    for name, own in people_by(trajectories, field).items():
+    for name, own in people_by(trajectories, key).items():
         times = seconds[own]
         times = times[np.isfinite(times)]
         speed = mean_speed(trajectories.of_people(own))
         rows.append(
             {
-                field: name,
+                key: name,
                 "people": len(own),
                 "left": len(times),
                 "mean_egress_s": times.mean() if len(times) else np.nan,
@@ -50,34 +50,34 @@ def by_type(trajectories: Trajectories, field: str = "type") -> pd.DataFrame:
                 "mean_speed_mps": np.nan if speed is None else speed,
             }
         )
-    return pd.DataFrame(rows, columns=[field, *COLUMNS]).set_index(field)
+    return pd.DataFrame(rows, columns=[key, *COLUMNS]).set_index(key)
 
 
 def occupancy_by_type(
-    trajectories: Trajectories, every: float = 1.0, field: str = "type"
+    trajectories: Trajectories, every: float = 1.0, key: str = "type"
 ) -> dict[str, list[list[float]]]:
     """``occupancy`` of the people of each type alone, by its name.
 
     Raises:
-        ResultsError: the trajectories have no such field, or ``every`` is shorter than a frame.
+        ResultsError: the trajectories have no such data, or ``every`` is shorter than a frame.
     """
     return {
         name: occupancy(trajectories.of_people(own), every)
-        for name, own in people_by(trajectories, field).items()
+        for name, own in people_by(trajectories, key).items()
     }
 
 
-def people_by(trajectories: Trajectories, field: str) -> dict[str, NDArray[np.int64]]:
-    """The people who appear, by the value of a field, in order of the values.
+def people_by(trajectories: Trajectories, key: str) -> dict[str, NDArray[np.int64]]:
+    """The people who appear, by a value of ``person_data``, in order of the values.
 
     Raises:
-        ResultsError: the trajectories have no such field.
+        ResultsError: the trajectories have no such data.
     """
-    if field not in trajectories.fields:
-        known = ", ".join(trajectories.fields) or "none"
-        raise ResultsError(f"trajectories: no field {field!r}, expected one of: {known}")
+    if key not in trajectories.person_data:
+        known = ", ".join(trajectories.person_data) or "none"
+        raise ResultsError(f"trajectories: no person_data {key!r}, expected one of: {known}")
     people = np.unique(trajectories.person).astype(np.int64)
-    values = trajectories.fields[field][people]
+    values = trajectories.person_data[key][people]
     return {str(value): people[values == value] for value in np.unique(values).tolist()}
 
 

@@ -62,7 +62,7 @@ def write_jupedsim_sqlite(
 ) -> None:
     """Write a JuPedSim trajectory database, version 2, as its viewer, jupedsim and PedPy read it.
 
-    A table ``person_data`` beside JuPedSim's own has the fields of each person, such as its type.
+    A table ``person_data`` beside JuPedSim's own has the type of each person and the like.
 
     Args:
         trajectories: the run; the direction that each person faces goes into ori_x, ori_y.
@@ -124,14 +124,14 @@ def _insert_rows(connection: sqlite3.Connection, trajectories: Trajectories) -> 
 
 
 def _insert_people(connection: sqlite3.Connection, trajectories: Trajectories) -> None:
-    names = list(trajectories.fields)
+    names = list(trajectories.person_data)
     if not names:
         return
-    # Names are identifiers: see ``checked_fields``.
+    # Names are identifiers: see ``checked_person_data``.
     columns = "".join(f', "{name}"' for name in names)
     connection.execute(f"CREATE TABLE person_data (id INTEGER NOT NULL PRIMARY KEY{columns})")
     people = np.unique(trajectories.person)
-    values = [trajectories.fields[name][people].tolist() for name in names]
+    values = [trajectories.person_data[name][people].tolist() for name in names]
     marks = ", ".join("?" * (1 + len(names)))
     connection.executemany(
         f"INSERT INTO person_data VALUES ({marks})", zip(people.tolist(), *values, strict=True)

@@ -33,10 +33,10 @@ SCHEMA = pa.schema(
 
 
 def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
-    """Write columns frame, person, x (m), y (m), heading (rad) and fields, compressed with zstd.
+    """Write columns frame, person, x (m), y (m), heading (rad) and person_data, compressed with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
-    last_frame, core_radius by person, inside_at_end, names of the fields, and the sha256 of the
+    last_frame, core_radius by person, inside_at_end, names in person_data, and the sha256 of the
     file (see ``mesa_mobility.results.seal``). Pages have checksums as well, which other readers can
     check. Equal trajectories give equal bytes.
 
@@ -49,12 +49,12 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
         "last_frame": trajectories.frames - 1,
         "core_radius": trajectories.radii.tolist(),
         "inside_at_end": trajectories.remaining.tolist(),
-        "fields": list(trajectories.fields),
+        "person_data": list(trajectories.person_data),
         FIELD: UNSEALED,
     }
     columns = {name: pa.array(getattr(trajectories, name)) for name in SCHEMA.names}
     person = pa.array(trajectories.person)
-    for name, values in trajectories.fields.items():
+    for name, values in trajectories.person_data.items():
         # Texts as indices: as many strings as there are rows would take a hundred megabytes.
         by_person = pa.array(values)
         texts = values.dtype.kind == "U"
@@ -65,7 +65,7 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
             temporary,
             table.schema,
             compression="zstd",
-            use_dictionary=["frame", "person", *trajectories.fields],
+            use_dictionary=["frame", "person", *trajectories.person_data],
             # Neighbouring values of a double share their high bytes: split, they compress better.
             use_byte_stream_split=["x", "y", "heading"],
             write_page_checksum=True,
@@ -121,7 +121,9 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
         person = columns["person"].to_numpy()
         return {
             **{name: columns[name].to_numpy() for name in SCHEMA.names},
-            "fields": {name: _by_person(table[name], person) for name in values.get("fields", [])},
+            "person_data": {
+                name: _by_person(table[name], person) for name in values.get("person_data", [])
+            },
             "frame_rate": float(values["frame_rate"]),
             "core_radius": np.asarray(values["core_radius"], dtype=np.float64),
             "last_frame": int(values["last_frame"]),

@@ -117,7 +117,7 @@ def plot_snapshots(
         raise ResultsError(
             f"snapshots at {list(times)} s asked of a run of {trajectories.duration:.2f} s"
         )
-    types = people_by(trajectories, "type") if "type" in trajectories.fields else {}
+    types = people_by(trajectories, "type") if "type" in trajectories.person_data else {}
     figure, axes = floor_figure(plan, rows=(len(times) + 1) // 2, columns=min(2, len(times)))
     for panel in axes[len(times) :]:
         panel.set_axis_off()

@@ -73,7 +73,7 @@ def _curve(trajectories: Trajectories) -> list[list[float]]:
 
 def _curves_by_type(trajectories: Trajectories) -> dict[str, list[list[float]]] | None:
     """Occupancy by type, where there are several."""
-    if "type" not in trajectories.fields:
+    if "type" not in trajectories.person_data:
         return None
     curves = occupancy_by_type(trajectories)
     return curves if len(curves) > 1 else None

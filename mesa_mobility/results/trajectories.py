@@ -45,8 +45,8 @@ class Trajectories:
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
             everybody who has a row in it.
-        fields: what is known of people besides, by name: (m,) texts or numbers, of person p
-            ``fields[name][p]``. Those of a model have ``type`` and ``group``, which is empty for
+        person_data: what is known of people besides, by name: (m,) texts or numbers, of person p
+            ``person_data[name][p]``. That of a model has ``type`` and ``group``, which is empty for
             people without one.
 
     Raises:
@@ -64,7 +64,7 @@ class Trajectories:
     core_radius: FloatArray | float = 0.15
     last_frame: int | None = None
     inside_at_end: IntArray | None = None
-    fields: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    person_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         columns: dict[str, NDArray[Any]] = {
@@ -85,7 +85,9 @@ class Trajectories:
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
             )
         object.__setattr__(self, "core_radius", _radii(self.core_radius, columns["person"]))
-        object.__setattr__(self, "fields", checked_fields(self.fields, columns["person"]))
+        object.__setattr__(
+            self, "person_data", checked_person_data(self.person_data, columns["person"])
+        )
         last = int(columns["frame"][-1]) if lengths["frame"] else 0
         if self.last_frame is None:
             object.__setattr__(self, "last_frame", last)
@@ -117,8 +119,7 @@ class Trajectories:
         Args:
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now); ``person_fields()``, where it has that, gives the
-                ``fields``.
+                ``rows`` (the people inside now); ``person_data()``, where it has that.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -135,7 +136,7 @@ class Trajectories:
             core_radius=np.asarray(model.core_radii, dtype=np.float64),
             last_frame=round(model.elapsed * model.frame_rate),
             inside_at_end=model.rows,
-            fields=model.person_fields() if hasattr(model, "person_fields") else {},
+            person_data=model.person_data() if hasattr(model, "person_data") else {},
         )
 
     def __len__(self) -> int:
@@ -231,14 +232,14 @@ class Trajectories:
         )
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row for each person and frame: frame, person, x and y (m), heading (rad), fields.
+        """A row for each person and frame: frame, person, x and y (m), heading (rad), person_data.
 
         Texts, such as the type, are categories.
         """
         import pandas as pd
 
         columns: dict[str, Any] = {name: getattr(self, name) for name in COLUMNS}
-        for name, values in self.fields.items():
+        for name, values in self.person_data.items():
             if values.dtype.kind == "U":
                 codes, texts = pd.factorize(values, sort=True)
                 columns[name] = pd.Categorical.from_codes(codes[self.person], categories=texts)
@@ -334,12 +335,14 @@ def _radii(value: ArrayLike, person: IntArray) -> FloatArray:
     return _read_only(radii)
 
 
-FIELD_KINDS = "Uifb"
-"""What fields may hold: texts, whole numbers, numbers, and whether something is so."""
+DATA_KINDS = "Uifb"
+"""What data of people may be: texts, whole numbers, numbers, and whether something is so."""
 
 
-def checked_fields(fields: Mapping[str, ArrayLike], person: IntArray) -> Mapping[str, NDArray[Any]]:
-    """Fields as read-only arrays, with an entry for each person.
+def checked_person_data(
+    data: Mapping[str, ArrayLike], person: IntArray
+) -> Mapping[str, NDArray[Any]]:
+    """Data of people as read-only arrays, with an entry for each person.
 
     Raises:
         ResultsError: a name that is a column already, too few entries, or neither texts nor
@@ -347,13 +350,13 @@ def checked_fields(fields: Mapping[str, ArrayLike], person: IntArray) -> Mapping
     """
     people = int(person.max()) + 1 if len(person) else 0
     found = {}
-    for name, values in fields.items():
+    for name, values in data.items():
         array = np.asarray(values)
         if name in COLUMNS or not name.isidentifier():
-            raise ResultsError(f"trajectories: field {name!r}, expected a name of its own")
-        if array.ndim != 1 or len(array) < people or array.dtype.kind not in FIELD_KINDS:
+            raise ResultsError(f"trajectories: person_data {name!r}, expected a name of its own")
+        if array.ndim != 1 or len(array) < people or array.dtype.kind not in DATA_KINDS:
             raise ResultsError(
-                f"trajectories: field {name!r} has {array.dtype} in shape {array.shape}, expected "
+                f"trajectories: person_data {name!r} has {array.dtype} in shape {array.shape}, expected "
                 f"texts or numbers for each of {people} people"
             )
         found[name] = _read_only(array)

@@ -1,4 +1,4 @@
-"""Fields of people, and figures by them."""
+"""What is known of people besides their places, and figures by it."""
 
 import sqlite3
 
@@ -18,7 +18,7 @@ from mesa_mobility.results import (
 from tests.fixtures.maps import strider
 from tests.fixtures.scenes import advance, corridor, model_of
 
-FIELDS = {
+DATA = {
     "type": np.array(["child", "adult", "child"]),
     "group": np.array(["", "family", "family"]),
     "age": np.array([9, 40, 11]),
@@ -36,7 +36,7 @@ def three(walk) -> Trajectories:
         },
         frame_rate=2.0,
         inside_at_end=np.array([1]),
-        fields=FIELDS,
+        person_data=DATA,
     )
 
 
@@ -53,9 +53,11 @@ def test_a_row_for_each_type(three):
     assert table["mean_speed_mps"].tolist() == pytest.approx([1.0, 2.0])
 
 
-def test_any_field_tells_people_apart(three):
+def test_any_data_tell_people_apart(three):
     assert by_type(three, "group")["people"].to_dict() == {"": 1, "family": 2}
-    with pytest.raises(ResultsError, match="no field 'sex', expected one of: type, group, age"):
+    with pytest.raises(
+        ResultsError, match="no person_data 'sex', expected one of: type, group, age"
+    ):
         by_type(three, "sex")
 
 
@@ -66,36 +68,39 @@ def test_occupancy_by_type(three):
     }
 
 
-def test_a_data_frame_with_the_fields(three):
+def test_a_data_frame_with_all_of_it(three):
     frame = three.to_pandas()
-    assert frame.columns.tolist() == ["frame", "person", "x", "y", "heading", *FIELDS]
+    assert frame.columns.tolist() == ["frame", "person", "x", "y", "heading", *DATA]
     assert len(frame) == 14
     assert frame.groupby("type", observed=True)["person"].nunique().to_dict() == {
         "adult": 1, "child": 2
     }  # fmt: skip
-    assert (frame["age"].to_numpy() == FIELDS["age"][frame["person"]]).all()
+    assert (frame["age"].to_numpy() == DATA["age"][frame["person"]]).all()
     assert frame["type"].cat.categories.tolist() == ["adult", "child"]
 
 
-def test_fields_are_columns_of_the_file(three, tmp_path):
+def test_data_of_people_are_columns_of_the_file(three, tmp_path):
     import pyarrow.parquet as pq
 
     three.to_parquet(tmp_path / "t.parquet")
     table = pq.read_table(tmp_path / "t.parquet")
-    assert table.column_names == ["frame", "person", "x", "y", "heading", *FIELDS]
-    assert table["type"].to_pylist() == FIELDS["type"][three.person].tolist()
+    assert table.column_names == ["frame", "person", "x", "y", "heading", *DATA]
+    assert table["type"].to_pylist() == DATA["type"][three.person].tolist()
     read = read_parquet(tmp_path / "t.parquet")
-    assert {name: values.tolist() for name, values in read.fields.items()} == {
-        name: values.tolist() for name, values in FIELDS.items()
+    assert {name: values.tolist() for name, values in read.person_data.items()} == {
+        name: values.tolist() for name, values in DATA.items()
     }
     read.to_parquet(tmp_path / "again.parquet")
     assert (tmp_path / "again.parquet").read_bytes() == (tmp_path / "t.parquet").read_bytes()
 
 
-def test_trajectories_without_fields_or_rows(walk, tmp_path):
-    for given in (walk({0: (0, [(1.0, 1.0)])}), walk({}, fields={"type": np.array([], dtype=str)})):
+def test_trajectories_without_data_or_rows(walk, tmp_path):
+    for given in (
+        walk({0: (0, [(1.0, 1.0)])}),
+        walk({}, person_data={"type": np.array([], dtype=str)}),
+    ):
         given.to_parquet(tmp_path / "t.parquet")
-        assert set(read_parquet(tmp_path / "t.parquet").fields) == set(given.fields)
+        assert set(read_parquet(tmp_path / "t.parquet").person_data) == set(given.person_data)
 
 
 def test_jupedsim_has_them_in_a_table_beside_its_own(three, tmp_path):
@@ -113,17 +118,17 @@ def test_pictures_of_several_types(three, room, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("fields", "match"),
+    ("data", "match"),
     [
-        ({"x": [1, 2, 3]}, "field 'x', expected a name of its own"),
+        ({"x": [1, 2, 3]}, "person_data 'x', expected a name of its own"),
         ({"of whom": [1, 2, 3]}, "'of whom', expected a name"),
         ({"type": ["a", "b"]}, "'type' has <U1 in shape .2,., expected texts or numbers"),
         ({"type": [None, "b", "c"]}, "'type' has object"),
     ],
 )
-def test_fields_that_will_not_do(walk, fields, match):
+def test_data_that_will_not_do(walk, data, match):
     with pytest.raises(ResultsError, match=match):
-        walk({2: (0, [(1.0, 1.0)])}, fields=fields)
+        walk({2: (0, [(1.0, 1.0)])}, person_data=data)
 
 
 def test_a_models_people_have_type_and_group():
@@ -131,15 +136,15 @@ def test_a_models_people_have_type_and_group():
     model.add_pedestrians([(1, 1)], group=7)
     model.add_pedestrians([(1, 3)])
     advance(model, 3)
-    fields = Trajectories.of(model).fields
-    assert fields["type"].tolist() == ["made by hand"] * 2
-    assert fields["group"].tolist() == ["7", ""]
+    data = Trajectories.of(model).person_data
+    assert data["type"].tolist() == ["made by hand"] * 2
+    assert data["group"].tolist() == ["7", ""]
 
 
-def test_a_model_may_add_fields():
+def test_a_model_may_add_data():
     model = model_of(corridor(), strider())
     model.add_pedestrians([(1, 1), (1, 3)])
-    fields = {**model.person_fields(), "age": [30, 40]}
-    model.person_fields = lambda: fields
+    data = {**model.person_data(), "age": [30, 40]}
+    model.person_data = lambda: data
     advance(model, 3)
     assert Trajectories.of(model).to_pandas()["age"].tolist()[:2] == [30, 40]
