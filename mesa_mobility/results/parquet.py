@@ -33,7 +33,7 @@ SCHEMA = pa.schema(
 
 
 def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
-    """Write columns frame, person, x (m), y (m), heading (rad) and person_data, compressed with zstd.
+    """Write columns frame, person, x (m), y (m), heading (rad) and person_data, with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
     last_frame, core_radius by person, inside_at_end, names in person_data, and the sha256 of the

@@ -126,10 +126,9 @@ def plot_snapshots(
         rows = _inside_at(trajectories, round(time * trajectories.frame_rate))
         _draw_bodies(panel, trajectories, rows, _colours(types, len(trajectories.radii)))
         panel.set_title(f"{time:g} s: {len(rows)} people inside", fontsize=10)
+    said = [("person, facing the stroke", BODY)]
     if len(types) > 1:
-        said = zip(types, cycle(TYPE_COLOURS), strict=False)
-    else:
-        said = iter([("person, facing the stroke", BODY)])
+        said = list(zip(types, cycle(TYPE_COLOURS), strict=False))
     handles += [
         Line2D([], [], linestyle="none", marker="o", color=colour, label=name)
         for name, colour in said

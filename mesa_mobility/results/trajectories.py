@@ -241,8 +241,10 @@ class Trajectories:
         columns: dict[str, Any] = {name: getattr(self, name) for name in COLUMNS}
         for name, values in self.person_data.items():
             if values.dtype.kind == "U":
-                codes, texts = pd.factorize(values, sort=True)
-                columns[name] = pd.Categorical.from_codes(codes[self.person], categories=texts)
+                texts, codes = np.unique(values, return_inverse=True)
+                columns[name] = pd.Categorical.from_codes(
+                    codes[self.person], categories=pd.Index(texts.tolist())
+                )
             else:
                 columns[name] = values[self.person]
         return pd.DataFrame(columns)
@@ -356,8 +358,8 @@ def checked_person_data(
             raise ResultsError(f"trajectories: person_data {name!r}, expected a name of its own")
         if array.ndim != 1 or len(array) < people or array.dtype.kind not in DATA_KINDS:
             raise ResultsError(
-                f"trajectories: person_data {name!r} has {array.dtype} in shape {array.shape}, expected "
-                f"texts or numbers for each of {people} people"
+                f"trajectories: person_data {name!r} has {array.dtype} in shape {array.shape}, "
+                f"expected texts or numbers for each of {people} people"
             )
         found[name] = _read_only(array)
     return found
