@@ -34,17 +34,24 @@ _INT16 = np.iinfo(np.int16).max
 _PLAIN = ("offsets", "durations", "path_clusters", "mean_poses", "centres", "sizes", "mean_speeds")
 
 
+def shipped_maps() -> Path:
+    """Folder of the maps that ship with the package."""
+    return Path(str(files("mesa_mobility.maps")))
+
+
 def shipped_map_path(name: str) -> Path:
     """Path of a map that ships with the package.
 
     Raises:
         MapError: there is no such map.
     """
-    folder = Path(str(files("mesa_mobility.maps")))
+    folder = shipped_maps()
     path = folder / f"{name}.npz"
     if not path.is_file():
         known = sorted(p.stem for p in folder.glob("*.npz"))
-        raise MapError(f"no map named {name!r} ships with the package, expected one of {known}")
+        raise MapError(
+            f"no map named {name!r} ships with the package, expected one of {', '.join(known)}"
+        )
     return path
 
 

@@ -60,6 +60,7 @@ def test_other_programs_find_columns_units_and_compression(two_leave_one_stays, 
         "last_frame": 4,
         "core_radius": [0.15, 0.15, 0.15],
         "inside_at_end": [1],
+        "person_data": [],
     }
     assert {file.metadata.row_group(0).column(k).compression for k in range(5)} == {"ZSTD"}
 
