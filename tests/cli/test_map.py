@@ -150,10 +150,12 @@ def test_what_people_of_a_map_can_do_is_said(command, recordings, map_file):
     outcome = command("map", "info", map_file, "--json")
     answer = last_line(outcome)
     # The figure only walks straight on.
-    assert answer["standing"] == "turning on the spot borrowed from the map 'able_bodied'"
+    assert answer["standing"] == (
+        "turning on the spot and steps aside and back borrowed from the map 'able_bodied'"
+    )
     assert answer["standing"] in outcome.err
     assert min(answer["abilities"]["turn_on_the_spot_deg"]) >= 30
-    assert "warning: nobody steps to the left" in outcome.err
+    assert answer["abilities"]["warnings"] == []
     # It walks at 1 and 1.3 m/s, and starts and stops.
     assert 0.9 < answer["walking_speed_m_s"]["p75"] < 1.35
 
