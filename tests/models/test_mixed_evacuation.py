@@ -70,7 +70,7 @@ def test_in_the_auditorium_wide_people_are_before_the_seats_and_exit_doors_wider
     assert (places[wide, 1] < 3.5).all()
     doors = {gate.name: gate.length for gate in model.floor_plan.gates}
     assert doors["left exit door"] == pytest.approx(0.9)
-    with pytest.raises(FloorPlanError, match="no way to any exit.* ways there have gaps"):
+    with pytest.raises(FloorPlanError, match=r"no way to any exit.* ways there have gaps"):
         Auditorium(pedestrians=100, population=people(0.05), exit_door=0.65, rng=1)
     narrow = Auditorium(pedestrians=20, population=people(0.0), rng=1).floor_plan
     assert {gate.name: gate.length for gate in narrow.gates}["left exit door"] == pytest.approx(0.7)
