@@ -84,6 +84,8 @@ class MixedEvacuation(PedestrianModel):
     ) -> None:
         if not 1 <= pedestrians <= 100:
             raise ModelError(f"pedestrians: got {pedestrians}, expected 1 to 100")
+        if not 0.0 < ramp_factor <= 1.0:
+            raise ModelError(f"ramp_factor: got {ramp_factor}, expected more than 0 and at most 1")
         plan = care_home_plan(ramp_factor)
         super().__init__(
             plan,
