@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,12 +12,12 @@ import typer
 from mesa_mobility.commands.console import (
     answer_json,
     answer_table,
-    progress_bar,
     say,
     some_path,
+    stoppable_progress,
 )
 from mesa_mobility.errors import MapError
-from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt, putting_in_place
+from mesa_mobility.interrupts import putting_in_place
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import LoadedClips, Recording
@@ -97,7 +95,7 @@ def build(
         raise MapError(f"{output}: is a folder, expected a file to write")
     check_writable(output.parent)
     wall, cpu = time.perf_counter(), time.process_time()
-    with _stoppable_progress() as report:
+    with stoppable_progress() as report:
         prepared = prepare_recordings(
             find_clips(source),
             recorded,
@@ -105,7 +103,7 @@ def build(
             other_side=other_side,
             progress=lambda done, total: report("reading recordings", done, total),
         )
-        _say_clips(prepared.clips)
+        say_clips(prepared.clips)
         for remark in prepared.remarks:
             say(remark)
         recordings = prepared.recordings
@@ -179,7 +177,7 @@ def coverage(
 
     mobility_map = MobilityMap.load(file)
     recordings = []
-    with _stoppable_progress() as report:
+    with stoppable_progress() as report:
         for source in sources:
             recordings.extend(_load(source, report, mobility_map if leave_out else None))
         if leave_out:
@@ -190,21 +188,6 @@ def coverage(
             figures = compare(mobility_map, recordings)
             report("comparing", 1, 1)
     _answer({"file": str(file), **figures}, as_json=as_json)
-
-
-@contextmanager
-def _stoppable_progress() -> Iterator[Report]:
-    with progress_bar() as report, gentle_interrupt() as stop_here:
-
-        def progress(what: str, done: float, total: float) -> None:
-            report(what, done, total)
-            stop_here()
-
-        try:
-            yield progress
-        except Stopped:
-            say("interrupted: nothing written")
-            raise typer.Exit(INTERRUPTED) from None
 
 
 def _load(source: Path, report: Report, built: MobilityMap | None) -> list[Recording]:
@@ -226,15 +209,16 @@ def _load(source: Path, report: Report, built: MobilityMap | None) -> list[Recor
         prepared = prepare_recordings(
             find_clips(source), recorded, mirrored=mirrored, progress=progress
         )
-        _say_clips(prepared.clips)
+        say_clips(prepared.clips)
         length, time_factor = scaled.get("length_factor", 1.0), scaled.get("time_factor", 1.0)
         return [scale(recording, length, time_factor) for recording in prepared.recordings]
     loaded = load_clips(find_clips(source), mirrored=False, progress=progress)
-    _say_clips(loaded)
+    say_clips(loaded)
     return loaded.recordings
 
 
-def _say_clips(loaded: LoadedClips) -> None:
+def say_clips(loaded: LoadedClips) -> None:
+    """Say which clips were skipped or split, and why."""
     for clip, reason in loaded.skipped:
         say(f"skipped {clip}: {reason}")
     for clip, reason in loaded.split:
