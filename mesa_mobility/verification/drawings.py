@@ -6,13 +6,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from mesa_mobility.results import Trajectories
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MOST_PEOPLE, _MOST_POINTS = 60, 150
 _collected: ContextVar[list[Drawing] | None] = ContextVar("_collected", default=None)
@@ -62,6 +64,9 @@ def collect(trajectories: Trajectories, walls: NDArray[np.float64]) -> None:
 
 def draw(drawing: Drawing) -> Figure:
     """Walls black, ways blue with a dot where each begins."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(6.4, 3.6), dpi=90, layout="constrained")
     axes = figure.subplots()
     axes.add_collection(

@@ -1,5 +1,10 @@
 """Variance components: by hand, against the textbook's coefficients, and how often they hold."""
 
+import importlib.util
+import re
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pyarrow as pa
@@ -8,6 +13,9 @@ import pytest
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.experiments import variance_components
 from mesa_mobility.experiments.variance import _expected
+from mesa_mobility.mobility import shipped_map_path
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "experiments" / "recordings.py"
 
 
 class Rows:
@@ -116,3 +124,22 @@ def test_intervals_hold_the_shares():
 def test_what_is_no_nested_experiment(rows, levels, error, message):
     with pytest.raises(error, match=message):
         variance_components(Rows(rows), "y", levels)
+
+
+@pytest.mark.slow
+def test_the_example_finds_nothing_where_all_maps_are_one(tmp_path, capsys):
+    spec = importlib.util.spec_from_file_location("recordings", EXAMPLE)
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    (tmp_path / "maps").mkdir()
+    for number in range(3):
+        shutil.copy(shipped_map_path("able_bodied"), tmp_path / "maps" / f"{number}.npz")
+    picture = tmp_path / "picture.png"
+    example.main(tmp_path / "maps", tmp_path / "store", picture, crowds=3, replications=2)
+    printed = capsys.readouterr().out
+    assert "18 runs" in printed
+    shares = [int(n) for n in re.findall(r"share (\d+)%", printed)]
+    assert sum(shares) == pytest.approx(100, abs=1)
+    # The intervals of the recordings' share reach down to nothing.
+    assert re.search(r"recordings: .* \(0% to ", printed)
+    assert picture.stat().st_size > 10_000
