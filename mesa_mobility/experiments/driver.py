@@ -32,7 +32,10 @@ from mesa_mobility.experiments.workers.one_run import Setup
 from mesa_mobility.processes import check_importable, check_main
 
 BATCH_SECONDS = 5.0
-"""Seconds that a batch should take: long beside its message, short beside a run lost."""
+"""Seconds that a batch should take at least: long beside its message, short beside a run lost."""
+
+_BATCHES = 40
+"""Batches a second that a scheduler bears; see docs/explanation/scaling_experiments.md."""
 
 _MOST_RUNS = 500
 """Runs of a batch at most."""
@@ -235,9 +238,10 @@ class _Driver:
         """The next batch; the first ones are single runs, which tell how long a run takes."""
         size = 1
         if self._per_run is not None:
-            size = max(1, min(_MOST_RUNS, math.floor(BATCH_SECONDS / max(self._per_run, 1e-6))))
-            left = self.progress.total - self.progress.ended
             assert self._workers is not None
+            seconds = max(BATCH_SECONDS, self._workers.count / _BATCHES)
+            size = max(1, min(_MOST_RUNS, math.floor(seconds / max(self._per_run, 1e-6))))
+            left = self.progress.total - self.progress.ended
             # Towards the end no worker waits for the batch of another.
             size = min(size, max(1, left // (4 * self._workers.count)))
         taken = tuple(islice(runs, size))

@@ -348,6 +348,22 @@ def test_workers_that_come_later_are_counted(monkeypatch):
         assert workers.count == 3
 
 
+@pytest.mark.parametrize(("workers", "seconds"), [(2, 5.0), (200, 5.0), (1000, 25.0)])
+def test_many_workers_get_longer_batches(workers, seconds, tmp_path):
+    from types import SimpleNamespace
+
+    from mesa_mobility.experiments import Store
+    from mesa_mobility.experiments.driver import _Driver
+    from mesa_mobility.experiments.workers.batches import Finished
+
+    crew = SimpleNamespace(count=workers, address="")
+    driver = _Driver(quick(1_000_000), Store(tmp_path / "s"), crew, lambda now: None)
+    driver.progress.total = 3_000_000
+    driver._note(Finished({"done": 10}, 1.0))
+    batch = driver._batch(({"x": 0.0}, number) for number in range(1000))
+    assert len(batch.runs) == pytest.approx(seconds / 0.1)
+
+
 def test_models_of_a_function_are_refused_with_processes(tmp_path):
     class Local(Quick):
         pass
