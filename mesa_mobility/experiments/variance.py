@@ -104,7 +104,8 @@ def _groups(runs: pd.DataFrame, levels: Sequence[str]) -> list[NDArray[np.int64]
     """(n,) group of each run: all in one, then by each level, then each run its own."""
     found = [np.zeros(len(runs), dtype=np.int64)]
     for depth in range(1, len(levels) + 1):
-        found.append(runs.groupby(list(levels[:depth]), dropna=False).ngroup().to_numpy(np.int64))
+        numbers = runs.groupby(list(levels[:depth]), dropna=False).ngroup()
+        found.append(np.asarray(numbers, dtype=np.int64))
     return [*found, np.arange(len(runs))]
 
 
