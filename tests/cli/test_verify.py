@@ -92,27 +92,3 @@ def test_a_report_that_cannot_be_written_is_found_out_before_the_runs(command, t
         assert outcome.status == 2
         assert outcome.err.startswith("error: ")
         assert len(outcome.err.splitlines()) == 1
-
-
-def test_the_report_of_a_comparison(command, tmp_path, monkeypatch):
-    from dataclasses import replace
-
-    from mesa_mobility import validation
-    from mesa_mobility.verification import Verdict, rimea
-    from mesa_mobility.verification.checks import at_most
-
-    verdict = Verdict((at_most("never", 1.0, 0.0), at_most("ever", 1.0, 2.0, gates=False)),
-                      {"all": 0.5})  # fmt: skip
-    drawn = validation.EXPERIMENTS["walking"]
-    fails = replace(drawn, cases=rimea.TESTS["rimea-01"].cases, judge=lambda runs: verdict,
-                    draw=lambda figures: validation.drawing.panels(1)[0])  # fmt: skip
-    monkeypatch.setitem(validation.EXPERIMENTS, "walking", fails)
-    page = tmp_path / "report.html"
-    outcome = command("validate", "walking", "--jobs", 1, "--report", page)
-    assert outcome.status == 1
-    text = text_of(page)
-    assert "<td>never</td><td>1</td><td>at most 0</td>" in text
-    assert '<span class="fail">FAIL</span>' in text
-    assert f"Source: {drawn.source}." in text
-    assert "0 of 1 comparisons pass" in text
-    assert text.count("data:image/png;base64,") == 1
