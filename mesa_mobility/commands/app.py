@@ -8,6 +8,7 @@ from __future__ import annotations
 import typer
 
 from mesa_mobility.commands import experiment, mobility_map, plugins
+from mesa_mobility.commands.bootstrap import bootstrap
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
@@ -28,6 +29,7 @@ app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("dashboard")(dashboard)
+mobility_map.app.command("bootstrap")(bootstrap)
 app.add_typer(mobility_map.app, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.command("models")(plugins.models)

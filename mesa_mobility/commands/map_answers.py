@@ -2,37 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, answer_table, progress_bar, say
-from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
+from mesa_mobility.commands.console import answer_json, answer_table, say
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import LoadedClips
-    from mesa_mobility.commands.console import Report
     from mesa_mobility.mobility import MobilityMap
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
-
-
-@contextmanager
-def stoppable_progress() -> Iterator[Report]:
-    """A progress bar; Ctrl-C ends the command at the next report."""
-    with progress_bar() as report, gentle_interrupt() as stop_here:
-
-        def progress(what: str, done: float, total: float) -> None:
-            report(what, done, total)
-            stop_here()
-
-        try:
-            yield progress
-        except Stopped:
-            say("interrupted: nothing written")
-            raise typer.Exit(INTERRUPTED) from None
 
 
 def say_clips(loaded: LoadedClips) -> None:

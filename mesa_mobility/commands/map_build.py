@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import say, some_path
+from mesa_mobility.commands.console import say, some_path, stoppable_progress
 from mesa_mobility.commands.map_answers import (
     AsJson,
     answer,
     described,
     say_clips,
-    stoppable_progress,
 )
 from mesa_mobility.errors import MapError
 from mesa_mobility.interrupts import putting_in_place

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mesa_mobility.commands.console import stoppable_progress
 from mesa_mobility.commands.map_answers import (
     AsJson,
     answer,
     described,
     say_clips,
-    stoppable_progress,
 )
 from mesa_mobility.commands.map_build import build
 

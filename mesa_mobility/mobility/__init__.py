@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mesa_mobility.mobility.mapfile import shipped_map_path
     from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
     from mesa_mobility.mobility.poses import POSE_JOINTS, PoseTable, pose_table
+    from mesa_mobility.mobility.preparing.bootstrap import draw_clips
     from mesa_mobility.mobility.preparing.clips import PreparedRecordings, prepare_recordings
     from mesa_mobility.mobility.preparing.derived import DerivedType, derived_type
     from mesa_mobility.mobility.preparing.wheelchairs import WHEELCHAIRS, Wheelchair
@@ -46,6 +47,7 @@ _MODULES = {
     "cluster_poses": "clusters",
     "coverage": "judging.held_out",
     "derived_type": "preparing.derived",
+    "draw_clips": "preparing.bootstrap",
     "left_out_one_at_a_time": "judging.left_out",
     "map_of_families": "build",
     "motion_graph": "graph",
@@ -75,6 +77,7 @@ __all__ = [
     "cluster_poses",
     "coverage",
     "derived_type",
+    "draw_clips",
     "left_out_one_at_a_time",
     "map_of_families",
     "motion_graph",

@@ -178,7 +178,7 @@ def write(table, path, metadata):
     ("columns", "metadata", "message"),
     [
         ({"y": None}, GOOD, "no column y"),
-        ({}, None, "no sha256 in mesa_mobility metadata, expected trajectories of this format"),
+        ({}, None, "no sha256 in mesa_mobility metadata, expected a file of mesa-mobility"),
         ({}, {"format_version": 1}, "no sha256 in mesa_mobility metadata"),
         ({}, GOOD | {"format_version": 1}, "format version 1, expected 2"),
         ({}, {"format_version": 2, "sha256": UNSEALED}, "damaged trajectories: 'frame_rate'"),
