@@ -89,6 +89,8 @@ def run(
                 settings.append(f"population={population}")
             simulation, given = _create(model, settings, preset, map_file, seed)
 
+    import pandas as pd
+
     from mesa_mobility.results import (
         Trajectories,
         by_type,
@@ -108,12 +110,14 @@ def run(
             trajectories = Trajectories.of(simulation)
             plan = simulation.floor_plan
             safety = check_safety(trajectories, plan.walls, plan.free)
+            # Another package's model need not know types.
+            table = by_type(trajectories) if "type" in trajectories.person_data else pd.DataFrame()
             summary = {
                 **simulation.summary(),
                 "model": model,
                 "preset": preset,
                 "seed": seed,
-                "by_type": by_type(trajectories).reset_index().to_dict("records"),
+                "by_type": table.reset_index().to_dict("records"),
                 **_origin(given, simulation),
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
