@@ -104,13 +104,14 @@ def build(
         raise MapError(f"{output}: is a folder, expected a file to write")
     check_writable(output.parent)
     wall, cpu = time.perf_counter(), time.process_time()
-    if derived in WHEELCHAIRS:
+    info: dict[str, Any] = {}
+    if derived is not None and derived in WHEELCHAIRS:
         choices = (source, clusters, mirrored, name)
         if other_side or kept != Options.STORED or any(each is not None for each in choices):
             raise typer.BadParameter(f"{derived}: takes no recordings, and nothing but --output")
         words = ["mesa-mobility", "map", "build", "--derive", derived, "-o", f"{derived}.npz"]
         built = WHEELCHAIRS[derived].build(derived, {"command": shlex.join(words)})
-        save, info = built.save, {}
+        save = built.save
     elif source is None:
         raise typer.BadParameter("MANIFEST_OR_DIR: expected recordings; only wheelchairs need none")
     else:

@@ -96,7 +96,11 @@ def map_of_primitives(
         MapError: people of the map would be trapped.
     """
     speeds = drive.speeds()
-    counts, durations, costs, paths, path_clusters = [], [], [], [], []
+    counts: list[int] = []
+    durations: list[int] = []
+    costs: list[float] = []
+    paths: list[NDArray[np.float64]] = []
+    path_clusters: list[NDArray[np.int64]] = []
     for cluster in range(len(speeds)):
         first = len(durations)
         if cluster == STANDING:
@@ -105,10 +109,11 @@ def map_of_primitives(
             paths.append(np.zeros((STAND_FRAMES // SAMPLE_EVERY, 3)))
             path_clusters.append(np.full(STAND_FRAMES // SAMPLE_EVERY, STANDING))
         for frames in DURATIONS:
-            found = _options(drive, float(speeds[cluster]), frames)
-            durations += [frames] * len(found[0])
-            for column, values in zip((costs, paths, path_clusters), found, strict=True):
-                column += list(values)
+            effort, ways, passed = _options(drive, float(speeds[cluster]), frames)
+            durations += [frames] * len(effort)
+            costs += effort.tolist()
+            paths += list(ways)
+            path_clusters += list(passed)
         counts.append(len(durations) - first)
     samples = np.array(durations) // SAMPLE_EVERY
     seated = np.array(_SEATED, dtype=np.float32)
