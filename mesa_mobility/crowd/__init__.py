@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.presets import PRESETS, Preset
     from mesa_mobility.crowd.sources import Inflow, Source
     from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+    from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
     from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
 
 _MODULES = {
@@ -40,6 +41,7 @@ _MODULES = {
     "CompiledTerm": "costs.terms",
     "CostTerm": "costs.terms",
     "Deciding": "tactics.target_choice",
+    "Desired": "tactics.tactic",
     "Explanation": "planning.explanation",
     "Inflow": "sources",
     "SpeedRule": "tactics.speed_rules",
@@ -48,6 +50,7 @@ _MODULES = {
     "PedestrianType": "pedestrian_type",
     "Preset": "presets",
     "Source": "sources",
+    "Tactic": "tactics.tactic",
     "TargetChoice": "tactics.target_choice",
     "Watch": "planning.explanation",
     "bound_kernel": "costs.kernels",
@@ -67,6 +70,7 @@ __all__ = [
     "CompiledTerm",
     "CostTerm",
     "Deciding",
+    "Desired",
     "Explanation",
     "Inflow",
     "Pedestrian",
@@ -75,6 +79,7 @@ __all__ = [
     "Preset",
     "Source",
     "SpeedRule",
+    "Tactic",
     "TargetChoice",
     "Watch",
     "bound_kernel",

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.records import Crowd
 
 
-class Recorder:
+class Recorder(Saved):
     """Keeps position and heading of everybody inside, one block of arrays a frame."""
 
     def __init__(self) -> None:
         self._blocks: list[tuple[NDArray[np.generic], ...]] = []
+
+    def state(self) -> dict[str, Any]:
+        """All that has been recorded."""
+        return self.arrays()
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        self._blocks = [tuple(state.values())]
 
     def add(self, frame: int, rows: NDArray[np.int64], state: Crowd) -> None:
         """Keep the people in ``rows`` at ``frame``."""

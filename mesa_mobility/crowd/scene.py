@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral
+from typing import Any
+
+import numpy as np
 
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
@@ -54,8 +58,19 @@ class Scene:
         return self.types[type_index]
 
 
-def make_scene(plan: FloorPlan, types: tuple[PedestrianType, ...], preset: Preset) -> Scene:
+def make_scene(
+    plan: FloorPlan,
+    types: tuple[PedestrianType, ...],
+    preset: Preset,
+    fields: Mapping[str, np.dtype[Any]] | None = None,
+) -> Scene:
     """A scene without people.
+
+    Args:
+        plan: the floor plan.
+        types: the pedestrian types.
+        preset: the rules by which they move.
+        fields: types of the fields that the model declares for its people.
 
     Raises:
         ModelError: a type's map has no option of the preset's durations.
@@ -76,5 +91,5 @@ def make_scene(plan: FloorPlan, types: tuple[PedestrianType, ...], preset: Prese
         ),
         environment=environment,
         journeys=Journeys(plan, environment),
-        crowd=Crowd(64),
+        crowd=Crowd(64, fields),
     )

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from numbers import Real
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.insertion import Newcomers
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.scene import Scene
@@ -45,7 +46,7 @@ class Source:
         start: seconds at which a rate begins.
         until: seconds at which it ends, if ever.
         number: most people.
-        exits, route, loop, group, type_index, preferred_speeds, pre_movement: as
+        exits, route, loop, group, type_index, preferred_speeds, pre_movement, fields: as
             ``PedestrianModel.add_pedestrians`` takes them; numbers or distributions, no arrays.
 
     Raises:
@@ -65,6 +66,7 @@ class Source:
     type_index: int = 0
     preferred_speeds: float | Distribution | None = None
     pre_movement: float | Distribution = 0.0
+    fields: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if (self.rate is None) == (self.times is None):
@@ -127,6 +129,7 @@ class Source:
             loop=self.loop,
             group=self.group,
             type_index=self.type_index,
+            fields=self.fields,
         )
 
 
@@ -134,7 +137,7 @@ def _real(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
-class Inflow:
+class Inflow(Saved):
     """A source in a model, with its counts.
 
     Args:
@@ -150,6 +153,8 @@ class Inflow:
         arrived: people who have come, those held back included.
         entered: those of them who have entered.
     """
+
+    saved = ("arrived", "entered", "_next")
 
     def __init__(
         self, source: Source, entrance: Entrance, frame: int, rng: np.random.Generator
@@ -194,7 +199,7 @@ class Inflow:
             self._next = np.inf
 
 
-class Sources(Sequence[Inflow]):
+class Sources(Sequence[Inflow], Saved):
     """A model's sources: an ``Inflow`` for each, in the order in which they were added.
 
     Args:
@@ -216,6 +221,18 @@ class Sources(Sequence[Inflow]):
 
     def __len__(self) -> int:
         return len(self._inflows)
+
+    def state(self) -> dict[str, Any]:
+        """The sources, and who has come by each."""
+        return {"inflows": [(each.source, each.state()) for each in self._inflows]}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        del self._inflows[len(state["inflows"]) :]
+        for number, (source, inflow) in enumerate(state["inflows"]):
+            if number == len(self._inflows):
+                self.add(source, 0, np.random.default_rng(0))
+            self._inflows[number].restore(inflow)
 
     @property
     def expecting(self) -> bool:

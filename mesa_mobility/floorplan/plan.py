@@ -1,7 +1,7 @@
 """The floor plan: walkable area, obstacles, gates and exits."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -308,6 +308,26 @@ class FloorPlan:
         return sampling.random_points(
             self, n, rng, within=within, spacing=spacing, clearance=clearance, avoid=avoid
         )
+
+    def state(self) -> dict[str, Any]:
+        """All that changes while models run: obstacles, the next one's id, and what is closed."""
+        return {
+            "obstacles": dict(self._obstacles),
+            "next_obstacle": self._next_obstacle,
+            "closed": sorted(self._closed),
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` of a plan with the same floor, exits and gates has given.
+
+        People who stand on an obstacle are not looked for.
+        """
+        if state == self.state():
+            return
+        obstacles = dict(state["obstacles"])
+        self._set_free(obstacles, self._without(obstacles))
+        self._next_obstacle, self._closed = state["next_obstacle"], set(state["closed"])
+        self._changed()
 
     def _without(self, obstacles: dict[int, Polygon]) -> BaseGeometry:
         free = checks.free_area(self._walkable, list(obstacles.values()), self._exits, self._gates)
