@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import typer
 
-from mesa_mobility.commands import experiment, mobility_map, plugins
+from mesa_mobility.commands import experiment, mobility_map, new, plugins
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
@@ -30,5 +30,6 @@ app.command("validate")(validate)
 app.command("dashboard")(dashboard)
 app.add_typer(mobility_map.app, name="map")
 app.add_typer(experiment.app, name="experiment")
+app.add_typer(new.app, name="new")
 app.command("models")(plugins.models)
 app.command("behaviors")(plugins.behaviors)

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from mesa_mobility._startup import nothing_collected
+from mesa_mobility.commands.behaviors import use_behaviors
 from mesa_mobility.commands.console import (
     answer_json,
     answer_table,
@@ -42,6 +43,14 @@ def run(
     settings: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
+    ] = None,
+    behaviors: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--behavior",
+            metavar="NAME[=WEIGHT]",
+            help="An installed behaviour to use besides the model's own; repeatable.",
+        ),
     ] = None,
     preset: Annotated[str, typer.Option(help="default, steady or paper.")] = "default",
     map_file: Annotated[
@@ -78,6 +87,7 @@ def run(
 
         with compiling_ahead():
             simulation, given = _create(model, settings or [], preset, map_file, seed)
+            use_behaviors(simulation, behaviors or [])
 
     from mesa_mobility.results import (
         Trajectories,
@@ -103,6 +113,7 @@ def run(
                 "preset": preset,
                 "seed": seed,
                 **_origin(given, map_file),
+                "behaviors": behaviors or [],
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
                 "overlaps": safety.overlaps,

@@ -73,6 +73,9 @@ class Preset:
             isinstance(weight, Real) and np.isfinite(weight) for weight in self.terms.values()
         ):
             refuse("terms", self.terms, "a finite weight for the name of each")
+        # As they are read from JSON, too.
+        object.__setattr__(self, "durations", tuple(self.durations))
+        object.__setattr__(self, "shares", tuple(tuple(each) for each in self.shares))
         if not self.durations or not all(
             isinstance(each, int) and each > 0 for each in self.durations
         ):
@@ -83,7 +86,12 @@ class Preset:
 
     def numbers(self) -> dict[str, Any]:
         """All that the preset decides, ready for JSON."""
-        return {**asdict(self), "terms": dict(self.terms)}
+        return {
+            **asdict(self),
+            "terms": dict(self.terms),
+            "durations": list(self.durations),
+            "shares": [list(each) for each in self.shares],
+        }
 
     def make_tactics(self) -> list[Tactic]:
         """The steps from a target to what somebody wants of its next movement, in order."""

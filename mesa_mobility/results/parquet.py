@@ -32,10 +32,11 @@ SCHEMA = pa.schema(
 
 
 def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
-    """Write columns frame, person, x (m), y (m), heading (rad), compressed with zstd.
+    """Write columns frame, person, x (m), y (m), heading (rad) and fields, compressed with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
-    last_frame, core_radius by person, inside_at_end, and the sha256 of the file (see
+    last_frame, core_radius by person, inside_at_end, names of fields if there are any, and the
+    sha256 of the file (see
     ``mesa_mobility.results.seal``). Pages have checksums as well, which other readers can
     check. Equal trajectories give equal bytes.
 
@@ -50,11 +51,16 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
         "inside_at_end": trajectories.remaining.tolist(),
         FIELD: UNSEALED,
     }
+    fields = trajectories.fields
+    if fields:
+        metadata["fields"] = list(fields)
     table = pa.table([getattr(trajectories, name) for name in SCHEMA.names], schema=SCHEMA)
+    for name, values in fields.items():
+        table = table.append_column(name, pa.array(values))
     with replacing(path, ResultsError) as temporary:
         with pq.ParquetWriter(
             temporary,
-            SCHEMA,
+            table.schema,
             compression="zstd",
             use_dictionary=["frame", "person"],
             # Neighbouring values of a double share their high bytes: split, they compress better.
@@ -96,12 +102,14 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
         if version != FORMAT_VERSION:
             raise ResultsError(f"{source}: format version {version}, expected {FORMAT_VERSION}")
         columns = table.select(SCHEMA.names).cast(SCHEMA)
+        fields = {name: table[name].to_numpy() for name in values.get("fields", [])}
         return {
             **{name: columns[name].to_numpy() for name in SCHEMA.names},
             "frame_rate": float(values["frame_rate"]),
             "core_radius": np.asarray(values["core_radius"], dtype=np.float64),
             "last_frame": int(values["last_frame"]),
             "inside_at_end": np.asarray(values["inside_at_end"], dtype=np.int64),
+            "fields": fields,
         }
     except (
         KeyError, TypeError, ValueError, OverflowError, RecursionError, pa.ArrowException

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +42,7 @@ class Trajectories:
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
             everybody who has a row in it.
+        fields: (n,) values of each field that the model declares for its people, by name.
 
     Raises:
         ResultsError: columns of unequal length, values that are not finite, a person twice in
@@ -57,6 +59,7 @@ class Trajectories:
     core_radius: FloatArray | float = 0.15
     last_frame: int | None = None
     inside_at_end: IntArray | None = None
+    fields: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         columns: dict[str, NDArray[Any]] = {
@@ -66,12 +69,18 @@ class Trajectories:
             "y": _real_numbers("y", self.y),
             "heading": _real_numbers("heading", self.heading),
         }
+        own = {name: _one_dimensional(name, values) for name, values in self.fields.items()}
+        taken = columns.keys() & own.keys()
+        if taken:
+            raise ResultsError(f"trajectories: a field is named {min(taken)!r}, as a column is")
+        columns |= own
         lengths = {name: len(values) for name, values in columns.items()}
         if len(set(lengths.values())) != 1:
             raise ResultsError(f"trajectories: columns of unequal length: {lengths}")
         columns = _sorted(columns)
-        for name, values in columns.items():
-            object.__setattr__(self, name, _read_only(values))
+        object.__setattr__(self, "fields", {name: _read_only(columns[name]) for name in own})
+        for name in columns.keys() - own.keys():
+            object.__setattr__(self, name, _read_only(columns[name]))
         if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
             raise ResultsError(
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
@@ -106,7 +115,8 @@ class Trajectories:
         """The trajectories that a model has recorded so far.
 
         Args:
-            model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading),
+            model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
+                and of fields, if any),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
                 ``rows`` (the people inside now).
 
@@ -116,7 +126,8 @@ class Trajectories:
         recorder = getattr(model, "recorder", None)
         if recorder is None:
             raise ResultsError("the model has recorded nothing: create it with record=True")
-        rows = recorder.arrays()
+        arrays = recorder.arrays()
+        rows = {name: arrays.pop(name) for name in ("frame", "person", "x", "y", "heading")}
         if len(model.rows) and not len(rows["frame"]):
             raise ResultsError("the model has recorded nothing: expected a step before")
         return cls(
@@ -125,6 +136,7 @@ class Trajectories:
             core_radius=np.asarray(model.core_radii, dtype=np.float64),
             last_frame=round(model.elapsed * model.frame_rate),
             inside_at_end=model.rows,
+            fields=arrays,
         )
 
     def __len__(self) -> int:
