@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.planning.explanation import FREE, PERSON, WALL, Explanation, Watch
     from mesa_mobility.crowd.presets import PRESETS, Preset
     from mesa_mobility.crowd.sources import Inflow, Source
+    from mesa_mobility.crowd.tactics.route_choice import RouteChoice
     from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
     from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
     from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
@@ -44,6 +45,7 @@ _MODULES = {
     "Desired": "tactics.tactic",
     "Explanation": "planning.explanation",
     "Inflow": "sources",
+    "RouteChoice": "tactics.route_choice",
     "SpeedRule": "tactics.speed_rules",
     "Pedestrian": "pedestrian",
     "PedestrianModel": "model",
@@ -77,6 +79,7 @@ __all__ = [
     "PedestrianModel",
     "PedestrianType",
     "Preset",
+    "RouteChoice",
     "Source",
     "SpeedRule",
     "Tactic",

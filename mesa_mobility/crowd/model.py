@@ -344,10 +344,6 @@ class PedestrianModel(mesa.Model):
         self.population.remove(people)
         self.population.look_over(self.frame)
 
-    def exits_of(self, destination: int) -> tuple[str, ...]:
-        """Names of the exits with this number in ``crowd.destination``."""
-        return self._scene.environment.exits(destination)
-
     def add_source(self, source: Source) -> Inflow:
         """Let people in over time.
 

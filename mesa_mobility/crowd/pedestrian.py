@@ -150,10 +150,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
         New ones count from the next decision on, and end its route; None stands for all.
         """
-        journey = int(self.model.crowd.agenda["journey"][self.row])
-        if journey:
-            return self.model.journeys.exits(journey)
-        return self.model.exits_of(int(self.model.crowd.destination[self.row]))
+        return self.model.population.exits(self.row)
 
     @exits.setter
     def exits(self, names: Sequence[str] | None) -> None:

@@ -291,6 +291,13 @@ class Population(Saved):
         agenda["journey"][row], agenda["crossed"][row] = journey, 0
         agenda["checked"][row], agenda["nearest"][row] = frame, np.inf
 
+    def exits(self, row: int) -> tuple[str, ...]:
+        """Names of the exits by which somebody may leave; none if it goes round for ever."""
+        crowd, journey = self._scene.crowd, int(self._scene.crowd.agenda["journey"][row])
+        if journey:
+            return self._scene.journeys.exits(journey)
+        return self._scene.environment.exits(int(crowd.destination[row]))
+
     def set_speed(self, row: int, speed: float) -> None:
         """Change somebody's preferred speed, m/s.
 

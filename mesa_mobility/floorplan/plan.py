@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import networkx as nx
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,7 @@ from mesa_mobility.floorplan import (
     sampling,
 )
 from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.walls import boundaries
 from mesa_mobility.floorplan.walls.wall_index import WallIndex
 from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
@@ -89,6 +91,7 @@ class FloorPlan:
         check_zones(self._walkable, self._zones)
         checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
+        self._router: Router | None = None
         self._set_free(self._obstacles, self._without(self._obstacles))
         self._set_walls()
 
@@ -206,6 +209,18 @@ class FloorPlan:
     def openings(self) -> tuple[Gate | Exit, ...]:
         """Gates, then exits: the numbering of `Targets.gates`."""
         return (*self._gates, *self._exits)
+
+    @property
+    def route_graph(self) -> nx.DiGraph:
+        """The routes of adults as a graph, up to date with obstacles and doors.
+
+        Nodes are corners and places in gates and exits, with ``kind``, ``position`` (x, y in
+        metres), ``opening`` (name) and ``direction``; edges have their length in metres as
+        ``weight``.
+        """
+        if self._router is None:
+            self._router = Router(self)
+        return self._router.graph
 
     def gate(self, name: str) -> Gate | Exit:
         """The gate or exit of this name; a FloorPlanError lists the known names."""

@@ -122,6 +122,7 @@ class CostKernel:
             raise ModelError(f"kernel {function.__name__}: fields {fields!r}, expected their names")
         self.function = function
         self.fields = tuple(fields)
+        self.own_velocity = own_velocity
         self._own = "own_vx, own_vy, " if own_velocity else ""
 
     def _taken(self, neighbour: str) -> str:

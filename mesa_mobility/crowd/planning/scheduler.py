@@ -17,9 +17,11 @@ from mesa_mobility.crowd.costs.candidates import Moment
 from mesa_mobility.crowd.costs.layout import FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.planning.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
-from mesa_mobility.crowd.planning.grid import build_grid, headways
+from mesa_mobility.crowd.planning.grid import Grid, build_grid, headways
+from mesa_mobility.crowd.planning.sample_checks import SampleChecks, check_terms
 from mesa_mobility.crowd.planning.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
@@ -42,6 +44,7 @@ class DecisionScheduler:
         self, repertoire: Repertoire, rules: Rules, least_core: float, types: Sequence[str]
     ) -> None:
         self._types = tuple(types)
+        self._checks = SampleChecks()
         self._repertoire = repertoire
         self._rules = rules
         # As many bodies as have room within the search radius.
@@ -94,6 +97,12 @@ class DecisionScheduler:
             extra, extra_offsets = extra_costs(
                 others, order, table, crowd, grid, around, self._rules, moment, self._types
             )
+        checked = self._checks.due(terms) if len(order) else []
+        if checked:
+            first = make_candidates(
+                order[:1], table, crowd, grid, around, self._rules, moment.aside()
+            )
+            check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
         moving = headways(grid, crowd.records)
         threads = 1 if PLAIN else threads_for(len(order))
         fields = compiled.fields.shape[1]
@@ -112,11 +121,8 @@ class DecisionScheduler:
 
             failed = min(in_threads(work_off, works))
             if failed < len(people):
-                names = ", ".join(term.name for term in terms)
-                raise ModelError(
-                    f"cost of an option of pedestrian {people[failed]}: not a number, expected "
-                    f"finite numbers from each of the behaviours {names}"
-                )
+                known = self._repertoire, crowd, grid, around, self._rules, terms, self._types
+                raise ModelError(_not_a_number(int(people[failed]), moment, *known))
 
         if watch is None or watch.pedestrian not in order:
             part(0, len(order))
@@ -157,3 +163,30 @@ class DecisionScheduler:
             most = int((clusters["last"] - clusters["first"]).max())
             works.append(make_workspace(people, walls, options, most, terms, fields))
         return works[:threads]
+
+
+def _not_a_number(
+    row: int,
+    moment: Moment,
+    known: Repertoire,
+    crowd: Crowd,
+    grid: Grid,
+    around: Surroundings,
+    rules: Rules,
+    terms: Sequence[CostTerm],
+    types: Sequence[str],
+) -> str:
+    """What is wrong where the cost of an option of the pedestrian in ``row`` is not a number."""
+    weighed = weigh(row, moment.aside(), known, crowd, grid, around, rules, terms, types)
+    for term, costs in zip(terms, weighed.costs, strict=True):
+        wrong = np.flatnonzero(~np.isfinite(costs))
+        if len(wrong):
+            return (
+                f"cost of option {wrong[0]} of {len(costs)} of pedestrian {row}: not a number but "
+                f"{costs[wrong[0]]}, expected finite numbers from the behaviour {term.name!r}"
+            )
+    names = ", ".join(term.name for term in terms)
+    return (
+        f"cost of an option of pedestrian {row}: not a number, expected finite numbers from each "
+        f"of the behaviours {names}"
+    )

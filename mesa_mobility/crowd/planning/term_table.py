@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Moment
+from mesa_mobility.crowd.costs.kernel_reads import parameters_read
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
     CostKernel,
@@ -64,14 +65,16 @@ def compile_terms(
         term.kernel.pairs_address for term in pair if isinstance(term.kernel, PairKernel)
     ]
     names = fields_of(terms)
+    option_bounds = _bounds(option, BoundKernel, types)
+    pair_bounds = _bounds(pair, PairBoundKernel, types)
     compiled = Terms(
-        np.array(_bounds(option, BoundKernel, types), dtype=np.int64),
+        np.array(option_bounds, dtype=np.int64),
         *_table(option, types),
         _taken(option, names),
         *_table(pair, types),
         _taken(pair, names),
         np.array(pairs_address, dtype=np.int64),
-        np.array(_bounds(pair, PairBoundKernel, types), dtype=np.int64),
+        np.array(pair_bounds, dtype=np.int64),
         *_table(wall, types),
         np.empty((1, 0)),
     )
@@ -175,12 +178,25 @@ def _table(
     parameters = np.zeros((len(terms), width))
     for row, term in enumerate(terms):
         own = term.parameters()
+        for kernel in (term.kernel, term.bound):
+            _check_reads(term, kernel, len(own))
         parameters[row, : len(own)] = numbers_given(
             f"behaviour {term.name!r}", "parameters", own, (len(own),)
         )
     addresses = np.array([term.kernel.address for term in terms], dtype=np.int64)
     weights = np.array([term.weights(types) for term in terms]).reshape(len(terms), len(types))
     return addresses, np.ascontiguousarray(weights.T), parameters
+
+
+def _check_reads(term: CompiledTerm, kernel: CostKernel | None, given: int) -> None:
+    """Raise ModelError where a kernel reads parameters that the term does not give."""
+    read = set() if kernel is None else parameters_read(kernel.function)
+    wrong = sorted(index for index in read if not 0 <= index < given)
+    if wrong:
+        raise ModelError(
+            f"behaviour {term.name!r}: its kernel reads parameters[{wrong[-1]}], but parameters() "
+            f"gives {given} numbers"
+        )
 
 
 def extra_costs(
