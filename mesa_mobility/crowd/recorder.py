@@ -47,7 +47,7 @@ class Recorder(Saved):
         for each person and frame."""
         names = ("frame", "person", "x", "y", "heading", *self._fields)
         if not self._blocks:
-            kinds = (np.int32, np.int32, *[np.float64] * 3, *self._fields.values())
+            kinds: list[Any] = [np.int32, np.int32, *[np.float64] * 3, *self._fields.values()]
             return {name: np.empty(0, kind) for name, kind in zip(names, kinds, strict=True)}
         columns = zip(*self._blocks, strict=True)
         return {name: np.concatenate(c) for name, c in zip(names, columns, strict=True)}

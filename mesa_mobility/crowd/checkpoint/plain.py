@@ -26,7 +26,7 @@ from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone
 TAG = "$"
 """Key of the one entry of an object that stands for something else than a dictionary."""
 
-_DATACLASSES: dict[str, type] = {
+_DATACLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
         Exit, Gate, SpeedZone, Source, Preset, PedestrianType,
@@ -115,7 +115,7 @@ class Packer:
         if _DATACLASSES.get(name) is type(value):
             given = {
                 each.name: self.pack(getattr(value, each.name), f"{where}, {each.name}")
-                for each in fields(value)
+                for each in fields(_DATACLASSES[name])
                 if each.init
             }
             return ["made", [name, given]]

@@ -17,6 +17,12 @@ import numpy as np
 
 from mesa_mobility._version import __version__
 from mesa_mobility.crowd.checkpoint.archive import read_archive, write_archive
+from mesa_mobility.crowd.checkpoint.behaviours import (
+    behaviours_of,
+    class_name,
+    match_behaviours,
+    pack_behaviour,
+)
 from mesa_mobility.crowd.checkpoint.people import pack_people, restore_attributes
 from mesa_mobility.crowd.checkpoint.plain import NotPlain, Packer, Unpacker
 from mesa_mobility.crowd.hooks import Plugin
@@ -47,7 +53,7 @@ def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
     }
     content = {
         "mesa_mobility": __version__,
-        "model": _class_name(type(model)),
+        "model": class_name(type(model)),
         "arguments": arguments,
         "missing_arguments": missing,
         "map_sha256": [map_digest(each.mobility_map) for each in model.pedestrian_types],
@@ -55,8 +61,8 @@ def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
            for name, value in state.items()},
         "people": pack_people(model, packer),
         "behaviors": {
-            group: [_pack_behaviour(each, packer) for each in behaviours]
-            for group, behaviours in _behaviours(model).items()
+            group: [pack_behaviour(each, packer) for each in behaviours]
+            for group, behaviours in behaviours_of(model).items()
         },
         "own": {
             name: packer.pack(vars(model)[name], f"{type(model).__name__}.{name}")
@@ -119,11 +125,11 @@ def _load(
     model.population.make_agents(
         model, content["people"]["unique_ids"], content["people"]["last_id"]
     )
-    _match_behaviours(model, content["behaviors"], plugins)
+    match_behaviours(model, content["behaviors"], plugins)
     objects.update(_names(model))
     restore_attributes(model, content["people"], unpacker)
     model.bind()
-    for group, behaviours in _behaviours(model).items():
+    for group, behaviours in behaviours_of(model).items():
         for each, saved in zip(behaviours, content["behaviors"][group], strict=True):
             each.restore(unpacker.unpack(saved["state"]))
     for name, value in content["own"].items():
@@ -141,7 +147,7 @@ def map_digest(map_: MobilityMap) -> str:
     for name, array in sorted(vars(map_).items()):
         if isinstance(array, np.ndarray):
             digest.update(f"{name} {array.dtype.str} {array.shape}".encode())
-            digest.update(np.ascontiguousarray(array))
+            digest.update(np.ascontiguousarray(array).data)
     return digest.hexdigest()
 
 
@@ -170,53 +176,9 @@ def _names(model: PedestrianModel) -> list[tuple[Any, Any]]:
     named += [(("map", k), each.mobility_map) for k, each in enumerate(model.pedestrian_types)]
     named += [(("inflow", k), each) for k, each in enumerate(model.sources)]
     named += [(("person", each.row), each) for each in model.space.active_agents]
-    for group, behaviours in _behaviours(model).items():
+    for group, behaviours in behaviours_of(model).items():
         named += [((group, k), each) for k, each in enumerate(behaviours)]
     return named
-
-
-def _behaviours(model: PedestrianModel) -> dict[str, list[Plugin]]:
-    return {
-        "terms": list(model.terms),
-        "speed_rules": list(model.speed_rules),
-        "target_choice": [model.target_choice],
-        "tactics": list(model.tactics),
-    }
-
-
-def _pack_behaviour(behaviour: Plugin, packer: Packer) -> dict[str, Any]:
-    where = f"behaviour {behaviour.name!r}"
-    state = {key: packer.pack(value, f"{where}, {key}") for key, value in behaviour.state().items()}
-    return {
-        "class": _class_name(type(behaviour)),
-        "name": behaviour.name,
-        "state": {"$": ["dict", list(map(list, state.items()))]},
-    }
-
-
-def _match_behaviours(
-    model: PedestrianModel, saved: Mapping[str, Any], plugins: Iterable[Plugin]
-) -> None:
-    """Give the model the behaviours that it had, those of its constructor before others."""
-    there = [each for group in _behaviours(model).values() for each in group]
-    there += plugins
-
-    def find(wanted: Mapping[str, Any]) -> Any:
-        for k, each in enumerate(there):
-            if _class_name(type(each)) == wanted["class"]:
-                return there.pop(k)
-        installed = registry.behaviors().get(wanted["name"])
-        if installed is not None and _class_name(installed.load()) == wanted["class"]:
-            return installed.load()()
-        raise ModelError(
-            f"behaviour {wanted['name']!r} ({wanted['class']}) is neither installed nor made by "
-            f"the constructor of {type(model).__name__}, expected load(path, plugins=[...]) with it"
-        )
-
-    model.terms[:] = [find(each) for each in saved["terms"]]
-    model.speed_rules[:] = [find(each) for each in saved["speed_rules"]]
-    model.target_choice = find(saved["target_choice"][0])
-    model.tactics[:] = [find(each) for each in saved["tactics"]]
 
 
 def _pack_arguments(model: PedestrianModel, packer: Packer) -> tuple[dict[str, Any], list[str]]:
@@ -289,15 +251,11 @@ def _restore_collected(model: PedestrianModel, saved: Mapping[str, Any]) -> None
         there.update(saved[name])
 
 
-def _class_name(kind: type) -> str:
-    return f"{kind.__module__}:{kind.__qualname__}"
-
-
 def _class_of(kind: type[PedestrianModel], name: str) -> type[PedestrianModel]:
     """The class of a saved model: ``kind``, one below it that is imported, or an installed one."""
     known = [kind, *_below(kind)]
     for each in known:
-        if _class_name(each) == name:
+        if class_name(each) == name:
             return each
     # A script is __main__ in one process and has a name of its own in another.
     if name.partition(":")[2] == kind.__qualname__:
@@ -306,7 +264,7 @@ def _class_of(kind: type[PedestrianModel], name: str) -> type[PedestrianModel]:
     for plugin in registry.models().values():
         if plugin.target.rpartition(":")[2] == wanted:
             installed = plugin.load()
-            if _class_name(installed) == name and issubclass(installed, kind):
+            if class_name(installed) == name and issubclass(installed, kind):
                 return installed
     raise ModelError(
         f"a checkpoint of {name}, which is neither {kind.__name__} nor installed nor imported; "
@@ -314,5 +272,6 @@ def _class_of(kind: type[PedestrianModel], name: str) -> type[PedestrianModel]:
     )
 
 
-def _below(kind: type) -> list[type]:
-    return [each for child in kind.__subclasses__() for each in (child, *_below(child))]
+def _below(kind: type[PedestrianModel]) -> list[type[PedestrianModel]]:
+    children: list[type[PedestrianModel]] = kind.__subclasses__()
+    return [each for child in children for each in (child, *_below(child))]
