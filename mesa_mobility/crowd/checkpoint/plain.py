@@ -20,6 +20,7 @@ from mesa_mobility import distributions
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.sources import Source
+from mesa_mobility.crowd.state.fields import KINDS
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone
 
@@ -102,6 +103,8 @@ class Packer:
             return [type(value).__name__, [self.pack(each, where) for each in sorted(value)]]
         if isinstance(value, Path):
             return ["path", str(value)]
+        if isinstance(value, type) and value in KINDS:
+            return ["type", value.__name__]
         if isinstance(value, BaseGeometry):
             return ["geometry", shapely.to_wkb(value, hex=True)]
         if isinstance(value, FloorPlan):
@@ -173,6 +176,8 @@ class Unpacker:
                 return self._arrays[content].copy()
             case "scalar":
                 return self._arrays[content][()]
+            case "type":
+                return {kind.__name__: kind for kind in KINDS}[content]
             case "path":
                 return Path(content)
             case "geometry":

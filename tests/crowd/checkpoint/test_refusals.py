@@ -120,6 +120,15 @@ def test_arguments_that_are_not_in_the_file(tmp_path):
         PedestrianModel.load(tmp_path / "file.zip")
 
 
+def test_declared_fields_are_in_the_file(tmp_path):
+    made = model(fields={"mood": float, "infected": bool})
+    made.crowd.fields["mood"][:2] = [0.5, -1.0]
+    made.save(tmp_path / "file.zip")
+    again = PedestrianModel.load(tmp_path / "file.zip", mobility_map=wanderer(5, options=10))
+    assert [person.mood for person in again.agents] == [0.5, -1.0]
+    assert again.crowd.fields["infected"].dtype == bool
+
+
 def test_a_loaded_model_has_a_floor_of_its_own(tmp_path):
     made = model_of(corridor(), wanderer(5, options=10))
     made.add_pedestrians([(1.0, 1.0)])
@@ -157,7 +166,7 @@ def test_objects_come_back_as_they_were():
     there = [
         np.arange(6.0).reshape(2, 3), np.float32(0.1), {1, 2}, box(0, 0, 1, 0.1),
         Normal(1.0, 0.2), Source(area=box(0, 0, 1, 1), times=[1.0, 2.0]), float("nan"),
-        float("-inf"), rng,
+        float("-inf"), rng, bool, float,
     ]  # fmt: skip
     packer = Packer([])
     found = Unpacker(packer.arrays, {}).unpack(packer.pack(there, "there"))
@@ -167,3 +176,4 @@ def test_objects_come_back_as_they_were():
     assert np.isnan(found[6])
     assert found[7] == -np.inf
     assert found[8].random(3).tolist() == rng.random(3).tolist()
+    assert found[9:] == [bool, float]
