@@ -10,6 +10,13 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
 
 
+def scheduled_events(model: object) -> int:
+    """Events that a model of a newer Mesa has to come; models of Mesa 3.3 keep none."""
+    owner = getattr(model, "_scheduler", model)
+    events = getattr(owner, "_event_list", ())
+    return len(events) if hasattr(events, "__len__") else 0
+
+
 class Saved:
     """A part of a model that goes into a checkpoint.
 

@@ -17,7 +17,7 @@ from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
-from mesa_mobility.crowd.hooks import Plugin, Saved
+from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
 from mesa_mobility.crowd.insertion import Newcomers
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
@@ -89,6 +89,7 @@ class PedestrianModel(mesa.Model):
         stalled: whether for a minute nobody has left and people have come no nearer to an exit;
             ``stall_reason`` says why.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
+        events_at_first: events that Mesa itself has scheduled.
         datacollector: time, people inside, mean speed and fallback share after each step.
 
     Raises:
@@ -135,6 +136,7 @@ class PedestrianModel(mesa.Model):
         rng: Any = None,
     ) -> None:
         super().__init__(rng=seed_of(rng))
+        self.events_at_first = scheduled_events(self)
         if not isinstance(frames_per_step, int) or frames_per_step < 1:
             raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
         rules = read_preset(preset)

@@ -25,7 +25,7 @@ from mesa_mobility.crowd.checkpoint.behaviours import (
 )
 from mesa_mobility.crowd.checkpoint.people import pack_people, restore_attributes
 from mesa_mobility.crowd.checkpoint.plain import NotPlain, Packer, Unpacker
-from mesa_mobility.crowd.hooks import Plugin
+from mesa_mobility.crowd.hooks import Plugin, scheduled_events
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.mapfile import shipped_map_path
@@ -226,8 +226,7 @@ def _refuse_functions(model: PedestrianModel) -> None:
             f"{kind}: {model.waits.waiting_for_functions} people wait until a function says so, "
             "which cannot be saved; expected waits of so many seconds"
         )
-    events = getattr(model, "_event_list", None)
-    if events is not None and not events.is_empty():
+    if scheduled_events(model) > model.events_at_first:
         raise ModelError(f"{kind}: scheduled events cannot be saved; expected none to come")
 
 
