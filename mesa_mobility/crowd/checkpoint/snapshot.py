@@ -42,6 +42,7 @@ _COUNTERS = ("frame", "frames_per_step", "running", "steps", "stalled")
 
 def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
     """Write a checkpoint; see ``PedestrianModel.save``."""
+    model.bind()  # behaviours have a state from then on
     packer = Packer(_references(model))
     _refuse_functions(model)
     arguments, missing = _pack_arguments(model, packer)

@@ -120,6 +120,13 @@ def test_arguments_that_are_not_in_the_file(tmp_path):
         PedestrianModel.load(tmp_path / "file.zip")
 
 
+def test_a_model_before_anybody_has_come(tmp_path):
+    made = PedestrianModel(corridor(), mobility_map=wanderer(5, options=10), rng=1)
+    made.save(tmp_path / "file.zip")
+    again = PedestrianModel.load(tmp_path / "file.zip", mobility_map=wanderer(5, options=10))
+    assert (again.inside, again.frame) == (0, 0)
+
+
 def test_declared_fields_are_in_the_file(tmp_path):
     made = model(fields={"mood": float, "infected": bool})
     made.crowd.fields["mood"][:2] = [0.5, -1.0]
