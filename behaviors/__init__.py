@@ -5,6 +5,7 @@ from mesa_mobility.behaviors.exit_choice import Choosing, ExitChoice
 from mesa_mobility.behaviors.familiar_exit import FamiliarExit
 from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
+from mesa_mobility.behaviors.keep_distance import KeepDistance
 from mesa_mobility.behaviors.nearest_exit import NearestExit
 from mesa_mobility.behaviors.quickest_exit import QuickestExit
 from mesa_mobility.behaviors.random_utility import RandomUtility
@@ -30,6 +31,7 @@ __all__ = [
     "FamiliarExit",
     "Headway",
     "Interference",
+    "KeepDistance",
     "NearestExit",
     "PreferredSpeed",
     "PreferredVelocity",

@@ -82,7 +82,10 @@ class ExitChoice(TargetChoice):
         names = [exit_.name for exit_ in site.plan.exits]
         numbers = self._numbers(deciding, names)
         may = self._may(deciding, names)
+        # Closed, or no longer theirs.
+        now = self._chosen[rows]
         gone = self._closed(rows, deciding, names)
+        gone |= (now != UNDECIDED) & ~may[np.arange(len(rows)), now]
         for_gate = ~may.any(axis=1)
         waited = deciding.elapsed - self._thought[rows]
         again = deciding.rng.random(len(rows)) < 1.0 - np.exp(-waited / self.interval)

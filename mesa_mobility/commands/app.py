@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import typer
 
-from mesa_mobility.commands import experiment, mobility_map, plugins
+from mesa_mobility.commands import experiment, mobility_map, new, plugins
 from mesa_mobility.commands.bootstrap import bootstrap
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.run import run
@@ -32,5 +32,6 @@ app.command("dashboard")(dashboard)
 mobility_map.app.command("bootstrap")(bootstrap)
 app.add_typer(mobility_map.app, name="map")
 app.add_typer(experiment.app, name="experiment")
+app.add_typer(new.app, name="new")
 app.command("models")(plugins.models)
 app.command("behaviors")(plugins.behaviors)

@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import typer
 
 from mesa_mobility._startup import nothing_collected
+from mesa_mobility.commands.behaviors import use_behaviors
 from mesa_mobility.commands.console import (
     answer_json,
     answer_table,
@@ -43,6 +44,14 @@ def run(
     settings: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
+    ] = None,
+    behaviors: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--behavior",
+            metavar="NAME[=WEIGHT]",
+            help="An installed behaviour to use besides the model's own; repeatable.",
+        ),
     ] = None,
     preset: Annotated[str, typer.Option(help="default, steady or paper.")] = "default",
     population: Annotated[
@@ -88,6 +97,7 @@ def run(
             if population is not None:
                 settings.append(f"population={population}")
             simulation, given = _create(model, settings, preset, map_file, seed)
+            use_behaviors(simulation, behaviors or [])
 
     import pandas as pd
 
@@ -119,6 +129,7 @@ def run(
                 "seed": seed,
                 "by_type": table.reset_index().to_dict("records"),
                 **_origin(given, simulation),
+                "behaviors": behaviors or [],
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
                 "overlaps": safety.overlaps,

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.planning.explanation import FREE, PERSON, WALL, Explanation, Watch
     from mesa_mobility.crowd.presets import PRESETS, Preset
     from mesa_mobility.crowd.sources import Inflow, Source
+    from mesa_mobility.crowd.tactics.route_choice import RouteChoice
     from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+    from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
     from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
 
 _MODULES = {
@@ -40,14 +42,17 @@ _MODULES = {
     "CompiledTerm": "costs.terms",
     "CostTerm": "costs.terms",
     "Deciding": "tactics.target_choice",
+    "Desired": "tactics.tactic",
     "Explanation": "planning.explanation",
     "Inflow": "sources",
+    "RouteChoice": "tactics.route_choice",
     "SpeedRule": "tactics.speed_rules",
     "Pedestrian": "pedestrian",
     "PedestrianModel": "model",
     "PedestrianType": "pedestrian_type",
     "Preset": "presets",
     "Source": "sources",
+    "Tactic": "tactics.tactic",
     "TargetChoice": "tactics.target_choice",
     "Watch": "planning.explanation",
     "bound_kernel": "costs.kernels",
@@ -67,14 +72,17 @@ __all__ = [
     "CompiledTerm",
     "CostTerm",
     "Deciding",
+    "Desired",
     "Explanation",
     "Inflow",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
     "Preset",
+    "RouteChoice",
     "Source",
     "SpeedRule",
+    "Tactic",
     "TargetChoice",
     "Watch",
     "bound_kernel",

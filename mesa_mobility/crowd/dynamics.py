@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.candidates import Candidates, Moment
+from mesa_mobility.crowd.hooks import Plugin, Saved
 from mesa_mobility.crowd.insertion import Newcomers
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.pedestrian import Pedestrian
@@ -20,14 +22,15 @@ from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.sources import PLACES_TRIED
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
-from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Steps, Tactics
+from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
+from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
 
 
-class Dynamics:
+class Dynamics(Saved):
     """Advances a model's people, frame by frame.
 
     Args:
@@ -42,20 +45,52 @@ class Dynamics:
             scene.repertoire,
             scene.rules,
             least_core=min(each.core_radius for each in scene.types),
+            types=[each.name for each in scene.types],
         )
-        self._desired_motion = DesiredMotion(
-            scene.environment,
-            scene.crowd,
-            Steps(
-                spread_at_corners=scene.preset.abreast,
-                take_turns=scene.preset.turns,
-                compensate_speed=scene.preset.even_pace,
-                perturb_targets=scene.preset.impatience,
-            ),
-        )
+        self._desired_motion = DesiredMotion(scene.environment, scene.crowd)
         # Frame of the next event other than walking: a decision, or somebody leaves.
         self._next = 0
+        self._bound: list[Plugin] = []
+        self._grouped = False
         self._plan_version = scene.plan.version
+
+    def state(self) -> dict[str, Any]:
+        """When the next decision is, and whether the plan has changed since the last ones."""
+        return {
+            "next": self._next,
+            "grouped": self._grouped,
+            "plan_has_changed": self._plan_has_changed,
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given; the floor plan must be as it was."""
+        self._next, self._grouped = state["next"], state["grouped"]
+        self._plan_version = -1 if state["plan_has_changed"] else self._scene.plan.version
+
+    def bind(self) -> None:
+        """Bind behaviours that have come in since the last time, and look at all their names.
+
+        Raises:
+            ModelError: two cost terms of one name.
+        """
+        model = self._model
+        if model.population.groups and not self._grouped:
+            self._grouped = True
+            model.speed_rules += self._scene.preset.make_group_paces()
+        now = [*model.terms, *model.speed_rules, model.target_choice, *model.tactics]
+        if now == self._bound:
+            return
+        names = [term.name for term in model.terms]
+        for name in names:
+            if names.count(name) > 1:
+                raise ModelError(
+                    f"terms: two of them are named {name!r}, expected names of their own"
+                )
+        known = set(map(id, self._bound))
+        self._bound = now
+        for each in now:
+            if id(each) not in known:
+                each.bind(model)
 
     def insert(self, positions: ArrayLike, new: Newcomers) -> list[Pedestrian]:
         """Put people on the floor; see ``PedestrianModel.add_pedestrians``.
@@ -65,12 +100,9 @@ class Dynamics:
             FloorPlanError: see there.
         """
         model, people = self._model, self._model.population
-        grouped = bool(people.groups)
         rows = people.place(positions, new, model.frame, model.rng)
-        if people.groups and not grouped:
-            model.speed_rules += self._scene.preset.make_group_paces()
         # Those who have not set off face their first target, too.
-        targets = self._set_targets(rows, np.concatenate([people.present, rows]), all_go=True)
+        targets = self._set_targets(rows, np.concatenate([people.present, rows]), newcomers=True)
         agents = people.admit(rows, targets.points, new.headings, model)
         self._next = model.frame
         people.look_over(model.frame)
@@ -115,15 +147,21 @@ class Dynamics:
         scene = self._scene
         return make_candidates(
             rows, scene.repertoire.table, scene.crowd, self._grid(),
-            scene.environment.surroundings, scene.rules,
+            scene.environment.surroundings, scene.rules, self._moment.aside(),
         )  # fmt: skip
+
+    @property
+    def _moment(self) -> Moment:
+        return Moment(self._model.frame, self._model.rng)
 
     def explain(self, row: int) -> Explanation:
         """The decision of the person in ``row`` if it decided now, before all others."""
         scene, model = self._scene, self._model
+        self.bind()
         weighed = weigh(
-            row, model.frame, scene.repertoire, scene.crowd, self._grid(),
+            row, self._moment.aside(), scene.repertoire, scene.crowd, self._grid(),
             scene.environment.surroundings, scene.rules, model.terms,
+            [each.name for each in scene.types],
         )  # fmt: skip
         return judge(
             weighed,
@@ -183,7 +221,7 @@ class Dynamics:
         order = decision_order(deciding, self._set_targets(deciding, inside))
         self._scheduler.take(
             order,
-            model.frame,
+            self._moment,
             people.departed.together_with(inside),
             scene.crowd,
             scene.environment.surroundings,
@@ -192,12 +230,13 @@ class Dynamics:
         )
 
     def _set_targets(
-        self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, all_go: bool = False
+        self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, newcomers: bool = False
     ) -> Targets:
         """Set targets and preferred speeds of those in ``rows``, who are among those ``inside``."""
         model = self._model
-        behaviours = Tactics(model.target_choice, model.speed_rules, model.rng)
-        return self._desired_motion.update(rows, inside, model.frame, behaviours, all_go=all_go)
+        self.bind()
+        wants = Wants(model.target_choice, model.tactics, model.rng)
+        return self._desired_motion.update(rows, inside, model.frame, wants, newcomers=newcomers)
 
     def _record(self, rows: NDArray[np.int64]) -> None:
         model = self._model

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,7 @@ from mesa_mobility.crowd.collision.exact import swept_collision
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.pedestrian_type import PedestrianType, indices_of
 from mesa_mobility.crowd.planning.grid import Grid, build_grid, people_within
+from mesa_mobility.crowd.state.fields import field_column
 from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd, CrowdState
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
 from mesa_mobility.crowd.tactics.waiting import frames_of
@@ -45,6 +47,7 @@ class Newcomers:
     group: str | int | None = None
     type_index: ArrayLike | None = None
     population: Population | None = None
+    fields: Mapping[str, ArrayLike] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if isinstance(self.exits, str):
@@ -94,6 +97,21 @@ class Newcomers:
                 f"{FASTEST:g} m/s"
             )
         return speeds
+
+    def field_columns(self, n: int, crowd: Crowd) -> dict[str, NDArray[Any]]:
+        """(n,) values of the given fields.
+
+        Raises:
+            ModelError: a field that the model does not declare, or values that do not fit.
+        """
+        for name in self.fields:
+            if name not in crowd.fields:
+                known = ", ".join(crowd.fields) or "none"
+                raise ModelError(f"field {name!r}: is not declared; the model has {known}")
+        return {
+            name: field_column(name, crowd.fields[name].dtype, values, n)
+            for name, values in self.fields.items()
+        }
 
     def draw_waits(self, n: int, rng: np.random.Generator) -> NDArray[np.int64]:
         """(n,) pre-movement times in frames.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
@@ -13,23 +14,32 @@ from mesa.datacollection import DataCollector
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
+from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
 from mesa_mobility.crowd.insertion import Newcomers
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.pedestrian import Pedestrian, number_on
+from mesa_mobility.crowd.pedestrian import (
+    Pedestrian,
+    check_pedestrian_class,
+    last_number,
+    number_from,
+)
 from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
-from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.crowd.presets import Preset, read_preset
 from mesa_mobility.crowd.recorder import Recorder
 from mesa_mobility.crowd.scene import make_scene
 from mesa_mobility.crowd.sources import Inflow, Source, Sources
 from mesa_mobility.crowd.space import space_of
 from mesa_mobility.crowd.stall import StallWatch, stall_reason
+from mesa_mobility.crowd.state.fields import read_fields
 from mesa_mobility.crowd.statistics import REPORTERS, Statistics
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.crowd.tactics.waiting import Waits
 from mesa_mobility.distributions import Distribution
@@ -49,7 +59,7 @@ class PedestrianModel(mesa.Model):
 
     Args:
         floor_plan: where people walk.
-        preset: "default" or "paper".
+        preset: "default", "steady", "paper", or rules of one's own.
         mobility_map: a map, its file, or None for the able-bodied one that ships; stands
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
@@ -57,11 +67,16 @@ class PedestrianModel(mesa.Model):
             ``Population``, shares by type, or a text such as "mixed" (see ``Population.of``).
         behaviors: cost terms instead of the preset's.
         target_choice: where people go; by default everybody leaves by the nearest exit.
+        pedestrian_class: class of the agents, ``Pedestrian`` or one derived from it.
+        fields: type (bool, int or float) of each number that every person has in addition, by
+            name; agents, behaviours and results see them.
         frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
         record: keep every frame in ``recorder``.
         rng: seed, also as text, or NumPy generator.
 
     Attributes:
+        preset: name of the preset.
+        rules: the preset.
         space: Mesa's continuous space with everybody inside.
         crowd: the crowd's arrays; see ``Crowd``.
         population: who has come and who is inside; see ``Population``.
@@ -70,11 +85,14 @@ class PedestrianModel(mesa.Model):
         journeys: the routes of people who cross gates in order.
         speed_rules: behaviours that change preferred speeds; the preset's rule for groups is added
             with the first group. May be changed at run time.
+        tactics: the steps from a target to what somebody wants of its next movement, in order; may
+            be removed, replaced and added to at run time.
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
         stalled: whether for a minute nobody has left and people have come no nearer to an exit;
             ``stall_reason`` says why.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
+        events_at_first: events that Mesa itself has scheduled.
         datacollector: time, people inside, mean speed and fallback share after each step.
 
     Raises:
@@ -102,39 +120,51 @@ class PedestrianModel(mesa.Model):
     frame_rate = 1.0 / FRAME_SECONDS
     """Frames a second."""
 
+    made_with: tuple[tuple[Any, ...], dict[str, Any]]
+    """The arguments that the constructor was called with."""
+
     def __init__(
         self,
         floor_plan: FloorPlan,
         *,
-        preset: str = "default",
+        preset: str | Preset = "default",
         mobility_map: MobilityMap | str | Path | None = None,
         pedestrian_types: Sequence[PedestrianType] | None = None,
         population: Population | Mapping[str | PedestrianType, float] | str | None = None,
         behaviors: Iterable[CostTerm] | None = None,
         target_choice: TargetChoice | None = None,
+        pedestrian_class: type[Pedestrian] = Pedestrian,
+        fields: Mapping[str, type] | None = None,
         frames_per_step: int = 3,
         record: bool = False,
         rng: Any = None,
     ) -> None:
         super().__init__(rng=seed_of(rng))
+        self.events_at_first = scheduled_events(self)
         if not isinstance(frames_per_step, int) or frames_per_step < 1:
             raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
-        rules = preset_named(preset)
-        self.preset = rules.name
+        rules = read_preset(preset)
+        self.preset, self.rules = rules.name, rules
         self.floor_plan = floor_plan
+        check_pedestrian_class(pedestrian_class)
+        kinds = read_fields(fields, taken=[*dir(pedestrian_class), "row", *KERNEL_FIELDS])
         shares = None if population is None else Population.of(population)
         self.pedestrian_types = types_of(mobility_map, pedestrian_types, shares)
-        self._scene = scene = make_scene(floor_plan, self.pedestrian_types, rules, shares)
+        self._scene = scene = make_scene(
+            floor_plan, self.pedestrian_types, rules, shares=shares, fields=kinds
+        )
+        self._agents_step = pedestrian_class.step is not mesa.Agent.step
         self.crowd, self.journeys = scene.crowd, scene.journeys
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
         self.speed_rules: list[SpeedRule] = []
+        self.tactics: list[Tactic] = rules.make_tactics()
         self.target_choice = target_choice or rules.make_target_choice()
         self.frames_per_step = frames_per_step
         self.frame = 0
         self.recorder = Recorder() if record else None
         self.watch: Watch | None = None
         self.space = space_of(floor_plan, scene.repertoire.reach, self.random)
-        self.population = People(scene, self.space)
+        self.population = People(scene, self.space, pedestrian_class)
         self.sources = Sources(scene)
         self.statistics = Statistics(self)
         self.waits = Waits()
@@ -142,6 +172,13 @@ class PedestrianModel(mesa.Model):
         self._stall_watch, self.stalled = StallWatch(), False
         add_occupants(floor_plan, self.population)
         self.datacollector = DataCollector(model_reporters=REPORTERS)
+        self._framework = frozenset(vars(self))
+
+    def __new__(cls, *args: Any, **keywords: Any) -> Self:
+        """A model that knows what it was made with."""
+        model = super().__new__(cls)
+        model.made_with = args, keywords
+        return model
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """An independent copy that continues exactly as this model would.
@@ -151,9 +188,9 @@ class PedestrianModel(mesa.Model):
         copied = type(self).__new__(type(self))
         memo[id(self)] = copied
         # Its agents go into registers that use their model's number.
-        number_on(self, copied)
+        number_from(copied, self.last_id)
         for name, value in self.__dict__.items():
-            copied.__dict__[name] = deepcopy(value, memo)
+            copied.__dict__[name] = value if name == "made_with" else deepcopy(value, memo)
         add_occupants(copied.floor_plan, copied.population)
         return copied
 
@@ -163,10 +200,78 @@ class PedestrianModel(mesa.Model):
             "nor by pickle; expected its parameters and seed, which make it anew"
         )
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a checkpoint, from which ``load`` goes on to the same trajectories.
+
+        It holds the constructor's arguments and all that has changed since: people, behaviours,
+        generators, records, and attributes of the model and its people. Maps are not in it but
+        their digest is.
+
+        Args:
+            path: the file, a zip of arrays and JSON.
+
+        Raises:
+            ModelError: an attribute or a behaviour's state that cannot be saved, people who wait
+                for a function, or a file that cannot be written.
+        """
+        from mesa_mobility.crowd.checkpoint.snapshot import save_model
+
+        save_model(self, path)
+
+    @classmethod
+    def load(
+        cls, path: str | os.PathLike[str], *, plugins: Iterable[Plugin] = (), **arguments: Any
+    ) -> Self:
+        """The model of a checkpoint, in this process or another.
+
+        Args:
+            path: the file.
+            plugins: behaviours that the model had, and that are neither installed nor made by its
+                constructor.
+            arguments: constructor's arguments that the file cannot hold, such as a mobility map.
+
+        Raises:
+            ModelError: a file that cannot be read or is another model's, other mobility maps, or
+                missing arguments or behaviours.
+        """
+        from mesa_mobility.crowd.checkpoint.snapshot import load_model
+
+        loaded = load_model(cls, path, plugins, arguments)
+        assert isinstance(loaded, cls)
+        return loaded
+
     @property
     def elapsed(self) -> float:
         """Simulated seconds since the start."""
         return self.frame * FRAME_SECONDS
+
+    @property
+    def last_id(self) -> int:
+        """``unique_id`` of the last agent that came."""
+        return last_number(self)
+
+    def parts(self) -> dict[str, Saved]:
+        """The parts that a checkpoint holds, in the order in which they are restored."""
+        parts: dict[str, Saved] = {
+            "environment": self._scene.environment,
+            "journeys": self.journeys,
+            "population": self.population,
+            "sources": self.sources,
+            "statistics": self.statistics,
+            "stall_watch": self._stall_watch,
+            "dynamics": self._dynamics,
+        }
+        if self.recorder is not None:
+            parts["recorder"] = self.recorder
+        return parts
+
+    def own_attributes(self) -> list[str]:
+        """Names of the attributes that subclasses and users have added."""
+        return sorted(vars(self).keys() - self._framework - {"_framework"})
+
+    def bind(self) -> None:
+        """Bind behaviours that the model has not used yet."""
+        self._dynamics.bind()
 
     @property
     def inside(self) -> int:
@@ -206,6 +311,7 @@ class PedestrianModel(mesa.Model):
         group: str | int | None = None,
         type_index: ArrayLike | None = None,
         population: Population | Mapping[str | PedestrianType, float] | str | None = None,
+        fields: Mapping[str, ArrayLike] | None = None,
     ) -> list[Pedestrian]:
         """Put people on the floor, standing.
 
@@ -226,6 +332,7 @@ class PedestrianModel(mesa.Model):
             population: the shares of types, of which each gets its share of n, rounded up or down;
                 by default those of the model, or the first type alone. Positions are exchanged so
                 that wide people stand where they have room and a way out.
+            fields: (n,) values of fields that the model declares; 0 or false by default.
 
         Raises:
             ModelError: positions off the floor, too near to a wall, or where somebody is or will
@@ -244,6 +351,7 @@ class PedestrianModel(mesa.Model):
             group=group,
             type_index=type_index,
             population=None if population is None else Population.of(population),
+            fields=fields or {},
         )
         return self._dynamics.insert(positions, new)
 
@@ -281,6 +389,10 @@ class PedestrianModel(mesa.Model):
 
     def step(self) -> None:
         """Advance ``frames_per_step`` frames."""
+        if self._agents_step:
+            for agent in list(self.space.active_agents):
+                if self.crowd.active[agent.row]:  # others may have removed it
+                    agent.step()
         people, end = self.population, self.frame + self.frames_per_step
         while self.frame < end:
             self._dynamics.advance(end)
@@ -356,8 +468,9 @@ class PedestrianModel(mesa.Model):
         """Figures of the run so far, ready for JSON.
 
         Returns:
-            ``model``, ``preset``, ``pedestrians``, ``simulated_s``, ``egress_s`` (None while
-            anybody is inside or to come, or where nobody ever was), ``left_inside``, ``stalled``,
+            ``model``, ``preset``, ``rules`` (all that the preset decides), ``pedestrians``,
+            ``simulated_s``, ``egress_s`` (None while anybody is inside or to come, or where nobody
+            ever was), ``left_inside``, ``stalled``,
             ``stall_reason`` (None unless stalled), ``decisions``, ``fallback_decision_share``,
             ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy``
             ([[t, inside], ...] each second).

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
@@ -14,7 +14,9 @@ from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.state.fields import field_column
 from mesa_mobility.crowd.state.records import FALLBACK
+from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -38,13 +40,29 @@ class _Counters(WeakKeyDictionary[Any, _Counter]):
         return self.setdefault(model, _Counter())
 
 
-def number_on(model: PedestrianModel, copied: PedestrianModel) -> None:
-    """Continue the numbers of a model's pedestrians in a copy."""
-    Pedestrian._ids[copied].last = Pedestrian._ids[model].last
+def last_number(model: PedestrianModel) -> int:
+    """Number of the last agent that a model has got."""
+    return Pedestrian._ids[model].last
+
+
+def number_from(model: PedestrianModel, last: int) -> None:
+    """Let the numbers of a model's agents go on after ``last``."""
+    Pedestrian._ids[model].last = last
+
+
+def _fields_of(person: Pedestrian) -> dict[str, NDArray[Any]]:
+    """The fields of a person's model; none while the agent is being made or copied."""
+    model = person.__dict__.get("model")
+    crowd = None if model is None else model.__dict__.get("crowd")
+    return {} if crowd is None else crowd.fields
 
 
 class Pedestrian(ContinuousSpaceAgent):
     """One person.
+
+    The fields that a model declares for its people are attributes, read and written. A subclass
+    may have attributes of its own, and a ``step``, which is called for each person inside once a
+    step of the model, before anybody moves.
 
     Attributes:
         row: row of this person in the crowd's arrays, the same for ever.
@@ -53,15 +71,53 @@ class Pedestrian(ContinuousSpaceAgent):
     # Mesa 3.3 keeps agent numbers in a dictionary that never frees a model.
     _ids = _Counters()
 
-    def __init__(self, model: PedestrianModel, row: int) -> None:
+    def __init__(self, model: PedestrianModel, row: int | None = None) -> None:
+        if not model.population.awaits(row):
+            raise ModelError(
+                f"{type(self).__name__}(...): nobody stands on the floor for this agent, expected "
+                "add_pedestrians or add_source, which make agents"
+            )
         super().__init__(model.space, model)
+        assert row is not None
         self.row = row
+
+    def __getattr__(self, name: str) -> Any:
+        """The value of a field that the model declares; called where there is nothing else."""
+        fields = _fields_of(self)
+        if name in fields:
+            return fields[name][self.row].item()
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        fields = _fields_of(self)
+        if name in fields:
+            column = fields[name]
+            column[self.row] = field_column(name, column.dtype, value, 1)[0]
+        else:
+            object.__setattr__(self, name, value)
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """(2,) position, metres."""
+        """(2,) position, metres; people walk, and cannot be put elsewhere."""
         state = self.model.crowd
         return np.array([state.x[self.row], state.y[self.row]])
+
+    @position.setter
+    def position(self, value: object) -> None:
+        raise ModelError(
+            f"pedestrian {self.row}: people walk by themselves; expected remove() and "
+            "add_pedestrians to put somebody elsewhere"
+        )
+
+    @property
+    def pos(self) -> NDArray[np.float64]:
+        """(2,) the position, by the name that Mesa's drawings use."""
+        return self.position
+
+    @pos.setter
+    def pos(self, value: object) -> None:
+        if value is not None:  # Mesa begins with None
+            self.position = value
 
     @property
     def heading(self) -> float:
@@ -81,8 +137,24 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def preferred_speed(self) -> float:
-        """Preferred speed, m/s."""
+        """Preferred speed, m/s; a new one counts from the next decision on."""
         return float(self.model.crowd.agenda["speed"][self.row])
+
+    @preferred_speed.setter
+    def preferred_speed(self, speed: float) -> None:
+        self.model.population.set_speed(self.row, speed)
+
+    @property
+    def exits(self) -> tuple[str, ...]:
+        """Names of the exits by which the person may leave; none if it goes round for ever.
+
+        New ones count from the next decision on, and end its route; None stands for all.
+        """
+        return self.model.population.exits(self.row)
+
+    @exits.setter
+    def exits(self, names: Sequence[str] | None) -> None:
+        self.model.population.send(self.row, names, (), self.model.frame)
 
     @property
     def start_time(self) -> float:
@@ -113,14 +185,25 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def group(self) -> str | int | None:
-        """The group that the person belongs to, if any."""
+        """The group that the person belongs to, if any; None leaves it."""
         number = int(self.model.crowd.agenda["group"][self.row])
         return self.model.population.groups[number - 1] if number else None
 
+    @group.setter
+    def group(self, name: str | int | None) -> None:
+        self.model.population.join(self.row, name)
+
     @property
     def route(self) -> tuple[str, ...]:
-        """Names of the gates on the person's journey, in order; none if it has no journey."""
+        """Names of the gates on the person's journey, in order; none if it has no journey.
+
+        A new one begins with the next decision, and ends at the exits that the person had.
+        """
         return self.model.journeys.gates(int(self.model.crowd.agenda["journey"][self.row]))
+
+    @route.setter
+    def route(self, gates: Sequence[str]) -> None:
+        self.model.population.send(self.row, self.exits or None, gates, self.model.frame)
 
     @property
     def gates_crossed(self) -> int:
@@ -165,3 +248,11 @@ class Pedestrian(ContinuousSpaceAgent):
     def remove(self) -> None:
         """Take the person out of the model."""
         self.model.remove_pedestrians([self])
+
+
+def check_pedestrian_class(kind: object) -> None:
+    """Raise ModelError unless this is a class of agents for people."""
+    if not (isinstance(kind, type) and issubclass(kind, Pedestrian)):
+        raise ModelError(
+            f"pedestrian_class: got {kind!r}, expected a class derived from Pedestrian"
+        )

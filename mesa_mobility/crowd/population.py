@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.insertion import (
     TOUCHING,
     Assigned,
@@ -22,7 +23,7 @@ from mesa_mobility.crowd.insertion import (
     place,
     too_close,
 )
-from mesa_mobility.crowd.pedestrian import Pedestrian
+from mesa_mobility.crowd.pedestrian import Pedestrian, number_from
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state.advance import Moved
@@ -36,12 +37,13 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
 
 
-class Population:
+class Population(Saved):
     """A model's people; each keeps its row of the crowd's arrays for ever.
 
     Args:
         scene: the floor and what people can do on it.
         space: Mesa's space.
+        pedestrian_class: class of the agents.
 
     Attributes:
         count: people who have ever been in the model.
@@ -52,8 +54,13 @@ class Population:
         aggregates: sums over the people inside, after the last step.
     """
 
-    def __init__(self, scene: Scene, space: CrowdSpace) -> None:
+    saved = ("count", "rows", "present", "groups")
+
+    def __init__(
+        self, scene: Scene, space: CrowdSpace, pedestrian_class: type[Pedestrian] = Pedestrian
+    ) -> None:
         self._scene = scene
+        self._pedestrian_class = pedestrian_class
         self._space = space
         self.count = 0
         self.rows = np.empty(0, dtype=np.int64)
@@ -62,6 +69,33 @@ class Population:
         self.groups: list[str | int] = []
         self.aggregates: Aggregates = EMPTY
         self._agents_by_row: list[Pedestrian | None] = []
+
+    def state(self) -> dict[str, Any]:
+        """Everybody's records, and who is inside."""
+        crowd = self._scene.crowd
+        return {
+            **super().state(),
+            **crowd.first(self.count),
+            "departed": self.departed.state(),
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given; agents are made by ``make_agents``."""
+        super().restore(state)
+        self.departed.restore(state["departed"])
+        self._scene.crowd.replace(state)
+
+    def make_agents(self, model: PedestrianModel, unique_ids: Sequence[int], last_id: int) -> None:
+        """Make the agents of those inside anew, with these numbers, and forget all others."""
+        for agent in self._space.active_agents:
+            model.deregister_agent(agent)
+        self._space.take_out(list(range(len(self._space.active_agents))))
+        self._agents_by_row = [None] * self.count
+        for row, number in zip(self.rows.tolist(), unique_ids, strict=True):
+            number_from(model, number - 1)
+            self._agents_by_row[row] = self._pedestrian_class(model, row)
+        number_from(model, last_id)
+        self.look_over(model.frame)
 
     @property
     def core_radii(self) -> NDArray[np.float64]:
@@ -112,6 +146,7 @@ class Population:
         sets_off = frame + new.draw_waits(n, rng)
         if new.headings is not None:
             check_column("headings", new.headings, n)
+        fields = new.field_columns(n, scene.crowd)
         rows = np.arange(self.count, self.count + n, dtype=np.int64)
         if self.count + n > len(scene.crowd.x):
             scene.crowd.grow(max(self.count + n, 2 * len(scene.crowd.x)))
@@ -136,6 +171,8 @@ class Population:
             scene.crowd.active[placed] = False
             raise
         scene.crowd.agenda["group"][rows] = self._group_number(new.group)
+        for name, values in fields.items():
+            scene.crowd.fields[name][rows] = values
         return rows
 
     def _suited(
@@ -198,7 +235,7 @@ class Population:
             # Mostly a row equals the unique id of the person before: sharing the int object saves
             # 32 bytes.
             number = people[-1].unique_id if people else row
-            people.append(Pedestrian(model, number if number == row else row))
+            people.append(self._pedestrian_class(model, number if number == row else row))
         self._agents_by_row.extend(people)
         return people
 
@@ -285,6 +322,67 @@ class Population:
                 f"pedestrian {numbers[where]} at {points[where].tolist()}: too close to {other}, "
                 "expected room for both bodies"
             )
+
+    def awaits(self, row: int | None) -> bool:
+        """Whether somebody inside has this row and no agent yet."""
+        known = len(self._agents_by_row)
+        return row is not None and (
+            known <= row < self.count
+            or (0 <= row < known and self._agents_by_row[row] is None
+                and bool(self._scene.crowd.active[row]))
+        )  # fmt: skip
+
+    def send(self, row: int, exits: Sequence[str] | None, route: Sequence[str], frame: int) -> None:
+        """Send somebody across the gates of a route and out by one of these exits.
+
+        Raises:
+            ModelError: the person has left, or a route that is no list of gates.
+            FloorPlanError: an unknown exit or gate, or no way there.
+        """
+        self._check_inside(row)
+        scene, crowd = self._scene, self._scene.crowd
+        Newcomers(exits=exits, route=route)  # refuses what newcomers may not have
+        kind = int(crowd.type_index[row])
+        destination, journey = scene.journeys.start(exits, route, False, kind)
+        place = np.array([[crowd.x[row], crowd.y[row]]])
+        scene.environment.check_way_out(place, destination)
+        crowd.destination[row] = destination
+        agenda = crowd.agenda
+        agenda["journey"][row], agenda["crossed"][row] = journey, 0
+        agenda["checked"][row], agenda["nearest"][row] = frame, np.inf
+
+    def exits(self, row: int) -> tuple[str, ...]:
+        """Names of the exits by which somebody may leave; none if it goes round for ever."""
+        crowd, journey = self._scene.crowd, int(self._scene.crowd.agenda["journey"][row])
+        if journey:
+            return self._scene.journeys.exits(journey)
+        return self._scene.environment.exits(int(crowd.destination[row]))
+
+    def set_speed(self, row: int, speed: float) -> None:
+        """Change somebody's preferred speed, m/s.
+
+        Raises:
+            ModelError: the person has left, or a speed out of range.
+        """
+        self._check_inside(row)
+        given, crowd = Newcomers(preferred_speeds=speed), self._scene.crowd
+        crowd.agenda["speed"][row] = given.draw_speeds(
+            crowd.type_index[[row]], self._scene.types, np.random.default_rng(0)
+        )[0]
+
+    def join(self, row: int, group: str | int | None) -> None:
+        """Let somebody join a group, or leave its own.
+
+        Raises:
+            ModelError: the person has left, or a group that is neither name nor number.
+        """
+        self._check_inside(row)
+        Newcomers(group=group)
+        self._scene.crowd.agenda["group"][row] = self._group_number(group)
+
+    def _check_inside(self, row: int) -> None:
+        if not self._scene.crowd.active[row]:
+            raise ModelError(f"pedestrian {row}: has left, expected somebody inside")
 
     def _group_number(self, group: str | int | None) -> int:
         """Number of a group, which is new if its name is; 0 for none."""

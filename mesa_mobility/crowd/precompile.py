@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.threads import THREADS
+from mesa_mobility.crowd.costs.candidates import Moment
 from mesa_mobility.crowd.options.option_groups import make_groups
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import OPTION, SAMPLES, OptionTable, boxes
@@ -135,6 +136,9 @@ def compile_decisions() -> None:
     repertoire = Repertoire(
         (), table, make_groups(table, boxes(table.path)), standing, first, standing, 1.0, 1.0
     )
-    decisions = DecisionScheduler(repertoire, Rules(1.0, True, standing, first), least_core=1.0)
+    decisions = DecisionScheduler(
+        repertoire, Rules(1.0, True, standing, first), least_core=1.0, types=[""]
+    )
     nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
-    decisions.take(nobody, 0, nobody, crowd, around, terms=[])
+    moment = Moment(0, np.random.default_rng(0))
+    decisions.take(nobody, moment, nobody, crowd, around, terms=[])

@@ -2,32 +2,53 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from numbers import Real
+from typing import Any
+
+import numpy as np
 
 from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.tactics.shipped import (
+    CompensateSpeed,
+    FollowSpeedRules,
+    Impatience,
+    SlowInZones,
+    SpreadAtCorners,
+    TakeTurns,
+    Wait,
+)
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.registry import load_behavior
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Preset:
-    """A named set of rules.
+    """A named set of rules: everything in which models with the same map and plan may differ.
+
+    ``dataclasses.replace(PRESETS["default"], name="mine", durations=(12, 24))`` makes one of one's
+    own from another.
 
     Attributes:
-        name: by which it is selected.
-        terms: weight of each registered cost term.
+        name: for results; by which those that ship are selected.
+        terms: weight of each registered cost term, by its name.
         target_choice: registered behaviour that gives people their targets.
         group_pace: registered speed rule that keeps groups together.
         durations: option durations in frames.
         shares: shortened copies of the options of each cluster, as shares of the ground covered:
             first of the shortest ones, then of the next longer, and so on.
-        hard_bodies: whether bodies are hard.
+        hard_bodies: whether no two cores may overlap.
         abreast: whether a crowd spreads out to pass a corner.
         turns: whether people take turns at passages too narrow for two.
         impatience: whether people who make no progress look for a way round.
         even_pace: whether free walkers correct their accumulated distance error.
+
+    Raises:
+        ModelError: a number out of range.
     """
 
     name: str
@@ -41,6 +62,49 @@ class Preset:
     turns: bool
     impatience: bool
     even_pace: bool
+
+    def __post_init__(self) -> None:
+        def refuse(what: str, got: object, expected: str) -> None:
+            raise ModelError(f"preset {self.name!r}: {what} {got!r}, expected {expected}")
+
+        if not isinstance(self.name, str) or not self.name:
+            raise ModelError(f"preset: name {self.name!r}, expected a text")
+        if not isinstance(self.terms, Mapping) or not all(
+            isinstance(weight, Real) and np.isfinite(weight) for weight in self.terms.values()
+        ):
+            refuse("terms", self.terms, "a finite weight for the name of each")
+        # As they are read from JSON, too.
+        object.__setattr__(self, "durations", tuple(self.durations))
+        object.__setattr__(self, "shares", tuple(tuple(each) for each in self.shares))
+        if not self.durations or not all(
+            isinstance(each, int) and each > 0 for each in self.durations
+        ):
+            refuse("durations", self.durations, "frames, 1 or more each")
+        for share in (each for some in self.shares for each in some):
+            if not (isinstance(share, Real) and 0.0 <= share < 1.0):
+                refuse("share", share, "0 or more and less than 1")
+
+    def numbers(self) -> dict[str, Any]:
+        """All that the preset decides, ready for JSON."""
+        return {
+            **asdict(self),
+            "terms": dict(self.terms),
+            "durations": list(self.durations),
+            "shares": [list(each) for each in self.shares],
+        }
+
+    def make_tactics(self) -> list[Tactic]:
+        """The steps from a target to what somebody wants of its next movement, in order."""
+        tactics: list[tuple[bool, type[Tactic]]] = [
+            (self.abreast, SpreadAtCorners),
+            (True, SlowInZones),
+            (True, FollowSpeedRules),
+            (self.turns, TakeTurns),
+            (True, Wait),
+            (self.even_pace, CompensateSpeed),
+            (self.impatience, Impatience),
+        ]
+        return [kind() for taken, kind in tactics if taken]
 
     def make_target_choice(self) -> TargetChoice:
         """The target choice, looked up among the installed behaviours."""
@@ -137,3 +201,16 @@ def preset_named(name: str) -> Preset:
     if name not in PRESETS:
         raise ModelError(f"preset {name!r} is unknown, expected one of {', '.join(PRESETS)}")
     return PRESETS[name]
+
+
+def read_preset(preset: str | Preset) -> Preset:
+    """A preset, or the one of this name.
+
+    Raises:
+        ModelError: there is none, or it is something else.
+    """
+    if isinstance(preset, Preset):
+        return preset
+    if not isinstance(preset, str):
+        raise ModelError(f"preset: got {preset!r}, expected a name or a Preset")
+    return preset_named(preset)

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
@@ -47,8 +51,15 @@ def make_scene(
     types: tuple[PedestrianType, ...],
     preset: Preset,
     shares: Population | None = None,
+    fields: Mapping[str, np.dtype[Any]] | None = None,
 ) -> Scene:
     """A scene without people.
+
+    Args:
+        plan: the floor plan.
+        types: the pedestrian types.
+        preset: the rules by which they move.
+        fields: types of the fields that the model declares for its people.
 
     Raises:
         ModelError: a type's map has no option of the preset's durations.
@@ -70,5 +81,5 @@ def make_scene(
         ),
         environment=environment,
         journeys=Journeys(plan, environment),
-        crowd=Crowd(64),
+        crowd=Crowd(64, fields),
     )

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Real
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.insertion import Newcomers, check_types
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.pedestrian_type import PedestrianType, indices_of
@@ -50,9 +51,9 @@ class Source:
         start: seconds at which a rate begins.
         until: seconds at which it ends, if ever.
         number: most people.
-        exits, route, loop, group, type_index, population, preferred_speeds, pre_movement: as
-            ``PedestrianModel.add_pedestrians`` takes them; numbers or distributions, no arrays. Of
-            a population each hundred people together have its shares.
+        exits, route, loop, group, type_index, population, preferred_speeds, pre_movement, fields:
+            as ``PedestrianModel.add_pedestrians`` takes them; numbers or distributions, no arrays.
+            Of a population each hundred people together have its shares.
 
     Raises:
         ModelError: neither a rate nor times, both, or one out of range; shares of a population that
@@ -73,6 +74,7 @@ class Source:
     population: Population | Mapping[str | PedestrianType, float] | str | None = None
     preferred_speeds: float | Distribution | None = None
     pre_movement: float | Distribution = 0.0
+    fields: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if (self.rate is None) == (self.times is None):
@@ -137,6 +139,7 @@ class Source:
             loop=self.loop,
             group=self.group,
             type_index=type_index,
+            fields=self.fields,
         )
 
 
@@ -144,7 +147,7 @@ def _real(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
-class Inflow:
+class Inflow(Saved):
     """A source in a model, with its counts.
 
     Args:
@@ -160,6 +163,8 @@ class Inflow:
         arrived: people who have come, those held back included.
         entered: those of them who have entered.
     """
+
+    saved = ("arrived", "entered", "_next", "_deck")
 
     def __init__(
         self,
@@ -238,7 +243,7 @@ class Inflow:
             self._next = np.inf
 
 
-class Sources(Sequence[Inflow]):
+class Sources(Sequence[Inflow], Saved):
     """A model's sources: an ``Inflow`` for each, in the order in which they were added.
 
     Args:
@@ -260,6 +265,18 @@ class Sources(Sequence[Inflow]):
 
     def __len__(self) -> int:
         return len(self._inflows)
+
+    def state(self) -> dict[str, Any]:
+        """The sources, and who has come by each."""
+        return {"inflows": [(each.source, each.state()) for each in self._inflows]}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        del self._inflows[len(state["inflows"]) :]
+        for number, (source, inflow) in enumerate(state["inflows"]):
+            if number == len(self._inflows):
+                self.add(source, 0, np.random.default_rng(0))
+            self._inflows[number].restore(inflow)
 
     @property
     def expecting(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, FRAMES_A_SECOND
 from mesa_mobility.crowd.state.aggregates import Aggregates
 from mesa_mobility.crowd.state.records import Crowd
@@ -26,7 +27,7 @@ ANOTHER_WAY = 3.0
 movement takes 1.5 s at most, and nobody walks at 2 m/s."""
 
 
-class StallWatch:
+class StallWatch(Saved):
     """Checks the progress of the people inside once a simulated second.
 
     Progress is how much nearer to their exits they are on average than at the last progress. People
@@ -34,6 +35,8 @@ class StallWatch:
     same. A single person on a long route counts by itself. After a change of route, progress is
     measured along the new one.
     """
+
+    saved = ("_since", "_look", "_mark", "_route", "_start", "_begun")
 
     def __init__(self) -> None:
         self._since = 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.advance import Moved
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ REPORTERS: dict[str, Any] = {
 """What a model's ``DataCollector`` collects after each step."""
 
 
-class Statistics:
+class Statistics(Saved):
     """Figures of a model, kept while it runs.
 
     Args:
@@ -28,6 +29,8 @@ class Statistics:
         occupancy: (seconds, people inside) each simulated second.
         last_left: seconds at which somebody last left, or None.
     """
+
+    saved = ("occupancy", "last_left", "_walked", "_person_frames", "_fallback_frames")
 
     def __init__(self, model: PedestrianModel) -> None:
         self._model = model
@@ -79,6 +82,7 @@ class Statistics:
         return {
             "model": type(model).__name__,
             "preset": model.preset,
+            "rules": model.rules.numbers(),
             "pedestrians": model.population.count,
             "simulated_s": round(model.elapsed, 6),
             "egress_s": round(last_left or 0.0, 6) if out else None,

@@ -7,7 +7,6 @@ import solara
 from mesa_mobility.dashboard.forms import TextField
 from mesa_mobility.dashboard.session.behaviours import TermState
 from mesa_mobility.dashboard.session.clock import FULL_SPEED
-from mesa_mobility.dashboard.session.colouring import COLOURINGS
 from mesa_mobility.dashboard.session.session import Session
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.parameters import Parameter
@@ -94,7 +93,9 @@ def TimeControls(session: Session) -> None:
                 dense=True,
             )
         with solara.Div(style={"width": "130px"}):
-            solara.Select("colour by", list(COLOURINGS), colour, on_value=colour_by, dense=True)
+            names = list(session.colourings.value)
+            shown = colour if colour in names else names[0]
+            solara.Select("colour by", names, shown, on_value=colour_by, dense=True)
         pace = f", {status.pace:.1f} x real time" if playing and status.pace else ""
         reason = f": {status.reason}" if status.reason else ""
         solara.Text(f"{status.state}{pace}{reason}", classes=["mm-status"])

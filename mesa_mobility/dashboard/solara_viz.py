@@ -25,13 +25,11 @@ def make_crowd_view(
     ``SolaraViz(model, components=[make_crowd_view()])`` shows it beside any other component.
 
     Args:
-        colour_by: "speed", "type", "waiting time" or "density".
+        colour_by: "speed", "type", "waiting time", "density" or a field of the model's people.
         height: of the canvas, as CSS says it.
 
-    Raises:
-        ModelError: an unknown ``colour_by``.
+    An unknown ``colour_by`` raises ModelError when the view is drawn.
     """
-    colouring = colouring_named(colour_by)
 
     @solara.component
     def CrowdView(model: PedestrianModel) -> None:
@@ -40,6 +38,7 @@ def make_crowd_view(
         observer.after_step()
         plan = model.floor_plan
         floor = solara.use_memo(lambda: serialization.floor(plan), [plan, plan.version])
+        colouring = colouring_named(colour_by, model)
         frame = serialization.frame(model, colouring, observer, run=id(model), number=model.frame)
         CrowdCanvas(frame=frame, floor=floor, height=height)
 

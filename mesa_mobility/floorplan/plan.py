@@ -1,9 +1,10 @@
 """The floor plan: walkable area, obstacles, gates and exits."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
+import networkx as nx
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,7 @@ from mesa_mobility.floorplan import (
     sampling,
 )
 from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.walls import boundaries
 from mesa_mobility.floorplan.walls.wall_index import WallIndex
 from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
@@ -89,6 +91,7 @@ class FloorPlan:
         check_zones(self._walkable, self._zones)
         checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
+        self._router: Router | None = None
         self._set_free(self._obstacles, self._without(self._obstacles))
         self._set_walls()
 
@@ -207,6 +210,18 @@ class FloorPlan:
         """Gates, then exits: the numbering of `Targets.gates`."""
         return (*self._gates, *self._exits)
 
+    @property
+    def route_graph(self) -> nx.DiGraph:
+        """The routes of adults as a graph, up to date with obstacles and doors.
+
+        Nodes are corners and places in gates and exits, with ``kind``, ``position`` (x, y in
+        metres), ``opening`` (name) and ``direction``; edges have their length in metres as
+        ``weight``.
+        """
+        if self._router is None:
+            self._router = Router(self)
+        return self._router.graph
+
     def gate(self, name: str) -> Gate | Exit:
         """The gate or exit of this name; a FloorPlanError lists the known names."""
         for opening in self.openings():
@@ -308,6 +323,26 @@ class FloorPlan:
         return sampling.random_points(
             self, n, rng, within=within, spacing=spacing, clearance=clearance, avoid=avoid
         )
+
+    def state(self) -> dict[str, Any]:
+        """All that changes while models run: obstacles, the next one's id, and what is closed."""
+        return {
+            "obstacles": dict(self._obstacles),
+            "next_obstacle": self._next_obstacle,
+            "closed": sorted(self._closed),
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` of a plan with the same floor, exits and gates has given.
+
+        People who stand on an obstacle are not looked for.
+        """
+        if state == self.state():
+            return
+        obstacles = dict(state["obstacles"])
+        self._set_free(obstacles, self._without(obstacles))
+        self._next_obstacle, self._closed = state["next_obstacle"], set(state["closed"])
+        self._changed()
 
     def _without(self, obstacles: dict[int, Polygon]) -> BaseGeometry:
         free = checks.free_area(self._walkable, list(obstacles.values()), self._exits, self._gates)

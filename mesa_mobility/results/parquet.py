@@ -33,11 +33,11 @@ SCHEMA = pa.schema(
 
 
 def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
-    """Write columns frame, person, x (m), y (m), heading (rad) and person_data, with zstd.
+    """Write columns frame, person, x (m), y (m), heading (rad), person_data and fields, with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
-    last_frame, core_radius by person, inside_at_end, names in person_data, and the sha256 of the
-    file (see ``mesa_mobility.results.seal``). Pages have checksums as well, which other readers can
+    last_frame, core_radius by person, inside_at_end, names in person_data and of fields, and the
+    sha256 of the file (see ``mesa_mobility.results.seal``). Pages have checksums, which others can
     check. Equal trajectories give equal bytes.
 
     Raises:
@@ -59,6 +59,10 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
         by_person = pa.array(values)
         texts = values.dtype.kind == "U"
         columns[name] = (by_person.dictionary_encode() if texts else by_person).take(person)
+    fields = trajectories.fields
+    if fields:
+        metadata["fields"] = list(fields)
+    columns |= {name: pa.array(values) for name, values in fields.items()}
     table = pa.table(columns)
     with replacing(path, ResultsError) as temporary:
         with pq.ParquetWriter(
@@ -119,6 +123,7 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
             raise ResultsError(f"{source}: format version {version}, expected {FORMAT_VERSION}")
         columns = table.select(SCHEMA.names).cast(SCHEMA)
         person = columns["person"].to_numpy()
+        fields = {name: table[name].to_numpy() for name in values.get("fields", [])}
         return {
             **{name: columns[name].to_numpy() for name in SCHEMA.names},
             "person_data": {
@@ -128,6 +133,7 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
             "core_radius": np.asarray(values["core_radius"], dtype=np.float64),
             "last_frame": int(values["last_frame"]),
             "inside_at_end": np.asarray(values["inside_at_end"], dtype=np.int64),
+            "fields": fields,
         }
     except (
         KeyError, TypeError, ValueError, OverflowError, RecursionError, pa.ArrowException

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -48,6 +48,7 @@ class Trajectories:
         person_data: what is known of people besides, by name: (m,) texts or numbers, of person p
             ``person_data[name][p]``. That of a model has ``type`` and ``group``, which is empty for
             people without one.
+        fields: (n,) values of each field that the model declares for its people, by name.
 
     Raises:
         ResultsError: columns of unequal length, values that are not finite, a person twice in
@@ -65,6 +66,7 @@ class Trajectories:
     last_frame: int | None = None
     inside_at_end: IntArray | None = None
     person_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    fields: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         columns: dict[str, NDArray[Any]] = {
@@ -74,19 +76,25 @@ class Trajectories:
             "y": _real_numbers("y", self.y),
             "heading": _real_numbers("heading", self.heading),
         }
+        own = {name: _one_dimensional(name, values) for name, values in self.fields.items()}
+        taken = columns.keys() & own.keys()
+        if taken:
+            raise ResultsError(f"trajectories: a field is named {min(taken)!r}, as a column is")
+        columns |= own
         lengths = {name: len(values) for name, values in columns.items()}
         if len(set(lengths.values())) != 1:
             raise ResultsError(f"trajectories: columns of unequal length: {lengths}")
         columns = _sorted(columns)
-        for name, values in columns.items():
-            object.__setattr__(self, name, _read_only(values))
+        object.__setattr__(self, "fields", {name: _read_only(columns[name]) for name in own})
+        for name in columns.keys() - own.keys():
+            object.__setattr__(self, name, _read_only(columns[name]))
         if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
             raise ResultsError(
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
             )
         object.__setattr__(self, "core_radius", _radii(self.core_radius, columns["person"]))
         object.__setattr__(
-            self, "person_data", checked_person_data(self.person_data, columns["person"])
+            self, "person_data", checked_person_data(self.person_data, columns["person"], own)
         )
         last = int(columns["frame"][-1]) if lengths["frame"] else 0
         if self.last_frame is None:
@@ -117,7 +125,8 @@ class Trajectories:
         """The trajectories that a model has recorded so far.
 
         Args:
-            model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading),
+            model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
+                and of fields, if any),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
                 ``rows`` (the people inside now); ``person_data()``, where it has that.
 
@@ -127,7 +136,8 @@ class Trajectories:
         recorder = getattr(model, "recorder", None)
         if recorder is None:
             raise ResultsError("the model has recorded nothing: create it with record=True")
-        rows = recorder.arrays()
+        arrays = recorder.arrays()
+        rows = {name: arrays.pop(name) for name in ("frame", "person", "x", "y", "heading")}
         if len(model.rows) and not len(rows["frame"]):
             raise ResultsError("the model has recorded nothing: expected a step before")
         return cls(
@@ -137,6 +147,7 @@ class Trajectories:
             last_frame=round(model.elapsed * model.frame_rate),
             inside_at_end=model.rows,
             person_data=model.person_data() if hasattr(model, "person_data") else {},
+            fields=arrays,
         )
 
     def __len__(self) -> int:
@@ -228,17 +239,20 @@ class Trajectories:
             **{
                 name: getattr(self, name)[rows] for name in ("frame", "person", "x", "y", "heading")
             },
+            fields={name: values[rows] for name, values in self.fields.items()},
             inside_at_end=self.remaining[kept[self.remaining]],
         )
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row for each person and frame: frame, person, x and y (m), heading (rad), person_data.
+        """A row for each person and frame: frame, person, x and y (m), heading (rad), fields and
+        person_data.
 
         Texts, such as the type, are categories.
         """
         import pandas as pd
 
         columns: dict[str, Any] = {name: getattr(self, name) for name in COLUMNS}
+        columns |= self.fields
         for name, values in self.person_data.items():
             if values.dtype.kind == "U":
                 texts, codes = np.unique(values, return_inverse=True)
@@ -342,7 +356,7 @@ DATA_KINDS = "Uifb"
 
 
 def checked_person_data(
-    data: Mapping[str, ArrayLike], person: IntArray
+    data: Mapping[str, ArrayLike], person: IntArray, fields: Collection[str] = ()
 ) -> Mapping[str, NDArray[Any]]:
     """Data of people as read-only arrays, with an entry for each person.
 
@@ -354,7 +368,7 @@ def checked_person_data(
     found = {}
     for name, values in data.items():
         array = np.asarray(values)
-        if name in COLUMNS or not name.isidentifier():
+        if name in COLUMNS or name in fields or not name.isidentifier():
             raise ResultsError(f"trajectories: person_data {name!r}, expected a name of its own")
         if array.ndim != 1 or len(array) < people or array.dtype.kind not in DATA_KINDS:
             raise ResultsError(

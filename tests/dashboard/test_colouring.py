@@ -38,6 +38,21 @@ def test_waiting_is_time_spent_slower_than_a_fifth_of_a_metre_a_second():
     assert values("speed", model) == pytest.approx([1.25, 0.0])
 
 
+def test_people_are_coloured_by_their_fields():
+    model = model_of(corridor(), statues(), fields={"infected": bool, "mood": float})
+    model.add_pedestrians(
+        [(2.0, 1.0), (2.0, 1.9), (2.0, 2.8)],
+        fields={"infected": [False, True, True], "mood": [-2.0, 1.0, 6.0]},
+    )
+    observer = Observer(model)
+    infected = colouring_named("infected", model)
+    assert (infected.low, infected.high) == (0.0, 1.0)
+    assert infected.values(model, observer).tolist() == [0.0, 1.0, 1.0]
+    mood = colouring_named("mood", model)
+    assert (mood.low, mood.high, mood.label) == (-2.0, 6.0, "mood")
+    assert mood.values(model, observer).tolist() == [-2.0, 1.0, 6.0]
+
+
 def test_an_unknown_colouring_is_refused():
     with pytest.raises(ModelError, match="colour_by: got 'mood', expected one of speed"):
-        colouring_named("mood")
+        colouring_named("mood", model_of(corridor(), statues()))

@@ -2,10 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from mesa_mobility.errors import ModelError
+
+
+class Moment(NamedTuple):
+    """When decisions are taken, and the generator that they may draw from.
+
+    Attributes:
+        frame: now.
+        rng: the model's generator, or a copy of it.
+    """
+
+    frame: int
+    rng: np.random.Generator
+
+    def aside(self) -> Moment:
+        """The same with a copy of the generator, so that nothing is drawn from the model's."""
+        return Moment(self.frame, deepcopy(self.rng))
 
 
 @dataclass(frozen=True)
@@ -44,6 +65,15 @@ class Candidates:
             ``wall_offsets[i]:wall_offsets[i + 1]`` of ``walls``.
         walls: (w, 4) x1, y1, x2, y2 of walls and closed exits, metres: those no farther than the
             farthest that an option leads, the core radius and a centimetre.
+        groups: (b,) number of the group, 0 for none.
+        neighbour_facings: (q,) headings, radians.
+        neighbour_cores: (q,) core radius, metres.
+        neighbour_types: (q,) as ``types``.
+        neighbour_groups: (q,) as ``groups``.
+        fields: (b,) values of each field that the model declares for its people.
+        neighbour_fields: (q,) the same of the neighbours.
+        time: simulated seconds.
+        rng: the model's generator; where a decision is only explained, a copy of it.
     """
 
     points: NDArray[np.float64]
@@ -70,10 +100,39 @@ class Candidates:
     leads: NDArray[np.float64]
     wall_offsets: NDArray[np.int64]
     walls: NDArray[np.float64]
+    groups: NDArray[np.int64]
+    neighbour_facings: NDArray[np.float64]
+    neighbour_cores: NDArray[np.float64]
+    neighbour_types: NDArray[np.int64]
+    neighbour_groups: NDArray[np.int64]
+    fields: Mapping[str, NDArray[Any]]
+    neighbour_fields: Mapping[str, NDArray[Any]]
+    time: float
+    rng: np.random.Generator
 
     def __post_init__(self) -> None:
-        for array in vars(self).values():
-            array.setflags(write=False)
+        for array in (
+            *vars(self).values(), *self.fields.values(), *self.neighbour_fields.values()
+        ):  # fmt: skip
+            if isinstance(array, np.ndarray):
+                array.setflags(write=False)
+
+    def field(self, name: str) -> NDArray[np.float64]:
+        """(b,) what a kernel with ``fields=(name,)`` takes of each pedestrian.
+
+        Raises:
+            ModelError: the model declares no such field.
+        """
+        at_hand = {"type": self.types, "group": self.groups, "heading": self.facings,
+                   "core": self.cores, **self.fields}  # fmt: skip
+        return _chosen(name, at_hand)
+
+    def neighbour_field(self, name: str) -> NDArray[np.float64]:
+        """(q,) the same of each neighbour."""
+        at_hand = {"type": self.neighbour_types, "group": self.neighbour_groups,
+                   "heading": self.neighbour_facings, "core": self.neighbour_cores,
+                   **self.neighbour_fields}  # fmt: skip
+        return _chosen(name, at_hand)
 
     def __len__(self) -> int:
         return len(self.owner)
@@ -101,3 +160,9 @@ class Candidates:
         """
         velocity = self.neighbour_velocities[neighbours]
         return self.neighbour_positions[neighbours] + velocity * self.durations[rows, None]
+
+
+def _chosen(name: str, at_hand: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
+    if name not in at_hand:
+        raise ModelError(f"field {name!r}: is not declared; there are {', '.join(at_hand)}")
+    return at_hand[name].astype(np.float64)

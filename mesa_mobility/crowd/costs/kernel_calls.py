@@ -11,6 +11,7 @@ from numba.extending import intrinsic
 
 from mesa_mobility.crowd.costs.kernels import (
     FLOATS,
+    INTS,
     BoundKernel,
     OptionKernel,
     PairBoundKernel,
@@ -20,7 +21,7 @@ from mesa_mobility.crowd.costs.kernels import (
 
 
 def _caller(signature: Any) -> Any:
-    """Calls what is at an address; numbers as such, float arrays by their data.
+    """Calls what is at an address; numbers as such, arrays by their data.
 
     Plain Numba has no such call, so there is no twin of it (see ``compiled/twins.py``).
     """
@@ -34,7 +35,7 @@ def _caller(signature: Any) -> Any:
             function = builder.inttoptr(args[0], called.as_pointer())
             passed = []
             for value, kind, want in zip(args[1:], sig.args[1:], signature.args, strict=True):
-                if want == FLOATS:
+                if want in (FLOATS, INTS):
                     array = cgutils.create_struct_proxy(kind)(context, builder, value)
                     passed.append(array.data)
                 else:
@@ -65,6 +66,8 @@ def call_option_loop(  # type: ignore[no-untyped-def]
     preferred,
     own_vx,
     own_vy,
+    mine,
+    at,
     p,
     weight,
     out,
@@ -86,6 +89,8 @@ def call_option_loop(  # type: ignore[no-untyped-def]
         preferred,
         own_vx,
         own_vy,
+        mine,
+        at,
         p,
         weight,
         out,
@@ -95,24 +100,24 @@ def call_option_loop(  # type: ignore[no-untyped-def]
 @intrinsic
 def call_pair_loop(  # type: ignore[no-untyped-def]
     typingctx, address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex,
-    ney, lead, p, out,
+    ney, lead, mine, theirs, width, at, p, out,
 ):  # fmt: skip
     """Write the cost of one option for each of n neighbours; arguments as the loop's."""
     return _caller(PairKernel.signature)(
         address, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-        p, out,
+        mine, theirs, width, at, p, out,
     )  # fmt: skip
 
 
 @intrinsic
 def call_pairs_loop(  # type: ignore[no-untyped-def]
     typingctx, address, m, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex,
-    ney, lead, p, weight, out,
+    ney, lead, mine, theirs, width, at, p, weight, out,
 ):  # fmt: skip
     """Add the weighted costs of n options for each of m neighbours; arguments as the loop's."""
     return _caller(PairKernel.all_pairs)(
         address, m, n, x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney,
-        lead, p, weight, out,
+        lead, mine, theirs, width, at, p, weight, out,
     )  # fmt: skip
 
 

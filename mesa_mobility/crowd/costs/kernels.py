@@ -10,7 +10,7 @@ new kernel is compiled alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from types import FunctionType
 from typing import Any, ClassVar, Self, overload
@@ -18,20 +18,22 @@ from typing import Any, ClassVar, Self, overload
 from numba import njit, types
 
 from mesa_mobility.compiled.cache import kept_cfunc
+from mesa_mobility.errors import ModelError
 
 _F = types.float64
 FLOATS = types.CPointer(_F)
 _N = types.int64
+INTS = types.CPointer(_N)
 
 _OPTION_LOOP = """
 def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, p,
-    weight, out
+    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, mine,
+    at, p, weight, out
 ):
     for k in range(n):
         out[k] += weight * each(
             x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, preferred,
-            {own}p
+            {own}{taken}p
         )
 """
 
@@ -50,26 +52,26 @@ def {name}(
 _PAIR_LOOP = """
 def {name}(
     n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-    p, out
+    mine, theirs, width, at, p, out
 ):
     for k in range(n):
         out[k] = each(
             x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx[k], ny[k], nvx[k], nvy[k],
-            nex[k], ney[k], lead[k], p
+            nex[k], ney[k], lead[k], {taken}p
         )
 """
 
 _PAIRS_LOOP = """
 def {name}(
     m, n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney,
-    lead, p, weight, out
+    lead, mine, theirs, width, at, p, weight, out
 ):
     for a in range(m):
         ax, ay, avx, avy, aex, aey, alead = nx[a], ny[a], nvx[a], nvy[a], nex[a], ney[a], lead[a]
         for k in range(n):
             out[k] += weight * each(
                 x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, ax, ay,
-                avx, avy, aex, aey, alead, p
+                avx, avy, aex, aey, alead, {taken}p
             )
 """
 
@@ -109,9 +111,28 @@ class CostKernel:
     loop: ClassVar[str]
     signature: ClassVar[Any]
 
-    def __init__(self, function: Callable[..., float], *, own_velocity: bool = False) -> None:
+    def __init__(
+        self,
+        function: Callable[..., float],
+        *,
+        own_velocity: bool = False,
+        fields: Sequence[str] = (),
+    ) -> None:
+        if isinstance(fields, str) or len(set(fields)) != len(fields):
+            raise ModelError(f"kernel {function.__name__}: fields {fields!r}, expected their names")
         self.function = function
+        self.fields = tuple(fields)
+        self.own_velocity = own_velocity
         self._own = "own_vx, own_vy, " if own_velocity else ""
+
+    def _taken(self, neighbour: str) -> str:
+        """The values of fields in a call: the person's own, then its neighbour's, if any."""
+        own = [f"mine[at[{k}]], " for k in range(len(self.fields))]
+        theirs = [
+            f"theirs[at[{k}] * width + {neighbour}], "
+            for k in range(len(self.fields) * bool(neighbour))
+        ]
+        return "".join(own + theirs)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """Itself: its machine code stays where it is."""
@@ -121,11 +142,12 @@ class CostKernel:
     def _compiled(self) -> Any:
         return self._compile(self.loop, self.signature, "loop")
 
-    def _compile(self, source: str, signature: Any, suffix: str) -> Any:
+    def _compile(self, source: str, signature: Any, suffix: str, neighbour: str = "") -> Any:
         # As in NumPy, a division by zero gives inf or nan, which the search refuses.
-        return kept_cfunc(self._loop(source, suffix), signature, error_model="numpy")
+        loop = self._loop(source, suffix, neighbour)
+        return kept_cfunc(loop, signature, error_model="numpy")
 
-    def _loop(self, source: str, suffix: str) -> FunctionType:
+    def _loop(self, source: str, suffix: str, neighbour: str) -> FunctionType:
         """A loop as if written in the function's own file, with which it is cached."""
         code = self.function.__code__
         name = f"{self.function.__name__}_{suffix}"
@@ -133,9 +155,8 @@ class CostKernel:
             "each": njit(error_model="numpy")(self.function),
             "__name__": self.function.__module__,
         }
-        source = "\n" * (code.co_firstlineno - 1) + source.format(name=name, own=self._own).lstrip(
-            "\n"
-        )
+        text = source.format(name=name, own=self._own, taken=self._taken(neighbour))
+        source = "\n" * (code.co_firstlineno - 1) + text.lstrip("\n")
         exec(compile(source, code.co_filename, "exec"), space)
         loop = space[name]
         assert isinstance(loop, FunctionType)
@@ -152,7 +173,7 @@ class OptionKernel(CostKernel):
     """Cost of one movement option."""
 
     loop = _OPTION_LOOP
-    signature = types.void(_N, *[FLOATS] * 6, *[_F] * 7, FLOATS, _F, FLOATS)
+    signature = types.void(_N, *[FLOATS] * 6, *[_F] * 7, FLOATS, INTS, FLOATS, _F, FLOATS)
 
 
 class BoundKernel(CostKernel):
@@ -170,14 +191,18 @@ class PairKernel(CostKernel):
     """
 
     loop = _PAIR_LOOP
-    signature = types.void(_N, *[_F] * 10, *[FLOATS] * 9)
+    signature = types.void(_N, *[_F] * 10, *[FLOATS] * 9, _N, INTS, FLOATS, FLOATS)
     all_pairs: ClassVar[Any] = types.void(
-        _N, _N, *[FLOATS] * 6, *[_F] * 4, *[FLOATS] * 8, _F, FLOATS
+        _N, _N, *[FLOATS] * 6, *[_F] * 4, *[FLOATS] * 9, _N, INTS, FLOATS, _F, FLOATS
     )
 
     @cached_property
+    def _compiled(self) -> Any:
+        return self._compile(self.loop, self.signature, "loop", neighbour="k")
+
+    @cached_property
     def _compiled_pairs(self) -> Any:
-        return self._compile(_PAIRS_LOOP, self.all_pairs, "pairs")
+        return self._compile(_PAIRS_LOOP, self.all_pairs, "pairs", neighbour="a")
 
     @property
     def pairs_address(self) -> int:
@@ -204,11 +229,16 @@ def option_kernel(function: Callable[..., float]) -> OptionKernel: ...
 
 
 @overload
-def option_kernel(*, own_velocity: bool) -> Callable[[Callable[..., float]], OptionKernel]: ...
+def option_kernel(
+    *, own_velocity: bool = False, fields: Sequence[str] = ()
+) -> Callable[[Callable[..., float]], OptionKernel]: ...
 
 
 def option_kernel(
-    function: Callable[..., float] | None = None, *, own_velocity: bool = False
+    function: Callable[..., float] | None = None,
+    *,
+    own_velocity: bool = False,
+    fields: Sequence[str] = (),
 ) -> OptionKernel | Callable[[Callable[..., float]], OptionKernel]:
     """Make a kernel of one movement option.
 
@@ -223,10 +253,16 @@ def option_kernel(
         function: the function.
         own_velocity: whether it also takes ``own_vx, own_vy`` before ``parameters``: the mean
             velocity of the movement that has just ended, m/s.
+        fields: names of the pedestrian's fields that it takes, before ``parameters``, as floats:
+            those that the model declares, or "type" (index), "group" (number, 0 for none),
+            "heading" (radians) and "core" (metres). Such a kernel has no bound.
+
+    Raises:
+        ModelError: fields that are no list of different names.
     """
     if function is None:
-        return partial(OptionKernel, own_velocity=own_velocity)
-    return OptionKernel(function, own_velocity=own_velocity)
+        return partial(OptionKernel, own_velocity=own_velocity, fields=fields)
+    return OptionKernel(function, own_velocity=own_velocity, fields=fields)
 
 
 @overload
@@ -257,7 +293,17 @@ def bound_kernel(
     return BoundKernel(function, own_velocity=own_velocity)
 
 
-def pair_kernel(function: Callable[..., float]) -> PairKernel:
+@overload
+def pair_kernel(function: Callable[..., float]) -> PairKernel: ...
+
+
+@overload
+def pair_kernel(*, fields: Sequence[str]) -> Callable[[Callable[..., float]], PairKernel]: ...
+
+
+def pair_kernel(
+    function: Callable[..., float] | None = None, *, fields: Sequence[str] = ()
+) -> PairKernel | Callable[[Callable[..., float]], PairKernel]:
     """Make a kernel of one movement option and one neighbour; the search sums over neighbours.
 
     The function takes ``(x, y, facing_x, facing_y, duration, speed, start_x, start_y, target_x,
@@ -265,8 +311,19 @@ def pair_kernel(function: Callable[..., float]) -> PairKernel:
     lead, parameters)``.  After the arguments of an option kernel come the neighbour's position in
     metres and velocity in m/s at the moment of the decision, the unit vector from it to its target
     (0, 0 at the target), and the metres by which its route is shorter than the pedestrian's.
+
+    Args:
+        function: the function.
+        fields: as for ``option_kernel``; the function takes the pedestrian's own values and then
+            the neighbour's: ``..., lead, infected, neighbour_infected, parameters`` for
+            ``fields=("infected",)``.
+
+    Raises:
+        ModelError: fields that are no list of different names.
     """
-    return PairKernel(function)
+    if function is None:
+        return partial(PairKernel, fields=fields)
+    return PairKernel(function, fields=fields)
 
 
 def pair_bound_kernel(function: Callable[..., float]) -> PairBoundKernel:

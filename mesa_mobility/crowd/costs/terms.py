@@ -7,7 +7,9 @@ number for each.  Terms are independent of one another, so their order does not 
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
@@ -33,6 +35,7 @@ from mesa_mobility.crowd.costs.layout import (
     END_UY,
     END_X,
     END_Y,
+    FIELDS,
     LEAD,
     OTHER_EX,
     OTHER_EY,
@@ -43,10 +46,11 @@ from mesa_mobility.crowd.costs.layout import (
     SECONDS,
     SPEED,
 )
+from mesa_mobility.crowd.hooks import Plugin
 from mesa_mobility.errors import ModelError
 
 
-class CostTerm(ABC):
+class CostTerm(Plugin):
     """One additive term of the cost of a movement option.
 
     Subclasses set ``name`` and define ``cost``.  The engine multiplies by ``weight``.
@@ -54,6 +58,8 @@ class CostTerm(ABC):
     Attributes:
         name: unique name of the term, as it is registered and shown.
         weight: factor of the term in the sum; may be changed while a model runs.
+        weight_by_type: factors for people of some types, as ``{"child": 0.0}``; 0 switches the
+            term off for them.
 
     Examples:
         >>> import numpy as np
@@ -69,8 +75,9 @@ class CostTerm(ABC):
         ('straight_on', 0.5)
     """
 
-    name: ClassVar[str]
     default_weight: ClassVar[float] = 1.0
+
+    _by_type: Mapping[str, float] = MappingProxyType({})
 
     def __init__(self, weight: float | None = None) -> None:
         self.weight = self.default_weight if weight is None else weight
@@ -85,6 +92,34 @@ class CostTerm(ABC):
         if not np.isfinite(value):
             raise ModelError(f"weight of {self.name!r}: got {value}, expected a finite number")
         self._weight = float(value)
+
+    @property
+    def weight_by_type(self) -> Mapping[str, float]:
+        """Factors for people of some types, by the types' names, in place of ``weight``."""
+        return MappingProxyType(dict(self._by_type))
+
+    @weight_by_type.setter
+    def weight_by_type(self, weights: Mapping[str, float]) -> None:
+        for name, value in weights.items():
+            if not np.isfinite(value):
+                raise ModelError(
+                    f"weight of {self.name!r} for {name!r}: got {value}, expected a finite number"
+                )
+        self._by_type = {name: float(value) for name, value in weights.items()}
+
+    def weights(self, types: Sequence[str]) -> NDArray[np.float64]:
+        """(types,) the factor for people of each of a model's types, given by their names.
+
+        Raises:
+            ModelError: a weight for a type that the model does not have.
+        """
+        unknown = [name for name in self._by_type if name not in types]
+        if unknown:
+            raise ModelError(
+                f"behaviour {self.name!r}: has a weight for the type {unknown[0]!r}; the model has "
+                f"{', '.join(types)}"
+            )
+        return np.array([self._by_type.get(name, self.weight) for name in types])
 
     @abstractmethod
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
@@ -131,6 +166,10 @@ class CompiledTerm(CostTerm):
                 candidates.speeds,
             ]
         )
+        mine = np.zeros((len(candidates.pedestrians), len(self.kernel.fields)))
+        for column, name in enumerate(self.kernel.fields):
+            mine[:, column] = candidates.field(name)
+        at = np.arange(max(len(self.kernel.fields), 1))
         if isinstance(self.kernel, PairKernel):
             x, y = candidates.neighbour_positions.T
             vx, vy = candidates.neighbour_velocities.T
@@ -138,8 +177,11 @@ class CompiledTerm(CostTerm):
             return _each_pair(
                 self.kernel.address, candidates.owner, ends, candidates.positions,
                 candidates.targets, candidates.neighbour_offsets,
-                np.array([x, y, vx, vy, ex, ey, candidates.leads, np.empty_like(x)]),
-                numbers,
+                np.array(
+                    [x, y, vx, vy, ex, ey, candidates.leads, np.empty_like(x),
+                     *(candidates.neighbour_field(name) for name in self.kernel.fields)]
+                ),
+                mine, at, numbers,
             )  # fmt: skip
         if isinstance(self.kernel, WallKernel):
             return _each_wall(
@@ -149,7 +191,8 @@ class CompiledTerm(CostTerm):
             )  # fmt: skip
         return _each_option(
             self.kernel.address, candidates.offsets, ends, candidates.positions,
-            candidates.targets, candidates.preferred_speeds, candidates.velocities, numbers,
+            candidates.targets, candidates.preferred_speeds, candidates.velocities, mine, at,
+            numbers,
         )  # fmt: skip
 
 
@@ -162,6 +205,8 @@ def _each_option(
     targets: NDArray[np.float64],
     preferred: NDArray[np.float64],
     own: NDArray[np.float64],
+    mine: NDArray[np.float64],
+    fields: NDArray[np.int64],
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     out = np.zeros(ends.shape[1])
@@ -171,7 +216,7 @@ def _each_option(
             address, offsets[b + 1] - offsets[b], ends[END_X, at], ends[END_Y, at],
             ends[END_UX, at], ends[END_UY, at], ends[SECONDS, at], ends[SPEED, at],
             starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1], preferred[b], own[b, 0],
-            own[b, 1], numbers, 1.0, out[at],
+            own[b, 1], mine[b], fields, numbers, 1.0, out[at],
         )  # fmt: skip
     return out
 
@@ -185,6 +230,8 @@ def _each_pair(
     targets: NDArray[np.float64],
     offsets: NDArray[np.int64],
     others: NDArray[np.float64],
+    mine: NDArray[np.float64],
+    fields: NDArray[np.int64],
     numbers: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     out = np.empty(len(owner))
@@ -196,8 +243,8 @@ def _each_pair(
             ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k],
             starts[b, 0], starts[b, 1], targets[b, 0], targets[b, 1],
             others[OTHER_X, at], others[OTHER_Y, at], others[OTHER_VX, at], others[OTHER_VY, at],
-            others[OTHER_EX, at], others[OTHER_EY, at], others[LEAD, at],
-            numbers, others[COST, at],
+            others[OTHER_EX, at], others[OTHER_EY, at], others[LEAD, at], mine[b],
+            others[FIELDS:, offsets[b] :], others.shape[1], fields, numbers, others[COST, at],
         )  # fmt: skip
         summed = 0.0
         for cost in others[COST, at]:

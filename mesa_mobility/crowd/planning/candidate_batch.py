@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.crowd.collision.exact import near_walls, wall_reach
-from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.planning.grid import Grid, people_within
 from mesa_mobility.crowd.planning.workspace import Rules
@@ -34,6 +34,7 @@ def make_candidates(
     grid: Grid,
     around: Surroundings,
     rules: Rules,
+    moment: Moment,
 ) -> Candidates:
     """The options, neighbours and walls of the pedestrians in ``rows``."""
     clusters = state.cluster[rows]
@@ -75,6 +76,15 @@ def make_candidates(
         leads=_leads(np.repeat(rows, np.diff(neighbour_offsets)), neighbours, state),
         wall_offsets=wall_offsets,
         walls=walls,
+        groups=state.agenda["group"][rows].astype(np.int64),
+        neighbour_facings=state.heading[neighbours],
+        neighbour_cores=state.core[neighbours],
+        neighbour_types=state.type_index[neighbours].astype(np.int64),
+        neighbour_groups=state.agenda["group"][neighbours].astype(np.int64),
+        fields={name: values[rows] for name, values in state.fields.items()},
+        neighbour_fields={name: values[neighbours] for name, values in state.fields.items()},
+        time=moment.frame * FRAME_SECONDS,
+        rng=moment.rng,
     )
 
 

@@ -14,7 +14,7 @@ from mesa_mobility.crowd.collision.broad_phase import cull_groups
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
 from mesa_mobility.crowd.collision.walls import walls_to_ego
-from mesa_mobility.crowd.costs.layout import LEAD
+from mesa_mobility.crowd.costs.layout import FIELDS, LEAD
 from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.planning.branch_and_bound import (
@@ -87,7 +87,10 @@ def decide(
         Index in ``rows`` of a pedestrian for whom a cost was not a number, or ``len(rows)``.  The
         least over all threads is the first such pedestrian.
     """
-    has_negative_pairs = least(terms.pair_weight) < 0.0 or least(terms.wall_weight) < 0.0
+    has_negative_pairs = False
+    for kind in range(len(terms.pair_weight)):
+        lowest = min(least(terms.pair_weight[kind]), least(terms.wall_weight[kind]))
+        has_negative_pairs = has_negative_pairs or lowest < 0.0
     bounded = len(extra) == 0 and not has_negative_pairs
     for address in terms.bound_address:
         bounded = bounded and address != 0
@@ -140,6 +143,9 @@ def _decide_one(
     route, lead = state.route[i], others[LEAD]
     for a in range(count):
         lead[a] = route - lead[a]
+    for row in range(FIELDS, len(others)):
+        for a in range(count):
+            others[row, a] = terms.fields[near[a], row - FIELDS]
     fill_lane(count, others)
     farthest = table.farthest[cluster]
     reach = wall_reach(farthest, core)

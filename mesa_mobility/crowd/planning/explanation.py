@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
-from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
@@ -97,28 +97,29 @@ class Watch:
 
 def weigh(
     row: int,
-    frame: int,
+    moment: Moment,
     known: Repertoire,
     crowd: Crowd,
     grid: Grid,
     around: Surroundings,
     rules: Rules,
     terms: Sequence[CostTerm],
+    types: Sequence[str],
 ) -> Explanation:
     """Costs of the options of the pedestrian in ``row``, before collision tests."""
     candidates = make_candidates(
-        np.array([row], dtype=np.int64), known.table, crowd, grid, around, rules
+        np.array([row], dtype=np.int64), known.table, crowd, grid, around, rules, moment
     )
-    n = len(candidates)
+    n, kind = len(candidates), crowd.type_index[row]
     costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
     return Explanation(
         pedestrian=row,
-        frame=frame,
+        frame=moment.frame,
         taken=False,
         cluster=int(crowd.cluster[row]) - int(known.first_cluster[crowd.type_index[row]]),
         candidates=candidates,
         terms=tuple(term.name for term in terms),
-        weights=np.array([term.weight for term in terms]),
+        weights=np.array([term.weights(types)[kind] for term in terms]),
         costs=np.array(costs).reshape(len(costs), n),
         verdicts=np.zeros(n, dtype=np.int8),
         blockers=np.full(n, -1, dtype=np.int64),

@@ -22,6 +22,7 @@ from mesa_mobility.crowd.costs.layout import (
     END_UY,
     END_X,
     END_Y,
+    FIELDS,
     LEAD,
     OTHER_EX,
     OTHER_EY,
@@ -90,7 +91,7 @@ def pair_cost(
         k: the option.
         ends: (6, n) ends of options.
         count: number of neighbours.
-        others: (8, n) the neighbours, in full lanes (see ``fill_lane``).
+        others: (8 + fields, n) the neighbours, in full lanes (see ``fill_lane``).
         enough: limit above which the sum does not matter; finite only if no pair cost is negative.
         state: the crowd.
         terms: compiled terms.
@@ -102,6 +103,7 @@ def pair_cost(
         The sum, or ``ENOUGH`` if it certainly exceeds the limit.
     """
     costs, n, so_far = others[COST], len(terms.pair_address), 0.0
+    kind = state.type_index[me.row]
     first_term = most_selective_term[0] if most_selective_term[0] < n else 0
     for q in range(n):
         t = first_term + q if first_term + q < n else first_term + q - n
@@ -110,6 +112,7 @@ def pair_cost(
             ends[END_UX, k], ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
             state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
             others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY], others[LEAD],
+            terms.fields[me.row], others[FIELDS:], others.shape[1], terms.pair_fields[t],
             terms.pair_parameters[t], costs,
         )  # fmt: skip
         summed = 0.0
@@ -119,7 +122,7 @@ def pair_cost(
             if any_of(costs, first):
                 for a in range(first, min(first + LANES, count)):
                     summed += costs[a]
-        sums[t] = terms.pair_weight[t] * summed
+        sums[t] = terms.pair_weight[kind, t] * summed
         so_far += sums[t]
         if enough < so_far * LITTLE_LESS < np.inf:
             most_selective_term[0] = t
@@ -150,10 +153,10 @@ def pair_costs_at_least(
 
     Options are in full lanes (see ``fill_ends``). A bound sums over the first ``count`` neighbours
     of ``others``, or if ``approximate`` over the marked ones among them. It holds whatever the
-    order of summation. ``some`` (8, n) is workspace.
+    order of summation. ``some`` (8 + fields, n) is workspace.
     """
     n = in_lanes(last - first)
-    least = out[first : first + n]
+    least, kind = out[first : first + n], state.type_index[me.row]
     least[:] = 0.0
     for t in range(len(terms.pairs_address)):
         counting, given = count, others
@@ -163,13 +166,16 @@ def pair_costs_at_least(
                 if marks[a] >> t & 1:
                     for row in range(COST):
                         some[row, counting] = others[row, a]
+                    for row in range(FIELDS, len(others)):
+                        some[row, counting] = others[row, a]
                     counting += 1
         call_pairs_loop(
             terms.pairs_address[t], counting, n, ends[END_X, first:], ends[END_Y, first:],
             ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
             me.x, me.y, state.target_x[me.row], state.target_y[me.row], given[OTHER_X],
             given[OTHER_Y], given[OTHER_VX], given[OTHER_VY], given[OTHER_EX], given[OTHER_EY],
-            given[LEAD], terms.pair_parameters[t], terms.pair_weight[t], least,
+            given[LEAD], terms.fields[me.row], given[FIELDS:], given.shape[1],
+            terms.pair_fields[t], terms.pair_parameters[t], terms.pair_weight[kind, t], least,
         )  # fmt: skip
     for k in range(last - first):
         # A value that is not a number is found by the sum over all neighbours.
@@ -195,7 +201,7 @@ def add_pair_bounds(
 
     ``ends`` has the ends of the groups; ``some``, of one number for each group, is workspace.
     """
-    of, n = groups.ends, last - first
+    of, n, kind = groups.ends, last - first, state.type_index[me.row]
     some[:n] = 0.0
     for t in range(len(terms.pair_bound_address)):
         if terms.pair_bound_address[t] != 0:
@@ -205,7 +211,7 @@ def add_pair_bounds(
                 of[DURATION, first:], of[SLOWEST, first:], of[FASTEST, first:], me.x, me.y,
                 state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
                 others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY],
-                others[LEAD], terms.pair_parameters[t], terms.pair_weight[t], some,
+                others[LEAD], terms.pair_parameters[t], terms.pair_weight[kind, t], some,
             )  # fmt: skip
     for k in range(n):
         # A value that is not a number is found when options are tested.
@@ -239,7 +245,7 @@ def mark_relevant(
         return False
     n = pick_between(bounds, -np.inf, lowest + LIKELY, 0, likely)
     marks[:count] = 0
-    costs = others[COST]
+    costs, kind = others[COST], state.type_index[me.row]
     for asked in range(PROBE_GROUPS):
         a = likely[(2 * asked + 1) * n // (2 * PROBE_GROUPS)]
         seconds = groups.ends[DURATION, first + a]
@@ -250,10 +256,11 @@ def mark_relevant(
                 ends[END_UX, a], ends[END_UY, a], seconds, speed, me.x, me.y,
                 state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
                 others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY],
-                others[LEAD], terms.pair_parameters[t], costs,
+                others[LEAD], terms.fields[me.row], others[FIELDS:], others.shape[1],
+                terms.pair_fields[t], terms.pair_parameters[t], costs,
             )  # fmt: skip
             for b in range(count):
-                marks[b] |= int(costs[b] * terms.pair_weight[t] > WORTH_MENTION) << t
+                marks[b] |= int(costs[b] * terms.pair_weight[kind, t] > WORTH_MENTION) << t
     return True
 
 
@@ -332,12 +339,12 @@ def select_relevant(
 
     Args:
         me: the pedestrian.
-        others: (8, n) its neighbours.
+        others: (8 + fields, n) its neighbours.
         count: their number.
         state: the crowd.
         picked: workspace.
         dropped: workspace.
-        to: (8, n) gets a copy.
+        to: (8 + fields, n) gets a copy.
 
     Returns:
         Their number.
@@ -363,9 +370,10 @@ def select_relevant(
     for a in range(count):
         picked[n] = a
         n += 1 - dropped[a]
-    for row in range(COST):
+    for row in range(len(others)):
         given, copied = others[row], to[row]
-        for k in range(n):
-            copied[k] = given[picked[k]]
+        if row != COST:
+            for k in range(n):
+                copied[k] = given[picked[k]]
     fill_lane(n, to)
     return n

@@ -37,21 +37,27 @@ class Terms(NamedTuple):
     ``bound_address`` belongs to the option terms, 0 for those without a lower bound.
     ``pairs_address`` belongs to the pair terms: the loop over some neighbours and many options;
     so does ``pair_bound_address``, 0 for those without a lower bound.
-    Wall terms count the worst wall.
+    Wall terms count the worst wall. Weights are by pedestrian type and term.
+
+    ``fields`` (people, fields) are the values that any of the terms takes, ``option_fields`` and
+    ``pair_fields`` which of them each term takes.
     """
 
     bound_address: NDArray[np.int64]
     option_address: NDArray[np.int64]
     option_weight: NDArray[np.float64]
     option_parameters: NDArray[np.float64]
+    option_fields: NDArray[np.int64]
     pair_address: NDArray[np.int64]
     pair_weight: NDArray[np.float64]
     pair_parameters: NDArray[np.float64]
+    pair_fields: NDArray[np.int64]
     pairs_address: NDArray[np.int64]
     pair_bound_address: NDArray[np.int64]
     wall_address: NDArray[np.int64]
     wall_weight: NDArray[np.float64]
     wall_parameters: NDArray[np.float64]
+    fields: NDArray[np.float64]
 
 
 @internal()
@@ -103,13 +109,13 @@ def group_bounds(
         to_ux[k] = c * ux[k] - s * uy[k]
         to_uy[k] = s * ux[k] + c * uy[k]
         out[k] = 0.0
-    preferred = preferred_now(me.row, state)
+    preferred, kind = preferred_now(me.row, state), state.type_index[me.row]
     for t in range(len(terms.bound_address)):
         call_bound_loop(
             terms.bound_address[t], last - first, to_x, to_y, of[RADIUS, first:], to_ux, to_uy,
             of[TURN, first:], of[DURATION, first:], of[SLOWEST, first:], of[FASTEST, first:],
             px, py, state.target_x[me.row], state.target_y[me.row], preferred, state.vx[me.row],
-            state.vy[me.row], terms.option_parameters[t], terms.option_weight[t], out,
+            state.vy[me.row], terms.option_parameters[t], terms.option_weight[kind, t], out,
         )  # fmt: skip
 
 
@@ -124,14 +130,14 @@ def option_costs(
     out: NDArray[np.float64],
 ) -> None:
     """Add the weighted sum of the option terms to ``out``, for rows ``first`` to ``last``."""
-    preferred = preferred_now(me.row, state)
+    preferred, kind = preferred_now(me.row, state), state.type_index[me.row]
     for t in range(len(terms.option_address)):
         call_option_loop(
             terms.option_address[t], last - first, ends[END_X, first:], ends[END_Y, first:],
             ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
             me.x, me.y, state.target_x[me.row], state.target_y[me.row], preferred,
-            state.vx[me.row], state.vy[me.row], terms.option_parameters[t], terms.option_weight[t],
-            out[first:],
+            state.vx[me.row], state.vy[me.row], terms.fields[me.row], terms.option_fields[t],
+            terms.option_parameters[t], terms.option_weight[kind, t], out[first:],
         )  # fmt: skip
 
 
@@ -154,9 +160,9 @@ def wall_cost(
         state: the crowd.
         terms: compiled terms.
     """
-    total = 0.0
+    total, kind = 0.0, state.type_index[me.row]
     for t in range(len(terms.wall_address)):
-        total += terms.wall_weight[t] * call_wall_loop(
+        total += terms.wall_weight[kind, t] * call_wall_loop(
             terms.wall_address[t], len(walls), ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
             ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
             state.target_x[me.row], state.target_y[me.row], me.core, walls,

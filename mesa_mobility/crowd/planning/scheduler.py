@@ -13,11 +13,15 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import Entry
 from mesa_mobility.compiled.threads import in_threads, threads_for
 from mesa_mobility.compiled.twins import PLAIN
+from mesa_mobility.crowd.costs.candidates import Moment
+from mesa_mobility.crowd.costs.layout import FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.planning.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
-from mesa_mobility.crowd.planning.grid import build_grid, headways
+from mesa_mobility.crowd.planning.grid import Grid, build_grid, headways
+from mesa_mobility.crowd.planning.sample_checks import SampleChecks, check_terms
 from mesa_mobility.crowd.planning.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
@@ -33,9 +37,14 @@ class DecisionScheduler:
         repertoire: options of all pedestrian types.
         rules: the model's constants.
         least_core: smallest core radius in the crowd, metres.
+        types: names of the pedestrian types.
     """
 
-    def __init__(self, repertoire: Repertoire, rules: Rules, least_core: float) -> None:
+    def __init__(
+        self, repertoire: Repertoire, rules: Rules, least_core: float, types: Sequence[str]
+    ) -> None:
+        self._types = tuple(types)
+        self._checks = SampleChecks()
         self._repertoire = repertoire
         self._rules = rules
         # As many bodies as have room within the search radius.
@@ -44,7 +53,7 @@ class DecisionScheduler:
         self._make_room()
 
     def _make_room(self) -> None:
-        self._compiled = CompiledTerms()
+        self._compiled = CompiledTerms(self._types)
         self._works: list[Workspace] = []
         self._decide = Entry(decide)
 
@@ -58,7 +67,7 @@ class DecisionScheduler:
     def take(
         self,
         order: NDArray[np.int64],
-        frame: int,
+        moment: Moment,
         rows: NDArray[np.int64],
         crowd: Crowd,
         around: Surroundings,
@@ -69,7 +78,7 @@ class DecisionScheduler:
 
         Args:
             order: who decides, those first who go first.
-            frame: now.
+            moment: now.
             rows: everybody inside.
             crowd: the crowd; targets must be set.
             around: walls and exits.
@@ -80,16 +89,24 @@ class DecisionScheduler:
             ModelError: a cost is not a number, or a term does not give one for each option.
         """
         table, groups = self._repertoire.table, self._repertoire.groups
-        compiled, others = self._compiled(terms)
+        compiled, others = self._compiled(terms, crowd)
+        frame = moment.frame
         extra, extra_offsets = NO_EXTRA
         grid = build_grid(rows, crowd.x, crowd.y)
         if others:
             extra, extra_offsets = extra_costs(
-                others, order, table, crowd, grid, around, self._rules
+                others, order, table, crowd, grid, around, self._rules, moment, self._types
             )
+        checked = self._checks.due(terms) if len(order) else []
+        if checked:
+            first = make_candidates(
+                order[:1], table, crowd, grid, around, self._rules, moment.aside()
+            )
+            check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
         moving = headways(grid, crowd.records)
         threads = 1 if PLAIN else threads_for(len(order))
-        works = self._works_for(threads, len(rows), around, len(terms))
+        fields = compiled.fields.shape[1]
+        works = self._works_for(threads, len(rows), around, len(terms), fields)
 
         def part(first: int, last: int) -> None:
             people, offsets = order[first:last], extra_offsets[first : last + 1]
@@ -104,11 +121,8 @@ class DecisionScheduler:
 
             failed = min(in_threads(work_off, works))
             if failed < len(people):
-                names = ", ".join(term.name for term in terms)
-                raise ModelError(
-                    f"cost of an option of pedestrian {people[failed]}: not a number, expected "
-                    f"finite numbers from each of the behaviours {names}"
-                )
+                known = self._repertoire, crowd, grid, around, self._rules, terms, self._types
+                raise ModelError(_not_a_number(int(people[failed]), moment, *known))
 
         if watch is None or watch.pedestrian not in order:
             part(0, len(order))
@@ -116,8 +130,9 @@ class DecisionScheduler:
         # Costs use the crowd before any decision, collision tests the paths committed so far. So
         # deciding in two parts gives the same result.
         weighed = weigh(
-            watch.pedestrian, frame, self._repertoire, crowd, grid, around, self._rules, terms
-        )
+            watch.pedestrian, moment.aside(), self._repertoire, crowd, grid, around, self._rules,
+            terms, self._types,
+        )  # fmt: skip
         at = int(np.flatnonzero(order == watch.pedestrian)[0])
         if at > 0:
             part(0, at)
@@ -126,7 +141,7 @@ class DecisionScheduler:
         watch.commits(crowd, self._rules.first_option)
 
     def _works_for(
-        self, threads: int, people: int, around: Surroundings, terms: int
+        self, threads: int, people: int, around: Surroundings, terms: int, fields: int
     ) -> list[Workspace]:
         """A workspace for each thread."""
         walls = len(around.segments) + len(around.exits)
@@ -136,6 +151,7 @@ class DecisionScheduler:
             people > len(works[0].marks)
             or walls > len(works[0].walls)
             or terms > len(works[0].sums)
+            or FIELDS + fields != len(works[0].others)
         ):
             works.clear()
         while len(works) < threads:
@@ -145,5 +161,32 @@ class DecisionScheduler:
             options = int(np.diff(self._repertoire.table.offsets).max())
             clusters = self._repertoire.groups.clusters
             most = int((clusters["last"] - clusters["first"]).max())
-            works.append(make_workspace(people, walls, options, most, terms))
+            works.append(make_workspace(people, walls, options, most, terms, fields))
         return works[:threads]
+
+
+def _not_a_number(
+    row: int,
+    moment: Moment,
+    known: Repertoire,
+    crowd: Crowd,
+    grid: Grid,
+    around: Surroundings,
+    rules: Rules,
+    terms: Sequence[CostTerm],
+    types: Sequence[str],
+) -> str:
+    """What is wrong where the cost of an option of the pedestrian in ``row`` is not a number."""
+    weighed = weigh(row, moment.aside(), known, crowd, grid, around, rules, terms, types)
+    for term, costs in zip(terms, weighed.costs, strict=True):
+        wrong = np.flatnonzero(~np.isfinite(costs))
+        if len(wrong):
+            return (
+                f"cost of option {wrong[0]} of {len(costs)} of pedestrian {row}: not a number but "
+                f"{costs[wrong[0]]}, expected finite numbers from the behaviour {term.name!r}"
+            )
+    names = ", ".join(term.name for term in terms)
+    return (
+        f"cost of an option of pedestrian {row}: not a number, expected finite numbers from each "
+        f"of the behaviours {names}"
+    )

@@ -11,7 +11,7 @@ from mesa_mobility.compiled.simd import AT_ONCE, LANES, WIDE
 from mesa_mobility.crowd.collision.broad_phase import Bodies, Fences
 from mesa_mobility.crowd.collision.sampled import Close, make_close
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS
-from mesa_mobility.crowd.costs.layout import COST, SPEED
+from mesa_mobility.crowd.costs.layout import FIELDS, SPEED
 from mesa_mobility.crowd.options.table import LEVELS, SAMPLES
 
 
@@ -110,17 +110,20 @@ class Workspace(NamedTuple):
     path: NDArray[np.float64]
 
 
-def make_workspace(people: int, walls: int, options: int, groups: int, terms: int) -> Workspace:
-    """Arrays for given numbers of people, nearby walls, options, groups of a cluster, and terms."""
+def make_workspace(
+    people: int, walls: int, options: int, groups: int, terms: int, fields: int
+) -> Workspace:
+    """Arrays for given numbers of people, nearby walls, options, groups of a cluster, terms, and
+    fields that terms take."""
     lanes = LANES * groups
     return Workspace(
         near=np.empty(people + LANES, np.int64),
         unsure=np.empty(people, np.int64),
-        others=np.empty((COST + 1, people + LANES)),
+        others=np.empty((FIELDS + fields, people + LANES)),
         sweeps=np.empty((3, people + LANES)),
-        foremost=np.empty((COST + 1, people + LANES)),
+        foremost=np.empty((FIELDS + fields, people + LANES)),
         marks=np.empty(people, np.int64),
-        some=np.empty((COST + 1, people + LANES)),
+        some=np.empty((FIELDS + fields, people + LANES)),
         dropped=np.empty(people, np.int32),
         close=make_close(people),
         bodies=Bodies(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.paths import commit
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
@@ -23,12 +24,14 @@ WALKS_ON = 45
 _SECONDS = WALKS_ON * FRAME_SECONDS
 
 
-class Departed:
+class Departed(Saved):
     """People who have crossed an exit within the last 1.5 s.
 
     Attributes:
         rows: their rows in the crowd, in order.
     """
+
+    saved = ("rows", "_new")
 
     def __init__(self) -> None:
         self.rows = np.empty(0, dtype=np.int64)

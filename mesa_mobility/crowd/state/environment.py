@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.corners import Corners
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Router, Targets
@@ -61,7 +62,7 @@ def passing_of(core: float) -> float:
     return NODE_SHARE * clearance_of(core)
 
 
-class Environment:
+class Environment(Saved):
     """Walls for the collision tests and routes for the targets of one floor plan.
 
     Bodies of each core radius have routes of their own, which are searched for when the first of
@@ -84,10 +85,23 @@ class Environment:
         self._radii = list(dict.fromkeys(core_radii))
         self._clearances = [clearance_of(radius) for radius in self._radii]
         self._body_of = [self._radii.index(core) for core in core_radii]
+        self._make_routers([None])
+
+    def _make_routers(self, destinations: list[tuple[str, ...] | None]) -> None:
         self._routers: list[Router | None] = [None] * len(self._radii)
-        self._destinations: list[tuple[str, ...] | None] = [None]
+        self._destinations = destinations
         self._version = -1
         self.corners = Corners(self._routers)
+
+    def state(self) -> dict[str, Any]:
+        """The destinations, in the order of their numbers."""
+        return {"plan": self.plan.state(), "destinations": self._destinations}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given, the floor plan's changes included."""
+        self.plan.restore(state["plan"])
+        if self._destinations != state["destinations"]:
+            self._make_routers(list(state["destinations"]))
 
     @property
     def bodies(self) -> int:

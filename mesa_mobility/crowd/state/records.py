@@ -9,10 +9,13 @@ instead of two hundred, and what it reads of a person lies side by side.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
+
+from mesa_mobility.errors import ModelError
 
 PERSON = np.dtype(
     [
@@ -121,9 +124,11 @@ class Crowd:
     Attributes:
         records: (capacity,) records of ``PERSON``; each of its fields is an attribute as well.
         agenda: (capacity,) records of ``AGENDA``.
+        fields: (capacity,) values of each field that the model declares for its people.
     """
 
     agenda: NDArray[np.void]
+    fields: dict[str, NDArray[Any]]
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
@@ -160,21 +165,48 @@ class Crowd:
     fallback_frames: NDArray[np.int32]
     active_frames: NDArray[np.int32]
 
-    def __init__(self, capacity: int) -> None:
+    def __init__(self, capacity: int, fields: Mapping[str, np.dtype[Any]] | None = None) -> None:
         self._take(np.zeros(capacity, dtype=PERSON))
         self.agenda = np.zeros(capacity, dtype=AGENDA)
+        self.fields = {name: np.zeros(capacity, kind) for name, kind in (fields or {}).items()}
+
+    def first(self, count: int) -> dict[str, Any]:
+        """The records of the first people."""
+        return {
+            "records": np.array(self.records[:count]),
+            "agenda": self.agenda[:count],
+            "fields": {name: values[:count] for name, values in self.fields.items()},
+        }
+
+    def replace(self, people: Mapping[str, Any]) -> None:
+        """Hold the people of ``first`` alone.
+
+        Raises:
+            ModelError: records with other fields.
+        """
+        records, agenda, fields = people["records"], people["agenda"], people["fields"]
+        kinds = {name: values.dtype for name, values in fields.items()}
+        if (records.dtype, agenda.dtype, kinds) != (
+            PERSON, AGENDA, {name: values.dtype for name, values in self.fields.items()}
+        ):  # fmt: skip
+            raise ModelError("its people have other fields than those of this model")
+        capacity = max(len(records), 64)
+        self._take(_larger(records, capacity))
+        self.agenda = _larger(agenda, capacity)
+        self.fields = {name: _larger(values, capacity) for name, values in fields.items()}
 
     def grow(self, capacity: int) -> None:
         """Make room for more people."""
         self._take(_larger(self.records, capacity))
         self.agenda = _larger(self.agenda, capacity)
+        self.fields = {name: _larger(values, capacity) for name, values in self.fields.items()}
 
-    def __getstate__(self) -> tuple[NDArray[np.void], NDArray[np.void]]:
-        # In a copy, too, the fields are views of the records.
-        return self.records, self.agenda
+    def __getstate__(self) -> tuple[Any, ...]:
+        # In a copy, too, the columns are views of the records.
+        return self.records, self.agenda, self.fields
 
-    def __setstate__(self, state: tuple[NDArray[np.void], NDArray[np.void]]) -> None:
-        records, self.agenda = state
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        records, self.agenda, self.fields = state
         self._take(records)
 
     def _take(self, records: NDArray[np.void]) -> None:
@@ -183,7 +215,7 @@ class Crowd:
             setattr(self, name, records[name])
 
 
-def _larger(records: NDArray[np.void], capacity: int) -> NDArray[np.void]:
+def _larger(records: NDArray[Any], capacity: int) -> NDArray[Any]:
     larger = np.zeros(capacity, dtype=records.dtype)
     larger[: len(records)] = records
     return larger

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -50,6 +52,11 @@ class CrowdView:
     def distances(self) -> NDArray[np.float64]:
         """(m,) length of the route when each last decided, metres; inf without one."""
         return self._crowd.route[self.pedestrians]
+
+    @property
+    def fields(self) -> dict[str, NDArray[Any]]:
+        """(m,) values of each field that the model declares for its people."""
+        return {name: values[self.pedestrians] for name, values in self._crowd.fields.items()}
 
     @property
     def groups(self) -> NDArray[np.int64]:

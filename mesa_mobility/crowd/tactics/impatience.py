@@ -38,8 +38,8 @@ as people in a queue mostly do."""
 
 def perturb_targets(
     rows: NDArray[np.int64], crowd: Crowd, elapsed: float, rng: np.random.Generator
-) -> None:
-    """Rotate the targets of some impatient people about their positions.
+) -> bool:
+    """Rotate the targets of some impatient people about their positions; whether there are any.
 
     Args:
         rows: (n,) the deciding pedestrians; their targets and route lengths are set.
@@ -50,10 +50,11 @@ def perturb_targets(
     who, spread = np.empty(len(rows), dtype=np.int64), np.empty(len(rows))
     count = _impatient(rows, elapsed, crowd.records, crowd.agenda, who, spread)
     if count == 0:
-        return
+        return False
     count = pick(rng.random(count), who, spread)
     if count:
         turn(who, spread, rng.standard_normal(count), crowd.records)
+    return count > 0
 
 
 @entry_point()

@@ -7,13 +7,15 @@ decisions nothing has to be checked, and people without a journey cost nothing.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import astuple, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.paths import waypoint
@@ -42,12 +44,14 @@ class Journey:
     lines: NDArray[np.float64]
 
 
-class Journeys:
+class Journeys(Saved):
     """The journeys of a model's people.
 
     Attributes:
         crossed: gates that all people together have crossed so far.
     """
+
+    saved = ("_numbers", "crossed")
 
     def __init__(self, plan: FloorPlan, site: Environment) -> None:
         self._plan = plan
@@ -56,6 +60,16 @@ class Journeys:
         self._take_stock()
         self._numbers: dict[tuple[object, ...], int] = {}
         self.crossed = 0
+
+    def state(self) -> dict[str, Any]:
+        """The journeys, and how many gates have been crossed."""
+        return {**super().state(), "known": [astuple(each) for each in self._known]}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        super().restore(state)
+        self._known = [Journey(*each) for each in state["known"]]
+        self._take_stock()
 
     def add(
         self, route: Sequence[str], loop: bool, exits: tuple[str, ...] | None, kind: int
@@ -120,6 +134,11 @@ class Journeys:
     def gates(self, number: int) -> tuple[str, ...]:
         """Names of the gates of the journey with this number."""
         return self._known[number - 1].gates if number else ()
+
+    def exits(self, number: int) -> tuple[str, ...]:
+        """Names of the exits at the end of the journey with this number; none if it is a loop."""
+        journey = self._known[number - 1]
+        return () if journey.loop else self._site.exits(int(journey.legs[-1]))
 
     def endless(self, rows: NDArray[np.int64], crowd: Crowd) -> bool:
         """Whether the journey of somebody in ``rows`` is a loop."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterable
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.hooks import Plugin
 from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_given
@@ -17,14 +17,12 @@ FASTEST = 100.0
 """Highest preferred speed that is accepted, m/s."""
 
 
-class SpeedRule(ABC):
+class SpeedRule(Plugin):
     """A behaviour that changes the preferred speed of a pedestrian's next movement.
 
     Subclasses set ``name`` and define ``speeds``.  A model applies those in ``model.speed_rules``
     in order; each gets the speeds that the one before returned.
     """
-
-    name: ClassVar[str]
 
     @abstractmethod
     def speeds(self, deciding: Deciding, speeds: NDArray[np.float64]) -> NDArray[np.float64]:

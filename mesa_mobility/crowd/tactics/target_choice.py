@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from typing import ClassVar, NamedTuple
+from abc import abstractmethod
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.hooks import Plugin
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
@@ -54,13 +55,11 @@ class Deciding(NamedTuple):
         return self.inside.types_of(self.pedestrians)
 
 
-class TargetChoice(ABC):
+class TargetChoice(Plugin):
     """A behaviour that makes the target requests of section 6 of the paper.
 
     Subclasses set ``name`` and define ``targets``.  A model has one target choice.
     """
-
-    name: ClassVar[str]
 
     @abstractmethod
     def targets(self, deciding: Deciding) -> Targets:

@@ -10,10 +10,14 @@ everybody wants the same way, nothing changes.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point, internal, kept
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.floorplan import FloorPlan
@@ -44,12 +48,14 @@ SIDESTEP = 0.8
 NOBODY = -1
 
 
-class Turns:
+class Turns(Saved):
     """The turns at the narrow passages of a floor plan.
 
     Args:
         plan: the floor plan; changes to it are followed.
     """
+
+    saved = ("_holder", "_since")
 
     def __init__(self, plan: FloorPlan) -> None:
         self._plan = plan
@@ -57,6 +63,17 @@ class Turns:
         self._passages: Passages
         self._holder = np.empty(0, dtype=np.int64)
         self._since = np.empty(0)
+
+    def state(self) -> dict[str, Any]:
+        """Who has the turn where."""
+        return {**super().state(), "current": self._version == self._plan.version}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        super().restore(state)
+        if state["current"]:
+            self._version = self._plan.version
+            self._passages = narrow_passages(self._plan)
 
     def take(
         self,

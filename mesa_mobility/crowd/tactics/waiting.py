@@ -35,6 +35,11 @@ class Waits:
     def __init__(self) -> None:
         self._conditions: dict[int, Callable[[], bool]] = {}
 
+    @property
+    def waiting_for_functions(self) -> int:
+        """How many people wait until a function says so."""
+        return len(self._conditions)
+
     def tell(
         self,
         row: int,

@@ -61,12 +61,33 @@ COLOURINGS = {
 }
 
 
-def colouring_named(name: str) -> Colouring:
+def colourings_of(model: PedestrianModel) -> dict[str, Colouring]:
+    """The colourings of a model by name: those of every model, and its people's fields."""
+    return {**COLOURINGS, **{name: _of_field(model, name) for name in model.crowd.fields}}
+
+
+def colouring_named(name: str, model: PedestrianModel) -> Colouring:
     """The colouring of this name.
 
     Raises:
-        ModelError: there is none.
+        ModelError: the model has none.
     """
-    if name not in COLOURINGS:
-        raise ModelError(f"colour_by: got {name!r}, expected one of {', '.join(COLOURINGS)}")
-    return COLOURINGS[name]
+    known = colourings_of(model)
+    if name not in known:
+        raise ModelError(f"colour_by: got {name!r}, expected one of {', '.join(known)}")
+    return known[name]
+
+
+def _of_field(model: PedestrianModel, name: str) -> Colouring:
+    """By a field: false to true, or from its least to its greatest value at the time."""
+    now = model.crowd.fields[name][model.rows].astype(np.float64)
+    now = now[np.isfinite(now)]
+    low, high = 0.0, 1.0
+    if model.crowd.fields[name].dtype != np.bool_ and len(now) and now.min() < now.max():
+        low, high = float(now.min()), float(now.max())
+
+    def values(model: PedestrianModel, _: Observer) -> NDArray[np.float64]:
+        found = model.crowd.fields[name][model.rows].astype(np.float64)
+        return np.where(np.isfinite(found), found, low)
+
+    return Colouring(name, low, high, values)

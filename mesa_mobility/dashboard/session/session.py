@@ -10,7 +10,6 @@ from collections.abc import Callable
 
 from mesa_mobility.crowd import Watch
 from mesa_mobility.dashboard.session import kept
-from mesa_mobility.dashboard.session.colouring import COLOURINGS
 from mesa_mobility.dashboard.session.engine import Answer, Engine, said
 from mesa_mobility.dashboard.session.run import Run
 from mesa_mobility.dashboard.session.run_config import Recipe
@@ -113,10 +112,10 @@ class Session(Engine):
         self._commands.put(lambda: self._clock.set_speed(speed))
 
     def colour_by(self, name: str) -> None:
-        """Colour people by one of ``COLOURINGS``."""
+        """Colour people by one of ``colourings``."""
 
         def command() -> None:
-            self.colouring = COLOURINGS[name]
+            self.use_colour(name, None if self._current is None else self._current.model)
             self._publish()
 
         self._commands.put(command)

@@ -13,7 +13,7 @@ from mesa_mobility import PedestrianModel, PedestrianType
 from mesa_mobility.crowd import Explanation
 from mesa_mobility.dashboard.session import serialization
 from mesa_mobility.dashboard.session.behaviours import Behaviours, ChoiceState, TermState
-from mesa_mobility.dashboard.session.colouring import COLOURINGS
+from mesa_mobility.dashboard.session.colouring import COLOURINGS, colourings_of
 from mesa_mobility.dashboard.session.decision import described
 from mesa_mobility.dashboard.session.feed import Feed
 from mesa_mobility.dashboard.session.observer import Observer
@@ -76,6 +76,7 @@ class Shown:
         selected: row of the person whose decisions are shown, or -1.
         problem: what the last command or step ran into, or "".
         colouring: by what people are coloured.
+        colourings: names of all by which they can be.
         run_number: number of the run that is shown, 1 for the page's first.
         hypothetical: whether the shown decision is the one that the person would take now.
         together: within it the page is not drawn; at its end once.
@@ -94,6 +95,8 @@ class Shown:
         self.selected = solara.reactive(-1)
         self.problem = solara.reactive("")
         self.colouring = COLOURINGS["speed"]
+        self.colourings = solara.reactive(tuple(COLOURINGS))
+        self._colour = "speed"
         self.hypothetical = False
         self.together: AbstractContextManager[Any] = nullcontext()
         self.run_number = 0
@@ -119,8 +122,16 @@ class Shown:
         self.mark(-1)
         self.types.set(model.pedestrian_types)
         self.floor.set(plan.drawn())
+        self.colourings.set(tuple(colourings_of(model)))
+        self.use_colour(self._colour, model)
         self.behaviours.set(terms.states(model))
         self.choice.set(terms.choice(model))
+
+    def use_colour(self, name: str, model: PedestrianModel | None) -> None:
+        """Colour people by this name from now on; by their speed where the model has none such."""
+        self._colour = name
+        known = COLOURINGS if model is None else colourings_of(model)
+        self.colouring = known.get(name, COLOURINGS["speed"])
 
     def mark(self, row: int) -> None:
         """Select the person in ``row``, nobody if it is negative; no decision is shown yet."""

@@ -1,0 +1,1 @@
+"""Checkpoints: a running model in a file, without pickle."""

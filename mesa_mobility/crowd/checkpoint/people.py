@@ -1,0 +1,51 @@
+"""The agents of a model in a checkpoint."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from mesa_mobility.crowd.checkpoint.plain import Packer, Unpacker
+from mesa_mobility.errors import ModelError
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.model import PedestrianModel
+
+_FRAMEWORK = {"model", "unique_id", "row", "pos", "space", "_mesa_index"}
+"""What every agent has."""
+
+
+def pack_people(model: PedestrianModel, packer: Packer) -> dict[str, Any]:
+    """Numbers of the agents inside, in order of their rows, and what subclasses add to them.
+
+    Raises:
+        ModelError: agents of other classes, or an attribute that cannot be saved.
+    """
+    agents = model.space.active_agents
+    if len(model.agents) != len(agents):
+        raise ModelError(
+            f"{type(model).__name__}: has agents who are not in its population, which cannot be "
+            "saved; expected pedestrians alone"
+        )
+    own = {}
+    for agent in agents:
+        added = {name: each for name, each in vars(agent).items() if name not in _FRAMEWORK}
+        if added:
+            own[str(agent.row)] = {
+                name: packer.pack(each, f"{type(agent).__name__}.{name} of pedestrian {agent.row}")
+                for name, each in added.items()
+            }
+    return {
+        "unique_ids": [agent.unique_id for agent in agents],
+        "last_id": model.last_id,
+        "own": own,
+    }
+
+
+def restore_attributes(
+    model: PedestrianModel, saved: Mapping[str, Any], unpacker: Unpacker
+) -> None:
+    """Give the agents their own attributes."""
+    for agent in model.space.active_agents:
+        for name, value in saved["own"].get(str(agent.row), {}).items():
+            object.__setattr__(agent, name, unpacker.unpack(value))

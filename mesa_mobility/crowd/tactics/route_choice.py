@@ -1,0 +1,94 @@
+"""Route choice: the behaviour that gives people the gates by which they go."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import networkx as nx
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import Targets
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.model import PedestrianModel
+
+
+class RouteChoice(TargetChoice):
+    """A target choice that gives each person a path: the gates that it crosses before it leaves.
+
+    Subclasses set ``name`` and define ``routes``. Everybody chooses at its first decision, and
+    again at random, every ``interval`` seconds on average. Between gates people take the shortest
+    way. Who has a route of its own keeps it. An object of this class serves one model.
+
+    Args:
+        interval: mean seconds between two choices; by default people choose once.
+
+    Raises:
+        ModelError: an interval that is not positive.
+    """
+
+    def __init__(self, interval: float = math.inf) -> None:
+        if not interval > 0.0:
+            raise ModelError(f"{self.name}: interval {interval}, expected more than 0 s")
+        self.interval = interval
+        self._again = np.empty(0)
+
+    _model: PedestrianModel
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the model, whose people it sends."""
+        self._model = model
+
+    @property
+    def graph(self) -> nx.DiGraph:
+        """The route graph of the floor plan as it is now; see ``FloorPlan.route_graph``."""
+        return self._model.floor_plan.route_graph
+
+    @abstractmethod
+    def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> Sequence[Sequence[str]]:
+        """Names of the gates that people cross, in order; none for the shortest way.
+
+        Args:
+            deciding: everybody who decides.
+            who: (k,) indices among them of those who choose a route.
+
+        Returns:
+            k lists of names.
+        """
+
+    def targets(self, deciding: Deciding) -> Targets:
+        """Targets on the chosen routes."""
+        rows, destinations = deciding.pedestrians, deciding.destinations
+        who = self._choosing(deciding)
+        if len(who):
+            given = self.routes(deciding, who)
+            if len(given) != len(who):
+                raise ModelError(
+                    f"behaviour {self.name!r}: gave {len(given)} routes, expected {len(who)}"
+                )
+            people, frame = self._model.population, self._model.frame
+            for row, gates in zip(rows[who].tolist(), given, strict=True):
+                people.send(row, people.exits(row) or None, gates, frame)
+            destinations = self._model.crowd.destination[rows].astype(np.int64)
+        return deciding.site.targets(deciding.positions, destinations)
+
+    def _choosing(self, deciding: Deciding) -> NDArray[np.int64]:
+        """Indices of those who choose now; notes when they do so again."""
+        rows = deciding.pedestrians
+        more = int(rows.max(initial=-1)) + 1 - len(self._again)
+        if more > 0:
+            self._again = np.append(self._again, np.full(more, -np.inf))
+        new = self._again[rows] == -np.inf
+        self._again[rows[new & (self._model.crowd.agenda["journey"][rows] > 0)]] = np.inf
+        who: NDArray[np.int64] = np.flatnonzero(self._again[rows] <= deciding.elapsed)
+        waits = np.full(len(who), math.inf)
+        if math.isfinite(self.interval):
+            waits = deciding.rng.exponential(self.interval, len(who))
+        self._again[rows[who]] = deciding.elapsed + waits
+        return who

@@ -1,0 +1,141 @@
+"""The tactics of the presets; models may leave out or replace each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
+from mesa_mobility.crowd.tactics.impatience import perturb_targets
+from mesa_mobility.crowd.tactics.settling import settle
+from mesa_mobility.crowd.tactics.speed_compensation import compensate_speed
+from mesa_mobility.crowd.tactics.speed_rules import apply_speed_rules
+from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
+from mesa_mobility.crowd.tactics.target_choice import Deciding
+from mesa_mobility.crowd.tactics.turns import Turns
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.model import PedestrianModel
+
+
+class _OfTheCrowd(Tactic):
+    """A tactic that keeps its notes in the crowd's records."""
+
+    _crowd: Crowd
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the crowd."""
+        self._crowd = model.crowd
+
+
+class SpreadAtCorners(_OfTheCrowd):
+    """In a crowd, those behind pass a corner farther out."""
+
+    name = "corner_spreading"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Change the points of those who pass a corner after others."""
+        desired.points = spread_at_corners(deciding, desired.targets, self._crowd)
+
+
+class SlowInZones(Tactic):
+    """People walk more slowly in the speed zones of the floor plan."""
+
+    name = "speed_zones"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Multiply speeds by the factors of the zones."""
+        plan = deciding.site.plan
+        if plan.zones:
+            desired.speeds = desired.speeds * plan.speed_factors(deciding.positions)
+
+
+class FollowSpeedRules(Tactic):
+    """People walk as fast as the model's speed rules say."""
+
+    name = "speed_rules"
+
+    _model: PedestrianModel
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the model, whose rules may change."""
+        self._model = model
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Apply the rules in order."""
+        desired.speeds = apply_speed_rules(self._model.speed_rules, deciding, desired.speeds)
+
+
+class TakeTurns(_OfTheCrowd):
+    """People take turns where two cannot pass each other."""
+
+    name = "taking_turns"
+
+    _turns: Turns
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Look for narrow passages."""
+        super().bind(model)
+        self._turns = Turns(model.floor_plan)
+
+    def state(self) -> dict[str, Any]:
+        """Who has the turn where."""
+        return self._turns.state()
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        self._turns.restore(state)
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Let people wait where others have the turn."""
+        if not desired.newcomers:
+            desired.points, desired.speeds = self._turns.take(
+                deciding.pedestrians, deciding.inside.pedestrians, _frame(deciding), self._crowd,
+                desired.points, desired.speeds,
+            )  # fmt: skip
+
+
+class Wait(_OfTheCrowd):
+    """People who wait, by ``Pedestrian.wait`` or before they set off, stand where they are."""
+
+    name = "waiting"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """As for people without a route: they stop, and stay."""
+        until: NDArray[np.int32] = self._crowd.agenda["waits_until"][deciding.pedestrians]
+        waiting = until > _frame(deciding)
+        if not desired.newcomers and waiting.any():
+            desired.speeds = np.where(waiting, 0.0, desired.speeds)
+            desired.points = np.where(waiting[:, None], deciding.positions, desired.points)
+
+
+class CompensateSpeed(_OfTheCrowd):
+    """Free walkers correct their accumulated distance error."""
+
+    name = "speed_compensation"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Change the speeds of free walkers by little."""
+        desired.speeds = compensate_speed(deciding.pedestrians, self._crowd, desired.speeds)
+
+
+class Impatience(_OfTheCrowd):
+    """People who make no progress look for a way round."""
+
+    name = "impatience"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Turn the points of some who make no progress."""
+        rows, crowd = deciding.pedestrians, self._crowd
+        settle(rows, desired.points, desired.speeds, crowd.records)
+        if perturb_targets(rows, crowd, deciding.elapsed, deciding.rng):
+            desired.points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
+
+
+def _frame(deciding: Deciding) -> int:
+    return round(deciding.elapsed / FRAME_SECONDS)

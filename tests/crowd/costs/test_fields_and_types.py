@@ -1,0 +1,226 @@
+"""Terms that see fields, groups, types, time and the generator; weights by type."""
+
+import numpy as np
+import pytest
+
+from mesa_mobility import CompiledTerm, CostTerm, PedestrianType, option_kernel, pair_kernel
+from mesa_mobility.crowd import PedestrianModel, Watch
+from mesa_mobility.errors import ModelError
+from tests.fixtures.maps import wanderer
+from tests.fixtures.scenes import advance, corridor, model_of
+
+
+@pair_kernel(fields=("mood", "infected"))
+def _avoid(
+    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
+    mood, infected, their_mood, their_infected, p,
+):  # fmt: skip
+    gap = p[0] - ((nx - x) ** 2 + (ny - y) ** 2) ** 0.5
+    return their_infected * (1.0 + mood) * gap if gap > 0.0 else 0.0
+
+
+class Avoid(CompiledTerm):
+    name = "avoid"
+    kernel = _avoid
+
+    def parameters(self):
+        return (1.5,)
+
+
+class AvoidInNumpy(CostTerm):
+    name = "avoid_in_numpy"
+
+    def cost(self, candidates):
+        rows, neighbours = candidates.pairs()
+        step = candidates.neighbour_positions[neighbours] - candidates.points[rows]
+        gap = np.maximum(1.5 - np.hypot(*step.T), 0.0)
+        own = 1.0 + candidates.fields["mood"][candidates.owner[rows]]
+        cost = candidates.neighbour_fields["infected"][neighbours] * own * gap
+        return np.bincount(rows, cost, len(candidates))
+
+
+@option_kernel(fields=("mood",))
+def _stay(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, mood, p):
+    return mood * speed
+
+
+class Stay(CompiledTerm):
+    name = "stay"
+    kernel = _stay
+
+
+def crowd_of(*terms, **keywords):
+    keywords.setdefault("fields", {"infected": bool, "mood": float})
+    model = model_of(corridor(), wanderer(5, options=60), rng=3, frames_per_step=3, **keywords)
+    model.terms += terms
+    places = model.floor_plan.random_points(25, model.rng, spacing=0.6, clearance=0.3)
+    model.add_pedestrians(places[places[:, 0] < 15.0])
+    if model.crowd.fields:
+        model.crowd.fields["infected"][::3] = True
+        model.crowd.fields["mood"][:] = np.arange(64) % 4
+    return model
+
+
+def tracks(model):
+    return {name: values.tobytes() for name, values in model.recorder.arrays().items()}
+
+
+def test_a_kernel_takes_the_same_values_as_a_term_in_numpy():
+    model = crowd_of()
+    candidates = model.candidates(model.rows)
+    found = Avoid().cost(candidates)
+    assert found.max() > 1.0
+    np.testing.assert_allclose(found, AvoidInNumpy().cost(candidates), atol=1e-9)
+
+
+def test_decisions_are_those_of_the_same_term_in_numpy():
+    compiled, numpy, without = crowd_of(Avoid(2.0)), crowd_of(AvoidInNumpy(2.0)), crowd_of()
+    for model in (compiled, numpy, without):
+        advance(model, 90)
+    assert tracks(compiled) == tracks(numpy) != tracks(without)
+
+
+def test_two_kernels_share_the_fields():
+    model, again = crowd_of(Avoid(2.0), Stay(3.0)), crowd_of(Stay(3.0), Avoid(2.0))
+    advance(model, 60)
+    advance(again, 60)
+    assert tracks(model) == tracks(again)
+    still = [p.row for p in model.agents if p.mood == 0]
+    moody = [p.row for p in model.agents if p.mood == 3]
+    walked = model.crowd.x - crowd_of().crowd.x
+    assert walked[still].mean() > walked[moody].mean() + 0.5
+
+
+def test_the_watched_decision_has_its_cost():
+    model = crowd_of(Avoid(2.0), Stay(3.0))
+    model.watch = Watch(5)
+    advance(model, 45)
+    decision = model.watch.decision
+    assert decision.terms[-2:] == ("avoid", "stay")
+    best = np.where(decision.verdicts == 0, decision.totals, np.inf).min()
+    assert decision.totals[decision.chosen] == pytest.approx(best)
+
+
+def test_built_in_fields():
+    @pair_kernel(fields=("type", "group", "heading", "core"))
+    def kernel(
+        x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
+        kind, group, heading, core, their_kind, their_group, their_heading, their_core, p,
+    ):  # fmt: skip
+        return 1000.0 * their_group + 100.0 * core + heading + their_heading
+
+    class Sum(CompiledTerm):
+        name = "sum"
+
+    Sum.kernel = kernel
+    model = model_of(corridor(), wanderer(5))
+    (one,) = model.add_pedestrians([(5.0, 1.0)], headings=[0.5])
+    (other,) = model.add_pedestrians([(6.0, 1.0)], headings=[0.25], group="g")
+    cost = Sum().cost(model.candidates(np.array([one.row, other.row])))
+    core = 100.0 * model.crowd.core[0] + 0.75
+    assert set(np.round(cost, 6)) == {round(1000.0 + core, 6), round(core, 6)}
+
+
+class Seeing(CostTerm):
+    name = "seeing"
+
+    def __init__(self):
+        super().__init__()
+        self.bound, self.times, self.groups, self.types = [], [], [], []
+
+    def bind(self, model):
+        self.bound.append(model)
+
+    def cost(self, candidates):
+        self.times.append(candidates.time)
+        self.groups += candidates.neighbour_groups.tolist()
+        self.types += candidates.neighbour_types.tolist()
+        return candidates.rng.random(len(candidates))
+
+
+def test_a_term_is_bound_once_and_sees_time_groups_and_types():
+    term = Seeing()
+    maps = [wanderer(5), wanderer(6)]
+    model = model_of(corridor(), maps, frames_per_step=3)
+    model.terms.append(term)
+    model.add_pedestrians([(5.0, 1.0)], group="a")
+    model.add_pedestrians([(6.0, 1.0)], group="b", type_index=1)
+    model.step()
+    assert term.bound == [model]
+    assert term.times[0] == 0.0
+    assert (set(term.groups), set(term.types)) == ({1, 2}, {0, 1})
+    advance(model, 60)
+    assert term.bound == [model]
+    assert max(term.times) > 1.0
+
+
+def test_to_explain_draws_nothing_from_the_models_generator():
+    model = crowd_of()
+    model.terms.append(Seeing())
+    advance(model, 3)
+    before = model.rng.bit_generator.state
+    model.explain(0)
+    model.candidates(np.array([0])).rng.random()
+    assert model.rng.bit_generator.state == before
+
+
+class Down(CostTerm):
+    name = "down"
+
+    def cost(self, candidates):
+        return candidates.points[:, 1]
+
+
+@pytest.mark.parametrize("term", [Stay, Down])
+def test_weights_by_type(term):
+    """Of two types with one map, the term holds for one as if the others were not there."""
+
+    def model_with(**weights):
+        same = wanderer(5, options=60)
+        types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
+        model = PedestrianModel(
+            corridor(), pedestrian_types=types, rng=1, fields={"mood": float}, record=True
+        )
+        made = term(weights.pop("weight", 0.0))
+        made.weight_by_type = weights
+        model.terms.append(made)
+        for kind in (0, 1):  # too far apart to see each other
+            model.add_pedestrians([(2.0 + 12.0 * kind, 2.0)], type_index=kind, fields={"mood": 1.0})
+        return model
+
+    paths = {}
+    for name, weights in (
+        ("none", {}), ("all", {"weight": 5.0}), ("child", {"child": 5.0}),
+        ("adult", {"weight": 5.0, "child": 0.0}),
+    ):  # fmt: skip
+        model = model_with(**weights)
+        model.run(max_seconds=2.0)
+        rows = model.recorder.arrays()
+        paths[name] = [
+            [rows[axis][rows["person"] == k].tolist() for axis in ("x", "y")] for k in (0, 1)
+        ]
+    assert paths["child"] == [paths["none"][0], paths["all"][1]]
+    assert paths["adult"] == [paths["all"][0], paths["none"][1]]
+    assert paths["none"][0] != paths["all"][0]
+    explained = model.explain(1)
+    assert explained.weights[-1] == 0.0
+    with pytest.raises(ModelError, match="has a weight for the type 'elder'; the model has adult"):
+        model_with(elder=1.0).step()
+    with pytest.raises(ModelError, match="of 'stay' for 'child': got nan"):
+        Stay().weight_by_type = {"child": float("nan")}
+
+
+def test_what_is_refused():
+    with pytest.raises(ModelError, match="takes the field 'mood', which is not declared"):
+        advance(crowd_of(Stay(), fields={}), 3)
+    with pytest.raises(ModelError, match="terms: two of them are named 'stay'"):
+        crowd_of(Stay(), Stay()).step()
+    with pytest.raises(ModelError, match=r"fields \('mood', 'mood'\), expected their names"):
+        pair_kernel(fields=("mood", "mood"))(lambda x: 0.0)
+
+    class Bounded(Stay):
+        name = "bounded"
+        bound = next(term.bound for term in crowd_of().terms if term.name == "target_distance")
+
+    with pytest.raises(ModelError, match="has a bound and a kernel with fields"):
+        crowd_of(Bounded()).step()
