@@ -44,8 +44,13 @@ class ClusterOptions(NamedTuple):
 
 def merge(parts: list[tuple[NDArray, ...]]) -> ClusterOptions:
     """Thin the parts of one cluster together; earlier parts win ties."""
-    cells, layers, *others = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return _thinned(ClusterOptions(layers, cells, *others, np.zeros(len(cells), dtype=bool)))
+    cells, layers, costs, paths, path_clusters, sources, jumps = (
+        np.concatenate(column) for column in zip(*parts, strict=True)
+    )
+    edited = np.zeros(len(cells), dtype=bool)
+    return _thinned(
+        ClusterOptions(layers, cells, costs, paths, path_clusters, sources, jumps, edited)
+    )
 
 
 def with_edits(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOptions:

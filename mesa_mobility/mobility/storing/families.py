@@ -12,7 +12,7 @@ import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +28,6 @@ from mesa_mobility.mobility.storing.assembly import assemble
 from mesa_mobility.mobility.storing.layouts import FAMILIES
 from mesa_mobility.mobility.storing.steps import COST_STEP, quantise_costs
 from mesa_mobility.mobility.thinning import DURATIONS, ClusterOptions
-
-if TYPE_CHECKING:
-    from mesa_mobility.mobility.map import MobilityMap
 
 FORMAT_VERSION = 2
 
@@ -118,7 +115,7 @@ class OptionFamilies:
         ]
         return joined(parts, self._edits())
 
-    def fields(self, lender: Callable[[], MobilityMap]) -> dict[str, Any]:
+    def fields(self, lender: Callable[[], Any]) -> dict[str, Any]:
         """The fields of the map.
 
         Args:
