@@ -120,7 +120,6 @@ def run(
             trajectories = Trajectories.of(simulation)
             plan = simulation.floor_plan
             safety = check_safety(trajectories, plan.walls, plan.free)
-            # Another package's model need not know types.
             table = by_type(trajectories) if "type" in trajectories.person_data else pd.DataFrame()
             summary = {
                 **simulation.summary(),
@@ -198,7 +197,8 @@ def _origin(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
 
     plain = (bool, int, float, str, type(None))
     maps = {}
-    for kind in simulation.pedestrian_types:
+    # Another package's model need not know types.
+    for kind in getattr(simulation, "pedestrian_types", ()):
         path, digest = kind.mobility_map.file, None
         if path is not None:
             with path.open("rb") as file:

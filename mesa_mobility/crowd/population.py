@@ -367,7 +367,7 @@ class Population(Saved):
         self._check_inside(row)
         given, crowd = Newcomers(preferred_speeds=speed), self._scene.crowd
         crowd.agenda["speed"][row] = given.draw_speeds(
-            crowd.type_index[[row]], self._scene.types, np.random.default_rng(0)
+            crowd.type_index[[row]].astype(np.int64), self._scene.types, np.random.default_rng(0)
         )[0]
 
     def join(self, row: int, group: str | int | None) -> None:

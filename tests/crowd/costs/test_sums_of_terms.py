@@ -117,10 +117,18 @@ def test_terms_of_what_lies_ahead_give_the_same_trajectories_in_numpy(place, twi
     assert walk(plan, shipped_map(), others, preset="steady") != compiled
 
 
+class SameDistance(TargetDistance):
+    name = "same_distance"
+
+
+class SameInterference(Interference):
+    name = "same_interference"
+
+
 def test_costs_add_up():
     # A term twice at half its weight is the term once.
-    terms = [TargetDistance(0.5), FacingDeviation(0.5), TargetDistance(0.5), PreferredSpeed(2.0),
-             Interference(0.5), Interference(0.5)]  # fmt: skip
+    terms = [TargetDistance(0.5), FacingDeviation(0.5), SameDistance(0.5), PreferredSpeed(2.0),
+             Interference(0.5), SameInterference(0.5)]  # fmt: skip
     assert walk(two_doors(), shipped_map(), terms) == walk(two_doors(), shipped_map(), ours())
 
 
