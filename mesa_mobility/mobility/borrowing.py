@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from mesa_mobility.mobility.clusters import STANDING, Clusters, nearest_centre
 from mesa_mobility.mobility.edits import Edit, edit_paths
 from mesa_mobility.mobility.map import MobilityMap
-from mesa_mobility.mobility.paths import DURATIONS, SAMPLE_EVERY, ReachableOptions
+from mesa_mobility.mobility.paths import DURATIONS, SAMPLE_EVERY, STRETCHES, ReachableOptions
 from mesa_mobility.mobility.ways_back import ON_THE_SPOT, TURN, leads_back
 
 STANDING_STILL, STOPPING, TURNING = "standing", "stopping", "turning on the spot"
@@ -103,13 +103,14 @@ def _borrowed(
         lender.costs[rows],
         paths.astype(np.float32),
         clusters.astype(np.int32),
-        np.zeros(len(rows), dtype=bool),
+        np.full((len(rows), STRETCHES, 2), -1, dtype=np.int32),
+        np.zeros(len(rows), dtype=np.int16),
     )
 
 
 def _taken(options: ReachableOptions, rows: NDArray[np.integer]) -> tuple[NDArray, ...]:
     columns = (options.durations, options.costs, options.paths, options.path_clusters)
-    return tuple(column[rows] for column in (*columns, options.edited))
+    return tuple(column[rows] for column in (*columns, options.chains, options.edits))
 
 
 def _standing_as(clusters: Clusters, lender: MobilityMap) -> Clusters:

@@ -38,6 +38,9 @@ TRANSITION_PENALTY = 1.0
 CELL = (0.10, 0.10, np.deg2rad(15.0))
 """Cell of thinning: metres, metres, radians of the end point and end heading."""
 
+STRETCHES = int(BUDGET / TRANSITION_PENALTY) + 1
+"""Most recorded stretches of a path: each transition costs the penalty at least."""
+
 _CHUNK = 48
 
 
@@ -54,7 +57,10 @@ class ReachableOptions:
         paths: (m, 15, 3) float32; x, y in metres and heading in radians every 3 frames
             from the third on, relative to the start; rows past the end are zero.
         path_clusters: (m, 15) int32; cluster of the pose at each sample.
-        edited: (m,) bool; options that are edited copies of recorded ones.
+        chains: (m, 4, 2) int32; the recorded stretches that make up the path, in order: the frame
+            of the path at which each begins, and its pose there; -1 for none.
+        edits: (m,) int16; number from 1 on of the edit that an option is a copy by, 0 for those
+            as recorded.
     """
 
     offsets: NDArray[np.int64]
@@ -62,7 +68,8 @@ class ReachableOptions:
     costs: NDArray[np.float32]
     paths: NDArray[np.float32]
     path_clusters: NDArray[np.int32]
-    edited: NDArray[np.bool_]
+    chains: NDArray[np.int32]
+    edits: NDArray[np.int16]
 
 
 def reachable_options(
@@ -115,7 +122,7 @@ def reachable_options(
     merged = [with_edits(merge(parts), edits) for parts in found if parts]
     counts = np.zeros(len(clusters), dtype=np.int64)  # nobody may stand in the recordings
     counts[[bool(parts) for parts in found]] = [len(part.layers) for part in merged]
-    layers, _, costs, paths, path_clusters, edited = (
+    layers, _, costs, paths, path_clusters, chains, edited_by = (
         np.concatenate(column) for column in zip(*merged, strict=True)
     )
     return ReachableOptions(
@@ -124,7 +131,8 @@ def reachable_options(
         costs=costs,
         paths=paths,
         path_clusters=path_clusters,
-        edited=edited,
+        chains=chains,
+        edits=edited_by,
     )
 
 
@@ -142,7 +150,7 @@ def _collect(
     penalty: float,
     cell: NDArray[np.float64],
     half_cells: int,
-) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
+) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]:
     """Options of some poses of one cluster, thinned; see ``ReachableOptions``."""
     n = len(labels)
     frames = durations[-1]
@@ -163,6 +171,7 @@ def _collect(
     out_cost = np.empty(capacity, np.float32)
     out_path = np.zeros((capacity, samples, 3), np.float32)
     out_cluster = np.zeros((capacity, samples), np.int32)
+    out_chain = np.empty((capacity, STRETCHES, 2), np.int32)
 
     for source in sources:
         nodes[0, 0], parents[0, 0], spent[0, 0] = source, -1, 0.0
@@ -216,6 +225,7 @@ def _collect(
                         out_cost = np.concatenate((out_cost, np.empty_like(out_cost)))
                         out_path = np.concatenate((out_path, np.zeros_like(out_path)))
                         out_cluster = np.concatenate((out_cluster, np.zeros_like(out_cluster)))
+                        out_chain = np.concatenate((out_chain, np.empty_like(out_chain)))
                         capacity *= 2
                     slot = used
                     used += 1
@@ -223,8 +233,19 @@ def _collect(
                     out_cell[slot] = key
                     out_layer[slot] = layer
                 out_cost[slot] = spent[frame, a]
+                out_chain[slot] = -1
+                jumps = 0
                 b = a
                 for f in range(frame, 0, -1):
+                    if vias[f, b] != nodes[f - 1, parents[f, b]]:
+                        jumps += 1
+                    b = parents[f, b]
+                out_chain[slot, 0, 0], out_chain[slot, 0, 1] = 0, source
+                b = a
+                for f in range(frame, 0, -1):
+                    if vias[f, b] != nodes[f - 1, parents[f, b]]:
+                        out_chain[slot, jumps, 0], out_chain[slot, jumps, 1] = f, nodes[f, b]
+                        jumps -= 1
                     if f % SAMPLE_EVERY == 0:
                         out_path[slot, f // SAMPLE_EVERY - 1, 0] = place[f, b, 0]
                         out_path[slot, f // SAMPLE_EVERY - 1, 1] = place[f, b, 1]
@@ -238,4 +259,5 @@ def _collect(
         out_cost[:used],
         out_path[:used],
         out_cluster[:used],
+        out_chain[:used],
     )

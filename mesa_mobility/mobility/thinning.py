@@ -24,14 +24,16 @@ EDIT_CELL = (0.15, 0.15, np.deg2rad(20.0))
 
 
 class ClusterOptions(NamedTuple):
-    """Options of one cluster: index of duration, cell, cost, path, clusters, whether edited."""
+    """Options of one cluster: index of duration, cell, cost, path, clusters, poses, and the number
+    of the edit, 0 if there is none."""
 
     layers: NDArray[np.int64]
     cells: NDArray[np.int64]
     costs: NDArray[np.float32]
     paths: NDArray[np.float32]
     path_clusters: NDArray[np.int32]
-    edited: NDArray[np.bool_]
+    chains: NDArray[np.int32]
+    edits: NDArray[np.int16]
 
     def taken(self, rows: NDArray[np.generic]) -> ClusterOptions:
         """Some of the options, in the order of ``rows``."""
@@ -40,18 +42,18 @@ class ClusterOptions(NamedTuple):
 
 def merge(parts: list[tuple[NDArray, ...]]) -> ClusterOptions:
     """Thin the parts of one cluster together; earlier parts win ties."""
-    cells, layers, costs, paths, path_clusters = (
+    cells, layers, costs, paths, path_clusters, chains = (
         np.concatenate(column) for column in zip(*parts, strict=True)
     )
-    edited = np.zeros(len(cells), dtype=bool)
-    return _thinned(ClusterOptions(layers, cells, costs, paths, path_clusters, edited))
+    edits = np.zeros(len(cells), dtype=np.int16)
+    return _thinned(ClusterOptions(layers, cells, costs, paths, path_clusters, chains, edits))
 
 
 def with_edits(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOptions:
     """Add the cheapest edited copy in each cell that no recorded option ends in."""
     if not edits:
         return recorded
-    copies = _joined(_edited(recorded, edit) for edit in edits)
+    copies = _joined(_edited(recorded, edit, number) for number, edit in enumerate(edits, 1))
     taken = np.unique(_edit_cells(recorded))
     copies = copies._replace(cells=_edit_cells(copies))
     added = _thinned(copies.taken(~np.isin(copies.cells, taken)))
@@ -59,14 +61,14 @@ def with_edits(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOption
     return both.taken(np.argsort(both.layers, kind="stable"))
 
 
-def _edited(recorded: ClusterOptions, edit: Edit) -> ClusterOptions:
+def _edited(recorded: ClusterOptions, edit: Edit, number: int) -> ClusterOptions:
     """Edited copies of those options for which this does not cost too much."""
     options = recorded.taken(recorded.costs + edit.cost <= BUDGET)
     present = np.arange(options.paths.shape[1]) < _samples(options)[:, None]
     return options._replace(
         costs=(options.costs + edit.cost).astype(np.float32),
         paths=np.where(present[..., None], edit_paths(options.paths, edit), 0.0).astype(np.float32),
-        edited=np.ones(len(options.costs), dtype=bool),
+        edits=np.full(len(options.costs), number, dtype=np.int16),
     )
 
 
