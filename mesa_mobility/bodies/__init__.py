@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
-    from mesa_mobility.bodies.bank import PoseBank, map_digest
+    from mesa_mobility.bodies.bank import PoseBank
     from mesa_mobility.bodies.building import build_bank
     from mesa_mobility.bodies.motion import BodyMotion, body_motion
     from mesa_mobility.bodies.quality import BodyQuality, quality
@@ -20,7 +20,6 @@ _MODULES = {
     "PoseBank": "bank",
     "body_motion": "motion",
     "build_bank": "building",
-    "map_digest": "bank",
     "quality": "quality",
 }
 
@@ -31,7 +30,6 @@ __all__ = [
     "PoseBank",
     "body_motion",
     "build_bank",
-    "map_digest",
     "quality",
 ]
 

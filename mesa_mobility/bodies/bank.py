@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +14,6 @@ from numpy.typing import NDArray
 from mesa_mobility.bodies.rotations import matrices
 from mesa_mobility.bodies.skeleton import COUNTERPARTS, TURN_OF, TURNING
 from mesa_mobility.errors import MapError
-
-if TYPE_CHECKING:
-    from mesa_mobility.mobility import MobilityMap
 
 QUATERNION_STEP = 1.0 / 32767
 """Quaternions are stored as 16-bit integers: to 0.004 degrees."""
@@ -164,14 +160,6 @@ class PoseBank:
             f"no poses of the map {digest[:12]} ship with the package: expected a file of poses, "
             "which `mesa-mobility map poses` writes"
         )
-
-
-def map_digest(map_: MobilityMap) -> str:
-    """SHA-256, in hexadecimal, of what a map's options are: lengths, paths and clusters."""
-    digest = hashlib.sha256()
-    for array in (map_.offsets, map_.durations, map_.path_clusters, map_.paths):
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest()
 
 
 def check_bank(bank: PoseBank) -> None:

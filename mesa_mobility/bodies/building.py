@@ -14,7 +14,6 @@ from mesa_mobility.bodies.bank import (
     QUATERNION_STEP,
     STRIDE_STEP,
     PoseBank,
-    map_digest,
 )
 from mesa_mobility.bodies.retargeting import retarget
 from mesa_mobility.bodies.rotations import quaternions
@@ -137,7 +136,7 @@ def _metadata(
 ) -> dict[str, Any]:
     return {
         "pedestrian_type": map_.pedestrian_type,
-        "map_digest": map_digest(map_),
+        "map_digest": map_.digest,
         "standing": int(STANDING),
         "scale": float(map_.metadata.get("derived", {}).get("length_factor", 1.0)),
         "skeleton": {"joints": list(JOINTS), "stature_m": STATURE},

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from copy import deepcopy
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 import mesa
 import numpy as np
@@ -23,7 +23,7 @@ from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population
 from mesa_mobility.crowd.presets import preset_named
-from mesa_mobility.crowd.recorder import Recorder
+from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.scene import make_scene
 from mesa_mobility.crowd.sources import Inflow, Source, Sources
 from mesa_mobility.crowd.space import space_of
@@ -55,7 +55,8 @@ class PedestrianModel(mesa.Model):
         behaviors: cost terms instead of the preset's.
         target_choice: where people go; by default everybody leaves by the nearest exit.
         frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
-        record: keep every frame in ``recorder``.
+        record: keep every frame in ``recorder``; "decisions" also keeps who has taken which option
+            in ``decisions``, from which bodies are drawn.
         rng: seed, also as text, or NumPy generator.
 
     Attributes:
@@ -109,7 +110,7 @@ class PedestrianModel(mesa.Model):
         behaviors: Iterable[CostTerm] | None = None,
         target_choice: TargetChoice | None = None,
         frames_per_step: int = 3,
-        record: bool = False,
+        record: bool | Literal["decisions"] = False,
         rng: Any = None,
     ) -> None:
         super().__init__(rng=seed_of(rng))
@@ -126,7 +127,10 @@ class PedestrianModel(mesa.Model):
         self.target_choice = target_choice or rules.make_target_choice()
         self.frames_per_step = frames_per_step
         self.frame = 0
+        if record not in (False, True, "decisions"):
+            raise ModelError(f"record: got {record!r}, expected True, False or 'decisions'")
         self.recorder = Recorder() if record else None
+        self.decisions = DecisionRecorder() if record == "decisions" else None
         self.watch: Watch | None = None
         self.space = space_of(floor_plan, scene.repertoire.reach, self.random)
         self.population = Population(scene, self.space)
@@ -182,6 +186,10 @@ class PedestrianModel(mesa.Model):
     def capabilities(self) -> tuple[Capability, ...]:
         """The capability of each pedestrian type."""
         return self._scene.repertoire.capabilities
+
+    def decided(self) -> dict[str, NDArray[np.generic]] | None:
+        """The decisions so far, see ``DecisionRecorder.arrays``; None if they are not recorded."""
+        return None if self.decisions is None else self.decisions.arrays(self._scene.repertoire)
 
     @property
     def stall_reason(self) -> str | None:

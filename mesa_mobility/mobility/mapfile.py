@@ -73,7 +73,7 @@ def shipped_map_path(name: str) -> Path:
     folder = Path(str(files("mesa_mobility.maps")))
     path = folder / f"{name}.npz"
     if not path.is_file():
-        known = sorted(p.stem for p in folder.glob("*.npz"))
+        known = sorted(p.stem for p in folder.glob("*.npz") if "." not in p.stem)
         raise MapError(f"no map named {name!r} ships with the package, expected one of {known}")
     return path
 
