@@ -147,7 +147,7 @@ def bend(
 ) -> None:
     """Two-bone inverse kinematics: put the ankle where wanted, or as near as the leg reaches.
 
-    The knee stays in the plane in which it is; the foot keeps its orientation.
+    The leg swings about the hip as a whole, then the knee bends; the foot keeps its orientation.
     """
     hip, knee, ankle = leg
     start = positions[:, hip]
@@ -157,7 +157,8 @@ def bend(
     distance = np.linalg.norm(way, axis=1)
     reach = np.clip(distance, abs(thigh - shank) + TINY, STRAIGHT * (thigh + shank))
     along = unit(way)
-    bent = positions[:, knee] - start
+    swung = shortest_turn(unit(positions[:, ankle] - start), along)
+    bent = np.einsum("nij,nj->ni", swung, positions[:, knee] - start)
     # A straight leg bends to where the body faces.
     forward = oriented[:, 0, :, 0]
     bent = bent + 0.02 * forward

@@ -126,6 +126,10 @@ def _rotations(seen: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
             turned[:, TURN_OF[j]] = np.swapaxes(parent, -1, -2) @ oriented[j]
             continue
         local = np.einsum("nji,nj->ni", parent, direction)
+        if names[j].endswith("collar"):
+            # Where a neck begins differs between skeletons. What compares is how shoulders move.
+            usual = unit(local.mean(axis=0))
+            local = np.einsum("ij,nj->ni", shortest_turn(usual, unit(OFFSETS[end])), local)
         turned[:, TURN_OF[j]] = shortest_turn(unit(OFFSETS[end]), local)
         oriented[j] = parent @ turned[:, TURN_OF[j]]
     return turned

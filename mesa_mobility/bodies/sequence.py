@@ -23,8 +23,8 @@ NEVER = np.iinfo(np.int64).max
 class Movements(NamedTuple):
     """What one person does: its decisions in order of time.
 
-    Fields: ``starts`` (d,) frames; ``options`` (d,) rows of the type's map, negative where the
-    person stands or falls back; ``shares`` (d,) of the option's ground that it covers.
+    Fields: ``starts`` (d,) frames; ``options`` (d,) rows of the type's map, negative for the
+    fallback; ``shares`` (d,) of the option's ground that it covers.
     """
 
     starts: NDArray[np.int64]
@@ -59,12 +59,11 @@ def pose_sequence(bank: PoseBank, frames: NDArray[np.int64], movements: Movement
     standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
     begins, poses, strides = _stretches(bank, movements, standing)
     own = np.searchsorted(movements.starts, frames, side="right") - 1
-    row = own + 1  # the first row stands
+    row = own + 1  # the first row is that of somebody who has not decided yet
     phase = np.where(own >= 0, frames - movements.starts[np.maximum(own, 0)], 0)
     stretch = (phase[:, None] >= begins[row]).sum(axis=1) - 1
     into = phase - begins[row, stretch]
-    still = row == 0
-    still[own >= 0] = movements.options[own[own >= 0]] < 0
+    still = ~_moving(movements)[row]
     numbers = bank.later(poses[row, stretch], np.where(still, 0, into))
     piece = row * begins.shape[1] + stretch
     joins = 1 + np.flatnonzero((np.diff(piece) != 0) & (numbers[1:] != bank.later(numbers[:-1], 1)))
@@ -84,18 +83,25 @@ def _stretches(
 
     The first row is of somebody who stands.
     """
-    options = np.concatenate([[-1], movements.options])
-    moving = options >= 0
-    rows = np.maximum(options, 0)
+    moving = _moving(movements)
+    rows = np.where(moving, np.concatenate([[0], movements.options]), 0)
     counts = np.where(moving, bank.offsets[rows + 1] - bank.offsets[rows], 1)
     places = np.arange(counts.max(initial=1))
     at = np.minimum(bank.offsets[rows][:, None] + places, len(bank.frames) - 1)
     present = (places < counts[:, None]) & moving[:, None]
-    begins = np.where(present, bank.frames[at], NEVER)
-    poses = np.where(present, bank.poses[at], standing)
+    begins = np.where(present, bank.frames[at].astype(np.int64), NEVER)
+    poses = np.where(present, bank.poses[at].astype(np.int64), standing)
     begins[~moving, 0] = 0
     strides = np.concatenate([[1.0], movements.shares]) * bank.strides[rows] * STRIDE_STEP
-    return begins, poses.astype(np.int64), np.where(moving, strides, 1.0)
+    return begins, poses, np.where(moving, strides, 1.0)
+
+
+def _moving(movements: Movements) -> NDArray[np.bool_]:
+    """(d + 1,) whether the person moves before its first decision and after each of them.
+
+    An option shortened to nothing stands and turns on the spot.
+    """
+    return np.concatenate([[False], (movements.options >= 0) & (movements.shares > 0.0)])
 
 
 def blended(bank: PoseBank, sequence: Sequence) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
