@@ -69,7 +69,7 @@ class Auditorium(PedestrianModel):
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
         frames_per_step: int = 3,
-        record: bool = False,
+        record: bool | str = False,
         rng: int | np.random.Generator | None = None,
     ) -> None:
         seats = seat_places()

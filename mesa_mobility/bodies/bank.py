@@ -90,6 +90,16 @@ class PoseBank:
         """Size of the bodies, as a multiple of the neutral skeleton's."""
         return float(self.metadata.get("scale", 1.0))
 
+    def check_map(self, digest: str) -> None:
+        """Refuse poses of another map than that of this digest.
+
+        Raises:
+            MapError: as said.
+        """
+        own = self.metadata["map_digest"]
+        if own != digest:
+            raise MapError(f"poses of the map {own[:12]}, expected those of the map {digest[:12]}")
+
     @cached_property
     def last_of_clip(self) -> NDArray[np.int64]:
         """(p,) row of the last pose of each pose's clip."""
@@ -150,12 +160,14 @@ class PoseBank:
         """
         from mesa_mobility.bodies.bankfile import shipped_banks
 
-        for each in shipped_banks() if path is None else [Path(path)]:
+        if path is not None:
+            bank = cls.load(path)
+            bank.check_map(digest)
+            return bank
+        for each in shipped_banks():
             bank = cls.load(each)
             if bank.metadata["map_digest"] == digest:
                 return bank
-        if path is not None:
-            raise MapError(f"{path}: poses of another map, expected those of {digest[:12]}")
         raise MapError(
             f"no poses of the map {digest[:12]} ship with the package: expected a file of poses, "
             "which `mesa-mobility map poses` writes"

@@ -8,7 +8,9 @@ from __future__ import annotations
 import typer
 
 from mesa_mobility.commands import experiment, mobility_map, plugins
+from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
+from mesa_mobility.commands.map_poses import poses
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
@@ -28,6 +30,9 @@ app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("dashboard")(dashboard)
+app.command("animate")(animate)
+app.command("render")(render)
+mobility_map.app.command("poses")(poses)
 app.add_typer(mobility_map.app, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.command("models")(plugins.models)

@@ -75,9 +75,14 @@ def build(
             "older_adult, frail_older_adult, cane, crutches or walking_frame.",
         ),
     ] = None,
+    poses: Annotated[
+        bool,
+        typer.Option("--poses", help="Also write the full-body poses behind the options."),
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Compute a mobility map from recordings."""
+    from mesa_mobility.bodies.bankfile import poses_path
     from mesa_mobility.capture import find_clips
     from mesa_mobility.mobility import (
         build_map,
@@ -97,7 +102,7 @@ def build(
         raise MapError(f"{output}: is a folder, expected a file to write")
     check_writable(output.parent)
     wall, cpu = time.perf_counter(), time.process_time()
-    with _stoppable_progress() as report:
+    with stoppable_progress() as report:
         prepared = prepare_recordings(
             find_clips(source),
             recorded,
@@ -127,8 +132,15 @@ def build(
                 left_out = left_out_one_at_a_time(recordings, clusters, report)
             except MapError as error:  # the map itself is good
                 say(f"clips are not left out one at a time: {error}")
+        bank = None
+        if poses:
+            from mesa_mobility.bodies import build_bank
+
+            bank = build_bank(built, recordings, report)
     with putting_in_place():
         built.save(output)
+        if bank is not None:
+            bank.save(poses_path(output))
     info = {
         "file": str(output),
         "recordings": len(recordings),
@@ -179,9 +191,9 @@ def coverage(
 
     mobility_map = MobilityMap.load(file)
     recordings = []
-    with _stoppable_progress() as report:
+    with stoppable_progress() as report:
         for source in sources:
-            recordings.extend(_load(source, report, mobility_map if leave_out else None))
+            recordings.extend(load_recordings(source, report, mobility_map if leave_out else None))
         if leave_out:
             clusters = mobility_map.metadata.get("build", {}).get("clusters_asked")
             figures = left_out_one_at_a_time(recordings, clusters, report)
@@ -193,7 +205,8 @@ def coverage(
 
 
 @contextmanager
-def _stoppable_progress() -> Iterator[Report]:
+def stoppable_progress() -> Iterator[Report]:
+    """A progress bar; Ctrl-C ends the command at the next report."""
     with progress_bar() as report, gentle_interrupt() as stop_here:
 
         def progress(what: str, done: float, total: float) -> None:
@@ -207,7 +220,7 @@ def _stoppable_progress() -> Iterator[Report]:
             raise typer.Exit(INTERRUPTED) from None
 
 
-def _load(source: Path, report: Report, built: MobilityMap | None) -> list[Recording]:
+def load_recordings(source: Path, report: Report, built: MobilityMap | None) -> list[Recording]:
     """All recordings as they are, or for a map those that it was built from, as they were used."""
     from mesa_mobility.capture import find_clips, load_clips, scale
     from mesa_mobility.mobility import prepare_recordings

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from copy import deepcopy
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Any, Self
 
 import mesa
 import numpy as np
@@ -110,7 +110,7 @@ class PedestrianModel(mesa.Model):
         behaviors: Iterable[CostTerm] | None = None,
         target_choice: TargetChoice | None = None,
         frames_per_step: int = 3,
-        record: bool | Literal["decisions"] = False,
+        record: bool | str = False,
         rng: Any = None,
     ) -> None:
         super().__init__(rng=seed_of(rng))

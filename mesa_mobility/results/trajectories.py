@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
     import pedpy
 
+    from mesa_mobility.bodies import BodyMotion, PoseBank
+    from mesa_mobility.results.decisions import Decisions
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
@@ -41,6 +44,7 @@ class Trajectories:
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
             everybody who has a row in it.
+        decisions: who has taken which option, if that was recorded; bodies are drawn from it.
 
     Raises:
         ResultsError: columns of unequal length, values that are not finite, a person twice in
@@ -57,6 +61,7 @@ class Trajectories:
     core_radius: FloatArray | float = 0.15
     last_frame: int | None = None
     inside_at_end: IntArray | None = None
+    decisions: Decisions | None = None
 
     def __post_init__(self) -> None:
         columns: dict[str, NDArray[Any]] = {
@@ -108,7 +113,7 @@ class Trajectories:
         Args:
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now).
+                ``rows`` (the people inside now); its decisions are taken too if it records them.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -116,6 +121,8 @@ class Trajectories:
         recorder = getattr(model, "recorder", None)
         if recorder is None:
             raise ResultsError("the model has recorded nothing: create it with record=True")
+        from mesa_mobility.results.decisions import Decisions
+
         rows = recorder.arrays()
         if len(model.rows) and not len(rows["frame"]):
             raise ResultsError("the model has recorded nothing: expected a step before")
@@ -125,6 +132,7 @@ class Trajectories:
             core_radius=np.asarray(model.core_radii, dtype=np.float64),
             last_frame=round(model.elapsed * model.frame_rate),
             inside_at_end=model.rows,
+            decisions=Decisions.of(model) if getattr(model, "decisions", None) else None,
         )
 
     def __len__(self) -> int:
@@ -198,6 +206,20 @@ class Trajectories:
             self.frame[end] - self.frame[start] == frames
         )
         return start[same], end[same]
+
+    def rows_of(self, person: int) -> NDArray[np.int64]:
+        """(k,) rows of one person, in the order of time; none if it does not appear."""
+        ordered = self.person[self.by_person]
+        first, last = np.searchsorted(ordered, [person, person + 1])
+        return self.by_person[first:last]
+
+    def poses(
+        self, person: int, frames: ArrayLike | None = None, *, bank: PoseBank | None = None
+    ) -> BodyMotion:
+        """The body of one person: see :func:`mesa_mobility.results.bodies.body_of`."""
+        from mesa_mobility.results.bodies import body_of
+
+        return body_of(self, person, frames, bank=bank)
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Write a Parquet file: see :func:`mesa_mobility.results.write_parquet`."""

@@ -1,0 +1,25 @@
+"""A run's people as moving figures in files: glTF, BVH, films."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesa_mobility._lazy import names_of
+
+if TYPE_CHECKING:
+    from mesa_mobility.animation.bvh import write_bvh
+    from mesa_mobility.animation.film import write_film
+    from mesa_mobility.animation.gltf import write_glb
+    from mesa_mobility.animation.people import Selection, walkers
+
+_MODULES = {
+    "Selection": "people",
+    "walkers": "people",
+    "write_bvh": "bvh",
+    "write_film": "film",
+    "write_glb": "gltf",
+}
+
+__all__ = ["Selection", "walkers", "write_bvh", "write_film", "write_glb"]
+
+__getattr__, __dir__ = names_of(__name__, _MODULES)
