@@ -66,11 +66,12 @@ def pose_sequence(bank: PoseBank, frames: NDArray[np.int64], movements: Movement
     still = ~_moving(movements)[row]
     numbers = bank.later(poses[row, stretch], np.where(still, 0, into))
     piece = row * begins.shape[1] + stretch
-    joins = 1 + np.flatnonzero((np.diff(piece) != 0) & (numbers[1:] != bank.later(numbers[:-1], 1)))
+    following = bank.later(numbers[:-1], np.where(still[:-1], 0, 1))
+    joins = 1 + np.flatnonzero((np.diff(piece) != 0) & (numbers[1:] != following))
     return Sequence(
         numbers=numbers,
         joins=joins,
-        before=bank.later(numbers[joins - 1], np.where(still[joins - 1], 0, 1)),
+        before=following[joins - 1],
         strides=strides[row],
         own=own,
     )

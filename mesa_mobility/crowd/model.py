@@ -187,9 +187,12 @@ class PedestrianModel(mesa.Model):
         """The capability of each pedestrian type."""
         return self._scene.repertoire.capabilities
 
-    def decided(self) -> dict[str, NDArray[np.generic]] | None:
-        """The decisions so far, see ``DecisionRecorder.arrays``; None if they are not recorded."""
-        return None if self.decisions is None else self.decisions.arrays(self._scene.repertoire)
+    def decided(self, since: int = 0) -> dict[str, NDArray[np.generic]] | None:
+        """The decisions from frame ``since`` on, see ``DecisionRecorder.arrays``; None if they are
+        not recorded."""
+        if self.decisions is None:
+            return None
+        return self.decisions.arrays(self._scene.repertoire, since)
 
     @property
     def stall_reason(self) -> str | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,13 +29,15 @@ class Recorder:
             )
         )
 
-    def arrays(self) -> dict[str, NDArray[np.generic]]:
-        """``frame``, ``person``, ``x``, ``y``, ``heading``: a row for each person and frame."""
+    def arrays(self, since: int = 0) -> dict[str, NDArray[np.generic]]:
+        """``frame``, ``person``, ``x``, ``y``, ``heading``: a row for each person and frame, from
+        frame ``since`` on."""
         names = ("frame", "person", "x", "y", "heading")
-        if not self._blocks:
+        blocks = _since(self._blocks, since)
+        if not blocks:
             kinds = (np.int32, np.int32, np.float64, np.float64, np.float64)
             return {name: np.empty(0, kind) for name, kind in zip(names, kinds, strict=True)}
-        columns = zip(*self._blocks, strict=True)
+        columns = zip(*blocks, strict=True)
         return {name: np.concatenate(c) for name, c in zip(names, columns, strict=True)}
 
 
@@ -54,14 +58,14 @@ class DecisionRecorder:
             )
         )
 
-    def arrays(self, repertoire: Repertoire) -> dict[str, NDArray[np.generic]]:
-        """What was decided, a row for each decision in the order in which they were taken.
+    def arrays(self, repertoire: Repertoire, since: int = 0) -> dict[str, NDArray[np.generic]]:
+        """What was decided from frame ``since`` on, a row for each decision, in order.
 
         ``frame``; ``person``; ``type_index`` of the person's type; ``option``, a row of the type's
         map, or -2 for the fallback; ``share`` of the option's ground that is covered.
         """
         names = ("frame", "person", "type_index", "option")
-        columns = [np.concatenate(each) for each in zip(*self._blocks, strict=True)]
+        columns = [np.concatenate(each) for each in zip(*_since(self._blocks, since), strict=True)]
         found = dict(zip(names, columns or [np.empty(0, np.int32)] * 4, strict=True))
         option, share = found["option"].copy(), np.ones(len(found["option"]), dtype=np.float32)
         for number, capability in enumerate(repertoire.capabilities):
@@ -70,3 +74,11 @@ class DecisionRecorder:
             option[own] = capability.parts.rows[rows]
             share[own] = capability.parts.share[rows]
         return {**found, "option": option, "share": share}
+
+
+def _since(blocks: list[tuple[NDArray[Any], ...]], frame: int) -> list[tuple[NDArray[Any], ...]]:
+    """Those of the blocks, in the order of time, that begin in ``frame`` or later."""
+    first = len(blocks)
+    while first > 0 and (not len(blocks[first - 1][0]) or blocks[first - 1][0][0] >= frame):
+        first -= 1
+    return blocks[first:]
