@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from mesa_mobility.animation.bvh import write_bvh
     from mesa_mobility.animation.film import write_film
     from mesa_mobility.animation.gltf import write_glb
+    from mesa_mobility.animation.page import write_page
     from mesa_mobility.animation.people import Selection, walkers
 
 _MODULES = {
@@ -18,8 +19,9 @@ _MODULES = {
     "write_bvh": "bvh",
     "write_film": "film",
     "write_glb": "gltf",
+    "write_page": "page",
 }
 
-__all__ = ["Selection", "walkers", "write_bvh", "write_film", "write_glb"]
+__all__ = ["Selection", "walkers", "write_bvh", "write_film", "write_glb", "write_page"]
 
 __getattr__, __dir__ = names_of(__name__, _MODULES)

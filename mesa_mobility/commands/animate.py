@@ -54,7 +54,7 @@ def animate(
     from mesa_mobility.results.run import read_run
 
     found = read_run(run)
-    selection = Selection(_numbers(people), start, end)
+    selection = Selection(numbers(people), start, end)
     bank = None if poses is None else PoseBank.load(poses)
     count = len(selection.people_of(found.trajectories))
     each = walkers(found.trajectories, selection, bank)
@@ -96,7 +96,7 @@ def render(
 
     found = read_run(run)
     if output.suffix.lower() in FILMS:
-        selection = Selection(_numbers(people), start, end)
+        selection = Selection(numbers(people), start, end)
         with progress_bar() as report:
             write_film(
                 found.trajectories,
@@ -114,7 +114,8 @@ def render(
     say(f"written to {output}")
 
 
-def _numbers(text: str | None) -> tuple[int, ...] | None:
+def numbers(text: str | None) -> tuple[int, ...] | None:
+    """Numbers of people as an option gives them."""
     if text is None:
         return None
     return tuple(int(_number(each, "--people")) for each in text.split(","))

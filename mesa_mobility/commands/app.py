@@ -11,6 +11,7 @@ from mesa_mobility.commands import experiment, mobility_map, plugins
 from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.map_poses import poses
+from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
@@ -32,6 +33,7 @@ app.command("validate")(validate)
 app.command("dashboard")(dashboard)
 app.command("animate")(animate)
 app.command("render")(render)
+app.command("replay")(replay)
 mobility_map.app.command("poses")(poses)
 app.add_typer(mobility_map.app, name="map")
 app.add_typer(experiment.app, name="experiment")

@@ -55,7 +55,7 @@ def write_run(
     # Matplotlib takes half a second to load, so it is imported only when pictures are drawn.
     from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 
-    title = _title(summary, trajectories)
+    title = title_of(summary, trajectories)
     with all_or_none(directory, RUN_FILES) as temporary:
         text = json_text(summary, indent=2) + "\n"
         (temporary / "summary.json").write_text(text, encoding="utf-8")
@@ -122,7 +122,8 @@ def _curve(trajectories: Trajectories) -> list[list[float]]:
     return curve if egress is None or egress <= curve[-1][0] else [*curve, [egress, 0]]
 
 
-def _title(summary: Mapping[str, Any], trajectories: Trajectories) -> str:
+def title_of(summary: Mapping[str, Any], trajectories: Trajectories) -> str:
+    """One line that says what a run was."""
     egress = summary.get("egress_s")
     left = summary.get("left_inside", 0)
     ending = (
