@@ -125,8 +125,9 @@ def _foot(side: str) -> Tube:
 def _arm(side: str) -> Tube:
     shoulder, elbow, wrist = (f"{side}_{joint}" for joint in ("shoulder", "elbow", "wrist"))
     return [
-        (_at(shoulder, z=0.045), 0.035, 0.035, {f"{side}_collar": 0.6, shoulder: 0.4}),
-        (_at(shoulder), 0.055, 0.050, {f"{side}_collar": 0.3, shoulder: 0.7}),
+        (_at(shoulder, z=0.035), 0.012, 0.012, {f"{side}_collar": 0.6, shoulder: 0.4}),
+        (_at(shoulder, z=0.022), 0.038, 0.034, {f"{side}_collar": 0.5, shoulder: 0.5}),
+        (_at(shoulder, z=-0.02), 0.054, 0.048, {f"{side}_collar": 0.3, shoulder: 0.7}),
         (_at(shoulder, z=-0.10), 0.048, 0.045, {shoulder: 1}),
         (_at(elbow, z=0.04), 0.040, 0.038, {shoulder: 0.85, elbow: 0.15}),
         (_at(elbow), 0.039, 0.037, {shoulder: 0.5, elbow: 0.5}),

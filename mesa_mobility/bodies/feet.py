@@ -177,6 +177,6 @@ def bend(
 
 def settle(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n,) values of which each change takes as long as a join of poses."""
-    weights = -np.diff(np.append(FADE, 0.0))
+    weights: NDArray[np.float64] = FADE - np.append(FADE[1:], 0.0)
     padded = np.concatenate([np.full(len(weights), values[0]), values])
     return np.convolve(padded, weights)[len(weights) : len(weights) + len(values)]
