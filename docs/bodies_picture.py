@@ -28,7 +28,9 @@ def draw(run: str, picture: str) -> None:
     places = motion.positions - motion.positions[:, :1] * [1, 1, 0]
     places = np.einsum("nij,nkj->nki", about_z(-heading), places)
     figure = Figure(figsize=(11, 4.2), dpi=110, layout="constrained")
-    for axes, along, label in zip(figure.subplots(2, 1), (0, 1), ("side", "behind"), strict=True):
+    for axes, along, label in zip(
+        figure.subplots(2, 1), (0, 1), ("the side", "behind"), strict=True
+    ):
         for k, body in enumerate(places):
             across = (body[:, 0] if along == 0 else -body[:, 1]) + APART * k
             for joint, parent in enumerate(PARENTS[1:].tolist(), start=1):
@@ -36,7 +38,7 @@ def draw(run: str, picture: str) -> None:
                 axes.plot(across[[parent, joint]], body[[parent, joint], 2], linewidth=2,
                           color=COLOURS.get(side, "#333333"), solid_capstyle="round")  # fmt: skip
         axes.axhline(0.0, color="#999999", linewidth=0.8)
-        axes.set(aspect="equal", xticks=[], ylabel=f"from the {label}\nz (m)", ylim=(-0.05, 1.85))
+        axes.set(aspect="equal", xticks=[], ylabel=f"from {label}\nz (m)", ylim=(-0.05, 1.85))
         axes.spines[["top", "right", "bottom"]].set_visible(False)
     axes.set_xlabel(f"one picture every {EVERY / 30:g} s; left limbs red, right ones blue")
     figure.savefig(picture)

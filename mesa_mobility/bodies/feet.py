@@ -132,7 +132,7 @@ def _to_floor(
     """(n,) how far a foot is raised so that it bears on the floor and never enters it."""
     heel, ball = soles(ankle, foot)
     lowest = np.minimum(heel[:, 2], ball[:, 2])
-    down = bearing.any(axis=1).astype(np.float64)
+    down: NDArray[np.float64] = np.asarray(bearing.any(axis=1), dtype=np.float64)
     weights = np.full(LANDING_FRAMES, 1.0 / LANDING_FRAMES)
     share = np.convolve(np.concatenate([np.full(LANDING_FRAMES - 1, down[0]), down]), weights)
     landed = share[LANDING_FRAMES - 1 : LANDING_FRAMES - 1 + len(down)]

@@ -29,6 +29,15 @@ People = Annotated[
 Start = Annotated[float, typer.Option("--from", help="Seconds from which on.")]
 End = Annotated[float | None, typer.Option("--to", help="Seconds until when (the end).")]
 
+Poses = Annotated[
+    Path | None,
+    typer.Option(
+        help="Poses of the run's map (.poses.npz) where they do not ship.",
+        parser=some_path,
+        metavar="PATH",
+    ),
+]
+
 
 def animate(
     run: RunDir,
@@ -39,14 +48,7 @@ def animate(
     people: People = None,
     start: Start = 0.0,
     end: End = None,
-    poses: Annotated[
-        Path | None,
-        typer.Option(
-            help="Poses of the run's map (.poses.npz) where they do not ship.",
-            parser=some_path,
-            metavar="PATH",
-        ),
-    ] = None,
+    poses: Poses = None,
 ) -> None:
     """Write the people of a run as moving figures, for Blender and the web."""
     from mesa_mobility.animation import Selection, walkers, write_bvh, write_glb

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from mesa_mobility.commands.animate import End, People, RunDir, Start, numbers
+from mesa_mobility.commands.animate import End, People, Poses, RunDir, Start, numbers
 from mesa_mobility.commands.console import progress_bar, say, some_path
 
 
@@ -27,6 +27,7 @@ def replay(
     people: People = None,
     start: Start = 0.0,
     end: End = None,
+    poses: Poses = None,
     no_open: Annotated[
         bool, typer.Option("--no-open", help="Write the page and open no browser.")
     ] = False,
@@ -34,15 +35,17 @@ def replay(
     """Watch a run in three dimensions: a page with a time slider that needs no network."""
     from mesa_mobility.animation import Selection, walkers
     from mesa_mobility.animation.page import write_page
+    from mesa_mobility.bodies import PoseBank
     from mesa_mobility.results.run import read_run, title_of
 
     page = output or run / "replay.html"
     found = read_run(run)
     selection = Selection(numbers(people), start, end)
+    bank = None if poses is None else PoseBank.load(poses)
     count = len(selection.people_of(found.trajectories))
     with progress_bar() as report:
         write_page(
-            walkers(found.trajectories, selection),
+            walkers(found.trajectories, selection, bank),
             found.plan,
             page,
             title=title_of(found.summary, found.trajectories),

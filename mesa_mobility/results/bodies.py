@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mesa_mobility.bodies import BodyMotion, PoseBank, body_motion
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.trajectories import Trajectories
+
+if TYPE_CHECKING:
+    from mesa_mobility.results.trajectories import Trajectories
 
 
 def body_of(
