@@ -32,8 +32,9 @@ def body_now(person: Pedestrian, bank: PoseBank | None = None) -> BodyMotion:
         raise ModelError(f"pedestrian {person.row}: no pose before the first step")
     own = decided["person"] == person.row
     movements = Movements(
-        *(decided[name][own].astype(np.int64) for name in ("frame", "option")),
-        decided["share"][own].astype(np.float64),
+        starts=decided["frame"][own].astype(np.int64),
+        options=decided["option"][own].astype(np.int64),
+        shares=decided["share"][own].astype(np.float64),
     )
     digest = person.pedestrian_type.mobility_map.digest
     if bank is None:

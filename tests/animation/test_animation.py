@@ -9,31 +9,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from mesa_mobility import Exit, FloorPlan, PedestrianModel
 from mesa_mobility.animation import Selection, walkers, write_bvh, write_film, write_glb
 from mesa_mobility.animation.figure import human_figure, rest_positions
 from mesa_mobility.bodies.skeleton import JOINTS, PARENTS
 from mesa_mobility.capture.bvh import read_bvh
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results import Trajectories
 
 TYPES = {5126: "<f4", 5122: "<i2", 5123: "<u2", 5121: "u1"}
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
-
-
-@pytest.fixture(scope="module")
-def plan() -> FloorPlan:
-    return FloorPlan(
-        "POLYGON ((0 0, 8 0, 8 4, 0 4, 0 0))", exits=[Exit("door", (8, 1.0), (8, 3.0))]
-    )
-
-
-@pytest.fixture(scope="module")
-def run(plan) -> Trajectories:
-    model = PedestrianModel(plan, record="decisions", rng=5)
-    model.add_pedestrians([(1.0, 1.0), (6.5, 2.0)])
-    model.run(max_seconds=3)
-    return Trajectories.of(model)
 
 
 def read_glb(path):
