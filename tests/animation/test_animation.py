@@ -69,7 +69,7 @@ def test_joints_in_a_glb_are_where_ours_are(run, plan, tmp_path):
     write_glb(walkers(run, Selection()), plan, path)
     for person in (0, 1):
         motion = run.poses(person)
-        for frame in (0, 7, 20, 31, 45):
+        for frame in (0, 7, 20, 31, 40):
             found = joints_in_glb(path, person, frame / 30)
             x, y, z = motion.at(frame).positions[0].T
             np.testing.assert_allclose(found, np.column_stack([x, z, -y]), atol=0.0005)
