@@ -122,7 +122,7 @@ def test_a_bvh_file_reads_back_as_the_same_motion(run, tmp_path):
     again = read_bvh(tmp_path / "person.bvh", unit_to_m=0.01)
     assert again.frame_rate == 30
     positions = again.positions()
-    plain = {name.removesuffix(".end"): j for j, name in enumerate(again.skeleton.names)}
+    plain = {name: j for j, name in enumerate(again.skeleton.names)}
     ends = {"crown": "head", "left_wrist": "left_elbow", "left_toe": "left_ankle",
             "right_wrist": "right_elbow", "right_toe": "right_ankle"}  # fmt: skip
     for j, joint in enumerate(JOINTS):
