@@ -19,7 +19,8 @@ def cached_once(maxsize: int) -> Callable[[Callable[Given, Result]], Callable[Gi
     """
 
     def decorate(function: Callable[Given, Result]) -> Callable[Given, Result]:
-        cached, lock = lru_cache(maxsize)(function), threading.Lock()
+        # One value may be needed to compute another: a map borrows from a map.
+        cached, lock = lru_cache(maxsize)(function), threading.RLock()
 
         @wraps(function)
         def once(*arguments: Given.args, **keywords: Given.kwargs) -> Result:

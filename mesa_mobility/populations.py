@@ -1,11 +1,20 @@
-"""Walking speeds of populations, from published data that ship with their source."""
+"""Populations: which types of people a crowd is made of, and speeds by age.
+
+Figures come from published data that ship with their source.
+"""
 
 from __future__ import annotations
 
 import csv
 import math
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from numbers import Real
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +22,152 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.distributions import strata
 from mesa_mobility.errors import ModelError
 
+if TYPE_CHECKING:
+    from mesa_mobility.crowd import PedestrianType
+
+ROUNDING = 1e-6
+"""By how much shares may miss 1."""
+
 WITHIN = 3.0
 """Standard deviations from the mean beyond which nobody is drawn: 0.3 % of a normal curve."""
+
+
+@dataclass(frozen=True, eq=False)
+class Population:
+    """Which types of people a crowd is made of, and in which shares.
+
+    Attributes:
+        shares: share of each type, 0 to 1, adding up to 1. A type is the name of a map that ships,
+            or a ``PedestrianType``. Those whose share is 0 are left out.
+        source: where the shares come from.
+
+    Raises:
+        ModelError: no shares, one out of range, or shares that do not add up to 1.
+
+    Examples:
+        >>> from mesa_mobility.populations import Population, presets
+        >>> Population({"able_bodied": 0.9, "wheelchair_manual": 0.1})
+        Population(able_bodied: 0.9, wheelchair_manual: 0.1)
+        >>> sorted(presets())
+        ['care_home', 'every_type', 'mixed']
+        >>> print(Population.of("mixed").shares["child"])
+        0.22
+    """
+
+    shares: Mapping[str | PedestrianType, float]
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.shares, Mapping):
+            raise ModelError(
+                f"population: got {self.shares!r}, expected a share for each type, such as "
+                '{"able_bodied": 0.9, "child": 0.1}'
+            )
+        for kind, share in self.shares.items():
+            if isinstance(share, bool) or not isinstance(share, Real) or not 0.0 <= share <= 1.0:
+                raise ModelError(
+                    f"population: the share of {_name(kind)!r} is {share!r}, expected 0 to 1"
+                )
+        kept = {kind: float(share) for kind, share in self.shares.items() if share > 0.0}
+        names = [_name(kind) for kind in kept]
+        for kind, name in zip(kept, names, strict=True):
+            if not isinstance(kind, str) and not hasattr(kind, "mobility_map"):
+                raise ModelError(f"population: {kind!r}, expected names of types")
+            if names.count(name) > 1:
+                raise ModelError(f"population: two types {name!r}, expected each once")
+        total = math.fsum(kept.values())
+        if abs(total - 1.0) > ROUNDING:
+            raise ModelError(f"population: the shares add up to {total:.6g}, expected 1")
+        object.__setattr__(self, "shares", kept)
+
+    @classmethod
+    def of(cls, value: Population | Mapping[str | PedestrianType, float] | str) -> Population:
+        """A population from what a parameter may be given as.
+
+        Args:
+            value: a population; shares by type; or a text: the name of one of ``presets()``, the
+                name of a type, for everybody, or shares, ``"able_bodied: 0.9, child: 0.1"``.
+
+        Raises:
+            ModelError: none of these.
+        """
+        if isinstance(value, Population):
+            return value
+        if not isinstance(value, str):
+            return cls(value)
+        if ":" not in value:
+            name = value.strip()
+            if not name.isidentifier():
+                raise ModelError(f"population {value!r}: expected {_forms()}")
+            return presets()[name] if name in presets() else cls({name: 1.0})
+        return cls(dict(_parts(value)))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the types."""
+        return tuple(_name(kind) for kind in self.shares)
+
+    def draw(self, n: int, rng: np.random.Generator) -> NDArray[np.int64]:
+        """(n,) which type each of n people is of, as its index in ``shares``, in random order.
+
+        Each type gets its share of n, rounded up or down: the people are drawn at equal distances
+        along the shares, from a random start (systematic sampling, Madow and Madow 1944). Of a
+        single type nothing is drawn from the generator.
+        """
+        if len(self.shares) == 1:
+            return np.zeros(n, dtype=np.int64)
+        bounds = np.cumsum(list(self.shares.values()))[:-1]
+        at = (rng.permutation(n) + rng.random()) / max(n, 1)
+        return np.searchsorted(bounds, at, side="right").astype(np.int64)
+
+    def __repr__(self) -> str:
+        return f"Population({self})"
+
+    def __str__(self) -> str:
+        return ", ".join(f"{_name(kind)}: {share:g}" for kind, share in self.shares.items())
+
+
+def _name(kind: str | PedestrianType) -> str:
+    return kind if isinstance(kind, str) else getattr(kind, "name", repr(kind))
+
+
+def _parts(text: str) -> Iterator[tuple[str, float]]:
+    """Types and shares of a text such as ``able_bodied: 0.9, child: 0.1``."""
+    seen: set[str] = set()
+    for part in text.split(","):
+        name, colon, share = (each.strip() for each in part.partition(":"))
+        try:
+            value = float(share)
+        except ValueError:
+            colon = ""
+            value = 0.0
+        if not (name and colon) or name in seen:
+            raise ModelError(f"population {text!r}: got {part.strip()!r}, expected {_forms()}")
+        seen.add(name)
+        yield name, value
+
+
+@cache
+def presets() -> Mapping[str, Population]:
+    """Populations by name; their ``source`` says where the shares come from.
+
+    ``mixed`` is the public at large, ``care_home`` the residents, staff and visitors of a care
+    home, ``every_type`` has as many of each type that ships.
+    """
+    text = files("mesa_mobility").joinpath("data/populations.toml").read_text("utf-8")
+    found = {}
+    for name, each in tomllib.loads(text).items():
+        total = sum(each["people"].values())
+        shares = {kind: people / total for kind, people in each["people"].items()}
+        found[name] = Population(shares, " ".join(each["source"].split()))
+    return MappingProxyType(found)
+
+
+def _forms() -> str:
+    return (
+        f"{', '.join(presets())}, the name of a type, or shares such as "
+        "'able_bodied: 0.9, child: 0.1'"
+    )
 
 
 def walking_speed(

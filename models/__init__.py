@@ -3,7 +3,15 @@
 from mesa_mobility.models.auditorium import Auditorium
 from mesa_mobility.models.doorway import Doorway
 from mesa_mobility.models.floor_plan import FloorPlanEgress
+from mesa_mobility.models.mixed_evacuation import MixedEvacuation
 from mesa_mobility.models.open_space import OpenSpace
 from mesa_mobility.models.straight_walk import StraightWalk
 
-__all__ = ["Auditorium", "Doorway", "FloorPlanEgress", "OpenSpace", "StraightWalk"]
+__all__ = [
+    "Auditorium",
+    "Doorway",
+    "FloorPlanEgress",
+    "MixedEvacuation",
+    "OpenSpace",
+    "StraightWalk",
+]

@@ -9,9 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon, box, union_all
 
-from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel, Range
+from mesa_mobility import (
+    Exit,
+    FloorPlan,
+    Gate,
+    MobilityMap,
+    PedestrianModel,
+    PedestrianType,
+    Range,
+)
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
+from mesa_mobility.populations import Population
 
 WIDTH = 28.0
 WING = 3.0
@@ -35,8 +44,14 @@ SEAT_WIDTH = 0.55
 
 HALL_DOOR = 1.8
 EXIT_DOOR = 0.7
+WIDE_EXIT_DOOR = 0.9
+"""Where somebody is too wide for the narrower ones."""
 OUTER_WALL = 0.4
 OFFICE_DOOR = 0.9
+
+WHEELCHAIR_SPACING = 1.25
+"""Room for two wheelchairs, 1.2 m long, beside each other whichever way they face, metres."""
+BEFORE_THE_FIRST_ROW = box(0.0, 0.0, WIDTH, FIRST_ROW)
 
 FORECOURT = (3.0, 8.0)
 """Depth and width of the paved area outside each exit door; people leave by crossing it."""
@@ -50,11 +65,17 @@ class Auditorium(PedestrianModel):
     in an outer wall of 0.4 m at each end of the foyer; through both together pass the paper's
     three people a second.
 
+    People too wide for the gap between two rows, such as those in wheelchairs, are before the first
+    row.
+
     Args:
         pedestrians: people; a twelfth of them, but no more than ten an office, are in the offices.
         pre_movement: seconds before people set off, or their distribution.
         preset: "default", "steady" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
+        population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
+        exit_door: width of the exit doors, metres; by default 0.7, or 0.9 with a population some of
+            whom are too wide for the gap between two rows.
         frames_per_step: frames that one step advances; 3 are 0.1 s.
         record: keep every frame.
         rng: seed or NumPy generator.
@@ -68,6 +89,8 @@ class Auditorium(PedestrianModel):
         pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
+        population: Population | str | None = None,
+        exit_door: Annotated[float, Range(0.6, 2.0)] | None = None,
         frames_per_step: int = 3,
         record: bool | str = False,
         rng: int | np.random.Generator | None = None,
@@ -76,29 +99,59 @@ class Auditorium(PedestrianModel):
         most = len(seats) + OFFICES * PEOPLE_PER_OFFICE
         if not 1 <= pedestrians <= most:
             raise ModelError(f"pedestrians: got {pedestrians}, expected 1 to {most}")
-        plan = auditorium_plan()
+        if exit_door is not None and not 0.6 <= exit_door <= 2.0:
+            raise ModelError(f"exit_door: got {exit_door}, expected 0.6 to 2 m")
+        plan = auditorium_plan(exit_door or exit_door_for(population))
         super().__init__(
             plan,
             preset=preset,
             mobility_map=mobility_map,
+            population=population,
             frames_per_step=frames_per_step,
             record=record,
             rng=rng,
         )
-        in_offices = max(min(round(pedestrians / 12), OFFICES * PEOPLE_PER_OFFICE),
-                         pedestrians - len(seats))  # fmt: skip
-        taken = self.rng.choice(len(seats), pedestrians - in_offices, replace=False)
+        kinds = self.draw_types(pedestrians)
+        wide = np.array([too_wide(kind.core_radius) for kind in self.pedestrian_types])[kinds]
+        if wide.any():
+            places = plan.random_points(
+                int(wide.sum()), self.rng, within=BEFORE_THE_FIRST_ROW,
+                spacing=WHEELCHAIR_SPACING, clearance=WHEELCHAIR_SPACING / 2,
+            )  # fmt: skip
+            self.add_pedestrians(places, pre_movement=pre_movement, type_index=kinds[wide])
+        kinds = kinds[~wide]
+        in_offices = max(min(round(pedestrians / 12), OFFICES * PEOPLE_PER_OFFICE, len(kinds)),
+                         len(kinds) - len(seats))  # fmt: skip
+        taken = self.rng.choice(len(seats), len(kinds) - in_offices, replace=False)
         taken.sort()
         facing_stage = np.full(len(taken), -np.pi / 2)
-        self.add_pedestrians(seats[taken], headings=facing_stage, pre_movement=pre_movement)
+        self.add_pedestrians(
+            seats[taken],
+            headings=facing_stage,
+            pre_movement=pre_movement,
+            type_index=kinds[in_offices:],
+        )
         for office in range(OFFICES):
-            count = in_offices // OFFICES + (office < in_offices % OFFICES)
-            if count:
+            own = kinds[office:in_offices:OFFICES]
+            if len(own):
                 places = plan.random_points(
-                    count, self.rng, within=office_floor(office), spacing=0.7, clearance=0.35
+                    len(own), self.rng, within=office_floor(office), spacing=0.7, clearance=0.35
                 )
-                headings = self.rng.uniform(-np.pi, np.pi, count)
-                self.add_pedestrians(places, headings=headings, pre_movement=pre_movement)
+                headings = self.rng.uniform(-np.pi, np.pi, len(own))
+                self.add_pedestrians(
+                    places, headings=headings, pre_movement=pre_movement, type_index=own
+                )
+
+
+def too_wide(core_radius: float) -> bool:
+    """Whether a body of this radius, metres, has no room to walk between two rows of seats."""
+    return 2.0 * core_radius > ROW_PITCH - SEAT_DEPTH - 0.05
+
+
+def exit_door_for(population: Population | str | None) -> float:
+    """Width of exit doors for these people, metres."""
+    types = () if population is None else PedestrianType.all_of(Population.of(population))
+    return WIDE_EXIT_DOOR if any(too_wide(kind.core_radius) for kind in types) else EXIT_DOOR
 
 
 def seat_places() -> NDArray[np.float64]:
@@ -121,8 +174,8 @@ def office_floor(office: int) -> Polygon:
     return box(office * width + WALL / 2, low, (office + 1) * width - WALL / 2, low + OFFICE)
 
 
-def auditorium_plan() -> FloorPlan:
-    """Hall (y 0 to 24 m, stage below), foyer, and a row of offices."""
+def auditorium_plan(exit_door: float = EXIT_DOOR) -> FloorPlan:
+    """Hall (y 0 to 24 m, stage below), foyer, and a row of offices; exit doors as wide as given."""
     foyer_low, foyer_high = HALL + WALL, HALL + WALL + FOYER
     hall_doors = [((a[1] + b[0]) / 2, HALL) for a, b in pairwise(BLOCKS)]
     parts = [box(0, 0, WIDTH, HALL), box(0, foyer_low, WIDTH + WING, foyer_high)]
@@ -144,7 +197,7 @@ def auditorium_plan() -> FloorPlan:
         for left, right in BLOCKS
     ]
     middle = (foyer_low + foyer_high) / 2
-    low, high = middle - EXIT_DOOR / 2, middle + EXIT_DOOR / 2
+    low, high = middle - exit_door / 2, middle + exit_door / 2
     depth, width = FORECOURT
     exits = []
     for side, wall, out in (("left", 0.0, -1.0), ("right", WIDTH + WING, 1.0)):

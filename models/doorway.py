@@ -10,6 +10,7 @@ from shapely import Polygon, box
 from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel, Range
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
+from mesa_mobility.populations import Population
 
 ROOM = 10.0
 HALL = 8.0
@@ -28,6 +29,7 @@ class Doorway(PedestrianModel):
         pre_movement: seconds before people set off, or their distribution.
         preset: "default", "steady" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
+        population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
         frames_per_step: frames that one step advances; 3 are 0.1 s.
         record: keep every frame.
         rng: seed or NumPy generator.
@@ -40,6 +42,7 @@ class Doorway(PedestrianModel):
         pre_movement: Distribution | float = 0.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
+        population: Population | str | None = None,
         frames_per_step: int = 3,
         record: bool | str = False,
         rng: int | np.random.Generator | None = None,
@@ -53,6 +56,7 @@ class Doorway(PedestrianModel):
             plan,
             preset=preset,
             mobility_map=mobility_map,
+            population=population,
             frames_per_step=frames_per_step,
             record=record,
             rng=rng,

@@ -9,6 +9,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel, Range
 from mesa_mobility.errors import ModelError
+from mesa_mobility.populations import Population
 
 LANE = 3.0
 
@@ -19,10 +20,12 @@ class StraightWalk(PedestrianModel):
     Args:
         pedestrians: number of walkers.
         slowest: preferred speed of the first, m/s.
-        fastest: preferred speed of the last, m/s; the others lie evenly between.
+        fastest: preferred speed of the last, m/s; the others lie evenly between. People of a
+            population have the speeds of their types instead.
         length: metres to walk.
         preset: "default", "steady" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
+        population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
         frames_per_step: frames that one step advances; 3 are 0.1 s.
         record: keep every frame.
         rng: seed or NumPy generator.
@@ -36,6 +39,7 @@ class StraightWalk(PedestrianModel):
         length: Annotated[float, Range(5.0, 100.0)] = 40.0,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
+        population: Population | str | None = None,
         frames_per_step: int = 3,
         record: bool | str = False,
         rng: int | np.random.Generator | None = None,
@@ -59,6 +63,7 @@ class StraightWalk(PedestrianModel):
             plan,
             preset=preset,
             mobility_map=mobility_map,
+            population=population,
             frames_per_step=frames_per_step,
             record=record,
             rng=rng,
@@ -67,5 +72,7 @@ class StraightWalk(PedestrianModel):
         self.add_pedestrians(
             np.column_stack([np.zeros(pedestrians), lanes]),
             headings=np.zeros(pedestrians),
-            preferred_speeds=np.linspace(slowest, fastest, pedestrians),
+            preferred_speeds=np.linspace(slowest, fastest, pedestrians)
+            if population is None
+            else None,
         )

@@ -9,6 +9,7 @@ import typer
 
 from mesa_mobility.commands import experiment, mobility_map, plugins
 from mesa_mobility.commands.animate import animate, render
+from mesa_mobility.commands.bootstrap import bootstrap
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.map_poses import poses
 from mesa_mobility.commands.replay import replay
@@ -35,6 +36,7 @@ app.command("animate")(animate)
 app.command("render")(render)
 app.command("replay")(replay)
 mobility_map.app.command("poses")(poses)
+mobility_map.app.command("bootstrap")(bootstrap)
 app.add_typer(mobility_map.app, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.command("models")(plugins.models)

@@ -21,7 +21,7 @@ from rich.progress import (
 )
 from rich.table import Table
 
-from mesa_mobility.interrupts import cleaning_up
+from mesa_mobility.interrupts import INTERRUPTED, Stopped, cleaning_up, gentle_interrupt
 
 
 class Report(Protocol):
@@ -73,6 +73,26 @@ def counting_bar() -> Iterator[Report]:
     """A progress bar with the time left."""
     with _bar(TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()) as report:
         yield report
+
+
+@contextmanager
+def stoppable_progress(kept: str = "nothing written") -> Iterator[Report]:
+    """A progress bar; the first Ctrl-C ends the command at the next report.
+
+    Args:
+        kept: what is said then of files.
+    """
+    with progress_bar() as report, gentle_interrupt() as stop_here:
+
+        def progress(what: str, done: float, total: float) -> None:
+            report(what, done, total)
+            stop_here()
+
+        try:
+            yield progress
+        except Stopped:
+            say(f"interrupted: {kept}")
+            raise typer.Exit(INTERRUPTED) from None
 
 
 @contextmanager

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from mesa_mobility.commands.console import say, some_path
-from mesa_mobility.commands.mobility_map import load_recordings, stoppable_progress
+from mesa_mobility.commands.console import say, some_path, stoppable_progress
+from mesa_mobility.commands.mobility_map import load_recordings
 from mesa_mobility.interrupts import putting_in_place
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import platform
 import secrets
 import time
 from collections.abc import Callable
@@ -44,6 +45,12 @@ def run(
         typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
     ] = None,
     preset: Annotated[str, typer.Option(help="default, steady or paper.")] = "default",
+    population: Annotated[
+        str | None,
+        typer.Option(
+            help="Types of people: mixed, care_home, or such as 'able_bodied: 0.9, child: 0.1'."
+        ),
+    ] = None,
     map_file: Annotated[
         Path | None,
         typer.Option(
@@ -86,12 +93,16 @@ def run(
         from mesa_mobility.crowd.precompile import compiling_ahead
 
         with compiling_ahead():
-            simulation, given = _create(
-                model, settings or [], preset, map_file, seed, record or True
-            )
+            settings = list(settings or [])
+            if population is not None:
+                settings.append(f"population={population}")
+            simulation, given = _create(model, settings, preset, map_file, seed, record or True)
+
+    import pandas as pd
 
     from mesa_mobility.results import (
         Trajectories,
+        by_type,
         check_safety,
         check_writable,
         write_run,
@@ -108,12 +119,15 @@ def run(
             trajectories = Trajectories.of(simulation)
             plan = simulation.floor_plan
             safety = check_safety(trajectories, plan.walls, plan.free)
+            # Another package's model need not know types.
+            table = by_type(trajectories) if "type" in trajectories.person_data else pd.DataFrame()
             summary = {
                 **simulation.summary(),
                 "model": model,
                 "preset": preset,
                 "seed": seed,
-                **_origin(given, map_file),
+                "by_type": table.reset_index().to_dict("records"),
+                **_origin(given, simulation),
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
                 "overlaps": safety.overlaps,
@@ -179,22 +193,30 @@ def _create(
     return kind(**keywords), given
 
 
-def _origin(given: dict[str, Any], map_file: Path | None) -> dict[str, Any]:
+def _origin(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
     """All that repeating the run needs besides model, preset and seed."""
-    from mesa_mobility._version import __version__
-    from mesa_mobility.mobility.mapfile import shipped_map_path
+    from importlib.metadata import version
 
-    map_file = shipped_map_path("able_bodied") if map_file is None else map_file
-    with map_file.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    from mesa_mobility._version import __version__
+
     plain = (bool, int, float, str, type(None))
+    maps = {}
+    for kind in simulation.pedestrian_types:
+        path, digest = kind.mobility_map.file, None
+        if path is not None:
+            with path.open("rb") as file:
+                digest = hashlib.file_digest(file, "sha256").hexdigest()
+        maps[kind.name] = {"file": None if path is None else path.name, "sha256": digest}
     return {
         "parameters": {
             key: value if isinstance(value, plain) else str(value) for key, value in given.items()
         },
-        "map": map_file.name,
-        "map_sha256": digest,
+        "maps": maps,
         "mesa_mobility": __version__,
+        "versions": {
+            "python": platform.python_version(),
+            **{name: version(name) for name in ("mesa", "numpy", "numba", "scipy", "shapely")},
+        },
     }
 
 
@@ -225,6 +247,7 @@ def _simulate(
 def _figures(summary: dict[str, Any]) -> dict[str, str]:
     egress = summary["egress_s"]
     distance, speed = summary["min_distance_m"], summary["mean_speed_mps"]
+    types = summary["by_type"] if len(summary["by_type"]) > 1 else []
     return {
         "Model": f"{summary['model']}, preset {summary['preset']}, seed {summary['seed']}",
         "People": f"{summary['pedestrians']}",
@@ -233,6 +256,7 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
         if egress is not None
         else f"no: {summary['left_inside']} left inside",
         "Mean speed": "-" if speed is None else f"{speed:.2f} m/s",
+        **{f"  {each['type']}": _figures_of_type(each) for each in types},
         "Decisions": f"{summary['decisions']}",
         "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
         f"{summary['fallback_time_share']:.1%} of the time",
@@ -242,3 +266,12 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
         "Off the floor": f"{summary['off_floor']} frames",
         "Wall time": f"{summary['wall_s']:.1f} s ({summary['cpu_s']:.1f} s of CPU)",
     }
+
+
+def _figures_of_type(each: dict[str, Any]) -> str:
+    text = f"{each['left']} of {each['people']} out"
+    if each["left"]:
+        text += f", after {each['mean_egress_s']:.1f} s (mean), {each['p95_egress_s']:.1f} s (95 %)"
+    return text + (
+        "" if math.isnan(each["mean_speed_mps"]) else f", {each['mean_speed_mps']:.2f} m/s"
+    )

@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mesa_mobility.commands.console import answer_json, progress_bar, say, some_path
-from mesa_mobility.commands.verify import FAILED, AsJson, Jobs, Seeds, processes
+from mesa_mobility.commands.verify import (
+    FAILED,
+    AsJson,
+    Jobs,
+    ReportFile,
+    Seeds,
+    check_report,
+    processes,
+)
 
 if TYPE_CHECKING:
     from mesa_mobility.validation import Experiment
@@ -30,6 +38,7 @@ def validate(
             metavar="PATH",
         ),
     ] = None,
+    report_file: ReportFile = None,
 ) -> None:
     """Compare crowds with measured ones: speeds, flows, densities, lanes, standing.
 
@@ -42,6 +51,7 @@ def validate(
     experiments = chosen(names or [])
     if out is not None:
         check_writable(out, _files(experiments))
+    check_report(report_file)
     numbers = range(1, seeds + 1)
     cases = [each for experiment in experiments for each in experiment.cases]
     with progress_bar() as report:
@@ -56,6 +66,11 @@ def validate(
     if out is not None:
         _write(out, experiments, verdicts, answer)
         say(f"written to {out}")
+    if report_file is not None:
+        from mesa_mobility.validation.report import write_report
+
+        write_report(experiments, verdicts, seeds, report_file)
+        say(f"written to {report_file}")
     _print_table(experiments, verdicts)
     if as_json:
         answer_json(answer)
@@ -101,15 +116,16 @@ def _print_table(experiments: list[Experiment], verdicts: dict[str, Verdict]) ->
     from rich.console import Console
     from rich.table import Table
 
+    from mesa_mobility.validation.report import word_of
+
     table = Table(box=None, padding=(0, 2, 0, 0))
     for column in ("experiment", "figure", "measured", "wanted", "verdict"):
         table.add_column(column, overflow="fold")
     for each in experiments:
         verdict = verdicts[each.name]
         for check in verdict.checks:
-            word = "pass" if check.met else "FAIL" if check.gates else "outside"
             value = "-" if check.value is None else f"{check.value:.4g}"
-            table.add_row(each.name, check.figure, value, check.wanted, word)
+            table.add_row(each.name, check.figure, value, check.wanted, word_of(check))
         for name, figure in verdict.figures.items():
             if isinstance(figure, int | float):
                 table.add_row(each.name, name, f"{figure:.4g}", "", "")

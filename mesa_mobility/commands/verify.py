@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, progress_bar, say
+from mesa_mobility.commands.console import answer_json, progress_bar, say, some_path
 
 if TYPE_CHECKING:
     from mesa_mobility.verification import Entry, Outcome
 
 FAILED = 1
-WORDS = {"pass": "pass", "fail": "FAIL", "cap": "cap exceeded"}
 
 Seeds = Annotated[int, typer.Option(min=1, metavar="N", help="Runs of each test, seeds 1 to N.")]
 Jobs = Annotated[
     int | None, typer.Option(min=1, help="Processes side by side (one for each processor).")
+]
+ReportFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--report",
+        help="One HTML page with criteria, sources, figures, pictures, verdicts and versions.",
+        parser=some_path,
+        metavar="FILE",
+    ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
 
@@ -29,6 +37,7 @@ def verify(
     seeds: Seeds = 1,
     jobs: Jobs = None,
     as_json: AsJson = False,
+    report_file: ReportFile = None,
 ) -> None:
     """Run the verification tests of RiMEA, IMO, NIST and ISO for a level floor.
 
@@ -36,6 +45,7 @@ def verify(
     """
     from mesa_mobility.verification import catalogue, suite, verify
 
+    check_report(report_file)
     tests = suite(ids or [])
     entries = catalogue()
     with progress_bar() as report:
@@ -45,7 +55,13 @@ def verify(
             processes(jobs),
             caps=[name for name, entry in entries.items() if entry.cap],
             progress=report,
+            drawn=report_file is not None,
         )
+    if report_file is not None:
+        from mesa_mobility.verification.report import write_report
+
+        write_report(entries, outcomes, report_file)
+        say(f"written to {report_file}")
     _print_table(entries, outcomes)
     failing = [name for name, outcome in outcomes.items() if outcome.verdict == "fail"]
     capped = [name for name, outcome in outcomes.items() if outcome.verdict == "cap"]
@@ -63,6 +79,18 @@ def verify(
         answer_json({name: _as_json(entries[name], outcomes[name]) for name in outcomes})
     if failing:
         raise typer.Exit(FAILED)
+
+
+def check_report(file: Path | None) -> None:
+    """Make sure that a report can be written, before anything is run for it.
+
+    Raises:
+        ResultsError: it cannot.
+    """
+    from mesa_mobility.results import check_writable
+
+    if file is not None:
+        check_writable(file.parent, [file.name])
 
 
 def processes(jobs: int | None) -> int:
@@ -99,21 +127,12 @@ def _print_table(entries: dict[str, Entry], outcomes: dict[str, Outcome]) -> Non
     from rich.console import Console
     from rich.table import Table
 
+    from mesa_mobility.verification.report import WORDS, measured_text
+
     table = Table(box=None, padding=(0, 2, 0, 0))
     for column in ("id", "what", "measured", "criterion", "verdict"):
         table.add_column(column, overflow="fold", no_wrap=column == "id")
     for name, outcome in outcomes.items():
         entry = entries[name]
-        shown = ", ".join(
-            f"{figure} {_text(value)}"
-            for figure, value in outcome.measured.items()
-            if not isinstance(value, list | dict) and figure not in outcome.safety
-        )
-        table.add_row(name, entry.what, shown, entry.asked, WORDS[outcome.verdict])
+        table.add_row(name, entry.what, measured_text(outcome), entry.asked, WORDS[outcome.verdict])
     Console(highlight=False, markup=False).print(table)
-
-
-def _text(value: Any) -> str:
-    if value is None or (isinstance(value, float) and not math.isfinite(value)):
-        return "-"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -140,11 +140,11 @@ class Dynamics:
             inflow.count(model.frame)
             while inflow.waiting:
                 places = inflow.entrance.draw(PLACES_TRIED, model.rng)
-                place = model.population.first_free(places, inflow.source.type_index, model.frame)
+                place = model.population.first_free(places, inflow.next_type, model.frame)
                 if place is None:
                     break
                 self.insert([place], inflow.newcomers)
-                inflow.entered += 1
+                inflow.let_in()
 
     @property
     def _plan_has_changed(self) -> bool:

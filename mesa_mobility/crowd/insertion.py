@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.crowd.collision.exact import swept_collision
 from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.pedestrian_type import PedestrianType, indices_of
 from mesa_mobility.crowd.planning.grid import Grid, build_grid, people_within
 from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd, CrowdState
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
@@ -22,6 +22,7 @@ from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.poisson_disk import have_room
 from mesa_mobility.floorplan.walls.line_of_sight import distances_to_walls
 from mesa_mobility.plugins.output import numbers_given
+from mesa_mobility.populations import Population
 
 TOUCHING = 1e-6
 """Overlap with a wall that counts as rounding, metres."""
@@ -42,7 +43,8 @@ class Newcomers:
     route: Sequence[str] = ()
     loop: bool = False
     group: str | int | None = None
-    type_index: int = 0
+    type_index: ArrayLike | None = None
+    population: Population | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.exits, str):
@@ -53,19 +55,38 @@ class Newcomers:
             raise ModelError("loop: got no route, expected names of at least two gates")
         if self.group is not None and not isinstance(self.group, str | int):
             raise ModelError(f"group: got {self.group!r}, expected a name or number")
+        if self.type_index is not None and self.population is not None:
+            raise ModelError("type_index and population: got both, expected one of them")
+
+    def draw_types(
+        self, n: int, types: Sequence[PedestrianType], rng: np.random.Generator
+    ) -> NDArray[np.int64]:
+        """(n,) index of each one's type.
+
+        Raises:
+            ModelError: there is no such type, or another number of them.
+        """
+        if self.population is not None:
+            return indices_of(self.population, types)[self.population.draw(n, rng)]
+        return check_types(self.type_index, n, types)
 
     def draw_speeds(
-        self, n: int, ptype: PedestrianType, rng: np.random.Generator
+        self, kinds: NDArray[np.int64], types: Sequence[PedestrianType], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """(n,) preferred speeds, m/s.
+        """(n,) preferred speeds of people of these types, m/s.
 
         Raises:
             ModelError: another number of them, or one out of range.
         """
-        given = self.preferred_speeds
-        speeds = draw_column(
-            "preferred_speeds", ptype.draw_speeds(n, rng) if given is None else given, n, rng
-        )
+        given, n = self.preferred_speeds, len(kinds)
+        if given is None:
+            given = np.empty(n)
+            for kind in distinct(kinds):
+                own = kinds == kind
+                given[own] = draw_column(
+                    "preferred_speeds", types[kind].draw_speeds(int(own.sum()), rng), own.sum(), rng
+                )
+        speeds = draw_column("preferred_speeds", given, n, rng)
         off = ~((speeds > 0.0) & (speeds <= FASTEST))
         if off.any():
             raise ModelError(
@@ -86,14 +107,40 @@ class Newcomers:
 @dataclass(frozen=True)
 class Assigned:
     """Values that newcomers have in common: type index, core radius in metres, standing cluster,
-    destination, and numbers of the journey and the group, 0 for none."""
+    destination, and number of the journey, 0 for none."""
 
     type_index: int
     core: float
     standing: int
     destination: int
     journey: int
-    group: int
+
+
+def check_types(
+    values: ArrayLike | None, n: int, types: Sequence[PedestrianType]
+) -> NDArray[np.int64]:
+    """(n,) indices of types; a single one stands for all, None for the first.
+
+    Raises:
+        ModelError: there is no such type, or another number of them.
+    """
+    try:
+        given = np.zeros((), dtype=np.int64) if values is None else np.asarray(values)
+        whole = np.issubdtype(given.dtype, np.integer) and given.shape in ((n,), ())
+    except ValueError:  # rows of unequal length
+        whole = False
+    if not whole or ((given < 0) | (given >= len(types))).any():
+        raise ModelError(
+            f"type_index: got {values!r}, expected the index of a type, 0 to {len(types) - 1}, "
+            "or one for each person"
+        )
+    return np.broadcast_to(given, (n,)).astype(np.int64)
+
+
+def distinct(kinds: NDArray[np.int64]) -> list[int]:
+    """The types that there are, each once, in rising order; the first one where nobody is."""
+    found: list[int] = np.unique(kinds).tolist()
+    return found or [0]
 
 
 def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
@@ -114,8 +161,15 @@ def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
     return points
 
 
-def check_beside_walls(points: NDArray[np.float64], core: float, plan: FloorPlan) -> None:
+def check_beside_walls(
+    points: NDArray[np.float64],
+    core: float,
+    plan: FloorPlan,
+    numbers: NDArray[np.int64] | None = None,
+) -> None:
     """Raise ModelError where bodies with this core radius, in metres, have no room between walls.
+
+    The error names people by their (n,) ``numbers``, by default 0, 1 and so on.
 
     A body that touches a wall at the start could not move away from it, or would stand across it.
     """
@@ -124,7 +178,8 @@ def check_beside_walls(points: NDArray[np.float64], core: float, plan: FloorPlan
     if near.any():
         k = int(np.argmax(near))
         raise ModelError(
-            f"pedestrian {k} at {points[k].tolist()}: {away[k]:.3f} m from a wall, expected room "
+            f"pedestrian {k if numbers is None else numbers[k]} at {points[k].tolist()}: "
+            f"{away[k]:.3f} m from a wall, expected room "
             f"for its body, {core:g} m"
         )
 
@@ -193,7 +248,6 @@ def place(
     agenda["nearest"][rows] = np.inf
     agenda["corner"][rows] = NO_CORNER
     agenda["mouth"][rows] = 0
-    agenda["group"][rows] = new.group
     agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
 from typing import Any, Self
@@ -21,7 +21,7 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.pedestrian import Pedestrian, number_on
 from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
-from mesa_mobility.crowd.population import Population
+from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.scene import make_scene
@@ -38,6 +38,7 @@ from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.occupants import add_occupants
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.plugins.seeds import seed_of
+from mesa_mobility.populations import Population
 
 
 class PedestrianModel(mesa.Model):
@@ -52,6 +53,8 @@ class PedestrianModel(mesa.Model):
         mobility_map: a map, its file, or None for the able-bodied one that ships; stands
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
+        population: the shares of types that people are drawn from, instead of either: a
+            ``Population``, shares by type, or a text such as "mixed" (see ``Population.of``).
         behaviors: cost terms instead of the preset's.
         target_choice: where people go; by default everybody leaves by the nearest exit.
         frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
@@ -107,6 +110,7 @@ class PedestrianModel(mesa.Model):
         preset: str = "default",
         mobility_map: MobilityMap | str | Path | None = None,
         pedestrian_types: Sequence[PedestrianType] | None = None,
+        population: Population | Mapping[str | PedestrianType, float] | str | None = None,
         behaviors: Iterable[CostTerm] | None = None,
         target_choice: TargetChoice | None = None,
         frames_per_step: int = 3,
@@ -119,8 +123,9 @@ class PedestrianModel(mesa.Model):
         rules = preset_named(preset)
         self.preset = rules.name
         self.floor_plan = floor_plan
-        self.pedestrian_types = types_of(mobility_map, pedestrian_types)
-        self._scene = scene = make_scene(floor_plan, self.pedestrian_types, rules)
+        shares = None if population is None else Population.of(population)
+        self.pedestrian_types = types_of(mobility_map, pedestrian_types, shares)
+        self._scene = scene = make_scene(floor_plan, self.pedestrian_types, rules, shares)
         self.crowd, self.journeys = scene.crowd, scene.journeys
         self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
         self.speed_rules: list[SpeedRule] = []
@@ -133,7 +138,7 @@ class PedestrianModel(mesa.Model):
         self.decisions = DecisionRecorder() if record == "decisions" else None
         self.watch: Watch | None = None
         self.space = space_of(floor_plan, scene.repertoire.reach, self.random)
-        self.population = Population(scene, self.space)
+        self.population = People(scene, self.space)
         self.sources = Sources(scene)
         self.statistics = Statistics(self)
         self.waits = Waits()
@@ -210,7 +215,8 @@ class PedestrianModel(mesa.Model):
         route: Sequence[str] = (),
         loop: bool = False,
         group: str | int | None = None,
-        type_index: int = 0,
+        type_index: ArrayLike | None = None,
+        population: Population | Mapping[str | PedestrianType, float] | str | None = None,
     ) -> list[Pedestrian]:
         """Put people on the floor, standing.
 
@@ -226,11 +232,16 @@ class PedestrianModel(mesa.Model):
             loop: whether the route starts over after its last gate, and they never leave. On a
                 closed track three gates or more determine the direction.
             group: name or number of the group that they join.
-            type_index: index of their type in ``pedestrian_types``.
+            type_index: index of their type in ``pedestrian_types``, or (n,) of them; by default
+                types are drawn from ``population``.
+            population: the shares of types, of which each gets its share of n, rounded up or down;
+                by default those of the model, or the first type alone. Positions are exchanged so
+                that wide people stand where they have room and a way out.
 
         Raises:
             ModelError: positions off the floor, too near to a wall, or where somebody is or will
-                be; an unknown type; arrays of the wrong length; numbers out of range.
+                be; an unknown type; arrays of the wrong length; numbers out of range; shares that
+                do not add up to 1, or too few places for people of a wide type.
             FloorPlanError: an unknown exit or gate, or no way from a position to any exit, or to
                 the route's first gate, or on from a gate.
         """
@@ -243,8 +254,18 @@ class PedestrianModel(mesa.Model):
             loop=loop,
             group=group,
             type_index=type_index,
+            population=None if population is None else Population.of(population),
         )
         return self._dynamics.insert(positions, new)
+
+    def draw_types(self, n: int) -> NDArray[np.int64]:
+        """(n,) indices of types, drawn from the model's population; 0 where it has none.
+
+        For models that place people by type; ``add_pedestrians`` draws by itself.
+        """
+        return Newcomers(population=self._scene.shares).draw_types(
+            n, self.pedestrian_types, self.rng
+        )
 
     def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
         """Take people out of the model."""
@@ -326,6 +347,21 @@ class PedestrianModel(mesa.Model):
         if not (0 <= row < self.population.count and self.crowd.active[row]):
             raise ModelError(f"pedestrian {row}: expected the row of somebody inside")
         return self._dynamics.explain(row)
+
+    def person_data(self) -> dict[str, ArrayLike]:
+        """What trajectories say of each person besides its place; models may add to it.
+
+        Returns:
+            (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.
+            The group is an empty text for people without one.
+        """
+        crowd, count = self.crowd, self.population.count
+        types = np.array([kind.name for kind in self.pedestrian_types])
+        groups = np.array(["", *map(str, self.population.groups)])
+        return {
+            "type": types[crowd.type_index[:count]],
+            "group": groups[crowd.agenda["group"][:count]],
+        }
 
     def summary(self) -> dict[str, Any]:
         """Figures of the run so far, ready for JSON.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from numbers import Integral
 
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
 from mesa_mobility.crowd.pedestrian_type import PedestrianType
@@ -12,8 +11,8 @@ from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.journeys import Journeys
-from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.populations import Population
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +22,7 @@ class Scene:
     Attributes:
         plan: the floor plan.
         types: the pedestrian types.
+        shares: the population that people are drawn from unless a type is given, if there is one.
         preset: the rules by which they move.
         repertoire: the movement options of all types.
         rules: the constants of a decision.
@@ -33,6 +33,7 @@ class Scene:
 
     plan: FloorPlan
     types: tuple[PedestrianType, ...]
+    shares: Population | None
     preset: Preset
     repertoire: Repertoire
     rules: Rules
@@ -40,21 +41,13 @@ class Scene:
     journeys: Journeys
     crowd: Crowd
 
-    def type_at(self, type_index: int) -> PedestrianType:
-        """The pedestrian type with this index.
 
-        Raises:
-            ModelError: there is none.
-        """
-        if not (isinstance(type_index, Integral) and 0 <= type_index < len(self.types)):
-            raise ModelError(
-                f"type_index: got {type_index!r}, expected the index of a type, "
-                f"0 to {len(self.types) - 1}"
-            )
-        return self.types[type_index]
-
-
-def make_scene(plan: FloorPlan, types: tuple[PedestrianType, ...], preset: Preset) -> Scene:
+def make_scene(
+    plan: FloorPlan,
+    types: tuple[PedestrianType, ...],
+    preset: Preset,
+    shares: Population | None = None,
+) -> Scene:
     """A scene without people.
 
     Raises:
@@ -66,6 +59,7 @@ def make_scene(plan: FloorPlan, types: tuple[PedestrianType, ...], preset: Prese
     return Scene(
         plan=plan,
         types=types,
+        shares=shares,
         preset=preset,
         repertoire=known,
         rules=Rules(

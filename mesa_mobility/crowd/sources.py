@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from typing import overload
@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.crowd.insertion import Newcomers
+from mesa_mobility.crowd.insertion import Newcomers, check_types
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.pedestrian_type import PedestrianType, indices_of
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.environment import passing_of
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
@@ -20,6 +21,7 @@ from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan.entrance import Entrance, read_entrance
+from mesa_mobility.populations import Population
 
 HIGHEST_RATE = 1000.0
 """Most people a second from one source: the flow through some 800 m of doors."""
@@ -33,6 +35,9 @@ MOST_PEOPLE = 10_000_000
 PLACES_TRIED = 16
 """Places tried in a frame for the next person."""
 
+DECK = 100
+"""People of a population who are drawn together."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Source:
@@ -45,11 +50,13 @@ class Source:
         start: seconds at which a rate begins.
         until: seconds at which it ends, if ever.
         number: most people.
-        exits, route, loop, group, type_index, preferred_speeds, pre_movement: as
-            ``PedestrianModel.add_pedestrians`` takes them; numbers or distributions, no arrays.
+        exits, route, loop, group, type_index, population, preferred_speeds, pre_movement: as
+            ``PedestrianModel.add_pedestrians`` takes them; numbers or distributions, no arrays. Of
+            a population each hundred people together have its shares.
 
     Raises:
-        ModelError: neither a rate nor times, both, or one out of range.
+        ModelError: neither a rate nor times, both, or one out of range; shares of a population that
+            do not add up to 1.
     """
 
     area: BaseGeometry | str
@@ -62,7 +69,8 @@ class Source:
     route: Sequence[str] = ()
     loop: bool = False
     group: str | int | None = None
-    type_index: int = 0
+    type_index: int | None = None
+    population: Population | Mapping[str | PedestrianType, float] | str | None = None
     preferred_speeds: float | Distribution | None = None
     pre_movement: float | Distribution = 0.0
 
@@ -94,6 +102,8 @@ class Source:
             if times.ndim != 1 or not ((times >= 0.0) & (times <= LATEST)).all():
                 raise ModelError(f"source: times, expected a row of seconds, 0 to {LATEST:g}")
             object.__setattr__(self, "times", times)
+        if self.population is not None:
+            object.__setattr__(self, "population", Population.of(self.population))
         self._check_people()
 
     def _check_people(self) -> None:
@@ -117,8 +127,8 @@ class Source:
         """Whether people come for ever."""
         return self.rate is not None and self.until > LATEST and self.number is None
 
-    def newcomers(self) -> Newcomers:
-        """The newcomers."""
+    def newcomers(self, type_index: int | None) -> Newcomers:
+        """The newcomers of one type."""
         return Newcomers(
             preferred_speeds=self.preferred_speeds,
             pre_movement=self.pre_movement,
@@ -126,7 +136,7 @@ class Source:
             route=self.route,
             loop=self.loop,
             group=self.group,
-            type_index=self.type_index,
+            type_index=type_index,
         )
 
 
@@ -139,31 +149,65 @@ class Inflow:
 
     Args:
         source: the source.
-        entrance: where they come in.
+        newcomers: people of each type, by its index.
+        entrances: where they come in, likewise.
+        population: whose shares they have, or None for those of ``source.type_index``.
         frame: the current frame, before which nobody comes.
         rng: the model's generator.
 
     Attributes:
         source: the source.
-        entrance: where they come in.
-        newcomers: who comes.
         arrived: people who have come, those held back included.
         entered: those of them who have entered.
     """
 
     def __init__(
-        self, source: Source, entrance: Entrance, frame: int, rng: np.random.Generator
+        self,
+        source: Source,
+        newcomers: Mapping[int, Newcomers],
+        entrances: Mapping[int, Entrance],
+        population: Population | None,
+        frame: int,
+        rng: np.random.Generator,
     ) -> None:
         self.source = source
-        self.entrance = entrance
-        self.newcomers = source.newcomers()
         self.arrived = 0
         self.entered = 0
+        self._entrances = entrances
+        self._newcomers = newcomers
+        self._kinds = list(entrances)
+        self._population = population
+        self._deck: list[int] = []
         self._rng = rng
         times = source.times
         self._times: NDArray[np.float64] | None = None if times is None else np.asarray(times)
         self._next = max(source.start, frame * FRAME_SECONDS)
         self._draw_next()
+
+    @property
+    def next_type(self) -> int:
+        """Index of the type of the next person to enter."""
+        if not self._deck:
+            self._deck = [self._kinds[0]]
+            if self._population is not None:
+                drawn = self._population.draw(DECK, self._rng)
+                self._deck = [self._kinds[k] for k in drawn.tolist()]
+        return self._deck[-1]
+
+    @property
+    def entrance(self) -> Entrance:
+        """Where the next person comes in."""
+        return self._entrances[self.next_type]
+
+    @property
+    def newcomers(self) -> Newcomers:
+        """The next person."""
+        return self._newcomers[self.next_type]
+
+    def let_in(self) -> None:
+        """The next person has entered."""
+        self._deck.pop()
+        self.entered += 1
 
     @property
     def waiting(self) -> int:
@@ -229,19 +273,25 @@ class Sources(Sequence[Inflow]):
 
     def add(self, source: Source, frame: int, rng: np.random.Generator) -> Inflow:
         """Let people in from ``frame`` on; ``PedestrianModel.add_source`` says what is refused."""
-        scene = self._scene
-        core = scene.type_at(source.type_index).core_radius
-        entrance = Entrance(
-            scene.plan,
-            read_entrance(source.area),
-            clearance=core + 0.01,
-            passing=passing_of(core),
-        )
-        inflow = Inflow(source, entrance, frame, rng)
-        destination, _ = scene.journeys.start(
-            source.exits, source.route, source.loop, source.type_index
-        )
-        somewhere = entrance.room.representative_point()
-        scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
+        scene, area = self._scene, read_entrance(source.area)
+        if source.type_index is not None and source.population is not None:
+            raise ModelError("source: type_index and population, expected one of them")
+        population = None if source.population is None else Population.of(source.population)
+        if source.type_index is None and population is None:
+            population = scene.shares
+        kinds = check_types(source.type_index, 1, scene.types)
+        if population is not None:
+            kinds = indices_of(population, scene.types)
+        newcomers = {kind: source.newcomers(kind) for kind in kinds.tolist()}
+        entrances: dict[int, Entrance] = {}
+        for kind in newcomers:
+            core = scene.types[kind].core_radius
+            entrances[kind] = Entrance(
+                scene.plan, area, clearance=core + 0.01, passing=passing_of(core)
+            )
+            destination, _ = scene.journeys.start(source.exits, source.route, source.loop, kind)
+            somewhere = entrances[kind].room.representative_point()
+            scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
+        inflow = Inflow(source, newcomers, entrances, population, frame, rng)
         self._inflows.append(inflow)
         return inflow

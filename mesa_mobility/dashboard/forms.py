@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
@@ -189,10 +190,7 @@ def _Slider(parameter: Parameter, label: str, text: str, change: Callable[[str],
     low, high = parameter.range.low, parameter.range.high
     whole = int in parameter.kinds
     step = 1 if whole else (high - low) / SLIDER_STEPS
-    try:
-        value = min(max(float(text), low), high)
-    except ValueError:
-        value = low
+    value = _within(text, low, high)
     draft, set_draft = solara.use_state(value)
     solara.use_effect(lambda: set_draft(value), [value])
     slider = solara.v.Slider(
@@ -213,3 +211,12 @@ def _Slider(parameter: Parameter, label: str, text: str, change: Callable[[str],
 
     # The model is not made anew while the slider is dragged.
     solara.v.use_event(slider, "change", released)
+
+
+def _within(text: str, low: float, high: float) -> float:
+    """The number nearest to what is typed; `low` where that is none, since NaN is not JSON."""
+    try:
+        value = float(text)
+    except ValueError:
+        return low
+    return low if math.isnan(value) else min(max(value, low), high)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from mesa_mobility.experiments.sensitivity import morris_screening, sobol_indices
     from mesa_mobility.experiments.sensitivity_designs import MorrisTrajectories, SaltelliSamples
     from mesa_mobility.experiments.store import Store, open_store
+    from mesa_mobility.experiments.variance import VarianceComponent, variance_components
 
 _MODULES = {
     "Assessment": "convergence",
@@ -42,6 +43,7 @@ _MODULES = {
     "SobolSequence": "designs",
     "Store": "store",
     "Table": "designs",
+    "VarianceComponent": "variance",
     "mean_interval": "intervals",
     "morris_screening": "sensitivity",
     "open_store": "store",
@@ -49,6 +51,7 @@ _MODULES = {
     "read_experiment": "definition",
     "run_experiment": "driver",
     "sobol_indices": "sensitivity",
+    "variance_components": "variance",
     "write_report": "report",
 }
 
@@ -66,6 +69,7 @@ __all__ = [
     "SobolSequence",
     "Store",
     "Table",
+    "VarianceComponent",
     "mean_interval",
     "morris_screening",
     "open_store",
@@ -73,6 +77,7 @@ __all__ = [
     "read_experiment",
     "run_experiment",
     "sobol_indices",
+    "variance_components",
     "write_report",
 ]
 

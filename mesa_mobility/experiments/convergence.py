@@ -17,9 +17,11 @@ from mesa_mobility.experiments.intervals import (
     check_confidence,
     mean_interval,
     quantile_interval,
+    runs_for_quantile,
 )
+from mesa_mobility.experiments.points import check_whole
 
-_FIGURE = re.compile(r"(?P<how>mean|p\d{1,2}) (?P<column>\w+)")
+_FIGURE = re.compile(r"(?P<how>mean|p[1-9]\d?) (?P<column>\w+)")
 _GROWTH = 1.25
 """Factor by which replications grow: few looks at the data keep the intervals honest."""
 
@@ -48,8 +50,7 @@ class OccupancyConvergence:
     def __post_init__(self) -> None:
         if not (isinstance(self.tolerance, int | float) and 0 < self.tolerance < 1):
             raise ModelError(f"tolerance is {self.tolerance!r}, expected a number between 0 and 1")
-        if not isinstance(self.consecutive, int) or self.consecutive < 1:
-            raise ModelError(f"consecutive is {self.consecutive!r}, expected 1 or more")
+        check_whole("consecutive", self.consecutive, 1, math.inf, "1 or more")
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,8 @@ class Precision:
         occupancy: convergence of the occupancy curve that is asked for as well, or None.
 
     Raises:
-        ModelError: a value out of range or a figure that is none.
+        ModelError: a value out of range, a figure that is none, nothing asked for, or a percentile
+            that takes more runs than there may be.
     """
 
     figures: tuple[str, ...] = ("mean egress_s", "p95 egress_s")
@@ -77,7 +79,11 @@ class Precision:
     occupancy: OccupancyConvergence | None = field(default_factory=OccupancyConvergence)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.figures, list | tuple):
+            raise ModelError(f"figures is {self.figures!r}, expected a list")
         object.__setattr__(self, "figures", tuple(self.figures))
+        if not self.figures and self.occupancy is None:
+            raise ModelError("figures: got none, and no occupancy; expected one of them or more")
         for figure in self.figures:
             if not (isinstance(figure, str) and _FIGURE.fullmatch(figure)):
                 raise ModelError(
@@ -86,12 +92,17 @@ class Precision:
         if not (isinstance(self.tolerance, int | float) and 0 < self.tolerance < 1):
             raise ModelError(f"tolerance is {self.tolerance!r}, expected a number between 0 and 1")
         check_confidence(self.confidence)
-        if not (isinstance(self.least, int) and isinstance(self.most, int)) or not (
-            2 <= self.least <= self.most
-        ):
-            raise ModelError(
-                f"replications from {self.least!r} to {self.most!r}, expected 2 or more, rising"
-            )
+        check_whole("least", self.least, 2, math.inf, "2 or more")
+        check_whole("most", self.most, self.least, math.inf, f"{self.least} (least) or more")
+        for figure in self.figures:
+            how = figure.split(" ")[0]
+            if how != "mean" and (
+                needed := runs_for_quantile(int(how[1:]) / 100, self.confidence)
+            ) > self.most:  # fmt: skip
+                raise ModelError(
+                    f"most is {self.most}, but an interval of {how} at {self.confidence:.4g} takes "
+                    f"{needed} runs"
+                )
 
     @property
     def columns(self) -> list[str]:

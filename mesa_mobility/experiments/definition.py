@@ -18,6 +18,7 @@ from mesa_mobility.plugins.registry import did_you_mean
 
 _SCALARS = ("name", "model", "seed", "replications", "max_seconds", "time_limit", "keep")
 _TABLES = ("fixed", "precision")
+_SESSION = {"began": str, "executor": str, "machine": str, "versions": dict, "inputs": dict}
 _DESIGNS: dict[str, Callable[[Any], Design]] = {
     Grid.kind: Grid,
     Table.kind: Table,
@@ -43,7 +44,8 @@ def read_experiment(path: str | os.PathLike[str]) -> Experiment:
         raise ModelError(f"{file}: no such file, expected an experiment in TOML") from None
     except OSError as error:
         raise ModelError(f"{file}: cannot be read: {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    # Beside its own error the reader lets through those of numbers and nesting without end.
+    except (ValueError, RecursionError) as error:
         raise ModelError(f"{file}: is not TOML: {' '.join(str(error).split())}") from error
     model = values.get("model")
     if isinstance(model, str) and is_model_file(model):
@@ -82,6 +84,16 @@ def from_definition(values: Mapping[str, Any]) -> Experiment:
     if given:
         keywords["parameters"] = _made(given[0], _DESIGNS[given[0]], values[given[0]])
     return Experiment(**keywords)
+
+
+def check_definition(values: Mapping[str, Any]) -> None:
+    """Raise KeyError or TypeError where what a store keeps lacks something."""
+    if not isinstance(values["experiment"], dict) or not values["sessions"]:
+        raise TypeError("expected an experiment and its sessions")
+    for session in values["sessions"]:
+        for key, kind in _SESSION.items():
+            if not isinstance(session[key], kind):
+                raise TypeError(f"{key} is {session[key]!r}")
 
 
 def to_definition(experiment: Experiment) -> dict[str, Any]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.experiments.points import ARROW_TYPES, Point, Value, plain_value
+from mesa_mobility.experiments.points import ARROW_TYPES, Point, Value, check_whole, plain_value
 
 Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 
@@ -57,7 +57,7 @@ class Grid:
     def __post_init__(self) -> None:
         checked: dict[str, list[Value]] = {}
         for name, values in self.values.items():
-            if isinstance(values, str) or not hasattr(values, "__iter__"):
+            if isinstance(values, str | Mapping) or not hasattr(values, "__iter__"):
                 several: Sequence[Any] = [values]
             else:
                 several = values
@@ -104,9 +104,12 @@ class Table:
     rows: Sequence[Mapping[str, Value]]
 
     def __post_init__(self) -> None:
-        rows = [{n: plain_value(n, value) for n, value in row.items()} for row in self.rows]
-        if not rows:
-            raise ModelError("table: has no points, expected one or more")
+        rows = []
+        for number, row in enumerate(self.rows, start=1):
+            if not isinstance(row, Mapping):
+                raise ModelError(f"table: point {number} is {row!r}, expected values by parameter")
+            rows.append({name: plain_value(name, value) for name, value in row.items()})
+        _check_count(self.kind, len(rows))
         for number, row in enumerate(rows, start=1):
             if set(row) != set(rows[0]):
                 raise ModelError(
@@ -145,7 +148,8 @@ class Sampled:
         seed: of the draw.
 
     Raises:
-        ModelError: no parameters, bounds that are not finite or not in order, or no points.
+        ModelError: no parameters, bounds that are not finite or not in order, no points, or a
+            seed below 0.
     """
 
     kind: ClassVar[str] = "sampled"
@@ -156,7 +160,7 @@ class Sampled:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bounds", checked_bounds(self.kind, self.between))
-        _check_count(self.kind, self.points)
+        check_drawn(self.kind, self.points, self.seed)
 
     def __len__(self) -> int:
         return self.points
@@ -228,7 +232,7 @@ def checked_bounds(kind: str, between: Bounds) -> dict[str, tuple[float, float]]
     Raises:
         ModelError: none, or bounds that are not two finite numbers in order.
     """
-    if not between:
+    if not isinstance(between, Mapping) or not between:
         raise ModelError(f"{kind}: has no parameters, expected bounds of one or more")
     checked: dict[str, tuple[float, float]] = {}
     for name, pair in between.items():
@@ -244,6 +248,12 @@ def checked_bounds(kind: str, between: Bounds) -> dict[str, tuple[float, float]]
             raise ModelError(f"{kind}: {name} is from {low} to {high}, expected rising bounds")
         checked[name] = (low, high)
     return checked
+
+
+def check_drawn(kind: str, points: Any, seed: Any) -> None:
+    """Raise ModelError unless a design may have this number of points, drawn with this seed."""
+    _check_count(kind, points)
+    check_whole(f"{kind}: seed", seed, 0, 2**63 - 1, "0 or more")
 
 
 def bound_types(bounds: Bounds) -> dict[str, str]:

@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import os
-import platform
 import time
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from itertools import islice
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.experiments.experiment import (
-    Experiment,
-    check_parameters,
-    model_class,
-    model_name,
-)
+from mesa_mobility.experiments.experiment import Experiment, check_parameters
 from mesa_mobility.experiments.points import Point, point_key, run_name
 from mesa_mobility.experiments.rows import DONE, RUNS, STALLED
+from mesa_mobility.experiments.session import session_of
 from mesa_mobility.experiments.store import Store
 from mesa_mobility.experiments.workers.batches import (
     Batch,
@@ -38,11 +29,13 @@ from mesa_mobility.experiments.workers.batches import (
 from mesa_mobility.experiments.workers.choice import workers_for
 from mesa_mobility.experiments.workers.executors import WorkerDied, Workers
 from mesa_mobility.experiments.workers.one_run import Setup
-from mesa_mobility.plugins.model_files import is_model_file
 from mesa_mobility.processes import check_importable, check_main
 
 BATCH_SECONDS = 5.0
-"""Seconds that a batch should take: long beside its message, short beside a run lost."""
+"""Seconds that a batch should take at least: long beside its message, short beside a run lost."""
+
+_BATCHES = 40
+"""Batches a second that a scheduler bears; see docs/explanation/scaling_experiments.md."""
 
 _MOST_RUNS = 500
 """Runs of a batch at most."""
@@ -52,8 +45,6 @@ _LOOSE = 48
 
 _ATTEMPTS = 3
 """Workers that may die with a batch before its runs go out one by one, or count as failed."""
-
-_PACKAGES = ("mesa-mobility", "mesa", "numpy", "scipy", "numba", "llvmlite", "shapely", "pyarrow")
 
 Missing = Iterator[tuple[Point, int]]
 
@@ -125,7 +116,7 @@ def run_experiment(
             check_importable(experiment.model, "run_experiment")
         check_main("run_experiment")
     with kept.locked():
-        kept.prepare(experiment, _session(experiment, executor))
+        kept.prepare(experiment, session_of(experiment, executor))
         kept.folder.remove_half_written(RUNS)
         salvage(kept.folder, experiment.column_types(), f"salvaged-{time.time_ns()}")
         crew, closing = workers_for(executor, workers)
@@ -191,7 +182,11 @@ class _Driver:
                 names = np.array(
                     [run_name(key, number) for number in range(wanted[index])], dtype="S40"
                 )
-                present = np.isin(names, known)
+                # The known ones are in order: to sort them for each point would take for ever.
+                at = np.searchsorted(known, names)
+                present = np.zeros(len(names), dtype=bool)
+                inside = at < len(known)
+                present[inside] = known[at[inside]] == names[inside]
                 for number in np.flatnonzero(~present).tolist():
                     yield experiment.point(index), number
 
@@ -247,9 +242,10 @@ class _Driver:
         """The next batch; the first ones are single runs, which tell how long a run takes."""
         size = 1
         if self._per_run is not None:
-            size = max(1, min(_MOST_RUNS, math.floor(BATCH_SECONDS / max(self._per_run, 1e-6))))
-            left = self.progress.total - self.progress.ended
             assert self._workers is not None
+            seconds = max(BATCH_SECONDS, self._workers.count / _BATCHES)
+            size = max(1, min(_MOST_RUNS, math.floor(seconds / max(self._per_run, 1e-6))))
+            left = self.progress.total - self.progress.ended
             # Towards the end no worker waits for the batch of another.
             size = min(size, max(1, left // (4 * self._workers.count)))
         taken = tuple(islice(runs, size))
@@ -298,45 +294,3 @@ class _Driver:
             store=os.path.abspath(folder.root) if folder.local else folder.url,
             may_end=own_processes,
         )
-
-
-def _session(experiment: Experiment, executor: Any) -> dict[str, Any]:
-    """What an experiment is run with: versions, maps and model file."""
-    versions = {"python": platform.python_version()}
-    for name in _PACKAGES:
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return {
-        "began": datetime.now(UTC).isoformat(timespec="seconds"),
-        "executor": executor if isinstance(executor, str) else type(executor).__name__,
-        "machine": f"{platform.system()} {platform.machine()}",
-        "versions": versions,
-        "inputs": _inputs(experiment),
-    }
-
-
-def _inputs(experiment: Experiment) -> dict[str, str]:
-    """The sha256 of each file that results depend on, by its name."""
-    from mesa_mobility.mobility.mapfile import shipped_map_path
-
-    files = {"map able_bodied": shipped_map_path("able_bodied")}
-    name = model_name(experiment.model)
-    model_class(experiment.model)
-    if is_model_file(name):
-        files["model file"] = Path(name.partition(".py")[0] + ".py")
-    design = experiment.design
-    maps = {experiment.fixed.get("mobility_map")}
-    if "mobility_map" in design.column_types():
-        maps |= {design[index]["mobility_map"] for index in range(len(design))}
-    for path in sorted(str(each) for each in maps if isinstance(each, str)):
-        files[f"map {path}"] = Path(path)
-    inputs = {}
-    for label, file in files.items():
-        try:
-            with file.open("rb") as source:
-                inputs[label] = hashlib.file_digest(source, "sha256").hexdigest()
-        except OSError as error:
-            raise ResultsError(f"{file}: cannot be read: {error.strerror or error}") from error
-    return inputs

@@ -11,12 +11,23 @@ from typing import Any, Literal
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.convergence import Precision
 from mesa_mobility.experiments.designs import Design, Grid
-from mesa_mobility.experiments.points import ARROW_TYPES, Point, Value, plain_value
+from mesa_mobility.experiments.points import (
+    ARROW_TYPES,
+    Point,
+    Value,
+    check_whole,
+    plain_value,
+)
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.plugins.registry import did_you_mean
 
 Kept = Literal["occupancy", "trajectories"]
 KEPT = ("occupancy", "trajectories")
+
+MOST_RUNS = 10_000_000
+
+_LONGEST = 1e9
+"""Seconds: thirty years."""
 
 
 @dataclass(frozen=True)
@@ -61,10 +72,22 @@ class Experiment:
         if isinstance(self.parameters, Mapping):
             put(self, "parameters", Grid(self.parameters))
         put(self, "fixed", {name: plain_value(name, v) for name, v in self.fixed.items()})
+        if isinstance(self.keep, str):
+            raise ModelError(f"experiment: keep is {self.keep!r}, expected a list")
         put(self, "keep", tuple(self.keep))
+        if not isinstance(self.name, str):
+            raise ModelError(f"experiment: name is {self.name!r}, expected text")
         if self.replications != "auto":
-            _check_whole("replications", self.replications, 1, '1 or more, or "auto"')
-        _check_whole("seed", self.seed, 0, "0 or more")
+            check_whole(
+                "experiment: replications", self.replications, 1, math.inf, '1 or more, or "auto"'
+            )
+        check_whole("experiment: seed", self.seed, 0, math.inf, "0 or more")
+        most = self.precision.most if self.replications == "auto" else self.replications
+        if len(self.design) * most > MOST_RUNS:
+            raise ModelError(
+                f"experiment: {len(self.design)} points of {most} replications, expected at most "
+                f"{MOST_RUNS:,} runs"
+            )
         for name in ("max_seconds", "time_limit"):
             _check_seconds(name, getattr(self, name))
         for each in self.keep:
@@ -116,7 +139,8 @@ def model_class(model: type | str) -> type:
     module, _, name = model.partition(":")
     try:
         found = getattr(import_module(module), name)
-    except (ImportError, AttributeError) as error:
+    # A module of somebody else may fail in any way when it is imported.
+    except Exception as error:
         raise ModelError(f"model {model}: cannot be loaded: {error}") from error
     if not isinstance(found, type):
         raise ModelError(f"model {model}: is not a class")
@@ -148,15 +172,12 @@ def model_name(model: type | str) -> str:
     return model if isinstance(model, str) else f"{model.__module__}:{model.__qualname__}"
 
 
-def _check_whole(name: str, value: Any, least: int, expected: str) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise ModelError(f"experiment: {name} is {value!r}, expected a whole number, {expected}")
-
-
 def _check_seconds(name: str, value: Any) -> None:
     if value is None:
         return
     if isinstance(value, bool) or not isinstance(value, int | float) or not (
-        math.isfinite(value) and value > 0
+        0 < value <= _LONGEST
     ):  # fmt: skip
-        raise ModelError(f"experiment: {name} is {value!r}, expected seconds above 0")
+        raise ModelError(
+            f"experiment: {name} is {value!r}, expected seconds above 0, at most {_LONGEST:g}"
+        )

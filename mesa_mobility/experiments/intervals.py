@@ -38,8 +38,15 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Estimate:
 
     Args:
         values: (n,) values; those that are not finite are left out.
-        confidence: from 0 to 1.
+        confidence: between 0 and 1.
+
+    Returns:
+        The estimate; without an interval where there are fewer than two values.
+
+    Raises:
+        ModelError: a confidence out of range.
     """
+    check_confidence(confidence)
     known = _finite(values)
     if len(known) < 2:
         return Estimate(float(known[0]) if len(known) else None)
@@ -61,12 +68,18 @@ def quantile_interval(values: ArrayLike, q: float, confidence: float = 0.95) -> 
 
     Args:
         values: (n,) values; those that are not finite are left out.
-        q: from 0 to 1.
-        confidence: from 0 to 1.
+        q: between 0 and 1.
+        confidence: between 0 and 1.
 
     Returns:
         The estimate; without an interval where no pair of values has the confidence.
+
+    Raises:
+        ModelError: a quantile or a confidence out of range.
     """
+    check_confidence(confidence)
+    if not 0 < q < 1:
+        raise ModelError(f"quantile {q!r}, expected a number between 0 and 1")
     known = np.sort(_finite(values))
     if not len(known):
         return Estimate(None)
@@ -78,6 +91,11 @@ def quantile_interval(values: ArrayLike, q: float, confidence: float = 0.95) -> 
     if low < 1 or high > n:
         return Estimate(value)
     return Estimate(value, float(known[low - 1]), float(known[high - 1]))
+
+
+def runs_for_quantile(q: float, confidence: float) -> int:
+    """Values that ``quantile_interval`` needs: the quantile lies beyond all of them too rarely."""
+    return math.ceil(math.log((1 - confidence) / 2) / math.log(max(q, 1 - q)))
 
 
 def check_confidence(confidence: float) -> None:

@@ -23,18 +23,34 @@ def plain_value(name: str, value: Any) -> Value:
     """A parameter's value as the store keeps it.
 
     Raises:
-        ModelError: neither a finite number nor text, yes or no, or None.
+        ModelError: neither a finite number of at most 64 bits nor text, yes or no, or None.
     """
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):
         raise ModelError(f"parameter {name}: got {value}, expected a finite number")
+    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+        raise ModelError(f"parameter {name}: got {value}, expected a number of at most 64 bits")
     if value is None or isinstance(value, bool | int | float | str):
         return value
     raise ModelError(
         f"parameter {name}: got {type(value).__name__}, expected a number, text, true or false, "
         "or nothing"
     )
+
+
+def check_whole(name: str, value: Any, least: int, most: float, expected: str) -> None:
+    """Raise ModelError unless a value is a whole number from ``least`` to ``most``.
+
+    Args:
+        name: of the value, for the message.
+        value: to be checked.
+        least: smallest number.
+        most: largest number, which may be infinite.
+        expected: what the message says of both.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise ModelError(f"{name} is {value!r}, expected a whole number, {expected}")
 
 
 def point_key(point: Mapping[str, Value]) -> str:

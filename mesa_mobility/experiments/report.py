@@ -14,7 +14,8 @@ from mesa_mobility.experiments.intervals import Estimate, mean_interval, quantil
 from mesa_mobility.experiments.points import point_key
 from mesa_mobility.experiments.rows import DONE, SERIES, STATUSES
 from mesa_mobility.experiments.shards import RUN_COLUMNS
-from mesa_mobility.results.html import Page, picture
+from mesa_mobility.reports.html import Page, picture
+from mesa_mobility.reports.versions import add_versions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -171,10 +172,9 @@ def _failures(page: Page, frame: pd.DataFrame) -> None:
 
 def _repeat(page: Page, definition: dict[str, Any]) -> None:
     session = definition["sessions"][-1]
-    rows = [[name, number] for name, number in session["versions"].items()]
-    rows += [[name, f"sha256 {digest}"] for name, digest in session["inputs"].items()]
-    rows.append(["machine", session["machine"]])
-    page.table("Versions and inputs", ["what", "which"], rows, "Of the last session.")
+    add_versions(
+        page, session["versions"], session["inputs"], session["machine"], "Of the last session."
+    )
     page.table(
         "Sessions", ["began", "executor", "mesa-mobility"],
         [[each["began"], each["executor"], each["versions"].get("mesa-mobility", "-")]

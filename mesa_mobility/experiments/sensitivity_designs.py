@@ -15,8 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.experiments.designs import Bounds, bound_types, checked_bounds, scaled
-from mesa_mobility.experiments.points import Point
+from mesa_mobility.experiments.designs import (
+    Bounds,
+    bound_types,
+    check_drawn,
+    checked_bounds,
+    scaled,
+)
+from mesa_mobility.experiments.points import Point, check_whole
 
 
 @dataclass(frozen=True)
@@ -79,10 +85,10 @@ class SaltelliSamples(_Drawn):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not isinstance(self.samples, int) or self.samples < 2 or (
-            math.log2(self.samples) % 1
-        ):  # fmt: skip
+        check_whole("samples", self.samples, 2, math.inf, "a power of two")
+        if self.samples & (self.samples - 1):
             raise ModelError(f"samples is {self.samples!r}, expected a power of two")
+        check_drawn(self.kind, len(self), self.seed)
 
     def __len__(self) -> int:
         return self.samples * (len(self.bounds) + 2)
@@ -125,10 +131,11 @@ class MorrisTrajectories(_Drawn):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not isinstance(self.trajectories, int) or self.trajectories < 2:
-            raise ModelError(f"trajectories is {self.trajectories!r}, expected 2 or more")
-        if not isinstance(self.levels, int) or self.levels < 2 or self.levels % 2:
+        check_whole("trajectories", self.trajectories, 2, math.inf, "2 or more")
+        check_whole("levels", self.levels, 2, 1000, "an even one from 2 to 1000")
+        if self.levels % 2:
             raise ModelError(f"levels is {self.levels!r}, expected an even number")
+        check_drawn(self.kind, len(self), self.seed)
 
     def __len__(self) -> int:
         return self.trajectories * (len(self.bounds) + 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import os
 import time
 from collections.abc import Iterable, Sequence
@@ -18,6 +19,8 @@ from fsspec.implementations.local import LocalFileSystem
 from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.rows import DONE, FAILED, STALLED, TIMED_OUT, Row
+from mesa_mobility.results.parquet import METADATA_KEY
+from mesa_mobility.results.seal import FIELD, UNSEALED, check_open, seal_open
 
 RUN_COLUMNS: dict[str, pa.DataType] = {
     "run": pa.string(),
@@ -122,6 +125,10 @@ class Folder:
             found = self.fs.ls(self.path(folder), detail=True)
         except FileNotFoundError:
             return {}
+        except OSError as error:
+            raise ResultsError(
+                f"{self.url}/{folder}: cannot be read: {error.strerror or error}"
+            ) from error
         names = {each["name"].rstrip("/").rpartition("/")[2]: each for each in found}
         return {
             f"{folder}/{name}": int(names[name]["size"] or 0)
@@ -164,9 +171,12 @@ def table_of(rows: Sequence[Row], column_types: dict[str, str]) -> pa.Table:
 
 
 def write_table(folder: Folder, name: str, table: pa.Table) -> None:
-    """Write a table as a Parquet file, whole or not at all."""
+    """Write a table as a Parquet file with its sha256 in it, whole or not at all."""
     buffer = io.BytesIO()
-    pq.write_table(table, buffer, compression="zstd", write_page_checksum=True)
+    with pq.ParquetWriter(buffer, table.schema, compression="zstd") as writer:
+        writer.write_table(table)
+        writer.add_key_value_metadata({METADATA_KEY: json.dumps({FIELD: UNSEALED})})
+    seal_open(buffer, name)
     folder.write_bytes(name, buffer.getvalue())
 
 
@@ -174,20 +184,26 @@ def read_table(folder: Folder, name: str, columns: Sequence[str] | None = None) 
     """A table of the store, or None where the file has gone, merged with others meanwhile.
 
     Raises:
-        ResultsError: a damaged file.
+        ResultsError: a file that cannot be read, of which any byte has changed, or which is not of
+            a store.
     """
     try:
-        source = pa.BufferReader(folder.read_bytes(name))
-        file = pq.ParquetFile(source, page_checksum_verification=True)
-        there = None
-        if columns is not None:
-            there = [each for each in columns if each in file.schema_arrow.names]
-        return file.read(columns=there)
+        content = io.BytesIO(folder.read_bytes(name))
     except FileNotFoundError:
         return None
-    except (OSError, pa.ArrowException) as error:
-        reason = next(iter(str(error).splitlines()), type(error).__name__)
-        raise ResultsError(f"{folder.url}/{name}: damaged: {reason}") from error
+    except OSError as error:
+        raise ResultsError(
+            f"{folder.url}/{name}: cannot be read: {error.strerror or error}"
+        ) from error
+    try:
+        check_open(content, f"{folder.url}/{name}")
+    except ResultsError as error:
+        raise ResultsError(f"{error}; without this file its runs are done anew") from error
+    file = pq.ParquetFile(content)
+    there = None
+    if columns is not None:
+        there = [each for each in columns if each in file.schema_arrow.names]
+    return file.read(columns=there)
 
 
 def joined(tables: Iterable[pa.Table]) -> pa.Table:

@@ -20,12 +20,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute
 from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.experiments.convergence import Assessment, assess
-from mesa_mobility.experiments.definition import from_definition, to_definition
+from mesa_mobility.experiments.definition import (
+    check_definition,
+    from_definition,
+    to_definition,
+)
 from mesa_mobility.experiments.experiment import Experiment
 from mesa_mobility.experiments.points import point_key
 from mesa_mobility.experiments.rows import DONE, RUNS, SERIES, STATUSES, TRAJECTORIES, WORK
@@ -35,6 +40,7 @@ from mesa_mobility.experiments.shards import (
     read_table,
     write_table,
 )
+from mesa_mobility.plugins.registry import did_you_mean
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -70,17 +76,28 @@ class Store:
                 raise ResultsError(
                     f"{self}: format version {values['format_version']}, expected {FORMAT_VERSION}"
                 )
+            check_definition(values)
             return dict(values)
         except (FileNotFoundError, NotADirectoryError) as error:
             raise ResultsError(
                 f"{self}: has no {DEFINITION}, expected the store of an experiment"
             ) from error
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except KeyError as error:
+            raise ResultsError(f"{self}/{DEFINITION}: damaged: no {error}") from error
+        except (OSError, ValueError, TypeError, RecursionError) as error:
             raise ResultsError(f"{self}/{DEFINITION}: damaged: {error}") from error
 
     def experiment(self) -> Experiment:
-        """The experiment, as it was last run."""
-        return from_definition(self.definition()["experiment"])
+        """The experiment, as it was last run.
+
+        Raises:
+            ResultsError: its definition is missing or damaged.
+        """
+        definition = self.definition()["experiment"]
+        try:
+            return from_definition(definition)
+        except ModelError as error:
+            raise ResultsError(f"{self}/{DEFINITION}: damaged: {error}") from error
 
     def table(self, columns: Sequence[str] | None = None) -> pa.Table:
         """Rows as an Arrow table, each run once, in no particular order.
@@ -165,6 +182,9 @@ class Store:
 
         Args:
             experiment: with the precision asked for; by default that of the store.
+
+        Raises:
+            ModelError: runs have ended, but have no such column of numbers.
         """
         precision = (experiment or self.experiment()).precision
         columns = ["point", "replication", *precision.columns]
@@ -173,6 +193,8 @@ class Store:
         table = self.table(columns)
         if not table.num_rows:
             return {}
+        if DONE in pa.compute.unique(table["status"]).to_pylist():
+            self._check_figures(precision.columns, table.schema)
         frame = table.to_pandas().sort_values(["point", "replication"])
         found = {}
         for key, rows in frame.groupby("point"):
@@ -185,6 +207,17 @@ class Store:
             curves = done["occupancy"].dropna() if "occupancy" in done else ()
             found[str(key)] = assess(precision, len(rows), values, list(curves))
         return found
+
+    def _check_figures(self, columns: Sequence[str], schema: pa.Schema) -> None:
+        for name in columns:
+            if name not in schema.names:
+                known = dict.fromkeys(self.table().column_names)
+                raise ModelError(
+                    f"precision: runs have no column {name!r}{did_you_mean(name, known)}"
+                )
+            kind = schema.field(name).type
+            if not (pa.types.is_floating(kind) or pa.types.is_integer(kind)):
+                raise ModelError(f"precision: column {name} is {kind}, expected numbers")
 
     def run_names(self) -> NDArray[np.bytes_]:
         """(n,) names of the runs that are there, in alphabetical order."""
@@ -259,10 +292,13 @@ class Store:
         if not self.folder.local or not path.exists():
             return False
         try:
-            with FileLock(path, timeout=0):
+            # Others who only look hold it for a moment.
+            with FileLock(path, timeout=0.2):
                 return False
-        except (Timeout, OSError):
+        except Timeout:
             return True
+        except OSError:  # a folder that can only be read
+            return False
 
     @contextmanager
     def locked(self) -> Iterator[None]:

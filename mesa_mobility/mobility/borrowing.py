@@ -4,39 +4,61 @@ Somebody who cannot stand cannot wait, nor set off from rest; somebody who canno
 stays in a corner for ever. Where nobody stands, the other map gives its standing cluster with all
 options from there. Each cluster gets the options that end in it, from the pose most alike that has
 such options; so it does where people stand but options do not lead back to that. Where they do not
-turn on the spot, the other map gives its turns. Strides are shortened to the borrower's speed.
+turn on the spot, the other map gives its turns, and where they do not step aside either way and
+back, its steps. Strides are shortened to the borrower's speed.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.mobility.clusters import STANDING, Clusters, nearest_centre
 from mesa_mobility.mobility.edits import Edit, edit_paths
-from mesa_mobility.mobility.map import MobilityMap
-from mesa_mobility.mobility.paths import DURATIONS, SAMPLE_EVERY, STRETCHES, ReachableOptions
+from mesa_mobility.mobility.paths import DURATIONS, MOST_JUMPS, SAMPLE_EVERY, ReachableOptions
 from mesa_mobility.mobility.ways_back import ON_THE_SPOT, TURN, leads_back
 
+if TYPE_CHECKING:
+    from mesa_mobility.mobility.map import MobilityMap
+
 STANDING_STILL, STOPPING, TURNING = "standing", "stopping", "turning on the spot"
+STEPPING = "steps aside and back"
 """What can be missing, and is then borrowed."""
+
+STEP = 0.15
+"""Metres of a step aside or back, without which people who stand close together never get loose."""
 
 
 def missing(options: ReachableOptions, clusters: Clusters) -> tuple[str, ...]:
-    """What options lack: standing, a way to stop from each cluster, turning on the spot."""
+    """What options lack: standing, a way to stop from each cluster, turns and steps of standers."""
     if not clusters.sizes[STANDING]:
         return (STANDING_STILL,)
     last = options.durations // SAMPLE_EVERY - 1
     rows = np.arange(len(last))
     back = leads_back(options.offsets, options.path_clusters[rows, last], STANDING)
-    lacks = () if back.all() else (STOPPING,)
+    lacks = [] if back.all() else [STOPPING]
     rows = rows[: options.offsets[STANDING + 1]]
     ends = options.paths[rows, last[rows]]
-    turned = ends[np.hypot(ends[:, 0], ends[:, 1]) <= ON_THE_SPOT, 2]
-    both = turned.max(initial=0.0) >= TURN and turned.min(initial=0.0) <= -TURN
-    return lacks if both else (*lacks, TURNING)
+    turned = ends[_turns(ends), 2]
+    if turned.max(initial=0.0) < TURN or turned.min(initial=0.0) > -TURN:
+        lacks.append(TURNING)
+    ahead, aside, _ = ends[_steps(ends)].T
+    if max(-aside.max(initial=0.0), aside.min(initial=0.0), ahead.min(initial=0.0)) > -STEP:
+        lacks.append(STEPPING)
+    return tuple(lacks)
+
+
+def _turns(ends: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Which of (m, 3) ends of options are turns on the spot."""
+    return np.hypot(ends[:, 0], ends[:, 1]) <= ON_THE_SPOT
+
+
+def _steps(ends: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Which of (m, 3) ends of options are steps aside or back."""
+    return (ends[:, 0] <= np.abs(ends[:, 1])) & (np.abs(ends[:, 2]) <= TURN)
 
 
 def borrow(
@@ -67,11 +89,12 @@ def borrow(
         rows = np.asarray(lender.options_of(like))
         if cluster != STANDING:
             stopping = lender.end_clusters[rows] == lender.standing
-            rows = rows[stopping & (lacks != (TURNING,))]
+            rows = rows[stopping & (STOPPING in lacks or not stands)]
         elif stands:
-            turns = np.hypot(*lender.end_points[rows].T) <= ON_THE_SPOT
-            turns &= np.abs(lender.end_headings[rows]) >= TURN
-            rows = rows[turns & (TURNING in lacks)]
+            ends = np.column_stack([lender.end_points[rows], lender.end_headings[rows]])
+            turns = _turns(ends) & (np.abs(ends[:, 2]) >= TURN)
+            steps = _steps(ends) & ends[:, :2].any(axis=1)
+            rows = rows[(turns & (TURNING in lacks)) | (steps & (STEPPING in lacks))]
         own = np.arange(options.offsets[cluster], options.offsets[cluster + 1])
         parts += [_taken(options, own), _borrowed(lender, rows, ours, stride)]
         sizes.append(len(own) + len(rows))
@@ -103,14 +126,16 @@ def _borrowed(
         lender.costs[rows],
         paths.astype(np.float32),
         clusters.astype(np.int32),
-        np.full((len(rows), STRETCHES, 2), -1, dtype=np.int32),
+        np.full(len(rows), -1, dtype=np.int32),
+        np.full((len(rows), MOST_JUMPS), -1, dtype=np.int64),
         np.zeros(len(rows), dtype=np.int16),
     )
 
 
 def _taken(options: ReachableOptions, rows: NDArray[np.integer]) -> tuple[NDArray, ...]:
     columns = (options.durations, options.costs, options.paths, options.path_clusters)
-    return tuple(column[rows] for column in (*columns, options.chains, options.edits))
+    marks = (options.sources, options.jumps, options.edits)
+    return tuple(column[rows] for column in (*columns, *marks))
 
 
 def _standing_as(clusters: Clusters, lender: MobilityMap) -> Clusters:

@@ -13,19 +13,16 @@ from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import clusters as clustering
 from mesa_mobility.mobility import edits, paths
 from mesa_mobility.mobility import graph as graphs
-from mesa_mobility.mobility.borrowing import borrow, missing
-from mesa_mobility.mobility.clusters import STANDING, Clusters, cluster_poses
+from mesa_mobility.mobility.borrowing import missing
+from mesa_mobility.mobility.clusters import Clusters, cluster_poses
 from mesa_mobility.mobility.edits import EDITS, HORIZON
 from mesa_mobility.mobility.graph import MotionGraph, motion_graph
 from mesa_mobility.mobility.map import CORE_RADIUS, MobilityMap
-from mesa_mobility.mobility.mapfile import quantise_costs, quantise_paths
 from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
 from mesa_mobility.mobility.poses import FRAME_RATE, PoseTable, pose_table
 from mesa_mobility.mobility.provenance import acknowledgements, provenance
+from mesa_mobility.mobility.storing.families import OptionFamilies
 from mesa_mobility.mobility.ways_back import check_ways_back
-
-STAND_FRAMES = 12
-"""Duration of the stand option: 1.5 s of standing would be absorbing, 0.4 s is not."""
 
 LEAST_SECONDS = 5.0
 """Least time of all recordings together: a few steps of a walk, a start and a stop."""
@@ -60,17 +57,52 @@ def build_map(
     Raises:
         MapError: the recordings do not give a map, or one that traps people.
     """
+    families = build_families(
+        recordings, type_name=type_name, clusters=clusters, metadata=metadata, progress=progress
+    )
+    return map_of_families(families)
+
+
+def map_of_families(families: OptionFamilies) -> MobilityMap:
+    """The map of recorded options and the families around them.
+
+    Raises:
+        MapError: people of the map would be trapped.
+    """
+    built = MobilityMap(**families.fields(MobilityMap.load))
+    check_ways_back(built)
+    return built
+
+
+def build_families(
+    recordings: Sequence[Recording],
+    *,
+    type_name: str = "able_bodied",
+    clusters: int | None = None,
+    metadata: dict[str, Any] | None = None,
+    progress: Progress | None = None,
+) -> OptionFamilies:
+    """Compute the recorded options of a map, each of which stands for a family of edited ones.
+
+    Args:
+        recordings: as for ``build_map``.
+        type_name: as for ``build_map``.
+        clusters: as for ``build_map``.
+        metadata: as for ``build_map``.
+        progress: as for ``build_map``.
+
+    Raises:
+        MapError: as for ``build_map``.
+    """
     graph, grouped, options = options_of_recordings(recordings, clusters, progress)
     parameters = {"clusters_asked": clusters, **_build_parameters(graph, grouped, options)}
-    standing = "recorded"
     lacks = missing(options, grouped)
-    if lacks:
-        lender = MobilityMap.load()
-        options, grouped = borrow(options, grouped, lender)
-        standing = f"{' and '.join(lacks)} borrowed from the map {lender.pedestrian_type!r}"
-    built = _assemble(
-        options,
+    lender = MobilityMap.load().pedestrian_type if lacks else ""
+    standing = f"{' and '.join(lacks)} borrowed from the map {lender!r}" if lacks else "recorded"
+    return OptionFamilies.of(
+        graph.poses.step,
         grouped,
+        options,
         {
             "pedestrian_type": type_name,
             "body": {"core_radius_m": CORE_RADIUS},
@@ -83,8 +115,6 @@ def build_map(
             **(metadata or {}),
         },
     )
-    check_ways_back(built)
-    return built
 
 
 def options_of_recordings(
@@ -141,32 +171,6 @@ def _walking_speeds(poses: PoseTable) -> dict[str, float]:
     shares = (5, 25, 50, 75, 95)
     speeds = np.percentile(poses.speed[~poses.is_standing()], shares)
     return {f"p{share}": round(float(v), 3) for share, v in zip(shares, speeds, strict=True)}
-
-
-def _assemble(
-    options: ReachableOptions, grouped: Clusters, metadata: dict[str, Any]
-) -> MobilityMap:
-    samples = options.durations.astype(np.int64) // paths.SAMPLE_EVERY
-    present = np.arange(options.paths.shape[1]) < samples[:, None]
-    # The stand comes first among the options of the standing cluster, which is the first cluster.
-    stand = STAND_FRAMES // paths.SAMPLE_EVERY
-    offsets = options.offsets + 1
-    offsets[STANDING] = 0
-    return MobilityMap(
-        offsets=offsets,
-        durations=np.concatenate([[STAND_FRAMES], options.durations]).astype(np.int16),
-        costs=quantise_costs(np.concatenate([[0.0], options.costs])),
-        path_offsets=np.concatenate([[0, stand], stand + np.cumsum(samples)]).astype(np.int64),
-        paths=quantise_paths(np.concatenate([np.zeros((stand, 3)), options.paths[present]])),
-        path_clusters=np.concatenate(
-            [np.full(stand, STANDING), options.path_clusters[present]]
-        ).astype(np.uint16),
-        mean_poses=grouped.mean_joints,
-        centres=grouped.centres,
-        sizes=grouped.sizes.astype(np.int64),
-        mean_speeds=grouped.mean_speeds.astype(np.float32),
-        metadata=metadata,
-    )
 
 
 def _build_parameters(

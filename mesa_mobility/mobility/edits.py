@@ -7,6 +7,7 @@ family of options around it, and a minute of recording for a crowd.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +37,17 @@ class Edit:
         """What an edit adds to the cost of the option: 0.1 for 10 degrees, 0.3 for 15 %."""
         return 0.1 * abs(self.turn) / np.deg2rad(10.0) + 0.3 * abs(self.stride - 1.0) / 0.15
 
+    @property
+    def turn_rate(self) -> float:
+        """Radians that it turns a path within a sample."""
+        return self.turn * SAMPLE_EVERY / HORIZON
+
+
+def rotations(edit: Edit, samples: int) -> NDArray[np.float64]:
+    """(samples, 2) cosine and sine of how each step is rotated, in its middle, times the stride."""
+    angle = edit.turn_rate * (np.arange(samples) + 0.5)
+    return np.column_stack([edit.stride * np.cos(angle), edit.stride * np.sin(angle)])
+
 
 def edit_paths(paths: NDArray[np.floating], edit: Edit) -> NDArray[np.float64]:
     """Bend and scale paths.
@@ -48,18 +60,16 @@ def edit_paths(paths: NDArray[np.floating], edit: Edit) -> NDArray[np.float64]:
         (m, s, 3) paths in the same form.
     """
     steps = np.diff(paths[..., :2].astype(np.float64), axis=1, prepend=0.0)
-    samples = np.arange(paths.shape[1])
-    rate = edit.turn * SAMPLE_EVERY / HORIZON
-    angle = rate * (samples + 0.5)  # of the middle of each step
-    c, s = edit.stride * np.cos(angle), edit.stride * np.sin(angle)
+    c, s = rotations(edit, paths.shape[1]).T
     bent = np.empty(paths.shape)
     bent[..., 0] = np.cumsum(c * steps[..., 0] - s * steps[..., 1], axis=1)
     bent[..., 1] = np.cumsum(s * steps[..., 0] + c * steps[..., 1], axis=1)
-    bent[..., 2] = paths[..., 2] + rate * (samples + 1)
+    bent[..., 2] = paths[..., 2] + edit.turn_rate * np.arange(1, paths.shape[1] + 1)
     return bent
 
 
-def _grid(turns: tuple[float, ...], strides: tuple[float, ...]) -> tuple[Edit, ...]:
+def grid(turns: Sequence[float], strides: Sequence[float]) -> tuple[Edit, ...]:
+    """All edits with one of these turns, degrees in 45 frames, and one of these strides."""
     return tuple(
         Edit(np.deg2rad(turn), stride)
         for turn in turns
@@ -70,5 +80,5 @@ def _grid(turns: tuple[float, ...], strides: tuple[float, ...]) -> tuple[Edit, .
 
 TURNS_DEG = (-20.0, -10.0, 0.0, 10.0, 20.0)
 STRIDES = (0.7, 0.85, 1.0, 1.15, 1.3)
-EDITS = _grid(TURNS_DEG, STRIDES)
+EDITS = grid(TURNS_DEG, STRIDES)
 """Edits of the options of every map; their extent was chosen on clips left out."""

@@ -78,6 +78,9 @@ class MobilityMap:
     standing: int = field(default=0, init=False)
     """Number of the standing cluster."""
 
+    file: Path | None = field(default=None, init=False, repr=False, compare=False)
+    """The file that it was read from, if any."""
+
     def __post_init__(self) -> None:
         check_map(self)
         for name, array in vars(self).items():
@@ -168,7 +171,21 @@ class MobilityMap:
         """
         from mesa_mobility.mobility.mapfile import read_map_once, shipped_map_path
 
-        return read_map_once(shipped_map_path("able_bodied") if path is None else path, cls)
+        path = Path(shipped_map_path("able_bodied") if path is None else path)
+        found = read_map_once(path, cls)
+        object.__setattr__(found, "file", path)
+        return found
+
+    @classmethod
+    def named(cls, name: str) -> MobilityMap:
+        """A map that ships with the package.
+
+        Raises:
+            MapError: there is no such map.
+        """
+        from mesa_mobility.mobility.mapfile import shipped_map_path
+
+        return cls.load(shipped_map_path(name))
 
 
 def check_map(map_: MobilityMap) -> None:

@@ -15,7 +15,7 @@ recorded option ends in.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.compiled.threads import THREADS
 from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit
-from mesa_mobility.mobility.thinning import BUDGET, DURATIONS, merge, with_edits
+from mesa_mobility.mobility.thinning import BUDGET, DURATIONS, ClusterOptions, merge, with_edits
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.clusters import Clusters
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
 TRANSITION_PENALTY = 1.0
 """Fixed cost of leaving the recording, in units of the transition threshold."""
 
+MOST_JUMPS = int(BUDGET / TRANSITION_PENALTY)
+"""Transitions that a path within the budget has at most."""
+
 CELL = (0.10, 0.10, np.deg2rad(15.0))
 """Cell of thinning: metres, metres, radians of the end point and end heading."""
-
-STRETCHES = int(BUDGET / TRANSITION_PENALTY) + 1
-"""Most recorded stretches of a path: each transition costs the penalty at least."""
 
 _CHUNK = 48
 
@@ -57,8 +57,10 @@ class ReachableOptions:
         paths: (m, 15, 3) float32; x, y in metres and heading in radians every 3 frames
             from the third on, relative to the start; rows past the end are zero.
         path_clusters: (m, 15) int32; cluster of the pose at each sample.
-        chains: (m, 4, 2) int32; the recorded stretches that make up the path, in order: the frame
-            of the path at which each begins, and its pose there; -1 for none.
+        sources: (m,) int32; pose in which the option starts, or its original; -1 where that is
+            borrowed from another map.
+        jumps: (m, ``MOST_JUMPS``) int64; its transitions, ``frame * n + via`` for the pose ``via``
+            of n whose step is taken in that frame; -1 for none.
         edits: (m,) int16; number from 1 on of the edit that an option is a copy by, 0 for those
             as recorded.
     """
@@ -68,7 +70,8 @@ class ReachableOptions:
     costs: NDArray[np.float32]
     paths: NDArray[np.float32]
     path_clusters: NDArray[np.int32]
-    chains: NDArray[np.int32]
+    sources: NDArray[np.int32]
+    jumps: NDArray[np.int64]
     edits: NDArray[np.int16]
 
 
@@ -105,7 +108,7 @@ def reachable_options(
     def collect(chunk: NDArray[np.int32]) -> tuple[NDArray, ...]:
         return _collect(
             chunk, graph.offsets, graph.successors, graph.via, graph.costs, step,
-            clusters.labels, durations, BUDGET, TRANSITION_PENALTY, cells, half_cells,
+            clusters.labels, durations, BUDGET, TRANSITION_PENALTY, MOST_JUMPS, cells, half_cells,
         )  # fmt: skip
 
     found: list[list[tuple[NDArray, ...]]] = [[] for _ in range(len(clusters))]
@@ -119,20 +122,32 @@ def reachable_options(
             done += len(chunk)
             if progress is not None:
                 progress(done, len(order))
-    merged = [with_edits(merge(parts), edits) for parts in found if parts]
-    counts = np.zeros(len(clusters), dtype=np.int64)  # nobody may stand in the recordings
-    counts[[bool(parts) for parts in found]] = [len(part.layers) for part in merged]
-    layers, _, costs, paths, path_clusters, chains, edited_by = (
-        np.concatenate(column) for column in zip(*merged, strict=True)
-    )
+    return joined([merge(parts) if parts else None for parts in found], edits)
+
+
+def joined(
+    recorded: Iterable[ClusterOptions | None], edits: Sequence[Edit] = ()
+) -> ReachableOptions:
+    """The options of all clusters from those recorded in each, with edited copies.
+
+    Args:
+        recorded: of each cluster; None for one without poses, where nobody stands in the
+            recordings.
+        edits: how recorded options are edited to fill further cells.
+    """
+    each = [None if own is None else with_edits(own, edits) for own in recorded]
+    counts = [0 if own is None else len(own.layers) for own in each]
+    columns = zip(*(own for own in each if own is not None), strict=True)
+    all_ = ClusterOptions(*(np.concatenate(column) for column in columns))
     return ReachableOptions(
         offsets=np.concatenate([[0], np.cumsum(counts)]),
-        durations=np.array(DURATIONS, dtype=np.int16)[layers],
-        costs=costs,
-        paths=paths,
-        path_clusters=path_clusters,
-        chains=chains,
-        edits=edited_by,
+        durations=np.array(DURATIONS, dtype=np.int16)[all_.layers],
+        costs=all_.costs,
+        paths=all_.paths,
+        path_clusters=all_.path_clusters,
+        sources=all_.sources,
+        jumps=all_.jumps,
+        edits=all_.edits,
     )
 
 
@@ -148,9 +163,10 @@ def _collect(
     durations: NDArray[np.int64],
     budget: float,
     penalty: float,
+    most_jumps: int,
     cell: NDArray[np.float64],
     half_cells: int,
-) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]:
+) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]:
     """Options of some poses of one cluster, thinned; see ``ReachableOptions``."""
     n = len(labels)
     frames = durations[-1]
@@ -171,7 +187,8 @@ def _collect(
     out_cost = np.empty(capacity, np.float32)
     out_path = np.zeros((capacity, samples, 3), np.float32)
     out_cluster = np.zeros((capacity, samples), np.int32)
-    out_chain = np.empty((capacity, STRETCHES, 2), np.int32)
+    out_source = np.empty(capacity, np.int32)
+    out_jumps = np.empty((capacity, most_jumps), np.int64)
 
     for source in sources:
         nodes[0, 0], parents[0, 0], spent[0, 0] = source, -1, 0.0
@@ -225,7 +242,8 @@ def _collect(
                         out_cost = np.concatenate((out_cost, np.empty_like(out_cost)))
                         out_path = np.concatenate((out_path, np.zeros_like(out_path)))
                         out_cluster = np.concatenate((out_cluster, np.zeros_like(out_cluster)))
-                        out_chain = np.concatenate((out_chain, np.empty_like(out_chain)))
+                        out_source = np.concatenate((out_source, np.empty_like(out_source)))
+                        out_jumps = np.concatenate((out_jumps, np.empty_like(out_jumps)))
                         capacity *= 2
                     slot = used
                     used += 1
@@ -233,19 +251,14 @@ def _collect(
                     out_cell[slot] = key
                     out_layer[slot] = layer
                 out_cost[slot] = spent[frame, a]
-                out_chain[slot] = -1
-                jumps = 0
+                out_source[slot] = source
+                out_jumps[slot] = -1
+                jump = 0
                 b = a
                 for f in range(frame, 0, -1):
                     if vias[f, b] != nodes[f - 1, parents[f, b]]:
-                        jumps += 1
-                    b = parents[f, b]
-                out_chain[slot, 0, 0], out_chain[slot, 0, 1] = 0, source
-                b = a
-                for f in range(frame, 0, -1):
-                    if vias[f, b] != nodes[f - 1, parents[f, b]]:
-                        out_chain[slot, jumps, 0], out_chain[slot, jumps, 1] = f, nodes[f, b]
-                        jumps -= 1
+                        out_jumps[slot, jump] = f * n + vias[f, b]
+                        jump += 1
                     if f % SAMPLE_EVERY == 0:
                         out_path[slot, f // SAMPLE_EVERY - 1, 0] = place[f, b, 0]
                         out_path[slot, f // SAMPLE_EVERY - 1, 1] = place[f, b, 1]
@@ -259,5 +272,6 @@ def _collect(
         out_cost[:used],
         out_path[:used],
         out_cluster[:used],
-        out_chain[:used],
+        out_source[:used],
+        out_jumps[:used],
     )

@@ -17,12 +17,17 @@ from mesa_mobility.capture import Recording
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.borrowing import borrow, missing
 from mesa_mobility.mobility.clusters import cluster_poses
-from mesa_mobility.mobility.edits import EDITS
 from mesa_mobility.mobility.graph import motion_graph
 from mesa_mobility.mobility.map import MobilityMap
-from mesa_mobility.mobility.mapfile import quantise_paths
-from mesa_mobility.mobility.paths import SAMPLE_EVERY, ReachableOptions, reachable_options
-from mesa_mobility.mobility.poses import PoseTable, pose_table
+from mesa_mobility.mobility.paths import (
+    MOST_JUMPS,
+    SAMPLE_EVERY,
+    ReachableOptions,
+    reachable_options,
+)
+from mesa_mobility.mobility.poses import MOTION_STEP, PoseTable, pose_table
+from mesa_mobility.mobility.storing.families import OptionFamilies
+from mesa_mobility.mobility.storing.steps import quantise_paths
 
 Progress = Callable[[str, int, int], None]
 
@@ -30,9 +35,10 @@ Progress = Callable[[str, int, int], None]
 class Retraced(NamedTuple):
     """A map's options with the poses behind them.
 
-    Fields: ``poses``; ``labels`` (n,) cluster of each pose, -1 for none; ``chains`` (m, 4, 2) as in
-    ``ReachableOptions``, a row for each option of the map; ``strides`` (m,) factor by which an edit
-    has scaled the strides, 1 for options as recorded.
+    Fields: ``poses``; ``labels`` (n,) cluster of each pose, -1 for none; ``chains`` (m, 4, 2) the
+    recorded stretches that make up each option of the map, in order: the frame of the path at which
+    each begins, and its pose there, -1 for none; ``strides`` (m,) factor by which an edit has
+    scaled the strides, 1 for options as recorded.
     """
 
     poses: PoseTable
@@ -61,26 +67,43 @@ def retrace(
     settings = map_.metadata.get("build")
     if not isinstance(settings, dict):
         raise MapError("the map's metadata do not say how it was built, which its poses need")
-    poses = pose_table(recordings, report("poses"))
+    older = "threshold_ratio" in settings  # before options were edited or borrowed
+    poses = pose_table(recordings, report("poses"), motion_step=0.0 if older else MOTION_STEP)
     graph = motion_graph(poses, *_transitions(settings, poses))
     if progress is not None:
         progress("motion graph", len(poses), len(poses))
     asked = settings.get("clusters_asked", map_.n_clusters)
     grouped = cluster_poses(graph, asked, report("clusters"))
-    edits = EDITS if "edits" in settings else ()
-    options = reachable_options(graph, grouped, edits, progress=report("options"))
-    labels = grouped.labels
-    if missing(options, grouped):
-        options, grouped = borrow(options, grouped, MobilityMap.load())
+    options = reachable_options(graph, grouped, progress=report("options"))
+    labels, strides = grouped.labels, np.ones(1)
+    if not older:
+        families = OptionFamilies.of(poses.step, grouped, options, map_.metadata)
+        options = families.options()
+        strides = np.array([1.0, *(edit.stride for edit in families.edits())])
+        if missing(options, grouped):
+            options, grouped = borrow(options, grouped, MobilityMap.load())
     _check_same(map_, options)
-    strides = np.array([1.0, *(edit.stride for edit in EDITS)])
     # The first option of a map is the stand, which the builder adds.
+    chains = _chains(options, len(poses))
     return Retraced(
         poses,
         labels,
-        np.concatenate([np.full_like(options.chains[:1], -1), options.chains]),
+        np.concatenate([np.full_like(chains[:1], -1), chains]),
         np.concatenate([[1.0], strides[options.edits]]),
     )
+
+
+def _chains(options: ReachableOptions, poses: int) -> NDArray[np.int32]:
+    """(m, 4, 2) recorded stretches of each option, from its transitions among so many poses."""
+    jumps = np.sort(np.where(options.jumps < 0, np.iinfo(np.int64).max, options.jumps), axis=1)
+    frames, vias = np.divmod(jumps, poses)
+    jumped = jumps < np.iinfo(np.int64).max
+    chains = np.full((len(jumps), 1 + MOST_JUMPS, 2), -1, dtype=np.int32)
+    chains[:, 0, 0] = np.where(options.sources < 0, -1, 0)
+    chains[:, 0, 1] = options.sources
+    chains[:, 1:, 0] = np.where(jumped, frames, -1)
+    chains[:, 1:, 1] = np.where(jumped, vias + 1, -1)
+    return chains
 
 
 def _transitions(settings: dict, poses: PoseTable) -> tuple[float, int]:

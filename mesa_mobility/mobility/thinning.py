@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit, edit_paths
+from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit, edit_paths, rotations
 
 DURATIONS = (12, 24, 45)
 """Option durations in frames; 45 frames, 1.5 s, is the paper's time step."""
@@ -24,15 +25,16 @@ EDIT_CELL = (0.15, 0.15, np.deg2rad(20.0))
 
 
 class ClusterOptions(NamedTuple):
-    """Options of one cluster: index of duration, cell, cost, path, clusters, poses, and the number
-    of the edit, 0 if there is none."""
+    """Options of one cluster: index of duration, cell, cost, path and clusters along it, the pose
+    in which each starts, its transitions, and the number of its edit, 0 if there is none."""
 
     layers: NDArray[np.int64]
     cells: NDArray[np.int64]
     costs: NDArray[np.float32]
     paths: NDArray[np.float32]
     path_clusters: NDArray[np.int32]
-    chains: NDArray[np.int32]
+    sources: NDArray[np.int32]
+    jumps: NDArray[np.int64]
     edits: NDArray[np.int16]
 
     def taken(self, rows: NDArray[np.generic]) -> ClusterOptions:
@@ -42,34 +44,48 @@ class ClusterOptions(NamedTuple):
 
 def merge(parts: list[tuple[NDArray, ...]]) -> ClusterOptions:
     """Thin the parts of one cluster together; earlier parts win ties."""
-    cells, layers, costs, paths, path_clusters, chains = (
+    cells, layers, costs, paths, path_clusters, sources, jumps = (
         np.concatenate(column) for column in zip(*parts, strict=True)
     )
     edits = np.zeros(len(cells), dtype=np.int16)
-    return _thinned(ClusterOptions(layers, cells, costs, paths, path_clusters, chains, edits))
+    return _thinned(
+        ClusterOptions(layers, cells, costs, paths, path_clusters, sources, jumps, edits)
+    )
 
 
 def with_edits(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOptions:
     """Add the cheapest edited copy in each cell that no recorded option ends in."""
     if not edits:
         return recorded
-    copies = _joined(_edited(recorded, edit, number) for number, edit in enumerate(edits, 1))
-    taken = np.unique(_edit_cells(recorded))
-    copies = copies._replace(cells=_edit_cells(copies))
-    added = _thinned(copies.taken(~np.isin(copies.cells, taken)))
+    # Paths are edited in full only where they are kept: of some twenty copies, one.
+    turned = np.array([rotations(edit, recorded.paths.shape[1]) for edit in edits])
+    copies = _cheapest_copies(
+        recorded.layers,
+        recorded.costs,
+        recorded.paths,
+        _samples(recorded),
+        np.array([edit.cost for edit in edits]),
+        np.array([edit.turn_rate for edit in edits]),
+        turned,
+        BUDGET,
+        np.array(EDIT_CELL),
+    )
+    rows, by, cells, costs = copies
+    order = np.lexsort((cells, recorded.layers[rows]))
+    rows, by = rows[order], by[order]
+    added = recorded.taken(rows)._replace(
+        cells=cells[order],
+        costs=costs[order],
+        paths=np.zeros((len(rows), *recorded.paths.shape[1:]), dtype=np.float32),
+        edits=(by + 1).astype(np.int16),
+    )
+    present = np.arange(recorded.paths.shape[1]) < _samples(added)[:, None]
+    for number, edit in enumerate(edits):
+        own = np.flatnonzero(by == number)
+        bent = edit_paths(recorded.paths[rows[own]], edit).astype(np.float32)
+        added.paths[own] = np.where(present[own, :, None], bent, np.float32(0.0))
     both = _joined((recorded, added))
     return both.taken(np.argsort(both.layers, kind="stable"))
-
-
-def _edited(recorded: ClusterOptions, edit: Edit, number: int) -> ClusterOptions:
-    """Edited copies of those options for which this does not cost too much."""
-    options = recorded.taken(recorded.costs + edit.cost <= BUDGET)
-    present = np.arange(options.paths.shape[1]) < _samples(options)[:, None]
-    return options._replace(
-        costs=(options.costs + edit.cost).astype(np.float32),
-        paths=np.where(present[..., None], edit_paths(options.paths, edit), 0.0).astype(np.float32),
-        edits=np.full(len(options.costs), number, dtype=np.int16),
-    )
 
 
 def _joined(parts: Iterable[ClusterOptions]) -> ClusterOptions:
@@ -80,13 +96,76 @@ def _samples(options: ClusterOptions) -> NDArray[np.int64]:
     return np.array(DURATIONS)[options.layers] // SAMPLE_EVERY
 
 
-def _edit_cells(options: ClusterOptions) -> NDArray[np.int64]:
-    """A number for the duration and the cell of ``EDIT_CELL`` of each option's end."""
-    ends = options.paths[np.arange(len(options.costs)), _samples(options) - 1].astype(np.float64)
-    x, y, heading = np.floor(ends / EDIT_CELL + 0.5).astype(np.int64).T
-    heading %= round(2.0 * np.pi / EDIT_CELL[2])
-    # Nobody gets 4,096 cells far.
-    return ((options.layers * 8192 + x + 4096) * 8192 + y + 4096) * 64 + heading
+@kept(nogil=True)
+def _cheapest_copies(
+    layers: NDArray[np.int64],
+    costs: NDArray[np.float32],
+    paths: NDArray[np.float32],
+    samples: NDArray[np.int64],
+    edit_costs: NDArray[np.float64],
+    turn_rates: NDArray[np.float64],
+    turned: NDArray[np.float64],
+    budget: float,
+    cell: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
+    """The cheapest copy in each cell in which no option ends: its row, edit, cell and cost.
+
+    ``turned`` (edits, samples, 2) are the cosine and sine of each step's rotation, times stride.
+    Among copies of the same cost, the first edit counts, and of one edit the first option.
+    """
+    headings = round(2.0 * np.pi / cell[2])
+    size = 64
+    while size < 2 * (len(layers) * (len(edit_costs) + 1)):
+        size *= 2
+    keys = np.full(size, -1, np.int64)
+    row_of = np.empty(size, np.int64)
+    edit_of = np.empty(size, np.int64)
+    cost_of = np.empty(size, np.float32)
+    used = 0
+    for edit in range(-1, len(edit_costs)):
+        for row in range(len(layers)):
+            cost = costs[row]
+            x, y, heading = 0.0, 0.0, np.float64(paths[row, samples[row] - 1, 2])
+            if edit < 0:
+                x = np.float64(paths[row, samples[row] - 1, 0])
+                y = np.float64(paths[row, samples[row] - 1, 1])
+            else:
+                if cost + edit_costs[edit] > budget:
+                    continue
+                cost = np.float32(cost + edit_costs[edit])
+                before_x, before_y = 0.0, 0.0
+                for s in range(samples[row]):
+                    dx, dy = paths[row, s, 0] - before_x, paths[row, s, 1] - before_y
+                    before_x, before_y = np.float64(paths[row, s, 0]), np.float64(paths[row, s, 1])
+                    x += turned[edit, s, 0] * dx - turned[edit, s, 1] * dy
+                    y += turned[edit, s, 1] * dx + turned[edit, s, 0] * dy
+                heading += turn_rates[edit] * samples[row]
+                # Ends are compared as they will be stored.
+                x, y = np.float64(np.float32(x)), np.float64(np.float32(y))
+                heading = np.float64(np.float32(heading))
+            ix = np.int64(np.floor(x / cell[0] + 0.5))
+            iy = np.int64(np.floor(y / cell[1] + 0.5))
+            ih = np.int64(np.floor(heading / cell[2] + 0.5)) % headings
+            # Nobody gets 4,096 cells far.
+            key = ((layers[row] * 8192 + ix + 4096) * 8192 + iy + 4096) * 64 + ih
+            slot = (key * 0x9E3779B1 >> 15) & (size - 1)
+            while keys[slot] >= 0 and keys[slot] != key:
+                slot = (slot + 1) & (size - 1)
+            if keys[slot] < 0:
+                keys[slot] = key
+                used += edit >= 0
+            elif edit < 0 or edit_of[slot] < 0 or cost >= cost_of[slot]:
+                continue
+            row_of[slot], edit_of[slot], cost_of[slot] = row, edit, cost
+    out_row, out_edit = np.empty(used, np.int64), np.empty(used, np.int64)
+    out_cell, out_cost = np.empty(used, np.int64), np.empty(used, np.float32)
+    n = 0
+    for slot in range(size):
+        if keys[slot] >= 0 and edit_of[slot] >= 0:
+            out_row[n], out_edit[n] = row_of[slot], edit_of[slot]
+            out_cell[n], out_cost[n] = keys[slot], cost_of[slot]
+            n += 1
+    return out_row, out_edit, out_cell, out_cost
 
 
 def _thinned(options: ClusterOptions) -> ClusterOptions:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import MapError
-from mesa_mobility.mobility.map import MobilityMap
+
+if TYPE_CHECKING:
+    from mesa_mobility.mobility.map import MobilityMap
 
 ON_THE_SPOT = 0.5
 """Somebody whose option ends within so many metres has stayed on the spot."""

@@ -3,6 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from mesa_mobility.results.by_type import by_type, occupancy_by_type
 from mesa_mobility.results.export import to_pedpy, write_juelich_text, write_jupedsim_sqlite
 from mesa_mobility.results.files import check_writable
 from mesa_mobility.results.gait import Sway, lateral_sway
@@ -40,6 +41,7 @@ __all__ = [
     "Sway",
     "Trajectories",
     "WallCrossing",
+    "by_type",
     "check_safety",
     "check_writable",
     "crossings",
@@ -53,6 +55,7 @@ __all__ = [
     "lateral_sway",
     "mean_speed",
     "occupancy",
+    "occupancy_by_type",
     "passages",
     "passed_by",
     "plot_occupancy",

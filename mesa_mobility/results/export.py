@@ -62,6 +62,8 @@ def write_jupedsim_sqlite(
 ) -> None:
     """Write a JuPedSim trajectory database, version 2, as its viewer, jupedsim and PedPy read it.
 
+    A table ``person_data`` beside JuPedSim's own has the type of each person and the like.
+
     Args:
         trajectories: the run; the direction that each person faces goes into ori_x, ori_y.
         path: file to write.
@@ -96,6 +98,7 @@ def write_jupedsim_sqlite(
                         ((frame, geometry) for frame in range(trajectories.frames)),
                     )
                     _insert_rows(connection, trajectories)
+                    _insert_people(connection, trajectories)
                     connection.execute("CREATE INDEX frame_id_idx ON trajectory_data (frame, id)")
             finally:
                 connection.close()
@@ -118,6 +121,21 @@ def _insert_rows(connection: sqlite3.Connection, trajectories: Trajectories) -> 
             "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?)",
             zip(*(column.tolist() for column in columns), strict=True),
         )
+
+
+def _insert_people(connection: sqlite3.Connection, trajectories: Trajectories) -> None:
+    names = list(trajectories.person_data)
+    if not names:
+        return
+    # Names are identifiers: see ``checked_person_data``.
+    columns = "".join(f', "{name}"' for name in names)
+    connection.execute(f"CREATE TABLE person_data (id INTEGER NOT NULL PRIMARY KEY{columns})")
+    people = np.unique(trajectories.person)
+    values = [trajectories.person_data[name][people].tolist() for name in names]
+    marks = ", ".join("?" * (1 + len(names)))
+    connection.executemany(
+        f"INSERT INTO person_data VALUES ({marks})", zip(people.tolist(), *values, strict=True)
+    )
 
 
 def write_juelich_text(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from numpy.typing import NDArray
 
 from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
@@ -32,11 +33,11 @@ SCHEMA = pa.schema(
 
 
 def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
-    """Write columns frame, person, x (m), y (m), heading (rad), compressed with zstd.
+    """Write columns frame, person, x (m), y (m), heading (rad) and person_data, with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
-    last_frame, core_radius by person, inside_at_end, and the sha256 of the file (see
-    ``mesa_mobility.results.seal``). Pages have checksums as well, which other readers can
+    last_frame, core_radius by person, inside_at_end, names in person_data, and the sha256 of the
+    file (see ``mesa_mobility.results.seal``). Pages have checksums as well, which other readers can
     check. Equal trajectories give equal bytes.
 
     Raises:
@@ -48,15 +49,23 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
         "last_frame": trajectories.frames - 1,
         "core_radius": trajectories.radii.tolist(),
         "inside_at_end": trajectories.remaining.tolist(),
+        "person_data": list(trajectories.person_data),
         FIELD: UNSEALED,
     }
-    table = pa.table([getattr(trajectories, name) for name in SCHEMA.names], schema=SCHEMA)
+    columns = {name: pa.array(getattr(trajectories, name)) for name in SCHEMA.names}
+    person = pa.array(trajectories.person)
+    for name, values in trajectories.person_data.items():
+        # Texts as indices: as many strings as there are rows would take a hundred megabytes.
+        by_person = pa.array(values)
+        texts = values.dtype.kind == "U"
+        columns[name] = (by_person.dictionary_encode() if texts else by_person).take(person)
+    table = pa.table(columns)
     with replacing(path, ResultsError) as temporary:
         with pq.ParquetWriter(
             temporary,
-            SCHEMA,
+            table.schema,
             compression="zstd",
-            use_dictionary=["frame", "person"],
+            use_dictionary=["frame", "person", *trajectories.person_data],
             # Neighbouring values of a double share their high bytes: split, they compress better.
             use_byte_stream_split=["x", "y", "heading"],
             write_page_checksum=True,
@@ -66,6 +75,19 @@ def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> N
             writer.write_table(table)
             writer.add_key_value_metadata({METADATA_KEY: json.dumps(metadata, sort_keys=True)})
         seal(temporary)
+
+
+def _by_person(column: pa.ChunkedArray, person: NDArray[np.int32]) -> NDArray[Any]:
+    """(m,) the value of each person, from a column by row; nothing or 0 without a row."""
+    first = np.full(int(person.max(initial=-1)) + 1, -1, dtype=np.int64)
+    first[person[::-1]] = np.arange(len(person))[::-1]
+    there = first >= 0
+    values = column.take(pa.array(first[there])).to_numpy()
+    if values.dtype == object:
+        values = values.astype(np.str_)
+    found = np.zeros(len(first), dtype=values.dtype)
+    found[there] = values
+    return found
 
 
 def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -96,8 +118,12 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
         if version != FORMAT_VERSION:
             raise ResultsError(f"{source}: format version {version}, expected {FORMAT_VERSION}")
         columns = table.select(SCHEMA.names).cast(SCHEMA)
+        person = columns["person"].to_numpy()
         return {
             **{name: columns[name].to_numpy() for name in SCHEMA.names},
+            "person_data": {
+                name: _by_person(table[name], person) for name in values.get("person_data", [])
+            },
             "frame_rate": float(values["frame_rate"]),
             "core_radius": np.asarray(values["core_radius"], dtype=np.float64),
             "last_frame": int(values["last_frame"]),

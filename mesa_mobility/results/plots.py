@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.by_type import people_by
 from mesa_mobility.results.floor import draw_floor, floor_figure
 from mesa_mobility.results.trajectories import Trajectories
 
@@ -33,6 +35,11 @@ MOST_PIECES = 250_000
 PAPER = "paper (Casburn et al. 2005, Fig. 7)"
 # Without the green of exits, the blue of doors and the pale yellow that is lost on white.
 TRACK_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.9, 256)))
+# Told apart with every kind of colour vision as far as twelve can be; those of the dashboard.
+TYPE_COLOURS = (
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00",
+    "#999999", "#5b3a93", "#8c510a", "#b5a300", "#00a6a6", "#b2182b",
+)  # fmt: skip
 BODY, LEFT_INSIDE, REFERENCE = "#2166ac", "#000000", "#d6604d"
 STILL_INSIDE: dict[str, Any] = {
     "linestyle": "none",
@@ -94,6 +101,8 @@ def plot_snapshots(
 ) -> None:
     """Draw people at given times: body cores as discs, with a stroke for the facing.
 
+    Where there are several types, discs have the colours of types.
+
     Args:
         trajectories: the run.
         plan: the floor plan.
@@ -108,17 +117,22 @@ def plot_snapshots(
         raise ResultsError(
             f"snapshots at {list(times)} s asked of a run of {trajectories.duration:.2f} s"
         )
+    types = people_by(trajectories, "type") if "type" in trajectories.person_data else {}
     figure, axes = floor_figure(plan, rows=(len(times) + 1) // 2, columns=min(2, len(times)))
     for panel in axes[len(times) :]:
         panel.set_axis_off()
     for panel, time in zip(axes, times, strict=False):
         handles = draw_floor(panel, plan)
         rows = _inside_at(trajectories, round(time * trajectories.frame_rate))
-        _draw_bodies(panel, trajectories, rows)
+        _draw_bodies(panel, trajectories, rows, _colours(types, len(trajectories.radii)))
         panel.set_title(f"{time:g} s: {len(rows)} people inside", fontsize=10)
-    handles.append(
-        Line2D([], [], linestyle="none", marker="o", color=BODY, label="person, facing the stroke")
-    )
+    said = [("person, facing the stroke", BODY)]
+    if len(types) > 1:
+        said = list(zip(types, cycle(TYPE_COLOURS), strict=False))
+    handles += [
+        Line2D([], [], linestyle="none", marker="o", color=colour, label=name)
+        for name, colour in said
+    ]
     _finish(figure, handles, title, path)
 
 
@@ -126,6 +140,7 @@ def plot_occupancy(
     occupancy: Sequence[Sequence[float]],
     path: str | os.PathLike[str],
     *,
+    by_type: Mapping[str, Sequence[Sequence[float]]] | None = None,
     reference: Mapping[float, float] | None = None,
     reference_label: str = PAPER,
     title: str = "",
@@ -135,6 +150,7 @@ def plot_occupancy(
     Args:
         occupancy: [[t, inside], ...], seconds and people.
         path: picture to write.
+        by_type: the same of each type of people, by name, drawn as thinner lines.
         reference: people inside at some times (s), drawn as points to compare with.
         reference_label: their label in the legend.
         title: first line of the picture.
@@ -148,7 +164,11 @@ def plot_occupancy(
     figure = Figure(figsize=(8, 4.5), dpi=150, layout="constrained")
     axes = figure.subplots()
     axes.fill_between(time, inside, color=BODY, alpha=0.12, linewidth=0)
-    axes.plot(time, inside, color=BODY, linewidth=2, label="this run")
+    label = "everybody" if by_type else "this run"
+    axes.plot(time, inside, color=BODY, linewidth=2, label=label)
+    for colour, (name, values) in zip(cycle(TYPE_COLOURS), (by_type or {}).items(), strict=False):
+        own = np.asarray(values, dtype=np.float64)
+        axes.plot(own[:, 0], own[:, 1], color=colour, linewidth=1.2, label=name)
     if inside[-1] == 0:
         out = time[np.flatnonzero(inside == 0)[0]]
         axes.plot([out], [0], marker="o", color=BODY, clip_on=False, zorder=5)
@@ -185,6 +205,7 @@ def plot_occupancy(
                 color=REFERENCE,
                 fontsize=9,
             )
+    if reference or by_type:
         axes.legend(frameon=False)
     axes.set_xlim(0, max(time[-1], *(reference or {0.0: 0.0}), 1e-9) * 1.03)
     axes.set_ylim(0, max(inside.max(), *(reference or {0.0: 0.0}).values(), 1) * 1.05)
@@ -229,7 +250,18 @@ def _tracks(trajectories: Trajectories) -> LineCollection:
     return tracks
 
 
-def _draw_bodies(axes: Axes, trajectories: Trajectories, rows: NDArray[np.int64]) -> None:
+def _colours(types: Mapping[str, NDArray[np.int64]], people: int) -> NDArray[np.str_]:
+    """(people,) colour of each by its type; one for all where there is one type, or none."""
+    colours = np.full(people, BODY)
+    if len(types) > 1:
+        for colour, own in zip(cycle(TYPE_COLOURS), types.values(), strict=False):
+            colours[own] = colour
+    return colours
+
+
+def _draw_bodies(
+    axes: Axes, trajectories: Trajectories, rows: NDArray[np.int64], colours: NDArray[np.str_]
+) -> None:
     radius = trajectories.radii[trajectories.person[rows]]
     centre = np.column_stack((trajectories.x[rows], trajectories.y[rows]))
     heading = trajectories.heading[rows]
@@ -245,7 +277,7 @@ def _draw_bodies(axes: Axes, trajectories: Trajectories, rows: NDArray[np.int64]
             units="xy",
             offsets=centre,
             offset_transform=axes.transData,
-            facecolors=BODY,
+            facecolors=colours[trajectories.person[rows]].tolist(),
             edgecolors="white",
             linewidths=0.3,
             zorder=4,

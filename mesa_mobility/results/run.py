@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.by_type import occupancy_by_type
 from mesa_mobility.results.files import all_or_none, json_text
 from mesa_mobility.results.measures import egress_time, occupancy
 from mesa_mobility.results.trajectories import Trajectories, read_parquet
@@ -66,6 +67,7 @@ def write_run(
         plot_occupancy(
             _curve(trajectories),
             temporary / "occupancy.png",
+            by_type=_curves_by_type(trajectories),
             reference=reference_occupancy,
             title=title,
         )
@@ -120,6 +122,14 @@ def _curve(trajectories: Trajectories) -> list[list[float]]:
     curve, egress = occupancy(trajectories), egress_time(trajectories)
     # The last person rarely leaves on a full second.
     return curve if egress is None or egress <= curve[-1][0] else [*curve, [egress, 0]]
+
+
+def _curves_by_type(trajectories: Trajectories) -> dict[str, list[list[float]]] | None:
+    """Occupancy by type, where there are several."""
+    if "type" not in trajectories.person_data:
+        return None
+    curves = occupancy_by_type(trajectories)
+    return curves if len(curves) > 1 else None
 
 
 def title_of(summary: Mapping[str, Any], trajectories: Trajectories) -> str:

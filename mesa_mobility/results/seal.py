@@ -28,10 +28,15 @@ _CHUNK = 1 << 20
 def seal(path: Path) -> None:
     """Write the checksum of a Parquet file into its metadata, where :data:`UNSEALED` stands."""
     with path.open("r+b") as file:
-        at = _find(file, path)
-        digest = _digest(file, at)
-        file.seek(at)
-        file.write(digest)
+        seal_open(file, path)
+
+
+def seal_open(file: BinaryIO, name: object) -> None:
+    """As ``seal``, of an open file that messages call ``name``."""
+    at = _find(file, name)
+    digest = _digest(file, at)
+    file.seek(at)
+    file.write(digest)
 
 
 def check_seal(path: Path) -> None:
@@ -42,27 +47,32 @@ def check_seal(path: Path) -> None:
         ResultsError: it is not a Parquet file, has no seal, or does not match its seal.
     """
     with path.open("rb") as file:
-        at = _find(file, path)
-        file.seek(at)
-        said = file.read(len(UNSEALED))
-        if _digest(file, at) != said:
-            raise ResultsError(f"{path}: damaged: its content is not what its sha256 says")
+        check_open(file, path)
 
 
-def _find(file: BinaryIO, path: Path) -> int:
+def check_open(file: BinaryIO, name: object) -> None:
+    """As ``check_seal``, of an open file that messages call ``name``."""
+    at = _find(file, name)
+    file.seek(at)
+    said = file.read(len(UNSEALED))
+    if _digest(file, at) != said:
+        raise ResultsError(f"{name}: damaged: its content is not what its sha256 says")
+
+
+def _find(file: BinaryIO, name: object) -> int:
     """Offset of the seal in the file."""
     size = file.seek(0, 2)
     file.seek(max(0, size - 8))
     tail = file.read(8)
     length = int.from_bytes(tail[:4], "little")
     if size < 12 or tail[4:] != _MAGIC or length > size - 12:
-        raise ResultsError(f"{path}: not a readable Parquet file: expected PAR1 at its end")
+        raise ResultsError(f"{name}: not a readable Parquet file: expected PAR1 at its end")
     start = size - 8 - length
     file.seek(start)
     marks = list(_MARK.finditer(file.read(length)))
     if len(marks) != 1:
         raise ResultsError(
-            f"{path}: no {FIELD} in mesa_mobility metadata, expected trajectories of this format"
+            f"{name}: no {FIELD} in mesa_mobility metadata, expected a file of mesa-mobility"
         )
     return start + marks[0].start(1)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from mesa_mobility.errors import ResultsError
 if TYPE_CHECKING:
     import os
 
+    import pandas as pd
     import pedpy
 
     from mesa_mobility.bodies import BodyMotion, PoseBank
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
+
+COLUMNS = ("frame", "person", "x", "y", "heading")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +48,9 @@ class Trajectories:
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
             everybody who has a row in it.
+        person_data: what is known of people besides, by name: (m,) texts or numbers, of person p
+            ``person_data[name][p]``. That of a model has ``type`` and ``group``, which is empty for
+            people without one.
         decisions: who has taken which option, if that was recorded; bodies are drawn from it.
 
     Raises:
@@ -61,6 +68,7 @@ class Trajectories:
     core_radius: FloatArray | float = 0.15
     last_frame: int | None = None
     inside_at_end: IntArray | None = None
+    person_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     decisions: Decisions | None = None
 
     def __post_init__(self) -> None:
@@ -82,6 +90,9 @@ class Trajectories:
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
             )
         object.__setattr__(self, "core_radius", _radii(self.core_radius, columns["person"]))
+        object.__setattr__(
+            self, "person_data", checked_person_data(self.person_data, columns["person"])
+        )
         last = int(columns["frame"][-1]) if lengths["frame"] else 0
         if self.last_frame is None:
             object.__setattr__(self, "last_frame", last)
@@ -113,7 +124,8 @@ class Trajectories:
         Args:
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now); its decisions are taken too if it records them.
+                ``rows`` (the people inside now); ``person_data()``, where it has that. Its
+                decisions are taken too if it records them.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -132,6 +144,7 @@ class Trajectories:
             core_radius=np.asarray(model.core_radii, dtype=np.float64),
             last_frame=round(model.elapsed * model.frame_rate),
             inside_at_end=model.rows,
+            person_data=model.person_data() if hasattr(model, "person_data") else {},
             decisions=Decisions.of(model) if getattr(model, "decisions", None) else None,
         )
 
@@ -221,6 +234,44 @@ class Trajectories:
 
         return body_of(self, person, frames, bank=bank)
 
+    def of_people(self, people: ArrayLike) -> Trajectories:
+        """The rows of some people alone, in the same frames.
+
+        Args:
+            people: their numbers, or for each person whether it is one of them.
+        """
+        chosen = np.asarray(people)
+        kept = np.zeros(len(self.radii), dtype=np.bool_)
+        kept[: len(chosen)] = chosen if chosen.dtype == np.bool_ else False
+        if chosen.dtype != np.bool_:
+            kept[chosen.astype(np.int64)] = True
+        rows = kept[self.person]
+        return replace(
+            self,
+            **{
+                name: getattr(self, name)[rows] for name in ("frame", "person", "x", "y", "heading")
+            },
+            inside_at_end=self.remaining[kept[self.remaining]],
+        )
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row for each person and frame: frame, person, x and y (m), heading (rad), person_data.
+
+        Texts, such as the type, are categories.
+        """
+        import pandas as pd
+
+        columns: dict[str, Any] = {name: getattr(self, name) for name in COLUMNS}
+        for name, values in self.person_data.items():
+            if values.dtype.kind == "U":
+                texts, codes = np.unique(values, return_inverse=True)
+                columns[name] = pd.Categorical.from_codes(
+                    codes[self.person], categories=pd.Index(texts.tolist())
+                )
+            else:
+                columns[name] = values[self.person]
+        return pd.DataFrame(columns)
+
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Write a Parquet file: see :func:`mesa_mobility.results.write_parquet`."""
         from mesa_mobility.results.parquet import write_parquet
@@ -307,6 +358,34 @@ def _radii(value: ArrayLike, person: IntArray) -> FloatArray:
     if not np.all((radii > 0) & np.isfinite(radii)):
         raise ResultsError("trajectories: core_radius must be positive for everybody")
     return _read_only(radii)
+
+
+DATA_KINDS = "Uifb"
+"""What data of people may be: texts, whole numbers, numbers, and whether something is so."""
+
+
+def checked_person_data(
+    data: Mapping[str, ArrayLike], person: IntArray
+) -> Mapping[str, NDArray[Any]]:
+    """Data of people as read-only arrays, with an entry for each person.
+
+    Raises:
+        ResultsError: a name that is a column already, too few entries, or neither texts nor
+            numbers.
+    """
+    people = int(person.max()) + 1 if len(person) else 0
+    found = {}
+    for name, values in data.items():
+        array = np.asarray(values)
+        if name in COLUMNS or not name.isidentifier():
+            raise ResultsError(f"trajectories: person_data {name!r}, expected a name of its own")
+        if array.ndim != 1 or len(array) < people or array.dtype.kind not in DATA_KINDS:
+            raise ResultsError(
+                f"trajectories: person_data {name!r} has {array.dtype} in shape {array.shape}, "
+                f"expected texts or numbers for each of {people} people"
+            )
+        found[name] = _read_only(array)
+    return found
 
 
 def _read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesa_mobility.crowd.pedestrian_type import PREFERRED_SPEED
+from mesa_mobility.crowd.free_speeds import ADULTS
 from mesa_mobility.distributions import Normal
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
@@ -28,7 +28,7 @@ DENSITIES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
 ASKED = (0.5, 1.125, 1.625, 2.125, 3.125)
 """Densities at which the speed must lie within the reference, persons/m2: bins of it."""
 WIDTH = 1.8
-RECORDED = replace(PREFERRED_SPEED, of=Normal(1.55, 0.18))
+RECORDED = replace(ADULTS, of=Normal(1.55, 0.18))
 """Free speeds in the recorded corridors, m/s (HERMES, 42 students: Liao et al.
 2014), in the range that the default preset has."""
 AS_RECORDED = "speeds as recorded"

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 
 from mesa_mobility.interrupts import deaf_children
 from mesa_mobility.processes import one_thread_each, spawned_pool
+from mesa_mobility.verification.drawings import first_run_drawn
 
 Figures: TypeAlias = dict[str, Any]
 Scenario: TypeAlias = Callable[..., Figures]
@@ -49,6 +50,8 @@ def run_cases(
     seeds: Sequence[int],
     jobs: int,
     progress: Callable[[str, float, float], None] | None = None,
+    *,
+    drawn: bool = False,
 ) -> Mapping[tuple[Case, int], Figures]:
     """Run every case for every seed.
 
@@ -59,13 +62,14 @@ def run_cases(
         seeds: one run each.
         jobs: processes.
         progress: called with the run just done, the effort so far, and the total effort.
+        drawn: whether figures have a ``drawing`` of the first run that they are from.
     """
     todo = [(each, seed) for each in dict.fromkeys(cases) for seed in seeds]
     todo.sort(key=lambda unit: -unit[0].effort)
     total = sum(each.effort for each, _ in todo)
     results: dict[tuple[Case, int], Figures] = {}
     done = 0.0
-    for each, seed, figures in run_units(todo, jobs):
+    for each, seed, figures in run_units(todo, jobs, drawn=drawn):
         results[each, seed] = figures
         done += each.effort
         if progress is not None:
@@ -73,7 +77,9 @@ def run_cases(
     return results
 
 
-def run_units(units: Iterable[tuple[Case, int]], jobs: int) -> Iterator[tuple[Case, int, Figures]]:
+def run_units(
+    units: Iterable[tuple[Case, int]], jobs: int, *, drawn: bool = False
+) -> Iterator[tuple[Case, int, Figures]]:
     """Run cases, each with its seed, and yield each result as soon as it is there.
 
     Units are begun in their order; one is taken when a process is free for it.
@@ -82,20 +88,24 @@ def run_units(units: Iterable[tuple[Case, int]], jobs: int) -> Iterator[tuple[Ca
     with one_thread_each(), _pool(jobs) as pool:
         # Processes are started when a unit is submitted.
         with deaf_children():
-            waiting = {pool.submit(_run, *unit): unit for unit in islice(ahead, jobs)}
+            waiting = {pool.submit(_run, *unit, drawn): unit for unit in islice(ahead, jobs)}
         while waiting:
             done, _ = wait(waiting, return_when=FIRST_COMPLETED)
             for future in done:
                 unit = waiting.pop(future)
                 for following in islice(ahead, 1):
-                    waiting[pool.submit(_run, *following)] = following
+                    waiting[pool.submit(_run, *following, drawn)] = following
                 yield (*unit, future.result())
 
 
-def _run(each: Case, seed: int) -> Figures:
+def _run(each: Case, seed: int, drawn: bool) -> Figures:
     # A scenario that raises fails its own test, not the whole suite.
     try:
-        return each(seed)
+        if not drawn:
+            return each(seed)
+        with first_run_drawn() as drawings:
+            figures = each(seed)
+        return {**figures, "drawing": drawings[0]} if drawings else figures
     except Exception as error:
         return {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility import FloorPlan, MobilityMap, PedestrianModel, Trajectories
 from mesa_mobility.results import check_safety, crossings, flow
+from mesa_mobility.verification.drawings import collect
 
 FloatArray = NDArray[np.float64]
 
@@ -50,6 +51,7 @@ class Run:
 
     def figures(self) -> dict[str, Any]:
         """Figures of a run; overlaps and wall crossings are counted on its trajectories."""
+        collect(self.trajectories, self.walls)
         safety = check_safety(self.trajectories, self.walls, self.model.floor_plan.free)
         summary = self.model.summary()
         kept = (

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from mesa_mobility.verification.cases import Case, Figures, run_cases
 from mesa_mobility.verification.checks import Check, Verdict, exactly
+from mesa_mobility.verification.drawings import Drawing
 
 Judge = Callable[[Sequence[Figures]], Verdict]
 PooledJudge = Callable[[Sequence[Sequence[Figures]]], Verdict]
@@ -44,6 +45,7 @@ class Outcome:
         seeds: the seeds.
         per_seed: verdict and figures of each seed, or of all together.
         safety: overlaps and wall crossings, and the share of time in the fallback.
+        drawings: of the cases with the first seed, each with the case's name, if asked for.
     """
 
     verdict: str
@@ -53,6 +55,7 @@ class Outcome:
     seeds: list[int]
     per_seed: list[dict[str, Any]]
     safety: dict[str, Any]
+    drawings: list[tuple[str, Drawing]] = field(default_factory=list)
 
     @property
     def passed(self) -> bool:
@@ -67,6 +70,7 @@ def verify(
     *,
     caps: Sequence[str] = (),
     progress: Callable[[str, float, float], None] | None = None,
+    drawn: bool = False,
 ) -> dict[str, Outcome]:
     """Run tests and judge them; cases that several tests share are run once.
 
@@ -76,9 +80,10 @@ def verify(
         jobs: processes.
         caps: ids of tests whose reported figures are design caps of the standard.
         progress: called with the progress of the runs.
+        drawn: whether outcomes have drawings.
     """
     cases = [each for test in tests.values() for each in test.cases]
-    results = run_cases(cases, seeds, jobs, progress)
+    results = run_cases(cases, seeds, jobs, progress, drawn=drawn)
     outcomes = {}
     for name, test in tests.items():
         runs = [[results[each, seed] for each in test.cases] for seed in seeds]
@@ -124,6 +129,11 @@ def judged(
             for seed, verdict in verdicts
         ],
         safety=_safety(flat),
+        drawings=[
+            (str(each), figures["drawing"])
+            for each, figures in zip(test.cases, runs[0], strict=True)
+            if "drawing" in figures
+        ],
     )
 
 

@@ -67,7 +67,7 @@ def test_both_skeletons_walk_with_the_same_feet_on_the_floor(captures_dir, bank)
         recording = recording_named(captures_dir, name)
         clip = retarget(recording, pose_table([recording]).facing)
         assert 0.80 < np.median(clip.heights) < 0.95
-        # A walker has a foot on the floor always; not every contact is found (record 16).
+        # A walker has a foot on the floor always; not every contact is found (record 19).
         assert clip.contacts.any(axis=1).mean() > 0.7
 
 

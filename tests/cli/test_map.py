@@ -3,6 +3,7 @@ import os
 import shutil
 import signal
 
+import numpy as np
 import pytest
 
 from mesa_mobility.mobility import MobilityMap
@@ -93,18 +94,68 @@ def test_a_derived_type_says_what_it_is_derived_from(command, recordings, tmp_pa
     unknown = command("map", "build", recordings, "-o", path, "--derive", "giant")
     assert unknown.err == (
         "error: no derived type 'giant', expected one of child, older_adult, "
-        "frail_older_adult, cane, crutches, walking_frame\n"
+        "frail_older_adult, cane, crutches, walking_frame, wheelchair_manual, wheelchair_powered, "
+        "wheelchair_assisted\n"
     )
+
+
+def test_a_distribution_of_options_is_the_same_map_from_a_smaller_file(
+    command, recordings, map_file, tmp_path
+):
+    path, again = tmp_path / "small.npz", tmp_path / "again.npz"
+    options = ("--clusters", 12, "--options", "distribution")
+    for file in (path, again):
+        outcome = command("map", "build", recordings, "-o", file, *options)
+        assert outcome.status == 0, outcome.err
+    assert path.read_bytes() == again.read_bytes()
+    assert path.stat().st_size <= map_file.stat().st_size / 5
+    whole, read = MobilityMap.load(map_file), MobilityMap.load(path)
+    np.testing.assert_array_equal(read.paths, whole.paths)
+    np.testing.assert_array_equal(read.offsets, whole.offsets)
+    assert read.metadata["command"] == whole.metadata["command"] + " --options distribution"
+    figures = [
+        last_line(command("map", "coverage", file, recordings, "--json"))
+        for file in (map_file, path)
+    ]
+    assert {**figures[0], "file": ""} == {**figures[1], "file": ""}
+
+
+def test_a_type_can_be_given_a_name(command, recordings, tmp_path):
+    path = tmp_path / "a.npz"
+    outcome = command("map", "build", recordings, "-o", path, "--name", "limping_left")
+    assert outcome.status == 0, outcome.err
+    made = MobilityMap.load(path)
+    assert made.pedestrian_type == "limping_left"
+    assert made.metadata["command"].endswith(
+        "-o limping_left.npz --type able_bodied --name limping_left"
+    )
+
+
+def test_wheelchairs_need_no_recordings(command, recordings, tmp_path):
+    path = tmp_path / "wheelchair.npz"
+    outcome = command("map", "build", "--derive", "wheelchair_manual", "-o", path, "--json")
+    assert outcome.status == 0, outcome.err
+    assert last_line(outcome)["preferred_speed_m_s"]["mean"] == 0.69
+    assert MobilityMap.load(path).metadata["command"] == (
+        "mesa-mobility map build --derive wheelchair_manual -o wheelchair_manual.npz"
+    )
+    superfluous = ("map", "build", recordings, "--derive", "wheelchair_manual", "-o", path)
+    for arguments in (superfluous, ("map", "build", "-o", path)):
+        outcome = command(*arguments)
+        assert outcome.status == 2
+        assert len(outcome.err.splitlines()) == 1
 
 
 def test_what_people_of_a_map_can_do_is_said(command, recordings, map_file):
     outcome = command("map", "info", map_file, "--json")
     answer = last_line(outcome)
     # The figure only walks straight on.
-    assert answer["standing"] == "turning on the spot borrowed from the map 'able_bodied'"
+    assert answer["standing"] == (
+        "turning on the spot and steps aside and back borrowed from the map 'able_bodied'"
+    )
     assert answer["standing"] in outcome.err
     assert min(answer["abilities"]["turn_on_the_spot_deg"]) >= 30
-    assert "warning: nobody steps to the left" in outcome.err
+    assert answer["abilities"]["warnings"] == []
     # It walks at 1 and 1.3 m/s, and starts and stops.
     assert 0.9 < answer["walking_speed_m_s"]["p75"] < 1.35
 

@@ -3,7 +3,7 @@ import pytest
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins import registry
 
-SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium"}
+SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium", "mixed_evacuation"}
 SHIPPED_BEHAVIORS = {
     "target_distance", "facing_deviation", "displacement", "interference", "preferred_speed",
     "preferred_velocity", "headway", "right_of_way", "stepping", "anticipation", "room_ahead",

@@ -124,6 +124,17 @@ def test_a_seed_is_drawn_and_printed(command):
             "error: model corridor: lane: got 'wide', expected apart or",
         ),
         (["corridor", "--map", "none.npz"], "error: none.npz: no such map"),
+        (["corridor", "--population", "mixed"], "error: model corridor: unknown parameter 'popu"),
+        (["straight_walk", "--population", "giraffe"], "error: no map named 'giraffe' ships with"),
+        (
+            ["straight_walk", "--population", "able_bodied: 0.6, able: 0.3"],
+            "error: population: the shares add up to 0.9, expected 1",
+        ),
+        (["straight_walk", "--set", "population=a: x"], "error: population 'a: x': got 'a: x', "),
+        (
+            ["straight_walk", "--population", "able_bodied", "--set", "population=able_bodied"],
+            "error: --set population=able_bodied: population is set twice",
+        ),
         (["corridor", "--seconds", "0"], "error: --seconds 0: expected a positive number"),
         (["corridor", "--seconds", "nan"], "error: --seconds nan: expected a positive number"),
     ],

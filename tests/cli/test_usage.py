@@ -79,13 +79,15 @@ def test_pictures_need_no_backend_and_the_summary_tells_where_all_comes_from(tmp
     digest = hashlib.sha256(shipped_map_path("able_bodied").read_bytes()).hexdigest()
     expected = {
         "parameters": {
-            "pedestrians": 3, "slowest": 0.9, "fastest": 1.5, "length": 40.0, "frames_per_step": 3
+            "pedestrians": 3, "slowest": 0.9, "fastest": 1.5, "length": 40.0, "frames_per_step": 3,
+            "population": None,
         },
-        "map": "able_bodied.npz",
-        "map_sha256": digest,
+        "maps": {"able_bodied": {"file": "able_bodied.npz", "sha256": digest}},
         "mesa_mobility": importlib.metadata.version("mesa-mobility"),
     }  # fmt: skip
     assert {key: summary[key] for key in expected} == expected
+    assert summary["versions"]["numpy"] == importlib.metadata.version("numpy")
+    assert [(each["type"], each["people"]) for each in summary["by_type"]] == [("able_bodied", 3)]
 
 
 @pytest.mark.usefixtures("plugins")

@@ -1,4 +1,5 @@
 import json
+import re
 
 import pytest
 
@@ -57,3 +58,37 @@ def test_a_test_that_fails_ends_with_status_1(command, monkeypatch):
     assert answer["rimea-01"]["passed"] is False
     assert answer["rimea-01"]["failed"] == ["never: 1, wanted at most 0 (seed 1)"]
     assert "rimea-01: never: 1, wanted at most 0 (seed 1)" in outcome.err
+
+
+def text_of(page):
+    """A page's text, after a look whether it needs another file."""
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r"(?:src|href)=\"(?!data:)", text)
+    return text
+
+
+def test_the_report_of_a_test_has_all_that_authorities_ask_for(command, tmp_path):
+    page = tmp_path / "report.html"
+    outcome = command("verify", "rimea-01", "--jobs", 1, "--report", page, "--json")
+    assert outcome.status == 0
+    assert f"written to {page}" in outcome.err
+    measured = json.loads(outcome.out.splitlines()[-1])["rimea-01"]["measured"]
+    text = text_of(page)
+    assert "<h2>rimea-01: one person walks along a corridor at its own speed</h2>" in text
+    assert "<td>source</td><td>RiMEA 3.0/4.1.1 test 1 [JPS15,WBJ,VAD]</td>" in text
+    assert "travel time over 40 m in [26, 34] s" in text
+    assert f"travel time s {measured['travel time s']:.4g}" in text
+    assert '<td>verdict</td><td><span class="pass">pass</span></td>' in text
+    assert text.count("data:image/png;base64,") == 1
+    assert ": 1 people" in text
+    assert re.search(r"<td>mesa-mobility</td><td>\d", text)
+    assert re.search(r"<td>map able_bodied</td><td>sha256 [0-9a-f]{64}", text)
+
+
+def test_a_report_that_cannot_be_written_is_found_out_before_the_runs(command, tmp_path):
+    (tmp_path / "file").touch()
+    for name in ("verify", "validate"):
+        outcome = command(name, "--report", tmp_path / "file" / "report.html")
+        assert outcome.status == 2
+        assert outcome.err.startswith("error: ")
+        assert len(outcome.err.splitlines()) == 1

@@ -54,6 +54,9 @@ def plays_and_slides(tab):
     assert tab.page.get_by_label("pedestrians", exact=True).input_value() == "41"
     slider.press("ArrowLeft")
     inside(tab, 40)
+    # JSON has no NaN: the page reports a message that it cannot read.
+    tab.set("pedestrians", "nan")
+    tab.page.locator(".v-messages").filter(has_text="nan").first.wait_for()
 
 
 @pytest.mark.slow

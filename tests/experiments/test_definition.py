@@ -19,8 +19,9 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "experiments" / "doorway.toml
 NUMBERS = st.floats(0.001, 1e6)
 NAMES = st.text("abcdefgh_", min_size=1, max_size=6)
 PRECISIONS = st.builds(
-    Precision, st.lists(st.sampled_from(["mean egress_s", "p95 y", "p5 y"]), max_size=3),
-    st.floats(0.001, 0.5), st.floats(0.5, 0.999), st.integers(2, 30), st.integers(30, 99),
+    Precision, st.lists(st.sampled_from(["mean egress_s", "p95 y", "p5 y"]), min_size=1,
+                        max_size=3),
+    st.floats(0.001, 0.5), st.floats(0.5, 0.999), st.integers(2, 30), st.integers(200, 999),
     st.none() | st.builds(OccupancyConvergence, st.floats(0.001, 0.5), st.integers(1, 20)),
 )  # fmt: skip
 EXPERIMENTS = st.builds(
@@ -67,6 +68,28 @@ def test_a_model_file_is_looked_for_beside_the_experiment(tmp_path):
         ('model = "m"\n[sobol]\nponts = 3', "sobol: got an unexpected keyword argument 'ponts'"),
         ('model = "m"\n[precision]\noccupancy = 3', "occupancy is 3, expected a table or false"),
         ('model = "m"\nreplications = "many"', "replications is 'many', expected a whole number"),
+        ('model = "m"\nseed = 1' + "0" * 5000, "is not TOML"),
+        ('model = "m"\n[grid]\nx = ' + "[" * 5000 + "]" * 5000, "is not TOML"),
+        ('model = "m"\n[grid]\nx = {a = 1, b = 2}', "parameter x: got dict, expected a number"),
+        ('model = "m"\n[grid]\nx = [99999999999999999999]', "expected a number of at most 64"),
+        ('model = "m"\n[grid]\nx = [1979-05-27]', "parameter x: got date, expected a number"),
+        ('model = "m"\ntable = [1, 2]', "table: point 1 is 1, expected values by parameter"),
+        ('model = "m"\n[sobol]\nbetween = 3\npoints = 4', "sobol: has no parameters"),
+        ('model = "m"\n[sobol]\nbetween.x = [0, 1]\npoints = 4\nseed = -1', "sobol: seed is -1"),
+        ('model = "m"\n[morris]\nbetween.x = [0, 1]\nlevels = true', "levels is True"),
+        (
+            'model = "m"\n[sobol_indices]\nbetween.x = [0, 1]\nsamples = 1099511627776',
+            "expected 1 to 10,000,000",
+        ),
+        ('model = "m"\nreplications = 100000000', "expected at most 10,000,000 runs"),
+        ('model = "m"\nkeep = "occupancy"', "keep is 'occupancy', expected a list"),
+        ('model = "m"\nname = 3', "name is 3, expected text"),
+        ('model = "m"\ntime_limit = 1e10', "time_limit is 10000000000.0, expected seconds"),
+        ('model = "m"\n[precision]\nfigures = "mean y"', "figures is 'mean y', expected a list"),
+        ('model = "m"\n[precision]\nfigures = ["p0 y"]', "figure 'p0 y': expected one such as"),
+        ('model = "m"\n[precision]\nfigures = []\noccupancy = false', "figures: got none"),
+        ('model = "m"\n[precision]\nmost = 71', "interval of p95 at 0.95 takes 72 runs"),
+        ('model = "m"\n[precision]\nmost = 5', "most is 5, expected a whole number, 20 (least)"),
     ],
 )
 def test_files_that_are_no_experiment(text, message, tmp_path):

@@ -73,7 +73,7 @@ def test_sizes_of_the_designs_for_sensitivity():
     [
         (lambda: Grid({"a": []}), "grid: a has no values, expected one or more"),
         (lambda: Grid({"a": [1, 1.0]}), "grid: a has a value twice"),
-        (lambda: Table([]), "table: has no points"),
+        (lambda: Table([]), "table: got 0 points, expected 1"),
         (lambda: Table([{"a": 1}, {"b": 1}]), "table: point 2 has b, expected a as the first"),
         (lambda: Table([{"a": 1}, {"a": 1}]), "table: has a point twice"),
         (lambda: LatinHypercube({}, 4), "latin_hypercube: has no parameters"),

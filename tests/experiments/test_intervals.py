@@ -96,7 +96,7 @@ def test_a_point_is_known_once_all_that_is_asked_for_is():
 
 
 def test_replications_grow_by_a_quarter_to_the_most():
-    precision = Precision(least=20, most=40)
+    precision = Precision(("mean egress_s",), least=20, most=40)
     counts = [0]
     while counts[-1] < 40:
         counts.append(precision.next_count(counts[-1]))
@@ -111,8 +111,8 @@ def test_replications_grow_by_a_quarter_to_the_most():
         ({"figures": ["p100 egress_s"]}, "expected one such as"),
         ({"tolerance": 0}, "tolerance is 0"),
         ({"confidence": 95}, "confidence is 95, expected a number between 0 and 1"),
-        ({"least": 1}, "replications from 1 to 1000"),
-        ({"least": 10, "most": 5}, "replications from 10 to 5"),
+        ({"least": 1}, "least is 1, expected a whole number, 2 or more"),
+        ({"least": 10, "most": 5}, r"most is 5, expected a whole number, 10 \(least\) or more"),
     ],
 )
 def test_precisions_that_are_none(keywords, message):

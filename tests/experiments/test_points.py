@@ -1,6 +1,7 @@
 """Keys and seeds: what they depend on, and what they do not."""
 
 import hashlib
+import time
 
 import numpy as np
 import pytest
@@ -8,6 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mesa_mobility.errors import ModelError
+from mesa_mobility.experiments import Experiment
+from mesa_mobility.experiments.driver import _Driver
 from mesa_mobility.experiments.points import plain_value, point_key, run_name, seed_of_run
 
 NUMBERS = st.integers() | st.floats(allow_nan=False, allow_infinity=False)
@@ -66,3 +69,41 @@ def test_values_that_cannot_be_kept(value):
 def test_numpys_numbers_are_plain_ones():
     assert type(plain_value("n", np.int64(3))) is int
     assert type(plain_value("n", np.float32(0.5))) is float
+
+
+class Names:
+    """What stands for a store: the names of the runs that are there."""
+
+    def __init__(self, names):
+        self.names = np.unique(np.array(names, dtype="S40"))
+
+    def run_names(self):
+        return self.names
+
+
+def missing(experiment, names):
+    driver = _Driver(experiment, Names(names), None, lambda now: None)
+    count, runs = driver.missing(there=True)
+    found = [run_name(point_key(point), number) for point, number in runs]
+    assert len(found) == count
+    return found
+
+
+def test_what_is_missing_is_what_is_not_there():
+    experiment = Experiment("m", {"x": [1.0, 2.0, 3.0]}, replications=4)
+    keys = [point_key(experiment.point(k)) for k in range(3)]
+    every = [run_name(key, number) for key in keys for number in range(4)]
+    assert missing(experiment, []) == every
+    assert missing(experiment, every) == []
+    there = [every[k] for k in (0, 3, 5, 11)] + [run_name(keys[0], 4), "another-0"]
+    assert missing(experiment, there) == [name for name in every if name not in there]
+
+
+def test_what_is_missing_from_a_large_store_is_found_in_seconds():
+    experiment = Experiment("m", {"x": [float(k) for k in range(2000)]}, replications=100)
+    keys = [point_key(experiment.point(k)) for k in range(2000)]
+    began = time.process_time()
+    there = [run_name(key, number) for key in keys for number in range(99)]
+    assert len(missing(experiment, there)) == 2000
+    # Sorting 198,000 names for each of the points took minutes.
+    assert time.process_time() - began < 20.0

@@ -1,5 +1,6 @@
 """Runs of an experiment: the same rows whatever runs them, and whatever goes wrong."""
 
+import json
 import os
 import signal
 import subprocess
@@ -172,32 +173,42 @@ def test_a_run_that_kills_its_workers_is_a_row(tmp_path):
 
 
 DRIVER = """
+import json
 import sys
 from mesa_mobility.experiments import Experiment, run_experiment
 if __name__ == "__main__":
     experiment = Experiment(
         "tests.fixtures.experiment_models:Quick", {"x": [0.0, 1.5, 3.0]}, seed=5,
-        replications=10, fixed={"end": "slow"},
+        replications=10, fixed=json.loads(sys.argv[3]),
     )
     run_experiment(experiment, sys.argv[1], executor=sys.argv[2], workers=2)
 """
 
 
-def driver(tmp_path, store, executor, **keywords):
+SLOW = {"end": "slow"}
+
+
+def driver(tmp_path, store, executor, fixed=SLOW, **keywords):
     script = tmp_path / "driver.py"
     script.write_text(DRIVER)
     return subprocess.Popen(
-        [sys.executable, str(script), str(store), executor],
+        [sys.executable, str(script), str(store), executor, json.dumps(fixed)],
         env=os.environ | {"PYTHONPATH": str(ROOT)}, stderr=subprocess.PIPE, text=True, **keywords,
     )  # fmt: skip
 
 
-def wait_for_rows(store, count):
+def wait_until(condition):
     for _ in range(1200):
-        if list(store.glob("runs/*.parquet")) and open_store(store).status()["done"] >= count:
+        if condition():
             return
         time.sleep(0.05)
-    raise AssertionError("no rows")
+    raise AssertionError("not in time")
+
+
+def wait_for_rows(store, count):
+    wait_until(
+        lambda: list(store.glob("runs/*.parquet")) and open_store(store).status()["done"] >= count
+    )
 
 
 @pytest.fixture(scope="module")
@@ -223,15 +234,45 @@ def test_a_driver_that_is_killed(slow_rows, rows, tmp_path):
     assert list(Path(store.folder.path("work")).glob("*")) == []
 
 
-def test_a_second_driver_is_refused(slow_rows, rows, tmp_path):
-    path = tmp_path / "s"
-    first = driver(tmp_path, path, "processes")
-    wait_for_rows(path, 1)
-    assert open_store(path).status()["running"]
-    with pytest.raises(ResultsError, match="another process is running this experiment"):
-        run_experiment(quick(10, fixed={"end": "slow"}), path, executor="serial")
+def test_a_second_driver_is_refused(rows, tmp_path):
+    path, mark = tmp_path / "s", tmp_path / "mark"
+    # The first one goes on until it is let go, however slow the machine is.
+    fixed = {"end": "wait", "mark": str(mark)}
+    experiment = quick(10, fixed=fixed)
+    first = driver(tmp_path, path, "processes", fixed)
+    try:
+        wait_until((path / "experiment.json").exists)
+        assert open_store(path).status()["running"]
+        with pytest.raises(ResultsError, match="another process is running this experiment"):
+            run_experiment(experiment, path, executor="serial")
+    finally:
+        mark.touch()
     assert first.wait(timeout=120) == 0, first.stderr.read()
-    assert rows(open_store(path)) == rows(slow_rows)
+    assert not open_store(path).status()["running"]
+    alone = run_experiment(experiment, tmp_path / "t", executor="serial")
+    assert rows(open_store(path)) == rows(alone)
+
+
+def test_those_who_only_look_are_in_nobodys_way(tmp_path):
+    path, stop, seen = tmp_path / "s", threading.Event(), []
+    run_experiment(quick(1), path, executor="serial")
+    store = open_store(path)
+
+    def look():
+        while not stop.wait(0.001):
+            seen.append(store.is_locked())
+
+    lookers = [threading.Thread(target=look) for _ in range(2)]
+    for each in lookers:
+        each.start()
+    time.sleep(0.5)
+    assert not any(seen)
+    for replications in range(2, 6):
+        run_experiment(quick(replications), path, executor="serial")
+    stop.set()
+    for each in lookers:
+        each.join()
+    assert store.status()["done"] == 15
 
 
 def test_two_drivers_at_once_where_there_are_no_locks(slow_rows, rows, tmp_path, monkeypatch):
@@ -291,6 +332,38 @@ def test_memory_as_an_fsspec_url(serial, rows):
         fsspec.filesystem("memory").rm("/experiment", recursive=True)
 
 
+def test_workers_that_come_later_are_counted(monkeypatch):
+    distributed = pytest.importorskip("distributed", reason="needs the extra cluster")
+    from mesa_mobility.experiments.workers import dask_workers
+
+    monkeypatch.setattr(dask_workers, "_COUNT_AGAIN", 0.0)
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster, distributed.Client(cluster) as client:  # fmt: skip
+        workers = dask_workers.DaskWorkers(client)
+        assert workers.count == 1
+        cluster.scale(3)
+        client.wait_for_workers(3)
+        assert workers.ended(0.01) == []
+        assert workers.count == 3
+
+
+@pytest.mark.parametrize(("workers", "seconds"), [(2, 5.0), (200, 5.0), (1000, 25.0)])
+def test_many_workers_get_longer_batches(workers, seconds, tmp_path):
+    from types import SimpleNamespace
+
+    from mesa_mobility.experiments import Store
+    from mesa_mobility.experiments.driver import _Driver
+    from mesa_mobility.experiments.workers.batches import Finished
+
+    crew = SimpleNamespace(count=workers, address="")
+    driver = _Driver(quick(1_000_000), Store(tmp_path / "s"), crew, lambda now: None)
+    driver.progress.total = 3_000_000
+    driver._note(Finished({"done": 10}, 1.0))
+    batch = driver._batch(({"x": 0.0}, number) for number in range(1000))
+    assert len(batch.runs) == pytest.approx(seconds / 0.1)
+
+
 def test_models_of_a_function_are_refused_with_processes(tmp_path):
     class Local(Quick):
         pass
@@ -308,7 +381,7 @@ def test_a_script_without_a_guard_is_told_so(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
     done = subprocess.run(
-        [sys.executable, str(script), str(tmp_path / "s"), "processes"],
+        [sys.executable, str(script), str(tmp_path / "s"), "processes", json.dumps(SLOW)],
         env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert done.returncode == 1

@@ -55,23 +55,54 @@ def test_each_cluster_keeps_its_own_options_and_gets_ways_to_stop(walking):
         assert (joined.path_clusters[added][np.arange(len(last)), last] == 0).all()
 
 
-def test_standers_who_never_turn_borrow_turns_alone():
+def ends_of(options, rows):
+    return options.paths[rows, options.durations[rows] // 3 - 1]
+
+
+def steps_aside_or_back(ends):
+    return (ends[:, 0] <= np.abs(ends[:, 1])) & (np.abs(ends[:, 2]) <= np.deg2rad(30.1))
+
+
+def test_standers_who_never_turn_nor_step_borrow_that_alone():
     # A step has no turn at all here.
     poses = random_poses(np.random.default_rng(4))
     poses = dataclasses.replace(poses, step=poses.step * [1.0, 1.0, 0.0])
     graph = motion_graph(poses)
     clusters = cluster_poses(graph, 6)
     options = reachable_options(graph, clusters)
-    assert missing(options, clusters) == ("turning on the spot",)
+    assert missing(options, clusters) == ("turning on the spot", "steps aside and back")
     joined, same = borrow(options, clusters, shipped_map())
     assert same is clusters
     np.testing.assert_array_equal(np.diff(joined.offsets)[1:], np.diff(options.offsets)[1:])
-    added = slice(options.offsets[1], joined.offsets[1])
-    ends = joined.paths[added][
-        np.arange(added.stop - added.start), joined.durations[added] // 3 - 1
-    ]
-    assert len(ends) > 0
-    assert (np.abs(ends[:, 2]) >= np.deg2rad(29.9)).all()
+    ends = ends_of(joined, np.arange(options.offsets[1], joined.offsets[1]))
+    turns = np.abs(ends[:, 2]) >= np.deg2rad(29.9)
+    steps = steps_aside_or_back(ends)
+    assert turns.any()
+    assert steps.any()
+    assert (turns | steps).all()
+    assert missing(joined, clusters) == ()
+
+
+def test_standers_who_turn_and_never_step_aside_borrow_steps_alone():
+    poses = random_poses(np.random.default_rng(4))
+    graph = motion_graph(poses)
+    clusters = cluster_poses(graph, 6)
+    options = reachable_options(graph, clusters)
+    # Two of the standers' options turn where they are instead.
+    ends = options.paths.copy()
+    for row, turn in ((0, 0.8), (1, -0.8)):
+        samples = options.durations[row] // 3
+        ends[row] = 0.0
+        ends[row, :samples, 2] = turn * np.arange(1, samples + 1) / samples
+    options = dataclasses.replace(options, paths=ends)
+    assert missing(options, clusters) == ("steps aside and back",)
+    joined, _ = borrow(options, clusters, shipped_map())
+    added = ends_of(joined, np.arange(options.offsets[1], joined.offsets[1]))
+    assert steps_aside_or_back(added).all()
+    # To the left, to the right and back by 15 cm at least.
+    assert added[:, 1].max() >= 0.15
+    assert added[:, 1].min() <= -0.15
+    assert added[:, 0].min() <= -0.15
     assert missing(joined, clusters) == ()
 
 

@@ -76,8 +76,10 @@ def test_a_walk_on_a_circle_turns_by_its_rate():
     )
     poses = pose_table([record])
     inner = slice(40, -41)
-    np.testing.assert_allclose(poses.step[inner, 2], rate / 30, atol=1e-6)
-    np.testing.assert_allclose(np.hypot(*poses.step[inner, :2].T), 2 * radius * np.sin(rate / 60))
+    # Motion is rounded to 0.02 mm and 0.02 mrad.
+    np.testing.assert_allclose(poses.step[inner, 2], rate / 30, atol=1.1e-5)
+    length = np.hypot(*poses.step[inner, :2].T)
+    np.testing.assert_allclose(length, 2 * radius * np.sin(rate / 60), atol=1.5e-5)
     np.testing.assert_allclose(poses.turn_rate[inner], rate, atol=1e-5)
 
 

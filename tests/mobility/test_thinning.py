@@ -64,6 +64,15 @@ def test_options_of_all_edits_repeat():
     graph = motion_graph(random_poses(np.random.default_rng(8), clips=3))
     clusters = cluster_poses(graph, 4)
     one, two = (reachable_options(graph, clusters, EDITS) for _ in range(2))
-    columns = ("offsets", "durations", "costs", "paths", "path_clusters", "chains", "edits")
+    columns = (
+        "offsets",
+        "durations",
+        "costs",
+        "paths",
+        "path_clusters",
+        "sources",
+        "jumps",
+        "edits",
+    )
     for name in columns:
         np.testing.assert_array_equal(getattr(one, name), getattr(two, name))

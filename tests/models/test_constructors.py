@@ -4,7 +4,7 @@ import inspect
 
 import numpy as np
 import pytest
-from mesa_mobility.models import Auditorium, Doorway, OpenSpace, StraightWalk
+from mesa_mobility.models import Auditorium, Doorway, MixedEvacuation, OpenSpace, StraightWalk
 
 from mesa_mobility import FloorPlan, PedestrianModel
 from mesa_mobility.errors import FloorPlanError, MapError, MobilityError, ModelError
@@ -17,6 +17,7 @@ MODELS = {
     "open_space": OpenSpace,
     "doorway": Doorway,
     "auditorium": Auditorium,
+    "mixed_evacuation": MixedEvacuation,
 }
 
 models = pytest.mark.parametrize("model", MODELS.values())
@@ -86,7 +87,7 @@ def test_the_map_may_be_a_file(model, tmp_path):
     assert made.capabilities[0].map.n_options == 8
 
 
-@models
+@pytest.mark.parametrize("model", [each for each in MODELS.values() if each is not MixedEvacuation])
 def test_the_map_that_ships_is_the_default(model):
     made = model(pedestrians=1, rng=1)
     assert made.pedestrian_types[0].name == "able_bodied"
@@ -110,6 +111,10 @@ BAD = [
     (Doorway, {"door_width": 9.0}, "door_width"),
     (Doorway, {"door_width": float("nan")}, "door_width"),
     (Auditorium, {"pedestrians": 5000}, "pedestrians: got 5000"),
+    (Auditorium, {"exit_door": 0.3}, "exit_door: got 0.3"),
+    (MixedEvacuation, {"ramp_factor": 0.0}, "ramp_factor: got 0"),
+    (MixedEvacuation, {"ramp_factor": 1.5}, "ramp_factor: got 1.5"),
+    (MixedEvacuation, {"ramp_factor": float("nan")}, "ramp_factor: got nan"),
 ]
 
 

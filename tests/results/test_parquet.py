@@ -60,6 +60,7 @@ def test_other_programs_find_columns_units_and_compression(two_leave_one_stays, 
         "last_frame": 4,
         "core_radius": [0.15, 0.15, 0.15],
         "inside_at_end": [1],
+        "person_data": [],
     }
     assert {file.metadata.row_group(0).column(k).compression for k in range(5)} == {"ZSTD"}
 
@@ -177,7 +178,7 @@ def write(table, path, metadata):
     ("columns", "metadata", "message"),
     [
         ({"y": None}, GOOD, "no column y"),
-        ({}, None, "no sha256 in mesa_mobility metadata, expected trajectories of this format"),
+        ({}, None, "no sha256 in mesa_mobility metadata, expected a file of mesa-mobility"),
         ({}, {"format_version": 1}, "no sha256 in mesa_mobility metadata"),
         ({}, GOOD | {"format_version": 1}, "format version 1, expected 2"),
         ({}, {"format_version": 2, "sha256": UNSEALED}, "damaged trajectories: 'frame_rate'"),

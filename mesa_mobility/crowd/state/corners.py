@@ -1,4 +1,4 @@
-"""Consecutive numbers for the corners of several routers.
+"""Numbers for the corners of several routers.
 
 Bodies of each core radius have routes of their own, which bend at different places around the same
 corner of a wall.
@@ -23,30 +23,36 @@ _A_LITTLE = 0.01
 class Corners:
     """Numbers of the nodes of several routers, up to date with their floor plan.
 
+    Node k of router r has number k * routers + r, whichever of the routers there are.
+
     Args:
-        routers: the routers, of one plan, each with its own clearance.
+        routers: the routers, of one plan, each with its own clearance; None for those that have
+            not been needed yet.
     """
 
-    def __init__(self, routers: Sequence[Router]) -> None:
+    def __init__(self, routers: Sequence[Router | None]) -> None:
         self._routers = routers
         self._graphs: list[object] = []
-        self._bounds = np.zeros(len(routers) + 1, dtype=np.int64)
+        self._count = 0
         self._shared: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 
     @property
     def count(self) -> int:
-        """Number of nodes of all routers."""
-        return int(self._now()[-1])
+        """Upper bound of the numbers."""
+        self._update()
+        return self._count
 
-    @property
-    def firsts(self) -> NDArray[np.int64]:
-        """(routers,) number of each router's first node."""
-        return self._now()[:-1]
+    def numbers(self, nodes: NDArray[np.int64], router: int) -> NDArray[np.int64]:
+        """Numbers of these nodes of a router; -1 for none."""
+        return np.where(nodes >= 0, nodes * len(self._routers) + router, -1)
+
+    def nodes(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The nodes with these numbers, as their own routers count them; -1 for none."""
+        return np.where(numbers >= 0, numbers // len(self._routers), -1)
 
     def router_of(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-        """(n,) index of the router to which each node belongs, -1 for numbers below 0."""
-        found: NDArray[np.int64] = np.searchsorted(self._now(), numbers, side="right") - 1
-        return found
+        """Index of the router to which each node belongs, -1 for numbers below 0."""
+        return np.where(numbers >= 0, numbers % len(self._routers), -1)
 
     def of_one_router(self, corners: NDArray[np.int64]) -> bool:
         """Whether both of each of (n, 2) corners belong to the same router."""
@@ -59,47 +65,48 @@ class Corners:
         """(n, 2) the same corners, with one number for all routers' corners around one edge."""
         if len(self._routers) == 1:
             return corners
-        self._now()
+        self._update()
         return np.where(corners >= 0, self._shared[corners], -1)
 
-    def _now(self) -> NDArray[np.int64]:
-        graphs = [router.graph for router in self._routers]
-        if not self._graphs or any(
-            new is not old for new, old in zip(graphs, self._graphs, strict=True)
-        ):
-            self._graphs = list(graphs)
-            self._bounds = np.cumsum([0, *(graph.number_of_nodes() for graph in graphs)])
-            if len(graphs) > 1:
-                self._shared = self._share([_places(router) for router in self._routers])
-        return self._bounds
+    def _update(self) -> None:
+        graphs = [None if router is None else router.graph for router in self._routers]
+        if self._graphs and all(new is old for new, old in zip(graphs, self._graphs, strict=True)):
+            return
+        self._graphs = list(graphs)
+        most = max((len(graph) for graph in graphs if graph is not None), default=0)
+        self._count = most * len(graphs)
+        if len(graphs) > 1:
+            self._shared = self._share()
 
-    def _share(self, places: list[NDArray[np.float64]]) -> NDArray[np.int64]:
-        """For each node, the first router's corner around the same edge, or the node itself.
-
-        Args:
-            places: for each router, (k, 2) positions of its nodes, metres; inf where they are no
-                corners.
-        """
-        shared = np.arange(self._bounds[-1])
-        first = np.flatnonzero(np.isfinite(places[0][:, 0]))
-        if len(first) == 0:
-            return shared
-        tree = cKDTree(places[0][first])
-        for number in range(1, len(places)):
-            corners = np.flatnonzero(np.isfinite(places[number][:, 0]))
-            gap = abs(self._routers[number].clearance - self._routers[0].clearance)
-            away, nearest = tree.query(places[number][corners])
+    def _share(self) -> NDArray[np.int64]:
+        """For each node, the first router's corner around the same edge, or the node itself."""
+        shared = np.arange(self._count)
+        first, *others = [each for each in enumerate(self._routers) if each[1] is not None]
+        tree, known = None, np.empty(0, dtype=np.int64)
+        for number, router in (first, *others):
+            assert router is not None
+            assert first[1] is not None
+            nodes, places = _corners(router)
+            if tree is None:
+                if len(nodes) == 0:
+                    break
+                tree, known = cKDTree(places), self.numbers(nodes, number)
+                continue
+            gap = abs(router.clearance - first[1].clearance)
+            away, nearest = tree.query(places)
             near = away <= _APART * gap + _A_LITTLE
-            shared[self._bounds[number] + corners[near]] = first[nearest[near]]
+            shared[self.numbers(nodes[near], number)] = known[nearest[near]]
         return shared
 
 
-def _places(router: Router) -> NDArray[np.float64]:
-    nodes = router.graph.nodes(data=True)
-    return np.array(
-        [
-            node["position"] if node["kind"] == "corner" else (np.inf, np.inf)
-            for _, node in sorted(nodes)
-        ],
-        dtype=np.float64,
-    ).reshape(-1, 2)
+def _corners(router: Router) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """(k,) the nodes of a router that are corners, and their (k, 2) positions, metres."""
+    found = [
+        (number, node["position"])
+        for number, node in router.graph.nodes(data=True)
+        if node["kind"] == "corner"
+    ]
+    return (
+        np.array([number for number, _ in found], dtype=np.int64),
+        np.array([place for _, place in found], dtype=np.float64).reshape(-1, 2),
+    )

@@ -24,6 +24,10 @@ MARGIN = 1e-4
 """Metres added to every clearance, so that rounded results still keep it."""
 
 
+_SLIM = 0.05
+"""Clearance in metres of routes for a body so slim that only walls stop it."""
+
+
 class Surroundings(NamedTuple):
     """Walls and exits, with a grid of nearby walls.
 
@@ -60,8 +64,9 @@ def passing_of(core: float) -> float:
 class Environment:
     """Walls for the collision tests and routes for the targets of one floor plan.
 
-    Bodies of each core radius have routes of their own. The number of a destination stands for
-    both a set of exits, or a gate, and a core radius.
+    Bodies of each core radius have routes of their own, which are searched for when the first of
+    them has a destination. The number of a destination stands for both a set of exits, or a gate,
+    and a core radius.
 
     Args:
         plan: the floor plan; obstacles and doors may change while a model runs.
@@ -79,16 +84,15 @@ class Environment:
         self._radii = list(dict.fromkeys(core_radii))
         self._clearances = [clearance_of(radius) for radius in self._radii]
         self._body_of = [self._radii.index(core) for core in core_radii]
-        self._routers = [Router(plan, clearance=clearance) for clearance in self._clearances]
-        self._destinations: list[tuple[str, ...] | None] = []
+        self._routers: list[Router | None] = [None] * len(self._radii)
+        self._destinations: list[tuple[str, ...] | None] = [None]
         self._version = -1
         self.corners = Corners(self._routers)
-        self.destination(None)
 
     @property
     def bodies(self) -> int:
         """Number of distinct core radii."""
-        return len(self._routers)
+        return len(self._radii)
 
     def body(self, type_index: int) -> int:
         """Index of the core radius of a pedestrian type."""
@@ -101,21 +105,42 @@ class Environment:
             exits: their names.
             type_index: index of the pedestrian type that goes there.
         """
-        for router in self._routers:
-            number = router.destination(exits)
-        return self._numbered(number, exits, type_index)
+        body = self._body_of[type_index]
+        return self._numbered(self._router(body).destination(exits), exits, body)
 
     def crossing(self, gate: str, type_index: int = 0) -> int:
         """Number of the destination "across this gate"; routes to it lead through no exit."""
-        for router in self._routers:
-            number = router.crossing(gate)
-        return self._numbered(number, (gate,), type_index)
+        body = self._body_of[type_index]
+        return self._numbered(self._router(body).crossing(gate), (gate,), body)
 
-    def _numbered(self, number: int, names: tuple[str, ...] | None, type_index: int) -> int:
+    def _numbered(self, number: int, names: tuple[str, ...] | None, body: int) -> int:
         if number == len(self._destinations):
             self._destinations.append(names)
             self._version = -1
-        return number * self.bodies + self._body_of[type_index]
+            # All routers number destinations alike.
+            for router in self._routers:
+                if router is not None:
+                    self._tell(router, names)
+        return number * self.bodies + body
+
+    def _router(self, body: int) -> Router:
+        router = self._routers[body]
+        if router is None:
+            router = self._routers[body] = self._new_router(self.plan, self._clearances[body])
+        return router
+
+    def _new_router(self, plan: FloorPlan, clearance: float) -> Router:
+        """A router that knows all destinations by their numbers."""
+        router = Router(plan, clearance=clearance)
+        for names in self._destinations:
+            self._tell(router, names)
+        return router
+
+    def _tell(self, router: Router, names: tuple[str, ...] | None) -> None:
+        if names is not None and any(gate.name == names[0] for gate in self.plan.gates):
+            router.crossing(names[0])
+        else:
+            router.destination(names)
 
     def exits(self, destination: int) -> tuple[str, ...]:
         """Names of the exits of a destination, open or closed; none if it is a gate to cross."""
@@ -125,24 +150,22 @@ class Environment:
     def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int64]) -> Targets:
         """Targets of people at ``points`` (n, 2), metres.
 
-        Corners are numbered consecutively over the routers of all core radii.
+        Corners have the numbers of ``corners``.
         """
         if self.bodies == 1:
-            return self._routers[0].targets(points, destinations)
+            return self._router(0).targets(points, destinations)
         n = len(points)
         points_of, gates = np.empty((n, 2)), np.empty(n, dtype=np.int64)
         distances, corners = np.empty(n), np.empty((n, 2), dtype=np.int64)
         to, body = np.divmod(np.asarray(destinations, dtype=np.int64), self.bodies)
-        for router, first, number in zip(
-            self._routers, self.corners.firsts, range(self.bodies), strict=True
-        ):
+        for number in np.unique(body).tolist():
             own = np.flatnonzero(body == number)
-            theirs = router.targets(points[own], to[own])
+            theirs = self._router(number).targets(points[own], to[own])
             points_of[own], gates[own], distances[own] = (
                 theirs.points, theirs.gates, theirs.distances,
             )  # fmt: skip
             assert theirs.corners is not None
-            corners[own] = np.where(theirs.corners >= 0, theirs.corners + first, -1)
+            corners[own] = self.corners.numbers(theirs.corners, number)
         return Targets(points_of, gates, distances, corners)
 
     def abreast(
@@ -153,46 +176,52 @@ class Environment:
         They pass it within ``areas`` (n,), m2, divided by their distance; see ``Router.abreast``.
         """
         if self.bodies == 1 or targets.corners is None:
-            return self._routers[0].abreast(points, targets, areas)
+            return self._router(0).abreast(points, targets, areas)
         found = np.array(targets.points, dtype=np.float64)
         whose = self.corners.router_of(targets.corners[:, 0])
-        for number, (router, first) in enumerate(
-            zip(self._routers, self.corners.firsts, strict=True)
-        ):
+        nodes = self.corners.nodes(targets.corners)
+        for number in np.unique(whose[whose >= 0]).tolist():
             own = np.flatnonzero(whose == number)
             theirs = Targets(
-                targets.points[own],
-                targets.gates[own],
-                targets.distances[own],
-                targets.corners[own] - first,
+                targets.points[own], targets.gates[own], targets.distances[own], nodes[own]
             )
-            found[own] = router.abreast(points[own], theirs, areas[own])
+            found[own] = self._router(number).abreast(points[own], theirs, areas[own])
         return found
 
     def check_way_out(self, points: NDArray[np.float64], destination: int) -> None:
         """Raise FloorPlanError if some places would have no route even if everything were open."""
-        number, body = divmod(destination, self.bodies)
-        router = self._routers[body]
-        lost = points[_without_way(router, points, number)]
-        if len(lost) and not self._all_open():
-            router = self._router_when_open(body)
-            lost = lost[_without_way(router, lost, number)]
+        lost = points[self.without_way_out(points, destination)]
         if len(lost):
             raise FloorPlanError(
                 f"{len(lost)} of {len(points)} people have no way to {self._text(destination)}; "
                 f"the first stands at ({lost[0, 0]:.2f}, {lost[0, 1]:.2f})"
-                + self._too_narrow(router, destination)
+                + self._too_narrow(lost, destination)
             )
 
-    def _too_narrow(self, router: Router, destination: int) -> str:
-        """Text naming the openings of a destination that are too narrow, or an empty one."""
+    def without_way_out(self, points: NDArray[np.float64], destination: int) -> NDArray[np.bool_]:
+        """(n,) whether there would be no route from (n, 2) places even if everything were open."""
+        number, body = divmod(destination, self.bodies)
+        lost = _without_way(self._router(body), points, number)
+        if lost.any() and not self._all_open():
+            lost[lost] = _without_way(self._router_when_open(body), points[lost], number)
+        return lost
+
+    def _too_narrow(self, lost: NDArray[np.float64], destination: int) -> str:
+        """Text naming what is too narrow on the way of (n, 2) lost people, or an empty one."""
+        core, body = self._radii[destination % self.bodies], destination % self.bodies
+        router = self._router(body) if self._all_open() else self._router_when_open(body)
         passable = {name for _, name in router.graph.nodes(data="opening")}
         names = self._destinations[destination // self.bodies]
         wanted = names or tuple(exit_.name for exit_ in self.plan.exits)
         narrow = [name for name in wanted if name not in passable]
         if not narrow:
-            return ""
-        core = self._radii[destination % self.bodies]
+            slim = self._new_router(self.plan, _SLIM)
+            if _without_way(slim, lost, destination // self.bodies).any():
+                return ""
+            return (
+                f"; the ways there have gaps of less than {2.0 * passing_of(core):.2f} m, too "
+                f"narrow for bodies of {core:g} m radius"
+            )
         # The floor behind an exit ends in a wall, too, which may be nearer than the body's radius.
         return (
             f"; bodies of {core:g} m radius have no room between the walls beside or behind "
@@ -202,7 +231,7 @@ class Environment:
     def check_way_on(self, gate: str, destination: int) -> None:
         """Raise FloorPlanError if no route leads on from a gate even if everything were open."""
         number, body = divmod(destination, self.bodies)
-        router = self._routers[body] if self._all_open() else self._router_when_open(body)
+        router = self._router(body) if self._all_open() else self._router_when_open(body)
         if not np.isfinite(router.way_from(gate, number)):
             raise FloorPlanError(f"there is no way from {gate!r} to {self._text(destination)}")
 
@@ -215,14 +244,7 @@ class Environment:
         plan = FloorPlan(
             plan.walkable, exits=plan.exits, gates=plan.gates, obstacles=plan.obstacles.values()
         )
-        router = Router(plan, clearance=self._clearances[body])
-        gates = {gate.name for gate in plan.gates}
-        for names in self._destinations:
-            if names is not None and names[0] in gates:
-                router.crossing(names[0])
-            else:
-                router.destination(names)
-        return router
+        return self._new_router(plan, self._clearances[body])
 
     def _text(self, destination: int) -> str:
         names = self._destinations[destination // self.bodies]

@@ -97,6 +97,7 @@ class Journal:
         self.late = path.with_suffix(".late")
         self.rows: dict[str, Row] = {}
         self.begun: Counter[str] = Counter()
+        self._before = ""
         self._read()
 
     @classmethod
@@ -110,7 +111,10 @@ class Journal:
                 / f"mesa-mobility-{os.getuid() if os.name == 'posix' else 0}-work"
             )
         )
-        place.mkdir(parents=True, exist_ok=True)
+        try:
+            place.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ResultsError(f"{place}: cannot be made: {error.strerror or error}") from error
         return cls(place / f"{batch}.jsonl")
 
     def begin(self, run: str) -> None:
@@ -135,9 +139,11 @@ class Journal:
 
     def _read(self) -> None:
         try:
-            text = self.path.read_text(encoding="utf-8")
+            text = self.path.read_text(encoding="utf-8", errors="replace")
         except OSError:
             return
+        # A line that is not whole must not take the next one along.
+        self._before = "" if text.endswith("\n") or not text else "\n"
         for line in text.splitlines():
             try:
                 entry = json.loads(line)
@@ -151,7 +157,8 @@ class Journal:
     def _write(self, entry: dict[str, Any]) -> None:
         try:
             with self.path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(entry) + "\n")
+                file.write(self._before + json.dumps(entry) + "\n")
+            self._before = ""
         except OSError as error:
             raise ResultsError(
                 f"{self.path.parent}: cannot be written: {error.strerror or error}"

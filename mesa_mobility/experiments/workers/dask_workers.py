@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from typing import Any
 
 from mesa_mobility.errors import ModelError, ResultsError
@@ -15,6 +15,9 @@ from mesa_mobility.processes import THREADS, available_processors
 
 _PATIENCE = 30.0
 """Seconds for which a scheduler may be out of reach."""
+
+_COUNT_AGAIN = 10.0
+"""Seconds after which workers are counted again: they come and go."""
 
 
 class DaskWorkers(Futures):
@@ -28,13 +31,10 @@ class DaskWorkers(Futures):
         self._client = client
         self._gone_since: float | None = None
         local = _in_this_process(client)
-        workers = client.scheduler_info(n_workers=-1)["workers"]
         super().__init__(
-            self._task,
-            max(1, sum(each["nthreads"] for each in workers.values())),
-            own_processes=not local,
-            address=client.dashboard_link or "",
+            self._task, 1, own_processes=not local, address=client.dashboard_link or ""
         )
+        self._count()
 
     def _task(self, setup: Setup, batch: Batch) -> Any:
         try:
@@ -54,6 +54,8 @@ class DaskWorkers(Futures):
         found = super().ended(seconds)
         if self._client.status == "running":
             self._gone_since = None
+            if time.monotonic() - self._counted > _COUNT_AGAIN:
+                self._count()
             return found
         now = time.monotonic()
         self._gone_since = self._gone_since or now
@@ -73,6 +75,11 @@ class DaskWorkers(Futures):
         if isinstance(error, FutureCancelledError | CancelledError):
             return self._lost()
         return error
+
+    def _count(self) -> None:
+        self._counted = time.monotonic()
+        with suppress(OSError):  # a scheduler that has just died is found out elsewhere
+            self.count = max(1, sum(self._client.nthreads().values()))
 
     def _lost(self) -> ResultsError:
         address = getattr(self._client.scheduler, "address", "") or "of this client"

@@ -14,7 +14,7 @@ from typing import Any
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.experiment import model_class
 from mesa_mobility.experiments.points import Point, point_key, run_name, seed_of_run
-from mesa_mobility.experiments.rows import DONE, FAILED, STALLED, TIMED_OUT, Row
+from mesa_mobility.experiments.rows import DONE, FAILED, SERIES, STALLED, TIMED_OUT, Row
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 
 _LONGEST_ERROR = 500
@@ -132,7 +132,7 @@ def _advance(model: Any, setup: Setup, began: float) -> None:
             raise TimedOut(f"took longer than {setup.time_limit:g} s")
 
     check()
-    if hasattr(model, "stall_reason"):
+    if _has_pedestrians(model):
         model.run(max_seconds=setup.max_seconds, progress=check)
         return
     if setup.max_seconds is not None:
@@ -140,6 +140,12 @@ def _advance(model: Any, setup: Setup, began: float) -> None:
     while model.running:
         model.step()
         check()
+
+
+def _has_pedestrians(model: Any) -> bool:
+    from mesa_mobility.crowd import PedestrianModel
+
+    return isinstance(model, PedestrianModel)
 
 
 def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
@@ -153,8 +159,8 @@ def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
     for name, value in summary.items():
         value = value.item() if hasattr(value, "item") and not hasattr(value, "__len__") else value
         if value is None or isinstance(value, bool | int | float | str):
-            row[f"summary_{name}" if name in taken else name] = value
-    if not hasattr(model, "population"):
+            row[f"summary_{name}" if name in taken or name in SERIES else name] = value
+    if not _has_pedestrians(model):
         return row
     row |= _by_type(model)
     if occupancy:

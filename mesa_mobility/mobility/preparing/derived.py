@@ -12,14 +12,13 @@ from mesa_mobility.capture import Recording, scale
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.map import CORE_RADIUS
 from mesa_mobility.mobility.poses import STANDING_SPEED, STANDING_TURN_RATE, pose_table
+from mesa_mobility.mobility.preparing.wheelchairs import BOYCE, WHEELCHAIRS
 
 STEADY = 75
 """Percentile of the speeds of moving poses that stands for a steady walk.
 
 Recordings are full of starts, turns and stops. Of able-bodied ones it is 1.34 m/s, Weidmann's mean.
 """
-
-BOYCE = "Boyce, Shields and Silcock 1999"
 
 
 @dataclass(frozen=True)
@@ -121,11 +120,12 @@ DERIVED_TYPES = {
 
 
 def derived_type(name: str) -> DerivedType:
-    """A derived type by name.
+    """A type that is derived from recordings, by name.
 
     Raises:
         MapError: there is none of that name.
     """
     if name not in DERIVED_TYPES:
-        raise MapError(f"no derived type {name!r}, expected one of {', '.join(DERIVED_TYPES)}")
+        known = ", ".join([*DERIVED_TYPES, *WHEELCHAIRS])
+        raise MapError(f"no derived type {name!r}, expected one of {known}")
     return DERIVED_TYPES[name]

@@ -10,6 +10,7 @@ from shapely import Polygon, box, union_all
 
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel, PedestrianType
 from mesa_mobility.crowd.insertion import check_beside_walls
+from mesa_mobility.crowd.state import environment
 from mesa_mobility.crowd.state.corners import Corners
 from mesa_mobility.crowd.state.environment import clearance_of
 from mesa_mobility.errors import FloorPlanError, ModelError
@@ -102,6 +103,51 @@ def test_alone_each_walks_as_if_no_other_type_were_listed():
     assert np.array_equal(paths[0], paths[2])
 
 
+def test_a_wide_body_is_led_another_way_and_a_narrow_one_is_not():
+    # A way of 4 m through a door of 0.6 m, and one of some 12 m round through one of 1 m.
+    floor = union_all([box(0, 0, 6, 10), box(6, 1.7, 6.2, 2.3), box(6, 8, 6.2, 9),
+                       box(6.2, 0, 12, 10)])  # fmt: skip
+    doors = [Gate("narrow", (6.1, 1.7), (6.1, 2.3)), Gate("wide", (6.1, 8), (6.1, 9))]
+    plan = FloorPlan(floor, exits=[Exit("out", (12, 1), (12, 3))], gates=doors)
+    model = mixed(plan, 0.14, 0.35)
+    small = model.add_pedestrians([(3.0, 2.0)])[0]
+    large = model.add_pedestrians([(3.0, 4.0)], type_index=1)[0]
+    assert model.crowd.route[small.row] == pytest.approx(9.0, abs=0.2)
+    assert model.crowd.route[large.row] > 13.0
+    model.run(max_seconds=60)
+    assert model.inside == 0
+    rows = model.recorder.arrays()
+    assert track(rows, small.row)[:, 2].max() < 3.0
+    assert track(rows, large.row)[:, 2].max() > 8.0
+
+
+def test_who_is_too_wide_for_the_way_is_told_what_it_lacks():
+    # No door: the passage itself has 0.6 m.
+    floor = union_all([box(0, 0, 6, 6), box(6, 2.7, 7, 3.3), box(7, 0, 13, 6)])
+    model = mixed(FloorPlan(floor, exits=[Exit("out", (13, 2), (13, 4))]), 0.14, 0.35)
+    with pytest.raises(FloorPlanError, match=r"gaps of less than 0.70 m.* 0.35 m radius"):
+        model.add_pedestrians([(3.0, 3.0)], type_index=1)
+    assert model.inside == 0
+
+
+def test_routes_are_searched_for_bodies_that_are_there(monkeypatch):
+    searched = []
+
+    def router(plan, *, clearance):
+        searched.append(clearance)
+        return Router(plan, clearance=clearance)
+
+    monkeypatch.setattr(environment, "Router", router)
+    model = mixed(neck(1.0), 0.14, 0.25, 0.35)
+    model.add_pedestrians([(1.0, 1.0)], type_index=2)
+    assert searched == [clearance_of(0.35)]
+    model.add_pedestrians([(2.0, 3.0)], route=["neck"])
+    model.add_pedestrians([(2.0, 4.0)], route=["neck"], type_index=2)
+    assert searched == [clearance_of(0.35), clearance_of(0.14)]
+    model.run(max_seconds=60)
+    assert model.inside == 0
+
+
 @pytest.mark.parametrize(
     ("core", "width", "fits"),
     # A body needs its own width, and routes some centimetres more.
@@ -150,8 +196,8 @@ def test_corners_around_one_edge_are_shared_by_all_bodies():
     corners = Corners(routers)
     numbers = np.array(
         [
-            first + number
-            for router, first in zip(routers, corners.firsts, strict=True)
+            corners.numbers(np.array(number), which)
+            for which, router in enumerate(routers)
             for number, node in router.graph.nodes(data=True)
             # The one edge that ways bend at is at (5, 3).
             if node["kind"] == "corner" and np.hypot(*(np.array(node["position"]) - (5, 3))) < 1.0

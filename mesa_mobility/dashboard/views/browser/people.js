@@ -3,7 +3,9 @@
 const SHADES = 32, TURNS = 64;
 const VIRIDIS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962",
   "#addc30", "#fde725"];
-const TYPES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#999999"];
+// Told apart with every kind of colour vision as far as twelve can be; those of the pictures.
+const TYPES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#999999", "#5b3a93",
+  "#8c510a", "#b5a300", "#00a6a6", "#b2182b"];
 
 function shade(share) {
   return blend(VIRIDIS, share);
@@ -93,15 +95,18 @@ const PEOPLE = {
     },
     paintLegend(ctx, legend, right, bottom, r) {
       if (legend.names.length) {
-        let x = right;
-        ctx.textAlign = "right";
-        [...legend.names.entries()].reverse().forEach(([k, name]) => {
-          ctx.fillStyle = this.colours.text;
-          ctx.fillText(name, x, bottom);
-          x -= ctx.measureText(name).width + 6 * r;
+        // One line each: the names of many types are wider than the canvas.
+        const line = 16 * r, tall = legend.names.length * line;
+        const wide = Math.max(...legend.names.map((name) => ctx.measureText(name).width)) + 16 * r;
+        ctx.textAlign = "left";
+        ctx.fillStyle = this.colours.plate;
+        ctx.fillRect(right - wide - 5 * r, bottom - tall - 2 * r, wide + 10 * r, tall + 7 * r);
+        legend.names.forEach((name, k) => {
+          const y = bottom - tall + (k + 1) * line - 3 * r;
           ctx.fillStyle = TYPES[k % TYPES.length];
-          ctx.fillRect(x - 10 * r, bottom - 9 * r, 10 * r, 10 * r);
-          x -= 22 * r;
+          ctx.fillRect(right - wide, y - 9 * r, 10 * r, 10 * r);
+          ctx.fillStyle = this.colours.text;
+          ctx.fillText(name, right - wide + 16 * r, y);
         });
         return;
       }

@@ -70,14 +70,21 @@ class Page:
         if note:
             self.text(note)
 
-    def picture(self, heading: str, png: bytes) -> None:
-        """A picture below a heading; the heading describes it to those who cannot see it."""
+    def picture(self, heading: str, png: bytes, caption: str = "") -> None:
+        """A picture below a heading.
+
+        Args:
+            heading: text, or nothing for none.
+            png: the picture.
+            caption: a paragraph above; without one the heading describes the picture to those who
+                cannot see it.
+        """
         if heading:
             self.heading(heading)
-        content = base64.b64encode(png).decode()
-        self._parts.append(
-            f'<img alt="{escape(heading or self._title)}" src="data:image/png;base64,{content}">'
-        )
+        if caption:
+            self.text(caption)
+        content, said = base64.b64encode(png).decode(), escape(caption or heading or self._title)
+        self._parts.append(f'<img alt="{said}" src="data:image/png;base64,{content}">')
 
     def json(self, heading: str, values: Mapping[str, Any]) -> None:
         """Values as JSON below a heading."""

@@ -1,0 +1,62 @@
+"""What `mesa-mobility map` says: progress, clips that are not used, what is in a map."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mesa_mobility.commands.console import answer_json, answer_table, say
+
+if TYPE_CHECKING:
+    from mesa_mobility.capture import LoadedClips
+    from mesa_mobility.mobility import MobilityMap
+
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
+
+
+def say_clips(loaded: LoadedClips) -> None:
+    """Which clips are skipped or split, and why."""
+    for clip, reason in loaded.skipped:
+        say(f"skipped {clip}: {reason}")
+    for clip, reason in loaded.split:
+        say(f"split {clip}: {reason}")
+
+
+def described(map_: MobilityMap) -> dict[str, Any]:
+    """What is in a map and what its people can do; warnings go to standard error."""
+    from mesa_mobility.mobility import abilities_of
+
+    able = abilities_of(map_)
+    standing = map_.metadata.get("standing", "recorded")
+    if standing != "recorded":
+        say(standing)
+    for warning in able["warnings"]:
+        say(f"warning: {warning}")
+    return {**map_.info(), "abilities": able}
+
+
+def answer(values: dict[str, Any], *, as_json: bool) -> None:
+    """The answer of a command, as JSON or as a table."""
+    if as_json:
+        answer_json(values)
+    else:
+        answer_table(_lines(values))
+
+
+def _lines(values: dict[str, Any], prefix: str = "") -> dict[str, str]:
+    lines: dict[str, str] = {}
+    for name, value in values.items():
+        label = f"{prefix}{name}".replace("_", " ")
+        if isinstance(value, dict):
+            lines |= _lines(value, f"{label}: ")
+        elif isinstance(value, list) and not all(isinstance(each, int | float) for each in value):
+            lines[label] = f"{len(value)} entries, see --json"
+        else:
+            values_here = value if isinstance(value, list) else [value]
+            lines[label] = ", ".join(_text(each) for each in values_here) or "none"
+    return lines
+
+
+def _text(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

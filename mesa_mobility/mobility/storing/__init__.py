@@ -1,0 +1,1 @@
+"""How maps are kept: options with their paths, or recorded ones as ways through the poses."""

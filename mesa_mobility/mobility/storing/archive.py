@@ -1,0 +1,127 @@
+"""Archives (.npz) of plain arrays and JSON metadata: the same bytes for the same arrays."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import zipfile
+import zlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.atomic_files import replacing
+from mesa_mobility.errors import MapError
+
+LARGEST_SIZE = 100_000_000
+"""Bytes of all arrays in a file, uncompressed; the able-bodied map has 25 million."""
+
+Layout = Mapping[str, str]
+"""Names and types of the arrays of a file."""
+
+
+def write_arrays(
+    path: Path, layout: Layout, arrays: Mapping[str, NDArray[Any]], metadata: Mapping[str, Any]
+) -> None:
+    """Write an archive: complete or not at all.
+
+    Raises:
+        MapError: the file cannot be written.
+    """
+    text = json.dumps(metadata, sort_keys=True, ensure_ascii=False).encode()
+    every = {**arrays, "metadata": np.frombuffer(text, dtype=np.uint8)}
+    with replacing(path, MapError) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        for name, dtype in layout.items():
+            buffer = io.BytesIO()
+            array = np.ascontiguousarray(every[name].astype(dtype))
+            np.lib.format.write_array(buffer, array, allow_pickle=False)
+            # A fixed date: the same map gives the same bytes on any day.
+            entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+            archive.writestr(entry, buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=9)
+
+
+def read_arrays(path: Path, layouts: Sequence[Layout]) -> dict[str, NDArray[Any]]:
+    """The arrays of an archive of one of these layouts, their types checked.
+
+    Raises:
+        MapError: the file is missing or invalid; the message names it and the fault.
+    """
+    try:
+        with path.open("rb") as file:
+            if file.read(len(np.lib.format.MAGIC_PREFIX)) == np.lib.format.MAGIC_PREFIX:
+                raise MapError(f"{path}: a single array, expected a mobility map (.npz)")
+            with zipfile.ZipFile(file) as archive:
+                return _read_layout(archive, path, layouts)
+    except MapError:
+        raise
+    except FileNotFoundError:
+        raise MapError(f"{path}: no such file, expected a mobility map (.npz)") from None
+    except OSError as error:
+        raise MapError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except (ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
+            RuntimeError, MemoryError, TypeError, SyntaxError) as error:  # fmt: skip
+        reason = next(iter(str(error).splitlines()), type(error).__name__)[:200]
+        raise MapError(f"{path}: not a readable mobility map ({reason})") from error
+
+
+def read_metadata(raw: NDArray[np.uint8], version: int) -> dict[str, Any]:
+    """The metadata of an archive, without the format version, which is checked.
+
+    Raises:
+        MapError: they are not JSON, or of another version.
+    """
+    try:
+        metadata = json.loads(raw.tobytes().decode())
+    except (ValueError, RecursionError):
+        raise MapError("array 'metadata': not JSON, expected an object") from None
+    found = metadata.pop("format_version", None) if isinstance(metadata, dict) else None
+    if found != version or isinstance(found, bool):
+        raise MapError(f"format version {found!r}, expected {version}")
+    return metadata
+
+
+def _read_layout(
+    archive: zipfile.ZipFile, path: Path, layouts: Sequence[Layout]
+) -> dict[str, NDArray[Any]]:
+    entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+    layout = next((each for each in layouts if set(each) <= set(entries)), layouts[0])
+    missing = sorted(set(layout) - set(entries))
+    if missing:
+        raise MapError(f"{path}: not a mobility map, arrays missing: {', '.join(missing)}")
+    total = sum(entries[name].file_size for name in layout)
+    if total > LARGEST_SIZE:
+        raise MapError(
+            f"{path}: arrays of {total / 1e6:.0f} MB, expected at most {LARGEST_SIZE / 1e6:.0f} MB"
+        )
+    arrays = {}
+    for name in layout:
+        entry = entries[name]
+        what = f"{path}: array {name!r}"
+        # Other compression methods cannot be unpacked in bounded steps.
+        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise MapError(f"{what}: compressed by method {entry.compress_type}, expected deflate")
+        with archive.open(entry) as stream:
+            # Reading one byte more reaches the end of the member, which triggers its checksum test.
+            arrays[name] = _read_array(io.BytesIO(stream.read(entry.file_size + 1)), what)
+    for name, dtype in layout.items():
+        if arrays[name].dtype != np.dtype(dtype):
+            raise MapError(f"{path}: array {name!r}: type {arrays[name].dtype}, expected {dtype}")
+    return arrays
+
+
+def _read_array(file: io.BytesIO, what: str) -> NDArray[Any]:
+    version = np.lib.format.read_magic(file)
+    if version != (1, 0):
+        raise MapError(f"{what}: npy format {version}, expected (1, 0)")
+    shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
+    content = file.read()
+    # Check the header's size before allocating memory for it.
+    if dtype.hasobject or fortran_order or math.prod(shape) * dtype.itemsize != len(content):
+        raise MapError(
+            f"{what}: its header says {dtype} in shape {shape}, but {len(content)} bytes follow"
+        )
+    return np.frombuffer(content, dtype=dtype).reshape(shape)

@@ -1,0 +1,1 @@
+"""Pages to be handed on: one HTML file each, with its pictures and the versions behind it."""

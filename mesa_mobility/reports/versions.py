@@ -1,0 +1,60 @@
+"""What results were computed with: versions of packages, machine, and sha256 of files."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.reports.html import Page
+
+_PACKAGES = ("mesa-mobility", "mesa", "numpy", "scipy", "numba", "llvmlite", "shapely", "pyarrow")
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that results depend on, by name."""
+    found = {"python": platform.python_version()}
+    for name in _PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def machine() -> str:
+    """Operating system and kind of processor."""
+    return f"{platform.system()} {platform.machine()}"
+
+
+def sha256_of(path: Path) -> str:
+    """The sha256 of a file.
+
+    Raises:
+        ResultsError: it cannot be read.
+    """
+    try:
+        with path.open("rb") as source:
+            return hashlib.file_digest(source, "sha256").hexdigest()
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+def add_versions(
+    page: Page, found: Mapping[str, str], inputs: Mapping[str, str], on: str, note: str = ""
+) -> None:
+    """Add a table of what results were computed with.
+
+    Args:
+        page: to add it to.
+        found: versions by name.
+        inputs: sha256 of files by name.
+        on: the machine.
+        note: a paragraph below.
+    """
+    rows = [[name, number] for name, number in found.items()]
+    rows += [[name, f"sha256 {digest}"] for name, digest in inputs.items()]
+    page.table("Versions and inputs", ["what", "which"], [*rows, ["machine", on]], note)

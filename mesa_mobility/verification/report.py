@@ -1,0 +1,100 @@
+"""The report of the verification tests: one HTML page with everything in it."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from mesa_mobility.mobility import shipped_map_path
+from mesa_mobility.reports.html import Page, picture
+from mesa_mobility.reports.versions import add_versions, machine, sha256_of, versions
+from mesa_mobility.verification.catalogue import Entry
+from mesa_mobility.verification.drawings import draw
+from mesa_mobility.verification.suite import Outcome
+
+WORDS = {"pass": "pass", "fail": "FAIL", "cap": "cap exceeded"}
+
+_MOST_PICTURES = 3
+"""Pictures of a test: its cases often differ in a number alone."""
+
+
+def write_report(
+    entries: Mapping[str, Entry], outcomes: Mapping[str, Outcome], path: str | os.PathLike[str]
+) -> None:
+    """Write what tests asked for and found as one HTML page, which needs no other file.
+
+    Args:
+        entries: of the catalogue, by id.
+        outcomes: by id; their drawings are shown.
+        path: of the page.
+
+    Raises:
+        ResultsError: it cannot be written.
+    """
+    page = Page("Verification of mesa-mobility")
+    verdicts = [outcome.verdict for outcome in outcomes.values()]
+    page.text(
+        f"{verdicts.count('pass')} tests passed, {verdicts.count('fail')} failed, "
+        f"{verdicts.count('cap')} exceed a design cap that measured crowds exceed too. Every test "
+        "runs with the default preset; overlaps of bodies and steps through walls are counted on "
+        "the recorded tracks, and a single one fails the test."
+    )
+    page.table(
+        "Summary", ["test", "what", "verdict"],
+        [[name, entries[name].what, WORDS[outcome.verdict]] for name, outcome in outcomes.items()],
+    )  # fmt: skip
+    for name, outcome in outcomes.items():
+        _test(page, entries[name], outcome)
+    computed_with(page, seeds=max(len(outcome.seeds) for outcome in outcomes.values()))
+    page.write(path)
+
+
+def computed_with(page: Page, seeds: int) -> None:
+    """Add what the runs of a standard's tests were computed with."""
+    add_versions(
+        page,
+        versions(),
+        {"map able_bodied": sha256_of(shipped_map_path("able_bodied"))},
+        machine(),
+        f"Seeds 1 to {seeds}. Written {datetime.now(UTC).isoformat(timespec='minutes')}.",
+    )
+
+
+def value_text(value: Any) -> str:
+    """A figure as a table shows it."""
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def measured_text(outcome: Outcome) -> str:
+    """The figures of an outcome on one line, without its counts of safety."""
+    return ", ".join(
+        f"{figure} {value_text(value)}"
+        for figure, value in outcome.measured.items()
+        if not isinstance(value, list | dict) and figure not in outcome.safety
+    )
+
+
+def _test(page: Page, entry: Entry, outcome: Outcome) -> None:
+    safety = outcome.safety
+    rows = [
+        ["criterion", entry.asked],
+        ["source", entry.source],
+        ["floor", entry.geometry],
+        ["people", entry.population],
+        ["chosen where the source is open", entry.chosen],
+        ["measured, medians over the seeds", measured_text(outcome)],
+        ["overlaps, steps through walls", f"{safety['overlaps']}, {safety['wall_crossings']}"],
+        ["not met", "; ".join(outcome.failed)],
+        ["reported, not judged", "; ".join(outcome.reported)],
+        ["why the cap need not be met", entry.cap if outcome.verdict == "cap" else ""],
+        ["verdict", WORDS[outcome.verdict]],
+    ]
+    page.table(f"{entry.id}: {entry.what}", ["", ""], [row for row in rows if row[1]])
+    for case, drawing in outcome.drawings[:_MOST_PICTURES]:
+        some = "" if len(drawing.ways) == drawing.people else f", {len(drawing.ways)} drawn"
+        page.picture("", picture(draw(drawing)), f"{case}: {drawing.people} people{some}")

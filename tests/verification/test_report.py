@@ -1,0 +1,96 @@
+"""The report of the standards' tests, from outcomes made by hand."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results import Trajectories
+from mesa_mobility.verification import Outcome, catalogue
+from mesa_mobility.verification.drawings import collect, draw, first_run_drawn
+from mesa_mobility.verification.report import write_report
+
+WALLS = np.array([[0.0, 0.0, 10.0, 0.0], [0.0, 2.0, 10.0, 2.0]])
+
+
+def tracks(people, frames):
+    frame, person = (each.ravel() for each in np.mgrid[0:frames, 0:people])
+    return Trajectories(frame, person, frame * 0.04, person * 0.02, np.zeros(len(frame)))
+
+
+def outcome(verdict, **keywords):
+    given = {"measured": {"travel time s": 30.25, "overlaps": 0}, "failed": [], "reported": [],
+             "seeds": [1, 2], "per_seed": [],
+             "safety": {"overlaps": 0, "wall_crossings": 0}}  # fmt: skip
+    return Outcome(verdict, **{**given, **keywords})
+
+
+def test_only_the_first_run_is_drawn_and_only_where_one_asks():
+    collect(tracks(2, 3), WALLS)  # nobody asks
+    with first_run_drawn() as found:
+        collect(tracks(100, 400), WALLS)
+        collect(tracks(2, 3), WALLS)
+    [drawing] = found
+    assert (drawing.people, len(drawing.ways)) == (100, 60)
+    # Those drawn are spread over all, and each way has its first and its last point.
+    assert drawing.ways[0][0] == pytest.approx([0.0, 0.0])
+    assert drawing.ways[-1][-1] == pytest.approx([399 * 0.04, 99 * 0.02])
+    assert max(len(way) for way in drawing.ways) == 150
+    assert draw(drawing).axes[0].get_xlabel() == "x (m)"
+
+
+def test_the_page_has_criterion_source_figures_picture_verdict_and_versions(tmp_path):
+    with first_run_drawn() as found:
+        collect(tracks(3, 20), WALLS)
+    entries = catalogue()
+    names = ["rimea-01", "rimea-06", "imo-04"]
+    verdicts = [
+        outcome("pass", drawings=[("walk(speed 1.33)", found[0])]),
+        outcome("fail", failed=["points outside: 3, wanted 0 (seed 2)"]),
+        outcome("cap", reported=["flow: 2, wanted at most 1.33"]),
+    ]
+    page = tmp_path / "report.html"
+    write_report(entries, dict(zip(names, verdicts, strict=True)), page)
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r"(?:src|href)=\"(?!data:)", text)
+    assert "1 tests passed, 1 failed, 1 exceed a design cap" in text
+    assert "<h2>rimea-01: one person walks along a corridor at its own speed</h2>" in text
+    assert f"<td>source</td><td>{entries['rimea-01'].source}</td>" in text
+    assert "travel time over 40 m in [26, 34] s" in text
+    assert "<td>travel time s 30.25</td>" in text
+    assert "points outside: 3, wanted 0 (seed 2)" in text
+    assert text.count('<span class="pass">pass</span>') == 2
+    assert text.count('<span class="fail">FAIL</span>') == 2
+    assert text.count("cap exceeded") == 2
+    assert text.count("data:image/png;base64,") == 1
+    assert "walk(speed 1.33): 3 people" in text
+    assert re.search(r"<td>mesa-mobility</td><td>\d", text)
+    assert re.search(r"<td>map able_bodied</td><td>sha256 [0-9a-f]{64}", text)
+    assert "Seeds 1 to 2." in text
+    with pytest.raises(ResultsError, match="cannot be written"):
+        write_report(entries, {"rimea-01": verdicts[0]}, tmp_path / "nowhere" / "report.html")
+
+
+def test_the_page_of_a_comparison(tmp_path):
+    from mesa_mobility import validation
+    from mesa_mobility.validation.report import write_report as write_comparisons
+    from mesa_mobility.verification import Verdict
+    from mesa_mobility.verification.checks import at_most
+
+    verdict = Verdict(
+        (at_most("never", 1.0, 0.0), at_most("ever", 3.0, 2.0, gates=False)), {"share": 0.5}
+    )
+    drawn = validation.EXPERIMENTS["walking"]
+    shown = replace(drawn, draw=lambda figures: validation.drawing.panels(1)[0])
+    page = tmp_path / "report.html"
+    write_comparisons([shown], {"walking": verdict}, 3, page)
+    text = page.read_text(encoding="utf-8")
+    assert "0 of 1 comparisons pass" in text
+    assert "<td>never</td><td>1</td><td>at most 0</td>" in text
+    assert text.count('<span class="fail">FAIL</span>') == 2
+    assert "<td>outside</td>" in text
+    assert "<td>share</td><td>0.5</td><td>-</td><td>reported</td>" in text
+    assert f"Source: {drawn.source}." in text
+    assert text.count("data:image/png;base64,") == 1
