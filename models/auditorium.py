@@ -92,7 +92,7 @@ class Auditorium(PedestrianModel):
         population: Population | str | None = None,
         exit_door: Annotated[float, Range(0.6, 2.0)] | None = None,
         frames_per_step: int = 3,
-        record: bool = False,
+        record: bool | str = False,
         rng: int | np.random.Generator | None = None,
     ) -> None:
         seats = seat_places()

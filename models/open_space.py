@@ -37,7 +37,7 @@ class OpenSpace(PedestrianModel):
         mobility_map: MobilityMap | str | None = None,
         population: Population | str | None = None,
         frames_per_step: int = 3,
-        record: bool = False,
+        record: bool | str = False,
         rng: int | np.random.Generator | None = None,
     ) -> None:
         if pedestrians < 1:

@@ -8,8 +8,11 @@ from __future__ import annotations
 import typer
 
 from mesa_mobility.commands import experiment, mobility_map, new, plugins
+from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.bootstrap import bootstrap
 from mesa_mobility.commands.dashboard import dashboard
+from mesa_mobility.commands.map_poses import poses
+from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
@@ -29,6 +32,10 @@ app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("dashboard")(dashboard)
+app.command("animate")(animate)
+app.command("render")(render)
+app.command("replay")(replay)
+mobility_map.app.command("poses")(poses)
 mobility_map.app.command("bootstrap")(bootstrap)
 app.add_typer(mobility_map.app, name="map")
 app.add_typer(experiment.app, name="experiment")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,6 +22,7 @@ from mesa_mobility.errors import MapError
 from mesa_mobility.interrupts import putting_in_place
 
 if TYPE_CHECKING:
+    from mesa_mobility.capture import Recording
     from mesa_mobility.mobility import OptionFamilies
 
 
@@ -90,9 +92,14 @@ def build(
             "distribution of edited ones: the same options from a smaller file.",
         ),
     ] = Options.STORED,
+    poses: Annotated[
+        bool,
+        typer.Option("--poses", help="Also write the full-body poses behind the options."),
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Compute a mobility map from recordings, or from the limits of a wheelchair."""
+    from mesa_mobility.bodies.bankfile import poses_path
     from mesa_mobility.mobility import WHEELCHAIRS, map_of_families
     from mesa_mobility.results import check_writable
 
@@ -105,9 +112,15 @@ def build(
     check_writable(output.parent)
     wall, cpu = time.perf_counter(), time.process_time()
     info: dict[str, Any] = {}
+    bank = None
     if derived is not None and derived in WHEELCHAIRS:
         choices = (source, clusters, mirrored, name)
-        if other_side or kept != Options.STORED or any(each is not None for each in choices):
+        if (
+            other_side
+            or poses
+            or kept != Options.STORED
+            or any(each is not None for each in choices)
+        ):
             raise typer.BadParameter(f"{derived}: takes no recordings, and nothing but --output")
         words = ["mesa-mobility", "map", "build", "--derive", derived, "-o", f"{derived}.npz"]
         built = WHEELCHAIRS[derived].build(derived, {"command": shlex.join(words)})
@@ -115,7 +128,7 @@ def build(
     elif source is None:
         raise typer.BadParameter("MANIFEST_OR_DIR: expected recordings; only wheelchairs need none")
     else:
-        families, info = _from_recordings(
+        families, recordings, info = _from_recordings(
             source,
             type_name,
             clusters,
@@ -127,8 +140,15 @@ def build(
         )
         built = map_of_families(families)
         save = built.save if kept == Options.STORED else families.save
+        if poses:
+            from mesa_mobility.bodies import build_bank
+
+            with stoppable_progress() as report:
+                bank = build_bank(built, recordings, report)
     with putting_in_place():
         save(output)
+        if bank is not None:
+            bank.save(poses_path(output))
     say(f"written to {output}")
     spent = {
         "file": str(output),
@@ -148,8 +168,8 @@ def _from_recordings(
     derived: str | None,
     name: str | None,
     kept: Options,
-) -> tuple[OptionFamilies, dict[str, Any]]:
-    """The recorded options of a map, and what to say of the recordings."""
+) -> tuple[OptionFamilies, Sequence[Recording], dict[str, Any]]:
+    """The recorded options of a map, the recordings as used, and what to say of them."""
     from mesa_mobility.capture import find_clips
     from mesa_mobility.mobility import (
         build_families,
@@ -203,4 +223,4 @@ def _from_recordings(
                 info["clips_left_out_one_at_a_time"] = left_out
             except MapError as error:  # the map itself is good
                 say(f"clips are not left out one at a time: {error}")
-    return families, info
+    return families, recordings, info

@@ -62,7 +62,7 @@ def coverage(
     recordings = []
     with stoppable_progress() as report:
         for source in sources:
-            recordings.extend(_load(source, report, mobility_map if leave_out else None))
+            recordings.extend(load_recordings(source, report, mobility_map if leave_out else None))
         if leave_out:
             clusters = mobility_map.metadata.get("build", {}).get("clusters_asked")
             figures = left_out_one_at_a_time(recordings, clusters, report)
@@ -73,7 +73,7 @@ def coverage(
     answer({"file": str(file), **figures}, as_json=as_json)
 
 
-def _load(source: Path, report: Report, built: MobilityMap | None) -> list[Recording]:
+def load_recordings(source: Path, report: Report, built: MobilityMap | None) -> list[Recording]:
     """All recordings as they are, or for a map those that it was built from, as they were used."""
     from mesa_mobility.capture import find_clips, load_clips, scale
     from mesa_mobility.mobility import prepare_recordings

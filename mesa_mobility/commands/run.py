@@ -77,6 +77,13 @@ def run(
             metavar="PATH",
         ),
     ] = None,
+    record: Annotated[
+        str | None,
+        typer.Option(
+            metavar="decisions",
+            help="Also write who has taken which option: animate and replay show bodies by it.",
+        ),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="One JSON object as the last line of output.")
     ] = False,
@@ -88,6 +95,8 @@ def run(
     """
     if seconds is not None and not (math.isfinite(seconds) and seconds > 0):
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
+    if record not in (None, "decisions"):
+        raise ModelError(f"--record {record}: expected decisions")
     seed = secrets.randbelow(2**31) if seed is None else seed
     with nothing_collected():
         from mesa_mobility.crowd.precompile import compiling_ahead
@@ -96,7 +105,7 @@ def run(
             settings = list(settings or [])
             if population is not None:
                 settings.append(f"population={population}")
-            simulation, given = _create(model, settings, preset, map_file, seed)
+            simulation, given = _create(model, settings, preset, map_file, seed, record or True)
             use_behaviors(simulation, behaviors or [])
 
     import pandas as pd
@@ -166,7 +175,12 @@ def run(
 
 
 def _create(
-    name: str, settings: list[str], preset: str, map_file: Path | None, seed: int
+    name: str,
+    settings: list[str],
+    preset: str,
+    map_file: Path | None,
+    seed: int,
+    record: str | bool,
 ) -> tuple[Any, dict[str, Any]]:
     """The model, and its own parameters with the values that they have."""
     from mesa_mobility.plugins.parameters import NOT_SETTABLE, chosen, parameters
@@ -174,7 +188,7 @@ def _create(
 
     kind = load_model(name)
     keywords = chosen(kind, name, settings)
-    keywords |= {"preset": preset, "rng": seed, "record": True}
+    keywords |= {"preset": preset, "rng": seed, "record": record}
     if map_file is not None:
         keywords["mobility_map"] = str(map_file)
     taken = parameters(kind)

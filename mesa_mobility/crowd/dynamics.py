@@ -228,6 +228,8 @@ class Dynamics(Saved):
             model.terms,
             model.watch,
         )
+        if model.decisions is not None:
+            model.decisions.add(model.frame, deciding, scene.crowd)
 
     def _set_targets(
         self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, newcomers: bool = False

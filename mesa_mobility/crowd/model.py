@@ -31,7 +31,7 @@ from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset, read_preset
-from mesa_mobility.crowd.recorder import Recorder
+from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.scene import make_scene
 from mesa_mobility.crowd.sources import Inflow, Source, Sources
 from mesa_mobility.crowd.space import space_of
@@ -71,7 +71,8 @@ class PedestrianModel(mesa.Model):
         fields: type (bool, int or float) of each number that every person has in addition, by
             name; agents, behaviours and results see them.
         frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
-        record: keep every frame in ``recorder``.
+        record: keep every frame in ``recorder``; "decisions" also keeps who has taken which option
+            in ``decisions``, from which bodies are drawn.
         rng: seed, also as text, or NumPy generator.
 
     Attributes:
@@ -136,7 +137,7 @@ class PedestrianModel(mesa.Model):
         pedestrian_class: type[Pedestrian] = Pedestrian,
         fields: Mapping[str, type] | None = None,
         frames_per_step: int = 3,
-        record: bool = False,
+        record: bool | str = False,
         rng: Any = None,
     ) -> None:
         super().__init__(rng=seed_of(rng))
@@ -161,7 +162,10 @@ class PedestrianModel(mesa.Model):
         self.target_choice = target_choice or rules.make_target_choice()
         self.frames_per_step = frames_per_step
         self.frame = 0
+        if record not in (False, True, "decisions"):
+            raise ModelError(f"record: got {record!r}, expected True, False or 'decisions'")
         self.recorder = Recorder() if record else None
+        self.decisions = DecisionRecorder() if record == "decisions" else None
         self.watch: Watch | None = None
         self.space = space_of(floor_plan, scene.repertoire.reach, self.random)
         self.population = People(scene, self.space, pedestrian_class)
@@ -263,6 +267,8 @@ class PedestrianModel(mesa.Model):
         }
         if self.recorder is not None:
             parts["recorder"] = self.recorder
+        if self.decisions is not None:
+            parts["decisions"] = self.decisions
         return parts
 
     def own_attributes(self) -> list[str]:
@@ -292,6 +298,13 @@ class PedestrianModel(mesa.Model):
     def capabilities(self) -> tuple[Capability, ...]:
         """The capability of each pedestrian type."""
         return self._scene.repertoire.capabilities
+
+    def decided(self, since: int = 0) -> dict[str, NDArray[np.generic]] | None:
+        """The decisions from frame ``since`` on, see ``DecisionRecorder.arrays``; None if they are
+        not recorded."""
+        if self.decisions is None:
+            return None
+        return self.decisions.arrays(self._scene.repertoire, since)
 
     @property
     def stall_reason(self) -> str | None:

@@ -19,6 +19,7 @@ from mesa_mobility.crowd.state.records import FALLBACK
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
+    from mesa_mobility.bodies import BodyMotion, PoseBank
     from mesa_mobility.crowd.model import PedestrianModel
 
 
@@ -240,6 +241,22 @@ class Pedestrian(ContinuousSpaceAgent):
     def next_decision(self) -> float:
         """Seconds until the person decides again."""
         return float(self.model.crowd.end[self.row] - self.model.frame) * FRAME_SECONDS
+
+    def pose(self, bank: PoseBank | None = None) -> BodyMotion:
+        """The person's body now: joint positions and orientations, see ``BodyMotion``.
+
+        Feet are held where they bear on the floor, as far as the last 3 s tell.
+
+        Args:
+            bank: poses of the person's type; by default those that ship for its map.
+
+        Raises:
+            ModelError: the model does not record decisions, or has taken no step.
+            MapError: no poses of the person's map ship, or the bank is of another map.
+        """
+        from mesa_mobility.crowd.body import body_now
+
+        return body_now(self, bank)
 
     def movement_options(self) -> Candidates:
         """The person's movement options, were it to decide here and now."""

@@ -1,14 +1,15 @@
-"""Recording of positions and headings, frame by frame."""
+"""Recording of positions and headings, frame by frame, and of decisions."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.state.records import Crowd
 
 
@@ -25,7 +26,7 @@ class Recorder(Saved):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given."""
-        self._blocks = [tuple(state.values())]
+        self._blocks = _by_frame(state.values())
         self._fields = {name: values.dtype for name, values in list(state.items())[5:]}
 
     def add(self, frame: int, rows: NDArray[np.int64], state: Crowd) -> None:
@@ -42,12 +43,72 @@ class Recorder(Saved):
         )
         self._fields = {name: values.dtype for name, values in state.fields.items()}
 
-    def arrays(self) -> dict[str, NDArray[np.generic]]:
+    def arrays(self, since: int = 0) -> dict[str, NDArray[np.generic]]:
         """``frame``, ``person``, ``x``, ``y``, ``heading`` and fields of the model's people: a row
-        for each person and frame."""
+        for each person and frame, from frame ``since`` on."""
         names = ("frame", "person", "x", "y", "heading", *self._fields)
-        if not self._blocks:
+        blocks = _since(self._blocks, since)
+        if not blocks:
             kinds: list[Any] = [np.int32, np.int32, *[np.float64] * 3, *self._fields.values()]
             return {name: np.empty(0, kind) for name, kind in zip(names, kinds, strict=True)}
-        columns = zip(*self._blocks, strict=True)
+        columns = zip(*blocks, strict=True)
         return {name: np.concatenate(c) for name, c in zip(names, columns, strict=True)}
+
+
+class DecisionRecorder(Saved):
+    """Keeps who has taken which option, one block of arrays for each frame with decisions."""
+
+    def __init__(self) -> None:
+        self._blocks: list[tuple[NDArray[Any], ...]] = []
+
+    def state(self) -> dict[str, Any]:
+        """All that has been recorded."""
+        columns = [np.concatenate(each) for each in zip(*self._blocks, strict=True)]
+        return {"columns": columns}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        self._blocks = _by_frame(state["columns"]) if state["columns"] else []
+
+    def add(self, frame: int, rows: NDArray[np.int64], state: Crowd) -> None:
+        """Keep what the people in ``rows``, who have decided at ``frame``, are doing now."""
+        self._blocks.append(
+            (
+                np.full(len(rows), frame, dtype=np.int32),
+                rows.astype(np.int32),
+                state.type_index[rows].astype(np.int32),
+                state.option[rows],
+            )
+        )
+
+    def arrays(self, repertoire: Repertoire, since: int = 0) -> dict[str, NDArray[np.generic]]:
+        """What was decided from frame ``since`` on, a row for each decision, in order.
+
+        ``frame``; ``person``; ``type_index`` of the person's type; ``option``, a row of the type's
+        map, or -2 for the fallback; ``share`` of the option's ground that is covered.
+        """
+        names = ("frame", "person", "type_index", "option")
+        columns = [np.concatenate(each) for each in zip(*_since(self._blocks, since), strict=True)]
+        found = dict(zip(names, columns or [np.empty(0, np.int32)] * 4, strict=True))
+        option, share = found["option"].copy(), np.ones(len(found["option"]), dtype=np.float32)
+        for number, capability in enumerate(repertoire.capabilities):
+            own = (found["type_index"] == number) & (option >= 0)
+            rows = option[own] - repertoire.first_option[number]
+            option[own] = capability.parts.rows[rows]
+            share[own] = capability.parts.share[rows]
+        return {**found, "option": option, "share": share}
+
+
+def _by_frame(columns: Iterable[NDArray[Any]]) -> list[tuple[NDArray[Any], ...]]:
+    """Columns, of which the first holds frames in order, as a block for each frame."""
+    frames, *others = columns
+    ends = np.flatnonzero(np.diff(frames)) + 1
+    return list(zip(*(np.split(each, ends) for each in (frames, *others)), strict=True))
+
+
+def _since(blocks: list[tuple[NDArray[Any], ...]], frame: int) -> list[tuple[NDArray[Any], ...]]:
+    """Those of the blocks, in the order of time, that begin in ``frame`` or later."""
+    first = len(blocks)
+    while first > 0 and (not len(blocks[first - 1][0]) or blocks[first - 1][0][0] >= frame):
+        first -= 1
+    return blocks[first:]

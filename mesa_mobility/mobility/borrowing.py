@@ -126,15 +126,15 @@ def _borrowed(
         lender.costs[rows],
         paths.astype(np.float32),
         clusters.astype(np.int32),
-        np.zeros(len(rows), dtype=bool),
         np.full(len(rows), -1, dtype=np.int32),
         np.full((len(rows), MOST_JUMPS), -1, dtype=np.int64),
+        np.zeros(len(rows), dtype=np.int16),
     )
 
 
 def _taken(options: ReachableOptions, rows: NDArray[np.integer]) -> tuple[NDArray, ...]:
     columns = (options.durations, options.costs, options.paths, options.path_clusters)
-    marks = (options.edited, options.sources, options.jumps)
+    marks = (options.sources, options.jumps, options.edits)
     return tuple(column[rows] for column in (*columns, *marks))
 
 

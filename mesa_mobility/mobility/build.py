@@ -194,6 +194,6 @@ def _build_parameters(
         "edits": {
             "turns_deg_in_45_frames": list(edits.TURNS_DEG),
             "strides": list(edits.STRIDES),
-            "options": int(options.edited.sum()),
+            "options": int((options.edits > 0).sum()),
         },
     }

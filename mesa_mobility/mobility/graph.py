@@ -111,8 +111,15 @@ class MotionGraph:
         return graph
 
 
-def motion_graph(poses: PoseTable) -> MotionGraph:
+def motion_graph(
+    poses: PoseTable, threshold: float = THRESHOLD, stretch: int = STRETCH
+) -> MotionGraph:
     """Build and prune the motion graph of a pose table.
+
+    Args:
+        poses: the poses.
+        threshold: distance in feature units from which on there is no transition.
+        stretch: frames of a clip among which only the best match is kept.
 
     Raises:
         MapError: the recordings are too short or too unlike each other to be joined.
@@ -129,8 +136,8 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
         )
     columns = np.ascontiguousarray(poses.features.T)
     match, distance = _best_matches(
-        columns, poses.clip, poses.first, np.float32(THRESHOLD * THRESHOLD), MIN_SEPARATION,
-        STRETCH, MAX_TRANSITIONS,
+        columns, poses.clip, poses.first, np.float32(threshold * threshold), MIN_SEPARATION,
+        stretch, MAX_TRANSITIONS,
     )  # fmt: skip
     row, rank = np.nonzero(match >= 0)
     look_alike = match[row, rank].astype(np.int64)
@@ -138,7 +145,7 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
     successor = np.concatenate([natural + 1, look_alike + 1])
     via = np.concatenate([natural, look_alike])
     cost = np.concatenate(
-        [np.full(len(natural), NATURAL_COST), np.sqrt(distance[row, rank]) / THRESHOLD]
+        [np.full(len(natural), NATURAL_COST), np.sqrt(distance[row, rank]) / threshold]
     )
     order = np.lexsort((cost, source))
     source, successor, via, cost = source[order], successor[order], via[order], cost[order]

@@ -8,8 +8,10 @@ the paper).  One map serves all pedestrians of a type.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -120,6 +122,14 @@ class MobilityMap:
     def end_clusters(self) -> NDArray[np.uint16]:
         """(m,) cluster of the pose in which each option ends."""
         return self.path_clusters[self.path_offsets[1:] - 1]
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256, in hexadecimal, of the options: their clusters, lengths and paths."""
+        digest = hashlib.sha256()
+        for array in (self.offsets, self.durations, self.path_clusters, self.paths):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
 
     def options_of(self, cluster: int) -> range:
         """Rows of the options of a cluster."""

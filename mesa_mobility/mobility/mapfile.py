@@ -48,7 +48,7 @@ def shipped_map_path(name: str) -> Path:
     folder = shipped_maps()
     path = folder / f"{name}.npz"
     if not path.is_file():
-        known = sorted(p.stem for p in folder.glob("*.npz"))
+        known = sorted(p.stem for p in folder.glob("*.npz") if "." not in p.stem)
         raise MapError(
             f"no map named {name!r} ships with the package, expected one of {', '.join(known)}"
         )
@@ -121,9 +121,11 @@ def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
             return make(**_decode(arrays))
         from mesa_mobility.mobility.storing.families import read_families
 
-        # What a map lacks it borrows from the able-bodied one.
-        found = read_families(arrays)
-        return make(**found.fields(lambda: read_map_once(shipped_map_path("able_bodied"), make)))
+        def lender() -> Any:
+            """The able-bodied map, of which a map borrows what it lacks."""
+            return read_map_once(shipped_map_path("able_bodied"), make)
+
+        return make(**read_families(arrays).fields(lender))
     except MapError as error:
         raise MapError(f"{path}: {error}") from None
 

@@ -57,11 +57,12 @@ class ReachableOptions:
         paths: (m, 15, 3) float32; x, y in metres and heading in radians every 3 frames
             from the third on, relative to the start; rows past the end are zero.
         path_clusters: (m, 15) int32; cluster of the pose at each sample.
-        edited: (m,) bool; options that are edited copies of recorded ones.
         sources: (m,) int32; pose in which the option starts, or its original; -1 where that is
             borrowed from another map.
         jumps: (m, ``MOST_JUMPS``) int64; its transitions, ``frame * n + via`` for the pose ``via``
             of n whose step is taken in that frame; -1 for none.
+        edits: (m,) int16; number from 1 on of the edit that an option is a copy by, 0 for those
+            as recorded.
     """
 
     offsets: NDArray[np.int64]
@@ -69,9 +70,9 @@ class ReachableOptions:
     costs: NDArray[np.float32]
     paths: NDArray[np.float32]
     path_clusters: NDArray[np.int32]
-    edited: NDArray[np.bool_]
     sources: NDArray[np.int32]
     jumps: NDArray[np.int64]
+    edits: NDArray[np.int16]
 
 
 def reachable_options(
@@ -144,9 +145,9 @@ def joined(
         costs=all_.costs,
         paths=all_.paths,
         path_clusters=all_.path_clusters,
-        edited=all_.edited,
         sources=all_.sources,
         jumps=all_.jumps,
+        edits=all_.edits,
     )
 
 

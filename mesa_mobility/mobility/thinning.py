@@ -26,7 +26,7 @@ EDIT_CELL = (0.15, 0.15, np.deg2rad(20.0))
 
 class ClusterOptions(NamedTuple):
     """Options of one cluster: index of duration, cell, cost, path and clusters along it, the pose
-    in which each starts, its transitions, whether it is edited."""
+    in which each starts, its transitions, and the number of its edit, 0 if there is none."""
 
     layers: NDArray[np.int64]
     cells: NDArray[np.int64]
@@ -35,7 +35,7 @@ class ClusterOptions(NamedTuple):
     path_clusters: NDArray[np.int32]
     sources: NDArray[np.int32]
     jumps: NDArray[np.int64]
-    edited: NDArray[np.bool_]
+    edits: NDArray[np.int16]
 
     def taken(self, rows: NDArray[np.generic]) -> ClusterOptions:
         """Some of the options, in the order of ``rows``."""
@@ -47,9 +47,9 @@ def merge(parts: list[tuple[NDArray, ...]]) -> ClusterOptions:
     cells, layers, costs, paths, path_clusters, sources, jumps = (
         np.concatenate(column) for column in zip(*parts, strict=True)
     )
-    edited = np.zeros(len(cells), dtype=bool)
+    edits = np.zeros(len(cells), dtype=np.int16)
     return _thinned(
-        ClusterOptions(layers, cells, costs, paths, path_clusters, sources, jumps, edited)
+        ClusterOptions(layers, cells, costs, paths, path_clusters, sources, jumps, edits)
     )
 
 
@@ -77,7 +77,7 @@ def with_edits(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOption
         cells=cells[order],
         costs=costs[order],
         paths=np.zeros((len(rows), *recorded.paths.shape[1:]), dtype=np.float32),
-        edited=np.ones(len(rows), dtype=bool),
+        edits=(by + 1).astype(np.int16),
     )
     present = np.arange(recorded.paths.shape[1]) < _samples(added)[:, None]
     for number, edit in enumerate(edits):

@@ -26,7 +26,8 @@ def all_or_none(directory: str | os.PathLike[str], files: Sequence[str]) -> Iter
 
     Args:
         directory: folder that the files go to, created if need be.
-        files: their names; those that are not in the temporary folder at the end are left out.
+        files: their names; those that are not in the temporary folder at the end are left out, and
+            removed where they are from before.
 
     Raises:
         ResultsError: the folder or a file cannot be written, or the disk is full.
@@ -43,6 +44,8 @@ def all_or_none(directory: str | os.PathLike[str], files: Sequence[str]) -> Iter
                     for file in files:
                         if (temporary / file).exists():
                             os.replace(temporary / file, folder / file)
+                        else:
+                            (folder / file).unlink(missing_ok=True)
     except OSError as error:
         raise ResultsError(f"{folder}: cannot be written: {error.strerror or error}") from error
 

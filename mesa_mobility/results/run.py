@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.by_type import occupancy_by_type
 from mesa_mobility.results.files import all_or_none, json_text
 from mesa_mobility.results.measures import egress_time, occupancy
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.trajectories import Trajectories, read_parquet
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
 RUN_FILES = (
     "trajectories.parquet",
+    "decisions.parquet",
     "floorplan.geojson",
     "occupancy.png",
     "trajectories.png",
@@ -33,6 +38,8 @@ def write_run(
 ) -> None:
     """Write summary.json, trajectories.parquet, floorplan.geojson and two pictures.
 
+    Decisions are written to decisions.parquet, if there are any.
+
     Either all of them are written or none is; where the process is killed meanwhile, summary.json
     is missing.
 
@@ -49,11 +56,13 @@ def write_run(
     # Matplotlib takes half a second to load, so it is imported only when pictures are drawn.
     from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 
-    title = _title(summary, trajectories)
+    title = title_of(summary, trajectories)
     with all_or_none(directory, RUN_FILES) as temporary:
         text = json_text(summary, indent=2) + "\n"
         (temporary / "summary.json").write_text(text, encoding="utf-8")
         trajectories.to_parquet(temporary / "trajectories.parquet")
+        if trajectories.decisions is not None:
+            trajectories.decisions.to_parquet(temporary / "decisions.parquet")
         plan.write_geojson(temporary / "floorplan.geojson")
         plot_occupancy(
             _curve(trajectories),
@@ -63,6 +72,50 @@ def write_run(
             title=title,
         )
         plot_trajectories(trajectories, plan, temporary / "trajectories.png", title=title)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run as its folder holds it.
+
+    Attributes:
+        trajectories: with the decisions, if they were recorded.
+        plan: its floor plan.
+        summary: its figures.
+    """
+
+    trajectories: Trajectories
+    plan: FloorPlan
+    summary: Mapping[str, Any]
+
+
+def read_run(directory: str | os.PathLike[str]) -> Run:
+    """Read the folder of a run.
+
+    Raises:
+        ResultsError: no folder of a complete run, or a damaged file.
+        FloorPlanError: a damaged floor plan.
+    """
+    from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.results.decisions import read_decisions
+
+    folder = Path(directory)
+    try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ResultsError(
+            f"{folder}: no summary.json, expected the folder of a run, "
+            "which `mesa-mobility run --out` writes"
+        ) from None
+    except (OSError, ValueError, RecursionError) as error:
+        raise ResultsError(f"{folder / 'summary.json'}: cannot be read: {error}") from error
+    if not isinstance(summary, dict):
+        raise ResultsError(f"{folder / 'summary.json'}: not a JSON object")
+    trajectories = read_parquet(folder / "trajectories.parquet")
+    decided = folder / "decisions.parquet"
+    if decided.exists():
+        trajectories = replace(trajectories, decisions=read_decisions(decided))
+    return Run(trajectories, FloorPlan.from_geojson(folder / "floorplan.geojson"), summary)
 
 
 def _curve(trajectories: Trajectories) -> list[list[float]]:
@@ -79,7 +132,8 @@ def _curves_by_type(trajectories: Trajectories) -> dict[str, list[list[float]]] 
     return curves if len(curves) > 1 else None
 
 
-def _title(summary: Mapping[str, Any], trajectories: Trajectories) -> str:
+def title_of(summary: Mapping[str, Any], trajectories: Trajectories) -> str:
+    """One line that says what a run was."""
     egress = summary.get("egress_s")
     left = summary.get("left_inside", 0)
     ending = (

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     import pandas as pd
     import pedpy
 
+    from mesa_mobility.bodies import BodyMotion, PoseBank
+    from mesa_mobility.results.decisions import Decisions
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
@@ -49,6 +52,7 @@ class Trajectories:
             ``person_data[name][p]``. That of a model has ``type`` and ``group``, which is empty for
             people without one.
         fields: (n,) values of each field that the model declares for its people, by name.
+        decisions: who has taken which option, if that was recorded; bodies are drawn from it.
 
     Raises:
         ResultsError: columns of unequal length, values that are not finite, a person twice in
@@ -67,6 +71,7 @@ class Trajectories:
     inside_at_end: IntArray | None = None
     person_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     fields: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    decisions: Decisions | None = None
 
     def __post_init__(self) -> None:
         columns: dict[str, NDArray[Any]] = {
@@ -128,7 +133,8 @@ class Trajectories:
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
                 and of fields, if any),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now); ``person_data()``, where it has that.
+                ``rows`` (the people inside now); ``person_data()``, where it has that. Its
+                decisions are taken too if it records them.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -136,6 +142,8 @@ class Trajectories:
         recorder = getattr(model, "recorder", None)
         if recorder is None:
             raise ResultsError("the model has recorded nothing: create it with record=True")
+        from mesa_mobility.results.decisions import Decisions
+
         arrays = recorder.arrays()
         rows = {name: arrays.pop(name) for name in ("frame", "person", "x", "y", "heading")}
         if len(model.rows) and not len(rows["frame"]):
@@ -148,6 +156,7 @@ class Trajectories:
             inside_at_end=model.rows,
             person_data=model.person_data() if hasattr(model, "person_data") else {},
             fields=arrays,
+            decisions=Decisions.of(model) if getattr(model, "decisions", None) else None,
         )
 
     def __len__(self) -> int:
@@ -221,6 +230,20 @@ class Trajectories:
             self.frame[end] - self.frame[start] == frames
         )
         return start[same], end[same]
+
+    def rows_of(self, person: int) -> NDArray[np.int64]:
+        """(k,) rows of one person, in the order of time; none if it does not appear."""
+        ordered = self.person[self.by_person]
+        first, last = np.searchsorted(ordered, [person, person + 1])
+        return self.by_person[first:last]
+
+    def poses(
+        self, person: int, frames: ArrayLike | None = None, *, bank: PoseBank | None = None
+    ) -> BodyMotion:
+        """The body of one person: see :func:`mesa_mobility.results.bodies.body_of`."""
+        from mesa_mobility.results.bodies import body_of
+
+        return body_of(self, person, frames, bank=bank)
 
     def of_people(self, people: ArrayLike) -> Trajectories:
         """The rows of some people alone, in the same frames.

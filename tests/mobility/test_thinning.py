@@ -16,7 +16,7 @@ def cell_of(end):
 
 def ends(options, cluster, edited):
     rows = np.arange(*options.offsets[cluster : cluster + 2])
-    rows = rows[options.edited[rows] == edited]
+    rows = rows[(options.edits[rows] > 0) == edited]
     last = options.durations[rows] // 3 - 1
     return rows, options.paths[rows, last].astype(float)
 
@@ -27,8 +27,8 @@ def test_edited_options_fill_free_cells_at_least_cost():
     plain = reachable_options(graph, clusters)
     edits = (Edit(0.3, 1.0), Edit(-0.3, 1.0), Edit(0.0, 0.8))
     both = reachable_options(graph, clusters, edits)
-    assert not plain.edited.any()
-    assert both.edited.any()
+    assert not plain.edits.any()
+    assert both.edits.any()
     for cluster in range(len(clusters)):
         recorded, recorded_ends = ends(both, cluster, False)
         own = slice(*plain.offsets[cluster : cluster + 2])
@@ -64,5 +64,15 @@ def test_options_of_all_edits_repeat():
     graph = motion_graph(random_poses(np.random.default_rng(8), clips=3))
     clusters = cluster_poses(graph, 4)
     one, two = (reachable_options(graph, clusters, EDITS) for _ in range(2))
-    for name in ("offsets", "durations", "costs", "paths", "path_clusters", "edited"):
+    columns = (
+        "offsets",
+        "durations",
+        "costs",
+        "paths",
+        "path_clusters",
+        "sources",
+        "jumps",
+        "edits",
+    )
+    for name in columns:
         np.testing.assert_array_equal(getattr(one, name), getattr(two, name))

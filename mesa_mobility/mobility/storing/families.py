@@ -73,7 +73,7 @@ class OptionFamilies:
             options: of all clusters.
             metadata: of the map.
         """
-        rows = np.flatnonzero(~options.edited)
+        rows = np.flatnonzero(options.edits == 0)
         cluster = np.searchsorted(options.offsets, rows, side="right") - 1
         layer = np.searchsorted(DURATIONS, options.durations[rows])
         counts = np.zeros((len(clusters), len(DURATIONS)), dtype=np.int64)
@@ -106,14 +106,14 @@ class OptionFamilies:
             path_clusters=clusters,
             sources=self.sources,
             jumps=self.jumps,
-            edited=np.zeros(len(layers), dtype=bool),
+            edits=np.zeros(len(layers), dtype=np.int16),
         )
         bounds = np.concatenate([[0], np.cumsum(self.counts.sum(axis=1))])
         parts = [
             columns.taken(np.arange(first, last)) if last > first else None
             for first, last in itertools.pairwise(bounds)
         ]
-        return joined(parts, self._edits())
+        return joined(parts, self.edits())
 
     def fields(self, lender: Callable[[], Any]) -> dict[str, Any]:
         """The fields of the map.
@@ -155,7 +155,8 @@ class OptionFamilies:
         metadata = {"format_version": FORMAT_VERSION, **self.metadata}
         write_arrays(path, FAMILIES, arrays, metadata)
 
-    def _edits(self) -> tuple[Edit, ...]:
+    def edits(self) -> tuple[Edit, ...]:
+        """How recorded options are edited, in the order of the numbers in ``ReachableOptions``."""
         edits = self.metadata.get("build", {}).get("edits", {})
         return grid(edits.get("turns_deg_in_45_frames", [0.0]), edits.get("strides", [1.0]))
 

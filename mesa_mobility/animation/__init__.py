@@ -1,0 +1,27 @@
+"""A run's people as moving figures in files: glTF, BVH, films."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesa_mobility._lazy import names_of
+
+if TYPE_CHECKING:
+    from mesa_mobility.animation.bvh import write_bvh
+    from mesa_mobility.animation.film import write_film
+    from mesa_mobility.animation.gltf import write_glb
+    from mesa_mobility.animation.page import write_page
+    from mesa_mobility.animation.people import Selection, walkers
+
+_MODULES = {
+    "Selection": "people",
+    "walkers": "people",
+    "write_bvh": "bvh",
+    "write_film": "film",
+    "write_glb": "gltf",
+    "write_page": "page",
+}
+
+__all__ = ["Selection", "walkers", "write_bvh", "write_film", "write_glb", "write_page"]
+
+__getattr__, __dir__ = names_of(__name__, _MODULES)

@@ -1,0 +1,186 @@
+"""A simple figure around the neutral skeleton: one mesh of tubes, bound to its joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, HEEL_BACK, JOINT, OFFSETS, PARENTS
+
+AROUND = 10
+"""Vertices round a tube."""
+
+Ring = tuple[tuple[float, float, float], float, float, dict[str, float]]
+"""Centre in metres from a joint, radii along and across, and the joints that move it."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A mesh, in the pose of the neutral skeleton, the pelvis at the origin.
+
+    Attributes:
+        vertices: (v, 3) float32 metres.
+        normals: (v, 3) float32.
+        triangles: (t, 3) int of vertices.
+        joints: (v, 4) uint8; joints that move each vertex.
+        weights: (v, 4) float32; their shares.
+    """
+
+    vertices: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    triangles: NDArray[np.uint16]
+    joints: NDArray[np.uint8]
+    weights: NDArray[np.float32]
+
+
+def rest_positions() -> NDArray[np.float64]:
+    """(22, 3) joints of the neutral skeleton, the pelvis at the origin, metres."""
+    places = np.zeros_like(OFFSETS)
+    for j in range(1, len(OFFSETS)):
+        places[j] = places[PARENTS[j]] + OFFSETS[j]
+    return places
+
+
+def human_figure() -> Figure:
+    """The figure of an adult."""
+    tubes = [_trunk(), _head()]
+    for side in ("left", "right"):
+        tubes += [_leg(side), _foot(side), _arm(side)]
+    vertices, normals, triangles, joints, weights, count = [], [], [], [], [], 0
+    for rings, axis in tubes:
+        v, n, t, j, w = _tube(rings, axis)
+        vertices.append(v)
+        normals.append(n)
+        triangles.append(t + count)
+        joints.append(j)
+        weights.append(w)
+        count += len(v)
+    return Figure(
+        np.concatenate(vertices).astype(np.float32),
+        np.concatenate(normals).astype(np.float32),
+        np.concatenate(triangles).astype(np.uint16),
+        np.concatenate(joints).astype(np.uint8),
+        np.concatenate(weights).astype(np.float32),
+    )
+
+
+Tube = tuple[list[Ring], int]
+
+
+def _at(joint: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> tuple[float, float, float]:
+    place = rest_positions()[JOINT[joint]] + [x, y, z]
+    return float(place[0]), float(place[1]), float(place[2])
+
+
+def _trunk() -> Tube:
+    return [
+        (_at("pelvis", z=-0.09), 0.075, 0.10, {"pelvis": 1}),
+        (_at("pelvis", z=-0.02), 0.105, 0.165, {"pelvis": 1}),
+        (_at("pelvis", z=0.10), 0.095, 0.145, {"pelvis": 0.6, "spine": 0.4}),
+        (_at("pelvis", z=0.20), 0.090, 0.135, {"spine": 1}),
+        (_at("chest"), 0.105, 0.155, {"spine": 0.5, "chest": 0.5}),
+        (_at("chest", z=0.10), 0.110, 0.170, {"chest": 1}),
+        (_at("neck", z=-0.05), 0.085, 0.165, {"chest": 1}),
+        (_at("neck", z=-0.005), 0.060, 0.090, {"chest": 1}),
+        (_at("neck", z=0.03), 0.052, 0.052, {"chest": 0.5, "neck": 0.5}),
+        (_at("head"), 0.050, 0.050, {"neck": 1}),
+    ], 2
+
+
+def _head() -> Tube:
+    rings: list[Ring] = []
+    for share in np.linspace(-1.0, 1.0, 9):
+        wide = max(float(np.sqrt(1.0 - share * share)), 0.02)
+        centre = _at("head", x=0.02, z=0.07 + 0.125 * float(share))
+        rings.append((centre, 0.098 * wide, 0.076 * wide, {"head": 1}))
+    return rings, 2
+
+
+def _leg(side: str) -> Tube:
+    hip, knee, ankle = (f"{side}_{joint}" for joint in ("hip", "knee", "ankle"))
+    return [
+        (_at(hip, z=0.02), 0.095, 0.085, {"pelvis": 0.6, hip: 0.4}),
+        (_at(hip, z=-0.08), 0.092, 0.083, {hip: 1}),
+        (_at(hip, z=-0.25), 0.075, 0.068, {hip: 1}),
+        (_at(knee, z=0.05), 0.060, 0.056, {hip: 0.85, knee: 0.15}),
+        (_at(knee), 0.058, 0.054, {hip: 0.5, knee: 0.5}),
+        (_at(knee, z=-0.05), 0.056, 0.052, {hip: 0.15, knee: 0.85}),
+        (_at(knee, x=-0.012, z=-0.15), 0.060, 0.052, {knee: 1}),
+        (_at(knee, z=-0.32), 0.042, 0.038, {knee: 1}),
+        (_at(ankle, z=0.02), 0.040, 0.036, {knee: 0.7, f"{side}_ankle": 0.3}),
+    ], 2
+
+
+def _foot(side: str) -> Tube:
+    ankle = f"{side}_ankle"
+    rings: list[Ring] = []
+    low = -ANKLE_HEIGHT
+    for x, top in ((-HEEL_BACK, 0.055), (0.0, 0.085), (0.07, 0.065), (0.13, 0.045), (0.19, 0.030)):
+        rings.append((_at(ankle, x=x, z=low + top / 2), top / 2, 0.040, {ankle: 1}))
+    return rings, 0
+
+
+def _arm(side: str) -> Tube:
+    shoulder, elbow, wrist = (f"{side}_{joint}" for joint in ("shoulder", "elbow", "wrist"))
+    return [
+        (_at(shoulder, z=0.035), 0.012, 0.012, {f"{side}_collar": 0.6, shoulder: 0.4}),
+        (_at(shoulder, z=0.022), 0.038, 0.034, {f"{side}_collar": 0.5, shoulder: 0.5}),
+        (_at(shoulder, z=-0.02), 0.054, 0.048, {f"{side}_collar": 0.3, shoulder: 0.7}),
+        (_at(shoulder, z=-0.10), 0.048, 0.045, {shoulder: 1}),
+        (_at(elbow, z=0.04), 0.040, 0.038, {shoulder: 0.85, elbow: 0.15}),
+        (_at(elbow), 0.039, 0.037, {shoulder: 0.5, elbow: 0.5}),
+        (_at(elbow, z=-0.05), 0.039, 0.036, {elbow: 1}),
+        (_at(wrist), 0.028, 0.024, {elbow: 1}),
+        (_at(wrist, z=-0.06), 0.042, 0.022, {elbow: 1}),
+        (_at(wrist, z=-0.17), 0.022, 0.012, {elbow: 1}),
+    ], 2
+
+
+def _tube(rings: list[Ring], axis: int) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
+    """Vertices, normals, triangles, joints and weights of a closed tube along an axis."""
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    across = [each for each in range(3) if each != axis]
+    if axis == 0:
+        across.reverse()  # radii are given along z first, then y
+    vertices, joints, weights = [], [], []
+    for centre, along, aside, moved in rings:
+        ring = np.tile(np.array(centre, dtype=np.float64), (AROUND, 1))
+        ring[:, across[0]] += along * np.cos(angle)
+        ring[:, across[1]] += aside * np.sin(angle)
+        vertices.append(ring)
+        names, shares = list(moved), list(moved.values())
+        joints.append(np.tile([JOINT[n] for n in names] + [0] * (4 - len(names)), (AROUND, 1)))
+        weights.append(np.tile(shares + [0.0] * (4 - len(shares)), (AROUND, 1)))
+    for place in (0, -1):  # the ends are closed by their middles
+        vertices.append(np.array([rings[place][0]], dtype=np.float64))
+        joints.append(joints[place if place == 0 else len(rings) - 1][:1])
+        weights.append(weights[place if place == 0 else len(rings) - 1][:1])
+    points = np.concatenate(vertices)
+    triangles = np.array(_faces(len(rings)))
+    corner = points[triangles]
+    facing = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    outward = corner.mean(axis=1) - points.mean(axis=0)
+    if np.einsum("ij,ij->", facing, outward) < 0.0:
+        triangles, facing = triangles[:, ::-1], -facing
+    normals = np.zeros_like(points)
+    for k in range(3):
+        np.add.at(normals, triangles[:, k], facing)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return points, normals, triangles, np.concatenate(joints), np.concatenate(weights)
+
+
+def _faces(rings: int) -> list[tuple[int, int, int]]:
+    faces = []
+    for ring in range(rings - 1):
+        for a in range(AROUND):
+            b = (a + 1) % AROUND
+            low, high = ring * AROUND, (ring + 1) * AROUND
+            faces += [(low + a, low + b, high + b), (low + a, high + b, high + a)]
+    first, last = rings * AROUND, rings * AROUND + 1
+    end = (rings - 1) * AROUND
+    for a in range(AROUND):
+        b = (a + 1) % AROUND
+        faces += [(first, b, a), (last, end + a, end + b)]
+    return faces

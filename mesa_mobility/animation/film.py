@@ -1,0 +1,129 @@
+"""Films and stills of a run, seen from above."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.collections import EllipseCollection, LineCollection
+from numpy.typing import NDArray
+
+from mesa_mobility.animation.people import Selection
+from mesa_mobility.atomic_files import replacing
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results import Trajectories
+from mesa_mobility.results.floor import draw_floor, floor_figure
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan import FloorPlan
+
+FILMS = (".mp4", ".gif", ".webp")
+"""Suffixes of films."""
+
+PICTURES_A_SECOND = 15
+FASTEST = 1.6
+"""Speed in m/s at the end of the scale of colours."""
+
+SPEED_OVER = 15
+"""Frames over which a person's speed is taken."""
+
+DPI = 100
+
+
+def write_film(
+    trajectories: Trajectories,
+    plan: FloorPlan,
+    path: str | os.PathLike[str],
+    selection: Selection | None = None,
+    *,
+    speed: float = 1.0,
+    progress: Callable[[int, int], None] | None = None,
+) -> None:
+    """Draw people as discs of their cores, coloured by speed, with a stroke for the facing.
+
+    Args:
+        trajectories: the run.
+        plan: its floor plan.
+        path: the film; its suffix is one of ``FILMS``. MP4 needs ffmpeg.
+        selection: whom and when; all of it by default.
+        speed: how many times as fast as it was.
+        progress: called as ``progress(pictures done, pictures)``.
+
+    Raises:
+        ResultsError: another suffix, no ffmpeg, nobody to show, or the file cannot be written.
+    """
+    selection = selection or Selection()
+    suffix = Path(path).suffix.lower()
+    if suffix not in FILMS:
+        raise ResultsError(f"{path}: films end with {', '.join(FILMS)}")
+    if suffix == ".mp4" and not FFMpegWriter.isAvailable():
+        raise ResultsError(f"{path}: MP4 needs ffmpeg on the path; .gif and .webp do not")
+    if not (np.isfinite(speed) and speed > 0):
+        raise ResultsError(f"speed {speed:g}: expected a positive number")
+    first, last = selection.frames_of(trajectories)
+    shown = np.isin(trajectories.person, selection.people_of(trajectories))
+    step = speed * trajectories.frame_rate / PICTURES_A_SECOND
+    frames = np.floor(np.arange(first, last + 1, step)).astype(np.int64)
+    pace = _speeds(trajectories)
+    figure, (axes,) = floor_figure(plan, rows=1, columns=1)
+    draw_floor(axes, plan)
+    bodies = EllipseCollection(
+        [], [], [], units="xy", cmap="viridis", offset_transform=axes.transData, zorder=5
+    )
+    bodies.set_clim(0.0, FASTEST)
+    strokes = LineCollection([], colors="black", linewidths=0.8, zorder=6)
+    axes.add_collection(bodies)
+    axes.add_collection(strokes)
+    figure.colorbar(bodies, ax=axes, label="speed (m/s)", shrink=0.8)
+    kind: Any = FFMpegWriter if suffix == ".mp4" else PillowWriter
+    writer = kind(fps=PICTURES_A_SECOND)
+    with replacing(path, ResultsError) as temporary:
+        # The layout is worked out once: it would take longer than all else in each picture.
+        figure.canvas.draw()
+        figure.set_layout_engine("none")
+        with writer.saving(figure, str(temporary), DPI):
+            for done, frame in enumerate(frames.tolist(), start=1):
+                own = slice(*trajectories.frame_offsets[frame : frame + 2].tolist())
+                rows = np.arange(own.start, own.stop)[shown[own]]
+                _place(bodies, strokes, trajectories, rows)
+                bodies.set_array(pace[rows])
+                axes.set_title(f"{frame / trajectories.frame_rate:.1f} s, {len(rows)} people")
+                writer.grab_frame()
+                if progress is not None:
+                    progress(done, len(frames))
+
+
+def _place(
+    bodies: EllipseCollection,
+    strokes: LineCollection,
+    trajectories: Trajectories,
+    rows: NDArray[np.int64],
+) -> None:
+    radius = trajectories.radii[trajectories.person[rows]]
+    centre = np.column_stack((trajectories.x[rows], trajectories.y[rows]))
+    heading = trajectories.heading[rows]
+    tip = centre + 1.8 * radius[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
+    bodies.set_offsets(centre)
+    bodies.set_widths(2.0 * radius)
+    bodies.set_heights(2.0 * radius)
+    bodies.set_angles(np.zeros(len(rows)))
+    strokes.set_segments(list(np.stack((centre, tip), axis=1)))
+
+
+def _speeds(trajectories: Trajectories) -> NDArray[np.float64]:
+    """(n,) speed of each row: its way over the frames before, m/s."""
+    ordered = trajectories.by_person
+    before = np.maximum(np.arange(len(ordered)) - SPEED_OVER, 0)
+    same = trajectories.person[ordered] == trajectories.person[ordered[before]]
+    way = np.hypot(
+        trajectories.x[ordered] - trajectories.x[ordered[before]],
+        trajectories.y[ordered] - trajectories.y[ordered[before]],
+    )
+    frames = np.maximum(trajectories.frame[ordered] - trajectories.frame[ordered[before]], 1)
+    found = np.zeros(len(ordered))
+    found[ordered] = np.where(same, way / frames * trajectories.frame_rate, 0.0)
+    return found

@@ -1,0 +1,56 @@
+"""`mesa-mobility replay`: watch a saved run in the browser."""
+
+from __future__ import annotations
+
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mesa_mobility.commands.animate import End, People, Poses, RunDir, Start, numbers
+from mesa_mobility.commands.console import progress_bar, say, some_path
+
+
+def replay(
+    run: RunDir,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Page to write, by default replay.html in the run's folder.",
+            parser=some_path,
+            metavar="PATH",
+        ),
+    ] = None,
+    people: People = None,
+    start: Start = 0.0,
+    end: End = None,
+    poses: Poses = None,
+    no_open: Annotated[
+        bool, typer.Option("--no-open", help="Write the page and open no browser.")
+    ] = False,
+) -> None:
+    """Watch a run in three dimensions: a page with a time slider that needs no network."""
+    from mesa_mobility.animation import Selection, walkers
+    from mesa_mobility.animation.page import write_page
+    from mesa_mobility.bodies import PoseBank
+    from mesa_mobility.results.run import read_run, title_of
+
+    page = output or run / "replay.html"
+    found = read_run(run)
+    selection = Selection(numbers(people), start, end)
+    bank = None if poses is None else PoseBank.load(poses)
+    count = len(selection.people_of(found.trajectories))
+    with progress_bar() as report:
+        write_page(
+            walkers(found.trajectories, selection, bank),
+            found.plan,
+            page,
+            title=title_of(found.summary, found.trajectories),
+            progress=lambda done: report("bodies", done, count),
+        )
+    say(f"{count} people written to {page}")
+    if not no_open:
+        webbrowser.open(page.resolve().as_uri())

@@ -1,0 +1,58 @@
+"""Bodies of the people of a run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mesa_mobility.bodies import BodyMotion, PoseBank, body_motion
+from mesa_mobility.bodies.motion import FRAME_RATE
+from mesa_mobility.errors import ResultsError
+
+if TYPE_CHECKING:
+    from mesa_mobility.results.trajectories import Trajectories
+
+
+def body_of(
+    trajectories: Trajectories,
+    person: int,
+    frames: ArrayLike | None = None,
+    *,
+    bank: PoseBank | None = None,
+) -> BodyMotion:
+    """The body of one person of a run.
+
+    Args:
+        trajectories: the run, with its decisions.
+        person: who.
+        frames: (k,) frames, whole or between two; by default all in which the person is there.
+        bank: poses of the person's type; by default those that ship for its map.
+
+    Raises:
+        ResultsError: no decisions, nobody of that number, or a time at which it is not there.
+        MapError: no poses of the person's map ship, or the bank is of another map.
+    """
+    decisions = trajectories.decisions
+    if decisions is None:
+        raise ResultsError(
+            "the run has no decisions, from which bodies are drawn: record them with "
+            "`mesa-mobility run --record decisions`"
+        )
+    rows = trajectories.rows_of(person)
+    if not len(rows):
+        raise ResultsError(f"person {person}: not in this run of {trajectories.people} people")
+    known = trajectories.frame[rows].astype(np.int64)
+    if trajectories.frame_rate != FRAME_RATE or np.any(np.diff(known) != 1):
+        raise ResultsError(
+            f"person {person}: expected each frame of its track at {FRAME_RATE:g} Hz"
+        )
+    own = decisions.rows_of(person)
+    digest = decisions.maps[int(decisions.type_index[own[0]]) if len(own) else 0]
+    if bank is None:
+        bank = PoseBank.of(digest)
+    bank.check_map(digest)
+    track = np.column_stack([getattr(trajectories, name)[rows] for name in ("x", "y", "heading")])
+    motion = body_motion(bank, decisions.movements_of(person), known, track)
+    return motion if frames is None else motion.at(frames)

@@ -1,0 +1,51 @@
+import pytest
+
+
+@pytest.fixture(scope="module")
+def run_dir(tmp_path_factory):
+    from mesa_mobility import Exit, FloorPlan, PedestrianModel
+    from mesa_mobility.results import Trajectories, write_run
+
+    plan = FloorPlan(
+        "POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))", exits=[Exit("door", (6, 1.0), (6, 3.0))]
+    )
+    model = PedestrianModel(plan, record="decisions", rng=5)
+    model.add_pedestrians([(1.0, 1.0), (4.5, 2.0)])
+    model.run(max_seconds=1)
+    folder = tmp_path_factory.mktemp("run")
+    write_run(folder, summary=model.summary(), trajectories=Trajectories.of(model), plan=plan)
+    return folder
+
+
+def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
+    outcome = command("animate", run_dir, "-o", tmp_path / "crowd.glb")
+    assert (outcome.status, outcome.out) == (0, "")
+    assert "2 people written" in outcome.err
+    assert (tmp_path / "crowd.glb").read_bytes()[:4] == b"glTF"
+    outcome = command("animate", run_dir, "-o", tmp_path / "bvh", "--format", "bvh",
+                      "--people", "1")  # fmt: skip
+    assert outcome.status == 0
+    assert [each.name for each in (tmp_path / "bvh").iterdir()] == ["person_1.bvh"]
+    for name in ("crowd.gif", "crowd.png"):
+        outcome = command("render", run_dir, "-o", tmp_path / name)
+        assert (outcome.status, (tmp_path / name).is_file()) == (0, True), outcome.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("animate", "{run}", "-o", "x.glb", "--people", "9"), "person 9"),
+        (("animate", "{run}", "-o", "x.glb", "--people", "a"), "--people: 'a'"),
+        (("animate", "{run}", "-o", "x.glb", "--from", "5"), "within the run's"),
+        (("animate", "nowhere", "-o", "x.glb"), "no summary.json"),
+        (("animate", "{run}", "-o", "x.glb", "--poses", "absent.npz"), "no such file"),
+        (("render", "{run}", "-o", "x.avi"), "expected .mp4"),
+    ],
+)
+def test_bad_input_gives_one_line(command, run_dir, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    outcome = command(*(each.format(run=run_dir) for each in arguments))
+    assert outcome.status == 2
+    assert said in outcome.err
+    assert outcome.err.count("\n") == 1
+    assert not (tmp_path / "x.glb").exists()
