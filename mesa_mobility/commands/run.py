@@ -201,7 +201,8 @@ def _origin(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
 
     plain = (bool, int, float, str, type(None))
     maps = {}
-    for kind in simulation.pedestrian_types:
+    # Another package's model need not have types.
+    for kind in getattr(simulation, "pedestrian_types", ()):
         path, digest = kind.mobility_map.file, None
         if path is not None:
             with path.open("rb") as file:
