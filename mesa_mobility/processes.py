@@ -7,7 +7,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from multiprocessing import current_process, get_context, parent_process, resource_tracker
 
 from mesa_mobility.errors import ModelError
@@ -27,25 +27,31 @@ def available_processors() -> int:
 
 def spawned_pool(jobs: int) -> ProcessPoolExecutor:
     """Processes that are spawned when work is submitted, and end with this one."""
-    # Python's own helper for such processes lets Ctrl-C through again when it is started.
-    resource_tracker.ensure_running()
+    # Python's own helper for such processes lets Ctrl-C through again when it is started. It tidies
+    # up after a process that Ctrl-C has ended at once, which is nothing to warn of.
+    with _environment("PYTHONWARNINGS", "ignore:resource_tracker"):
+        resource_tracker.ensure_running()
     return ProcessPoolExecutor(
         max_workers=jobs, mp_context=get_context("spawn"), initializer=_end_with_parent
     )
 
 
-@contextmanager
-def one_thread_each() -> Iterator[None]:
+def one_thread_each() -> AbstractContextManager[None]:
     """Processes started in this block use one thread each, since they share the processors."""
-    before = os.environ.get(THREADS)
-    os.environ[THREADS] = "1"
+    return _environment(THREADS, "1")
+
+
+@contextmanager
+def _environment(name: str, value: str) -> Iterator[None]:
+    before = os.environ.get(name)
+    os.environ[name] = value
     try:
         yield
     finally:
         if before is None:
-            del os.environ[THREADS]
+            del os.environ[name]
         else:
-            os.environ[THREADS] = before
+            os.environ[name] = before
 
 
 def _end_with_parent() -> None:

@@ -77,20 +77,24 @@ def load_recordings(source: Path, report: Report, built: MobilityMap | None) -> 
     """All recordings as they are, or for a map those that it was built from, as they were used."""
     from mesa_mobility.capture import find_clips, load_clips, scale
     from mesa_mobility.mobility import prepare_recordings
-    from mesa_mobility.mobility.preparing.clips import BOTH
+    from mesa_mobility.mobility.preparing.clips import ALONE, BOTH
 
     def progress(done: int, total: int) -> None:
         report("reading recordings", done, total)
 
     if built is not None:
-        # Leaving out clips of one side or of the other comes to the same. Older maps tell by clip.
+        # Older maps tell by clip.
         sides = built.metadata.get("preparation", {}).get("mirrored")
         each = [clip["mirrored"] for clip in built.metadata.get("provenance", [])]
         mirrored = sides == BOTH if sides else all(each)
         scaled = built.metadata.get("derived", {})
         recorded = scaled.get("from", built.pedestrian_type)
         prepared = prepare_recordings(
-            find_clips(source), recorded, mirrored=mirrored, progress=progress
+            find_clips(source),
+            recorded,
+            mirrored=mirrored,
+            other_side=sides == ALONE,
+            progress=progress,
         )
         say_clips(prepared.clips)
         length, time_factor = scaled.get("length_factor", 1.0), scaled.get("time_factor", 1.0)

@@ -15,8 +15,8 @@ from mesa_mobility.commands.verify import (
     ReportFile,
     Seeds,
     check_report,
-    processes,
 )
+from mesa_mobility.processes import available_processors
 
 if TYPE_CHECKING:
     from mesa_mobility.validation import Experiment
@@ -55,7 +55,7 @@ def validate(
     numbers = range(1, seeds + 1)
     cases = [each for experiment in experiments for each in experiment.cases]
     with progress_bar() as report:
-        results = run_cases(cases, numbers, processes(jobs), report)
+        results = run_cases(cases, numbers, jobs or available_processors(), report)
     verdicts = {
         experiment.name: judged(
             experiment, [[results[each, seed] for each in experiment.cases] for seed in numbers]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mesa_mobility.commands.console import answer_json, progress_bar, say, some_path
+from mesa_mobility.processes import available_processors
 
 if TYPE_CHECKING:
     from mesa_mobility.verification import Entry, Outcome
@@ -52,7 +53,7 @@ def verify(
         outcomes = verify(
             tests,
             range(1, seeds + 1),
-            processes(jobs),
+            jobs or available_processors(),
             caps=[name for name, entry in entries.items() if entry.cap],
             progress=report,
             drawn=report_file is not None,
@@ -91,18 +92,6 @@ def check_report(file: Path | None) -> None:
 
     if file is not None:
         check_writable(file.parent, [file.name])
-
-
-def processes(jobs: int | None) -> int:
-    """Number of processes to use: `jobs`, or all processors if it is None."""
-    import os
-
-    if jobs is not None:
-        return jobs
-    # Only Linux has a call for the processors that this process may use.
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _as_json(entry: Entry, outcome: Outcome) -> dict[str, Any]:

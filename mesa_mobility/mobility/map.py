@@ -128,7 +128,8 @@ class MobilityMap:
         """SHA-256, in hexadecimal, of the options: their clusters, lengths and paths."""
         digest = hashlib.sha256()
         for array in (self.offsets, self.durations, self.path_clusters, self.paths):
-            digest.update(np.ascontiguousarray(array).tobytes())
+            # A map that has just been built may have zeros with a sign; files have none.
+            digest.update(np.ascontiguousarray(array + array.dtype.type(0)).tobytes())
         return digest.hexdigest()
 
     def options_of(self, cluster: int) -> range:

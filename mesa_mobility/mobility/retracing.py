@@ -84,7 +84,7 @@ def retrace(
             options, grouped = borrow(options, grouped, MobilityMap.load())
     _check_same(map_, options)
     # The first option of a map is the stand, which the builder adds.
-    chains = _chains(options, len(poses))
+    chains = chains_of(options, len(poses))
     return Retraced(
         poses,
         labels,
@@ -93,7 +93,7 @@ def retrace(
     )
 
 
-def _chains(options: ReachableOptions, poses: int) -> NDArray[np.int32]:
+def chains_of(options: ReachableOptions, poses: int) -> NDArray[np.int32]:
     """(m, 4, 2) recorded stretches of each option, from its transitions among so many poses."""
     jumps = np.sort(np.where(options.jumps < 0, np.iinfo(np.int64).max, options.jumps), axis=1)
     frames, vias = np.divmod(jumps, poses)

@@ -2,6 +2,7 @@
 
 import ast
 import math
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -138,6 +139,7 @@ def _only(options, k: int):
             "velocities",
             "cores",
             "types",
+            "groups",
         )
     }
     fields |= {
@@ -147,12 +149,17 @@ def _only(options, k: int):
             "neighbour_positions",
             "neighbour_velocities",
             "neighbour_directions",
+            "neighbour_facings",
+            "neighbour_cores",
+            "neighbour_types",
+            "neighbour_groups",
             "leads",
         )
     }
     walls = options.walls[options.wall_offsets[k] : options.wall_offsets[k + 1]]
     n, q = rows.stop - rows.start, near.stop - near.start
-    return type(options)(
+    return replace(
+        options,
         owner=np.zeros(n, dtype=np.int64),
         offsets=np.array([0, n]),
         neighbour_offsets=np.array([0, q]),

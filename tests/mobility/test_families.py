@@ -53,6 +53,7 @@ def test_the_file_gives_the_whole_map(built, tmp_path):
         np.testing.assert_array_equal(getattr(read, name), getattr(whole, name), err_msg=name)
         np.testing.assert_array_equal(getattr(read, name), getattr(stored, name), err_msg=name)
     assert read.metadata == whole.metadata
+    assert read.digest == stored.digest == whole.digest
     families.save(tmp_path / "b.npz")
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
     size = (tmp_path / "a.npz").stat().st_size
