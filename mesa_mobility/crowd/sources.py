@@ -51,9 +51,9 @@ class Source:
         start: seconds at which a rate begins.
         until: seconds at which it ends, if ever.
         number: most people.
-        exits, route, loop, group, type_index, population, preferred_speeds, pre_movement, fields:
-            as ``PedestrianModel.add_pedestrians`` takes them; numbers or distributions, no arrays.
-            Of a population each hundred people together have its shares.
+
+    The other attributes are as ``PedestrianModel.add_pedestrians`` takes them: numbers or
+    distributions, no arrays. Of a population each hundred people together have its shares.
 
     Raises:
         ModelError: neither a rate nor times, both, or one out of range; shares of a population that
