@@ -41,14 +41,21 @@ class _Counters(WeakKeyDictionary[Any, _Counter]):
         return self.setdefault(model, _Counter())
 
 
+_FOLLOWING = "agent_id_counter"
+"""Where models of a newer Mesa keep the number of the next agent."""
+
+
 def last_number(model: PedestrianModel) -> int:
     """Number of the last agent that a model has got."""
-    return Pedestrian._ids[model].last
+    following: int | None = getattr(model, _FOLLOWING, None)
+    return Pedestrian._ids[model].last if following is None else following - 1
 
 
 def number_from(model: PedestrianModel, last: int) -> None:
     """Let the numbers of a model's agents go on after ``last``."""
     Pedestrian._ids[model].last = last
+    if hasattr(model, _FOLLOWING):
+        setattr(model, _FOLLOWING, last + 1)
 
 
 def _fields_of(person: Pedestrian) -> dict[str, NDArray[Any]]:
