@@ -11,6 +11,7 @@ import hashlib
 import inspect
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -121,6 +122,11 @@ def _load(
     counters = unpacker.unpack(content["counters"])
     for name, value in counters.items():
         setattr(model, name, value)
+    steps = getattr(model, "_default_schedule", None)
+    if steps is not None:  # a newer Mesa has scheduled the first step for the time 1
+        steps.stop()
+        steps.schedule = replace(steps.schedule, start=model.time + 1.0)
+        steps.start()
     for name, part in parts.items():
         part.restore(states[name])
     model.population.make_agents(
