@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import json
-import zipfile
-import zlib
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
@@ -15,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility._once import cached_once
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import MapError
+from mesa_mobility.mobility.storing.archive import Kind, read_arrays, read_metadata, write_arrays
 
 if TYPE_CHECKING:
     from mesa_mobility.bodies.bank import PoseBank
@@ -25,11 +21,11 @@ Bank = TypeVar("Bank")
 
 FORMAT_VERSION = 1
 
-LARGEST_SIZE = 200_000_000
-"""Bytes of all arrays in a file, uncompressed; the bank that ships has 6 million."""
-
 SUFFIX = ".poses.npz"
 """End of the name of a bank's file: ``able_bodied.poses.npz`` belongs to ``able_bodied.npz``."""
+
+KIND = Kind("pose bank", SUFFIX, 200_000_000)
+"""The bank that ships has 6 million bytes."""
 
 _DTYPES: dict[str, str] = {
     "rotations": "int16",
@@ -63,7 +59,6 @@ def write_bank(bank: PoseBank, path: str | Path) -> None:
         MapError: the file cannot be written.
     """
     metadata = {"format_version": FORMAT_VERSION, **bank.metadata}
-    text = json.dumps(metadata, sort_keys=True, ensure_ascii=False).encode()
     arrays: dict[str, NDArray[Any]] = {
         name: np.diff(getattr(bank, name), prepend=0) if name == "poses" else getattr(bank, name)
         for name in _DTYPES
@@ -71,15 +66,7 @@ def write_bank(bank: PoseBank, path: str | Path) -> None:
     }
     # Changes from frame to frame compress better; they wrap round, and so do their sums.
     arrays["rotations"] = np.diff(bank.rotations, axis=0, prepend=np.int16(0)).transpose(1, 2, 0)
-    arrays["metadata"] = np.frombuffer(text, dtype=np.uint8)
-    with replacing(path, MapError) as temporary, zipfile.ZipFile(temporary, "w") as archive:
-        for name, dtype in _DTYPES.items():
-            buffer = io.BytesIO()
-            array = np.ascontiguousarray(arrays[name].astype(dtype))
-            np.lib.format.write_array(buffer, array, allow_pickle=False)
-            # A fixed date: the same bank gives the same bytes on any day.
-            entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-            archive.writestr(entry, buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=9)
+    write_arrays(Path(path), _DTYPES, arrays, metadata)
 
 
 def read_bank_once(path: str | Path, make: Callable[..., Bank]) -> Bank:
@@ -112,43 +99,11 @@ def read_bank(path: str | Path, make: Callable[..., Bank]) -> Bank:
         MapError: the file is missing or invalid; the message names it and the fault.
     """
     path = Path(path)
-    try:
-        with zipfile.ZipFile(path) as archive:
-            arrays = _read_arrays(archive, path)
-    except MapError:
-        raise
-    except FileNotFoundError:
-        raise MapError(f"{path}: no such file, expected poses of a map ({SUFFIX})") from None
-    except OSError as error:
-        raise MapError(f"{path}: cannot be read ({error.strerror or error})") from error
-    except (ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
-            RuntimeError, MemoryError, TypeError, SyntaxError) as error:  # fmt: skip
-        reason = next(iter(str(error).splitlines()), type(error).__name__)[:200]
-        raise MapError(f"{path}: not a readable pose bank ({reason})") from error
+    arrays = read_arrays(path, (_DTYPES,), KIND)
     try:
         return make(**_decode(arrays))
     except MapError as error:
         raise MapError(f"{path}: {error}") from None
-
-
-def _read_arrays(archive: zipfile.ZipFile, path: Path) -> dict[str, NDArray[Any]]:
-    entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
-    missing = sorted(set(_DTYPES) - set(entries))
-    if missing:
-        raise MapError(f"{path}: not a pose bank, arrays missing: {', '.join(missing)}")
-    total = sum(entries[name].file_size for name in _DTYPES)
-    if total > LARGEST_SIZE:
-        raise MapError(
-            f"{path}: arrays of {total / 1e6:.0f} MB, expected at most {LARGEST_SIZE / 1e6:.0f} MB"
-        )
-    arrays = {}
-    for name in _DTYPES:
-        content = io.BytesIO(archive.read(entries[name]))
-        array = np.lib.format.read_array(content, allow_pickle=False)
-        if array.dtype != np.dtype(_DTYPES[name]):
-            raise MapError(f"{path}: array {name!r}: type {array.dtype}, expected {_DTYPES[name]}")
-        arrays[name] = array
-    return arrays
 
 
 def _decode(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
@@ -158,11 +113,5 @@ def _decode(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     steps = fields["rotations"].transpose(2, 0, 1)
     fields["rotations"] = np.cumsum(steps, axis=0, dtype=np.int16)
     fields["poses"] = np.cumsum(fields["poses"], dtype=np.int32)
-    try:
-        metadata = json.loads(arrays["metadata"].tobytes().decode())
-    except (ValueError, RecursionError):
-        raise MapError("array 'metadata': not JSON, expected an object") from None
-    version = metadata.pop("format_version", None) if isinstance(metadata, dict) else None
-    if version != FORMAT_VERSION or isinstance(version, bool):
-        raise MapError(f"format version {version!r}, expected {FORMAT_VERSION}")
+    metadata = read_metadata(arrays["metadata"], FORMAT_VERSION)
     return {**fields, "metadata": metadata}

@@ -9,7 +9,7 @@ import zipfile
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,26 @@ from numpy.typing import NDArray
 from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import MapError
 
-LARGEST_SIZE = 100_000_000
-"""Bytes of all arrays in a file, uncompressed; the able-bodied map has 25 million."""
-
 Layout = Mapping[str, str]
 """Names and types of the arrays of a file."""
+
+
+class Kind(NamedTuple):
+    """What files of one kind are.
+
+    Attributes:
+        name: as messages say it.
+        suffix: end of a file's name.
+        largest: bytes of all arrays in a file, uncompressed.
+    """
+
+    name: str
+    suffix: str
+    largest: int
+
+
+MAP = Kind("mobility map", ".npz", 100_000_000)
+"""The able-bodied map has 25 million bytes."""
 
 
 def write_arrays(
@@ -39,12 +54,12 @@ def write_arrays(
             buffer = io.BytesIO()
             array = np.ascontiguousarray(every[name].astype(dtype))
             np.lib.format.write_array(buffer, array, allow_pickle=False)
-            # A fixed date: the same map gives the same bytes on any day.
+            # A fixed date: the same arrays give the same bytes on any day.
             entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
             archive.writestr(entry, buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=9)
 
 
-def read_arrays(path: Path, layouts: Sequence[Layout]) -> dict[str, NDArray[Any]]:
+def read_arrays(path: Path, layouts: Sequence[Layout], kind: Kind = MAP) -> dict[str, NDArray[Any]]:
     """The arrays of an archive of one of these layouts, their types checked.
 
     Raises:
@@ -53,19 +68,19 @@ def read_arrays(path: Path, layouts: Sequence[Layout]) -> dict[str, NDArray[Any]
     try:
         with path.open("rb") as file:
             if file.read(len(np.lib.format.MAGIC_PREFIX)) == np.lib.format.MAGIC_PREFIX:
-                raise MapError(f"{path}: a single array, expected a mobility map (.npz)")
+                raise MapError(f"{path}: a single array, expected a {kind.name} ({kind.suffix})")
             with zipfile.ZipFile(file) as archive:
-                return _read_layout(archive, path, layouts)
+                return _read_layout(archive, path, layouts, kind)
     except MapError:
         raise
     except FileNotFoundError:
-        raise MapError(f"{path}: no such file, expected a mobility map (.npz)") from None
+        raise MapError(f"{path}: no such file, expected a {kind.name} ({kind.suffix})") from None
     except OSError as error:
         raise MapError(f"{path}: cannot be read ({error.strerror or error})") from error
     except (ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
             RuntimeError, MemoryError, TypeError, SyntaxError) as error:  # fmt: skip
         reason = next(iter(str(error).splitlines()), type(error).__name__)[:200]
-        raise MapError(f"{path}: not a readable mobility map ({reason})") from error
+        raise MapError(f"{path}: not a readable {kind.name} ({reason})") from error
 
 
 def read_metadata(raw: NDArray[np.uint8], version: int) -> dict[str, Any]:
@@ -85,17 +100,17 @@ def read_metadata(raw: NDArray[np.uint8], version: int) -> dict[str, Any]:
 
 
 def _read_layout(
-    archive: zipfile.ZipFile, path: Path, layouts: Sequence[Layout]
+    archive: zipfile.ZipFile, path: Path, layouts: Sequence[Layout], kind: Kind
 ) -> dict[str, NDArray[Any]]:
     entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
     layout = next((each for each in layouts if set(each) <= set(entries)), layouts[0])
     missing = sorted(set(layout) - set(entries))
     if missing:
-        raise MapError(f"{path}: not a mobility map, arrays missing: {', '.join(missing)}")
+        raise MapError(f"{path}: not a {kind.name}, arrays missing: {', '.join(missing)}")
     total = sum(entries[name].file_size for name in layout)
-    if total > LARGEST_SIZE:
+    if total > kind.largest:
         raise MapError(
-            f"{path}: arrays of {total / 1e6:.0f} MB, expected at most {LARGEST_SIZE / 1e6:.0f} MB"
+            f"{path}: arrays of {total / 1e6:.0f} MB, expected at most {kind.largest / 1e6:.0f} MB"
         )
     arrays = {}
     for name in layout:
