@@ -7,9 +7,7 @@ from dataclasses import asdict, dataclass
 from numbers import Real
 from typing import Any
 
-import numpy as np
-
-from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.costs.terms import EXPECTED_WEIGHT, CostTerm, is_weight
 from mesa_mobility.crowd.tactics.shipped import (
     CompensateSpeed,
     FollowSpeedRules,
@@ -70,9 +68,9 @@ class Preset:
         if not isinstance(self.name, str) or not self.name:
             raise ModelError(f"preset: name {self.name!r}, expected a text")
         if not isinstance(self.terms, Mapping) or not all(
-            isinstance(weight, Real) and np.isfinite(weight) for weight in self.terms.values()
+            isinstance(weight, Real) and is_weight(float(weight)) for weight in self.terms.values()
         ):
-            refuse("terms", self.terms, "a finite weight for the name of each")
+            refuse("terms", self.terms, f"for the name of each {EXPECTED_WEIGHT}")
         # As they are read from JSON, too.
         object.__setattr__(self, "durations", tuple(self.durations))
         object.__setattr__(self, "shares", tuple(tuple(each) for each in self.shares))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from urllib.parse import parse_qsl, urlencode
 
 import solara
+
+from mesa_mobility.crowd.costs.terms import is_weight
 
 SET, WEIGHT, OFF = "set.", "weight.", ",off"
 
@@ -44,7 +45,7 @@ def read(query: str) -> Start:
                 weight = float(value.removesuffix(OFF))
             except ValueError:
                 continue
-            if math.isfinite(weight):
+            if is_weight(weight):
                 behaviours[name.removeprefix(WEIGHT)] = (not value.endswith(OFF), weight)
         else:
             found[name] = value

@@ -9,7 +9,7 @@ pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]
 from mesa_mobility.dashboard.address import Start, read, write
 
 words = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=8)
-weights = st.tuples(st.booleans(), st.floats(allow_nan=False, allow_infinity=False))
+weights = st.tuples(st.booleans(), st.floats(-1e9, 1e9))
 starts = st.builds(
     Start,
     words,

@@ -214,8 +214,14 @@ class Monkey:
     def type(self):
         label = self.rng.choice((*PARAMETERS, "weight of headway", "weight of target distance"))
         field = self.page.get_by_label(label, exact=True)
-        if field.count() == 1:
-            self.tab.set(label, self.rng.choice(TYPED))
+        if field.count() != 1:
+            return
+        try:
+            field.fill(self.rng.choice(TYPED), timeout=3000)
+            field.press("Enter", timeout=3000)
+        except playwright_timeout():
+            # Gone in between, when the model that it belongs to was left.
+            assert field.count() == 0 or not field.is_enabled()
 
     def change_model(self):
         """Whatever is asked or being made."""

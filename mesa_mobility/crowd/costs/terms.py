@@ -49,6 +49,17 @@ from mesa_mobility.crowd.costs.layout import (
 from mesa_mobility.crowd.hooks import Plugin
 from mesa_mobility.errors import ModelError
 
+MOST_WEIGHT = 1e9
+"""Largest weight of a term, either way.  Beyond it no other term counts, and sums overflow."""
+
+
+def is_weight(value: float) -> bool:
+    """Whether the number can be the weight of a term."""
+    return bool(abs(value) <= MOST_WEIGHT)
+
+
+EXPECTED_WEIGHT = f"a finite number, {MOST_WEIGHT:.0e} at most either way"
+
 
 class CostTerm(Plugin):
     """One additive term of the cost of a movement option.
@@ -89,8 +100,8 @@ class CostTerm(Plugin):
 
     @weight.setter
     def weight(self, value: float) -> None:
-        if not np.isfinite(value):
-            raise ModelError(f"weight of {self.name!r}: got {value}, expected a finite number")
+        if not is_weight(value):
+            raise ModelError(f"weight of {self.name!r}: got {value}, expected {EXPECTED_WEIGHT}")
         self._weight = float(value)
 
     @property
@@ -101,9 +112,9 @@ class CostTerm(Plugin):
     @weight_by_type.setter
     def weight_by_type(self, weights: Mapping[str, float]) -> None:
         for name, value in weights.items():
-            if not np.isfinite(value):
+            if not is_weight(value):
                 raise ModelError(
-                    f"weight of {self.name!r} for {name!r}: got {value}, expected a finite number"
+                    f"weight of {self.name!r} for {name!r}: got {value}, expected {EXPECTED_WEIGHT}"
                 )
         self._by_type = {name: float(value) for name, value in weights.items()}
 

@@ -89,7 +89,7 @@ class Behaviours:
         """Use a behaviour or not, with a weight.
 
         Raises:
-            ModelError: the weight is not a finite number.
+            ModelError: the weight is not finite, or too large.
         """
         self._set(model, name, on, weight)
         self.wanted[name] = (on, weight)

@@ -210,6 +210,15 @@ def test_weights_by_type(term):
         Stay().weight_by_type = {"child": float("nan")}
 
 
+@pytest.mark.parametrize("weight", [1e308, -1e10, float("inf"), float("nan")])
+def test_a_weight_with_which_sums_overflow_is_refused(weight):
+    with pytest.raises(ModelError, match=r"weight of 'stay': got .*, expected a finite number, 1e"):
+        Stay(weight=weight)
+    with pytest.raises(ModelError, match=r"weight of 'stay' for 'child': got"):
+        Stay().weight_by_type = {"child": weight}
+    Stay(weight=1e9), Stay(weight=-1e9)
+
+
 def test_what_is_refused():
     with pytest.raises(ModelError, match="takes the field 'mood', which is not declared"):
         advance(crowd_of(Stay(), fields={}), 3)

@@ -98,7 +98,7 @@ def test_a_preset_of_ones_own_is_saved_with_the_figures():
     ({"name": ""}, "preset: name ''"),
     ({"durations": ()}, r"durations \(\), expected frames"),
     ({"durations": (12, 0.5)}, "durations"),
-    ({"terms": {"headway": float("nan")}}, "a finite weight for the name of each"),
+    ({"terms": {"headway": float("nan")}}, "for the name of each a finite number"),
     ({"shares": ((1.0,),)}, "share 1.0, expected 0 or more and less than 1"),
 ])  # fmt: skip
 def test_presets_that_are_refused(changed, text):
