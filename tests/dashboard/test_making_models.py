@@ -41,6 +41,32 @@ class Endless(Doorway):
             Endless.ended.set()
 
 
+class InAFinalizer(Endless):
+    """Takes for ever, and is in a finalizer when it is given up."""
+
+    def __init__(self, rng=None):
+        class Finalized:
+            def __del__(self):
+                Endless.started.set()
+                while True:
+                    time.sleep(0.01)
+
+        Finalized()
+        super().__init__(rng)
+
+
+def test_giving_up_is_not_lost_in_a_finalizer(session, capsys):
+    Endless.started.clear()
+    Endless.ended.clear()
+    session.build(Recipe(InAFinalizer))
+    assert Endless.started.wait(10.0)
+    session.give_up()
+    # The first exception ends the finalizer, the second one the constructor.
+    assert Endless.ended.wait(10.0)
+    until(lambda: session.status.value.state == "ready")
+    assert "GivenUp" not in capsys.readouterr().err
+
+
 def test_a_model_in_the_making_is_given_up_and_the_run_goes_on(session):
     Endless.started.clear()
     Endless.ended.clear()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import sys
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -35,6 +36,31 @@ class GivenUp(BaseException):
 
     Not an ``Exception``, which a model may catch.
     """
+
+
+TRY_AGAIN_S = 0.05
+
+
+def _raise_in(thread: threading.Thread) -> None:
+    """Raise ``GivenUp`` in a thread as soon as it executes Python again."""
+    if thread.is_alive() and thread.ident is not None:
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(
+            ctypes.c_ulong(thread.ident), ctypes.py_object(GivenUp)
+        )
+
+
+_report_unraisable = sys.unraisablehook
+
+
+def _raise_again(unraisable: sys.UnraisableHookArgs) -> None:
+    """Raise ``GivenUp`` once more where a finalizer, which cannot pass it on, has got it."""
+    if unraisable.exc_type is GivenUp:
+        threading.Timer(TRY_AGAIN_S, _raise_in, [threading.current_thread()]).start()
+    else:
+        _report_unraisable(unraisable)
+
+
+sys.unraisablehook = _raise_again
 
 
 class Making:
@@ -82,7 +108,4 @@ class Making:
 
     def give_up(self) -> None:
         """End the thread as soon as it executes Python again; callers need not wait."""
-        if self._thread.is_alive() and self._thread.ident is not None:
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                ctypes.c_ulong(self._thread.ident), ctypes.py_object(GivenUp)
-            )
+        _raise_in(self._thread)
