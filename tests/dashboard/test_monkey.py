@@ -170,14 +170,25 @@ class Monkey:
         if not rows:
             return
         # The view shows the clicked person's decision, or that the person has left, or another run.
-        self.tab.wait(
-            f"""([rows, run]) => {{
-                const shown = {DECISION}.__vue__.decision, now = {SHOWN};
-                return rows.includes(shown.pedestrian) && rows.includes(now.selected)
-                    || rows.includes(shown.left) || now.run !== run;
-            }}""",
-            [sorted(rows), clicks[-1]["run"]],
-        )
+        try:
+            self.tab.wait(
+                f"""([rows, run]) => {{
+                    const shown = {DECISION}.__vue__.decision, now = {SHOWN};
+                    return rows.includes(shown.pedestrian) && rows.includes(now.selected)
+                        || rows.includes(shown.left) || now.run !== run;
+                }}""",
+                [sorted(rows), clicks[-1]["run"]],
+            )
+        except playwright_timeout():
+            state = self.page.evaluate(
+                f"""() => {{
+                    const {{ pedestrian, left }} = {DECISION}.__vue__.decision;
+                    const {{ selected, run, moving, elapsed }} = {SHOWN};
+                    return {{ pedestrian, left, selected, run, moving, elapsed }};
+                }}"""
+            )
+            text = self.page.evaluate("() => document.body.innerText")
+            pytest.fail(f"clicked {sorted(rows)} of run {clicks[-1]['run']}: {state}\n{text}")
         self.checked += 1
 
     def drag(self):
