@@ -2,40 +2,36 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from copy import deepcopy
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import mesa
 import numpy as np
 from mesa.datacollection import DataCollector
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.checkpoint.saved_model import SavedModel
 from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
-from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
-from mesa_mobility.crowd.insertion import Newcomers
-from mesa_mobility.crowd.options.capability import Capability
+from mesa_mobility.crowd.hooks import Saved, scheduled_events
+from mesa_mobility.crowd.insertion.newcomers import Newcomers
+from mesa_mobility.crowd.insertion.sources import Inflow, Source, Sources
+from mesa_mobility.crowd.observed import ObservedModel
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.pedestrian import (
+from mesa_mobility.crowd.people.pedestrian import (
     Pedestrian,
     check_pedestrian_class,
-    last_number,
-    number_from,
 )
-from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
-from mesa_mobility.crowd.planning.explanation import Explanation, Watch
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, types_of
+from mesa_mobility.crowd.planning.explanation import Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset, read_preset
 from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.scene import make_scene
-from mesa_mobility.crowd.sources import Inflow, Source, Sources
 from mesa_mobility.crowd.space import space_of
-from mesa_mobility.crowd.stall import StallWatch, stall_reason
+from mesa_mobility.crowd.stall import StallWatch
 from mesa_mobility.crowd.state.fields import read_fields
 from mesa_mobility.crowd.statistics import REPORTERS, Statistics
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
@@ -51,7 +47,7 @@ from mesa_mobility.plugins.seeds import seed_of
 from mesa_mobility.populations import Population
 
 
-class PedestrianModel(mesa.Model):
+class PedestrianModel(ObservedModel, SavedModel):
     """Pedestrians on a floor plan, driven by recorded movement.
 
     Concrete models build a floor plan, call this constructor and then
@@ -121,9 +117,6 @@ class PedestrianModel(mesa.Model):
     frame_rate = 1.0 / FRAME_SECONDS
     """Frames a second."""
 
-    made_with: tuple[tuple[Any, ...], dict[str, Any]]
-    """The arguments that the constructor was called with."""
-
     def __init__(
         self,
         floor_plan: FloorPlan,
@@ -178,82 +171,6 @@ class PedestrianModel(mesa.Model):
         self.datacollector = DataCollector(model_reporters=REPORTERS)
         self._framework = frozenset(vars(self))
 
-    def __new__(cls, *args: Any, **keywords: Any) -> Self:
-        """A model that knows what it was made with."""
-        model = super().__new__(cls)
-        model.made_with = args, keywords
-        return model
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        """An independent copy that continues exactly as this model would.
-
-        Both share the mobility map and compiled code, which neither changes.
-        """
-        copied = type(self).__new__(type(self))
-        memo[id(self)] = copied
-        # Its agents go into registers that use their model's number.
-        number_from(copied, self.last_id)
-        for name, value in self.__dict__.items():
-            copied.__dict__[name] = value if name == "made_with" else deepcopy(value, memo)
-        add_occupants(copied.floor_plan, copied.population)
-        return copied
-
-    def __reduce_ex__(self, protocol: Any) -> Any:
-        raise ModelError(
-            f"{type(self).__name__}: a model can be copied by copy.deepcopy, neither by copy.copy "
-            "nor by pickle; expected its parameters and seed, which make it anew"
-        )
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a checkpoint, from which ``load`` goes on to the same trajectories.
-
-        It holds the constructor's arguments and all that has changed since: people, behaviours,
-        generators, records, and attributes of the model and its people. Maps are not in it but
-        their digest is.
-
-        Args:
-            path: the file, a zip of arrays and JSON.
-
-        Raises:
-            ModelError: an attribute or a behaviour's state that cannot be saved, people who wait
-                for a function, or a file that cannot be written.
-        """
-        from mesa_mobility.crowd.checkpoint.snapshot import save_model
-
-        save_model(self, path)
-
-    @classmethod
-    def load(
-        cls, path: str | os.PathLike[str], *, plugins: Iterable[Plugin] = (), **arguments: Any
-    ) -> Self:
-        """The model of a checkpoint, in this process or another.
-
-        Args:
-            path: the file.
-            plugins: behaviours that the model had, and that are neither installed nor made by its
-                constructor.
-            arguments: constructor's arguments that the file cannot hold, such as a mobility map.
-
-        Raises:
-            ModelError: a file that cannot be read or is another model's, other mobility maps, or
-                missing arguments or behaviours.
-        """
-        from mesa_mobility.crowd.checkpoint.snapshot import load_model
-
-        loaded = load_model(cls, path, plugins, arguments)
-        assert isinstance(loaded, cls)
-        return loaded
-
-    @property
-    def elapsed(self) -> float:
-        """Simulated seconds since the start."""
-        return self.frame * FRAME_SECONDS
-
-    @property
-    def last_id(self) -> int:
-        """``unique_id`` of the last agent that came."""
-        return last_number(self)
-
     def parts(self) -> dict[str, Saved]:
         """The parts that a checkpoint holds, in the order in which they are restored."""
         parts: dict[str, Saved] = {
@@ -271,45 +188,9 @@ class PedestrianModel(mesa.Model):
             parts["decisions"] = self.decisions
         return parts
 
-    def own_attributes(self) -> list[str]:
-        """Names of the attributes that subclasses and users have added."""
-        return sorted(vars(self).keys() - self._framework - {"_framework"})
-
     def bind(self) -> None:
         """Bind behaviours that the model has not used yet."""
         self._dynamics.bind()
-
-    @property
-    def inside(self) -> int:
-        """People inside."""
-        return len(self.population.rows)
-
-    @property
-    def rows(self) -> NDArray[np.int64]:
-        """Rows of the people inside, in the order of ``space.active_agents``."""
-        return self.population.rows
-
-    @property
-    def core_radii(self) -> NDArray[np.float64]:
-        """(n,) core radius in metres of everybody who has ever been in the model."""
-        return self.population.core_radii
-
-    @property
-    def capabilities(self) -> tuple[Capability, ...]:
-        """The capability of each pedestrian type."""
-        return self._scene.repertoire.capabilities
-
-    def decided(self, since: int = 0) -> dict[str, NDArray[np.generic]] | None:
-        """The decisions from frame ``since`` on, see ``DecisionRecorder.arrays``; None if they are
-        not recorded."""
-        if self.decisions is None:
-            return None
-        return self.decisions.arrays(self._scene.repertoire, since)
-
-    @property
-    def stall_reason(self) -> str | None:
-        """Why the evacuation has stalled, in a few words; None if it has not."""
-        return stall_reason(self.floor_plan, self.population.aggregates) if self.stalled else None
 
     def add_pedestrians(
         self,
@@ -445,47 +326,3 @@ class PedestrianModel(mesa.Model):
             if progress is not None and int(self.elapsed) > reported:
                 reported = int(self.elapsed)
                 progress(self.elapsed, self.inside)
-
-    def candidates(self, rows: NDArray[np.int64]) -> Candidates:
-        """Movement options of the people in ``rows`` if they decided now."""
-        return self._dynamics.candidates(rows)
-
-    def explain(self, row: int) -> Explanation:
-        """The decision of the person in ``row`` if it decided now, before all others.
-
-        It keeps the target of its last decision. Set ``watch`` to have decisions as they are taken.
-
-        Raises:
-            ModelError: nobody inside has this row.
-        """
-        if not (0 <= row < self.population.count and self.crowd.active[row]):
-            raise ModelError(f"pedestrian {row}: expected the row of somebody inside")
-        return self._dynamics.explain(row)
-
-    def person_data(self) -> dict[str, ArrayLike]:
-        """What trajectories say of each person besides its place; models may add to it.
-
-        Returns:
-            (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.
-            The group is an empty text for people without one.
-        """
-        crowd, count = self.crowd, self.population.count
-        types = np.array([kind.name for kind in self.pedestrian_types])
-        groups = np.array(["", *map(str, self.population.groups)])
-        return {
-            "type": types[crowd.type_index[:count]],
-            "group": groups[crowd.agenda["group"][:count]],
-        }
-
-    def summary(self) -> dict[str, Any]:
-        """Figures of the run so far, ready for JSON.
-
-        Returns:
-            ``model``, ``preset``, ``rules`` (all that the preset decides), ``pedestrians``,
-            ``simulated_s``, ``egress_s`` (None while anybody is inside or to come, or where nobody
-            ever was), ``left_inside``, ``stalled``,
-            ``stall_reason`` (None unless stalled), ``decisions``, ``fallback_decision_share``,
-            ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy``
-            ([[t, inside], ...] each second).
-        """
-        return self.statistics.summary()
