@@ -8,11 +8,11 @@ import textwrap
 import numpy as np
 import pytest
 from shapely import box
-from tests.crowd.test_copies import all_there_is, state
 
 from mesa_mobility import CostTerm, PedestrianModel, PedestrianType, Source
 from mesa_mobility.crowd import Pedestrian
 from mesa_mobility.errors import ModelError
+from tests.crowd.checkpoint.test_copies import all_there_is, state
 from tests.fixtures.maps import wanderer
 from tests.fixtures.scenes import advance, corridor
 

@@ -11,11 +11,11 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import (
     Trajectories,
     density,
-    export,
     to_pedpy,
     write_juelich_text,
     write_jupedsim_sqlite,
 )
+from mesa_mobility.results.formats import export
 
 
 @pytest.fixture

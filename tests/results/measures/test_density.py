@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Polygon, box
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results import individual_densities, voronoi_density
+from mesa_mobility.results import density, individual_densities, voronoi_density
 
 
 def test_cells_of_a_lattice_are_its_squares():
@@ -77,3 +78,16 @@ def test_pedpy_finds_the_same(walk):
     )
     ours = [density for _, density in voronoi_density(run, area, floor)]
     assert ours == pytest.approx(theirs.sort_values("frame")["density"].tolist(), rel=1e-9)
+
+
+def test_density_is_people_over_area(walk):
+    run = walk(
+        {0: (0, [(1, 1), (1, 1)]), 1: (0, [(1.5, 1), (9, 9)]), 2: (0, [(9, 9), (9, 9)])},
+        frame_rate=1.0,
+    )
+    assert density(run, shapely.box(0, 0, 2, 2)) == [[0.0, 0.5], [1.0, 0.25]]
+
+
+def test_density_needs_an_area(walk):
+    with pytest.raises(ResultsError, match="no size"):
+        density(walk({0: (0, [(0, 0)])}), shapely.Polygon())

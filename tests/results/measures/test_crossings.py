@@ -1,11 +1,9 @@
-"""N-t curves, flow over time, and speeds along a direction, on tracks drawn by hand."""
+"""Crossings of lines, N-t curves and flow, on tracks drawn by hand."""
 
-import numpy as np
 import pytest
-from shapely import box
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results import crossings, flow_over_time, passed_by, speeds_along
+from mesa_mobility.results import crossings, flow, flow_over_time, passed_by
 
 LINE = ((5.0, 0.0), (5.0, 4.0))
 
@@ -61,35 +59,43 @@ def test_a_window_must_last(three):
         flow_over_time(crossings(three, *LINE), 10.0, window=0.0)
 
 
-def test_speed_along_a_direction_over_a_window(walk):
-    # 0.25 m a frame of half a second along x, swinging in y; and somebody who goes back.
-    ahead = [(0.25 * k, 0.1 * (-1) ** k) for k in range(7)]
-    back = [(5.0 - 0.5 * k, 2.0) for k in range(4)]
-    run = walk({0: (0, ahead), 1: (2, back)}, frame_rate=2.0)
-    found = speeds_along(run, (3.0, 0.0), window=1.5)
-    assert found.person.tolist() == [0, 0, 0, 0, 1]
-    assert found.speed == pytest.approx([0.5] * 4 + [-1.0])
-    assert found.time == pytest.approx([0.75, 1.25, 1.75, 2.25, 1.75])
-    # The window has 3 frames; where they were one frame after its beginning.
-    assert found.point[:, 0] == pytest.approx([0.25, 0.5, 0.75, 1.0, 4.5])
-    assert speeds_along(run, (0.0, 1.0), window=1.0).speed[:5] == pytest.approx([0.0] * 5)
-    assert speeds_along(run, (1.0, 1.0), window=1.5).speed[-1] == pytest.approx(-1 / np.sqrt(2))
+def test_crossings_say_when_who_and_which_way(walk):
+    # The line runs up from (0, 0) to (0, 2): its left-hand side is x < 0.
+    run = walk(
+        {
+            0: (0, [(-1, 1), (-1, 1), (3, 1)]),  # to the right, a quarter of a frame after 1
+            1: (0, [(1, 1), (0.5, 1), (-0.5, 1)]),  # to the left, half a frame after 1
+            2: (0, [(-1, 3), (1, 3), (2, 3)]),  # past its upper end
+        },
+        frame_rate=2.0,
+    )
+    passages = crossings(run, (0, 0), (0, 2))
+    assert passages.time.tolist() == [0.625, 0.75]
+    assert passages.person.tolist() == [0, 1]
+    assert passages.direction.tolist() == [-1, 1]
 
 
-def test_speed_only_of_those_in_the_area_in_the_middle_of_the_window(walk):
-    run = walk({0: (0, [(float(k), 0.0) for k in range(9)])}, frame_rate=1.0)
-    found = speeds_along(run, (1.0, 0.0), window=2.0, area=box(2.5, -1, 4.5, 1))
-    assert found.point[:, 0].tolist() == [3.0, 4.0]
-    assert found.time.tolist() == [3.0, 4.0]
+def test_standing_on_the_line_counts_once(walk):
+    run = walk({0: (0, [(1, 1), (0, 1), (0, 1), (-1, 1)])}, frame_rate=1.0)
+    passages = crossings(run, (0, 0), (0, 2))
+    assert passages.time.tolist() == [1.0]
+    assert passages.direction.tolist() == [1]
 
 
-def test_nobody_long_enough_inside(walk):
-    run = walk({0: (0, [(0.0, 0.0), (1.0, 0.0)])}, frame_rate=1.0)
-    assert len(speeds_along(run, (1.0, 0.0), window=5.0).speed) == 0
+def test_a_line_needs_two_ends(two_leave_one_stays):
+    with pytest.raises(ResultsError, match="two ends"):
+        crossings(two_leave_one_stays, (1, 1), (1, 1))
 
 
-@pytest.mark.parametrize("direction", [(0.0, 0.0), (1.0,), (np.nan, 1.0)])
-def test_directions_that_are_none(walk, direction):
-    run = walk({0: (0, [(0.0, 0.0)] * 4)}, frame_rate=1.0)
-    with pytest.raises(ResultsError, match="direction"):
-        speeds_along(run, direction)
+def test_flow_starts_with_the_first_passage():
+    assert flow([10.0, 12.0, 11.0, 14.0]) == 0.75
+    assert flow([10.0]) is None
+    assert flow([]) is None
+
+
+def test_flow_over_an_exit(two_leave_one_stays):
+    # 0 passes x = 10 at 1/1.1 of a frame after 1, 2 at 1/1.5 after 3; frames last 0.5 s.
+    passages = crossings(two_leave_one_stays, (10, 1), (10, 3))
+    first, second = (1 + 1 / 1.1) / 2, (3 + 1 / 1.5) / 2
+    assert passages.time.tolist() == pytest.approx([first, second])
+    assert flow(passages.time) == pytest.approx(1 / (second - first))
