@@ -20,7 +20,8 @@ if TYPE_CHECKING:
         wall_kernel,
     )
     from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
-    from mesa_mobility.crowd.insertion.sources import Inflow, Source
+    from mesa_mobility.crowd.insertion.inflow import Inflow
+    from mesa_mobility.crowd.insertion.source import Source
     from mesa_mobility.crowd.model import PedestrianModel
     from mesa_mobility.crowd.options.capability import Capability
     from mesa_mobility.crowd.people.pedestrian import Pedestrian
@@ -44,14 +45,14 @@ _MODULES = {
     "Deciding": "tactics.target_choice",
     "Desired": "tactics.tactic",
     "Explanation": "planning.explanation",
-    "Inflow": "insertion.sources",
+    "Inflow": "insertion.inflow",
     "RouteChoice": "tactics.route_choice",
     "SpeedRule": "tactics.speed_rules",
     "Pedestrian": "people.pedestrian",
     "PedestrianModel": "model",
     "PedestrianType": "people.pedestrian_type",
     "Preset": "presets",
-    "Source": "insertion.sources",
+    "Source": "insertion.source",
     "Tactic": "tactics.tactic",
     "TargetChoice": "tactics.target_choice",
     "Watch": "planning.explanation",

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.hooks import Plugin, Saved
+from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
-from mesa_mobility.crowd.insertion.sources import PLACES_TRIED
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
 from mesa_mobility.crowd.planning.decision_order import decision_order, due

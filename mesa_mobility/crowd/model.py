@@ -17,8 +17,9 @@ from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
 from mesa_mobility.crowd.hooks import Saved, scheduled_events
+from mesa_mobility.crowd.insertion.inflow import Inflow, Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
-from mesa_mobility.crowd.insertion.sources import Inflow, Source, Sources
+from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian import (

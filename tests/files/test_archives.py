@@ -38,13 +38,13 @@ def test_whatever_goes_wrong_is_one_line(tmp_path, fault, message):
 
 
 def test_errors_of_the_reader_s_own_pass():
-    with pytest.raises(ModelError, match="^said already$"), reading("f", "map", MapError):
+    with pytest.raises(ModelError, match=r"^said already$"), reading("f", "map", MapError):
         raise ModelError("said already")
 
 
 def test_a_kind_without_a_suffix():
     with (
-        pytest.raises(ModelError, match="^f: no such file, expected a checkpoint$"),
+        pytest.raises(ModelError, match=r"^f: no such file, expected a checkpoint$"),
         reading("f", "checkpoint", ModelError),
     ):
         raise FileNotFoundError(2, "x")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility import distributions
-from mesa_mobility.crowd.insertion.sources import Source
+from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.fields import KINDS
