@@ -28,10 +28,8 @@ from mesa_mobility.floorplan.walls.wall_boxes import near_line
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
 
-
 # Somebody close to a convex wall has to come a little nearer to it.
 _OWN_SHARE = 0.5
-
 
 # More than the rounding error of the distance between a wall and a line (metres).
 _ROUNDING = 1e-6
