@@ -11,19 +11,18 @@ from mesa_mobility._once import cached_once
 Content = TypeVar("Content")
 """What is made of a file."""
 
-Make = Callable[..., Content]
-"""Makes it from its fields, given by name."""
-
 
 def read_once(
-    path: str | Path, read: Callable[[Path, Make[Content]], Content], make: Make[Content]
+    path: str | Path,
+    read: Callable[[Path, Callable[..., Content]], Content],
+    make: Callable[..., Content],
 ) -> Content:
     """What `read` makes of a file, or what it made before if the file has not changed since.
 
     Args:
         path: the file.
-        read: reads the file.
-        make: given to `read`.
+        read: reads the file, given its path and `make`.
+        make: makes the content from its fields, given by name.
 
     Raises:
         MobilityError: as `read`.
@@ -39,6 +38,6 @@ def read_once(
 
 @cached_once(maxsize=20)
 def _read_version(
-    path: Path, changed: int, size: int, read: Callable[[Path, Make[Any]], Any], make: Make[Any]
+    path: Path, changed: int, size: int, read: Callable[[Path, Any], Any], make: Callable[..., Any]
 ) -> Any:
     return read(path, make)

@@ -98,9 +98,10 @@ def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
             return make(**_decode(arrays))
         from mesa_mobility.mobility.storing.families import read_families
 
-        def lender() -> Any:
+        def lender() -> Map:
             """The able-bodied map, of which a map borrows what it lacks."""
-            return read_once(shipped_map_path("able_bodied"), read_map, make)
+            read: Callable[[Path, Callable[..., Map]], Map] = read_map
+            return read_once(shipped_map_path("able_bodied"), read, make)
 
         return make(**read_families(arrays).fields(lender))
     except MapError as error:
