@@ -1,17 +1,17 @@
 """The shipped behaviours, each a plug-in like any other."""
 
 from mesa_mobility.behaviors.anticipation import Anticipation
-from mesa_mobility.behaviors.exit_choice import Choosing, ExitChoice
-from mesa_mobility.behaviors.familiar_exit import FamiliarExit
+from mesa_mobility.behaviors.exits.exit_choice import Choosing, ExitChoice
+from mesa_mobility.behaviors.exits.familiar_exit import FamiliarExit
+from mesa_mobility.behaviors.exits.nearest_exit import NearestExit
+from mesa_mobility.behaviors.exits.quickest_exit import QuickestExit
+from mesa_mobility.behaviors.exits.random_utility import RandomUtility
+from mesa_mobility.behaviors.exits.social_influence import SocialInfluence
 from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
-from mesa_mobility.behaviors.nearest_exit import NearestExit
-from mesa_mobility.behaviors.quickest_exit import QuickestExit
-from mesa_mobility.behaviors.random_utility import RandomUtility
 from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.room_ahead import RoomAhead
-from mesa_mobility.behaviors.social_influence import SocialInfluence
 from mesa_mobility.behaviors.stepping import Stepping
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
 from mesa_mobility.behaviors.velocity import (

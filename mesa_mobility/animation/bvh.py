@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.bodies import BodyMotion
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.capture.motion import FILE_TO_WORLD
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.files.atomic import replacing
 
 UNITS_PER_METRE = 100.0
 """Files hold centimetres."""

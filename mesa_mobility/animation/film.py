@@ -13,8 +13,8 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from numpy.typing import NDArray
 
 from mesa_mobility.animation.people import Selection
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results import Trajectories
 from mesa_mobility.results.floor import draw_floor, floor_figure
 

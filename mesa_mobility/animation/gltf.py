@@ -16,10 +16,10 @@ from scipy.spatial.transform import Rotation
 
 from mesa_mobility.animation.figure import human_figure, rest_positions
 from mesa_mobility.animation.people import Walker
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.files.atomic import replacing
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from mesa_mobility.animation.gltf import write_glb
 from mesa_mobility.animation.people import Walker
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.files.atomic import replacing
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan

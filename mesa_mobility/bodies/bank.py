@@ -147,9 +147,10 @@ class PoseBank:
         Raises:
             MapError: the file is missing, damaged, of another version or inconsistent.
         """
-        from mesa_mobility.bodies.bankfile import read_bank_once
+        from mesa_mobility.bodies.bankfile import read_bank
+        from mesa_mobility.files.read_once import read_once
 
-        return read_bank_once(path, cls)
+        return read_once(path, read_bank, cls)
 
     @classmethod
     def of(cls, digest: str, path: str | Path | None = None) -> PoseBank:

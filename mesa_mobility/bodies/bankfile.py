@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility._once import cached_once
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.storing.archive import Kind, read_arrays, read_metadata, write_arrays
 
@@ -67,25 +66,6 @@ def write_bank(bank: PoseBank, path: str | Path) -> None:
     # Changes from frame to frame compress better; they wrap round, and so do their sums.
     arrays["rotations"] = np.diff(bank.rotations, axis=0, prepend=np.int16(0)).transpose(1, 2, 0)
     write_arrays(Path(path), _DTYPES, arrays, metadata)
-
-
-def read_bank_once(path: str | Path, make: Callable[..., Bank]) -> Bank:
-    """Read a bank's file; return the cached bank if the file has not changed.
-
-    Raises:
-        MapError: as ``read_bank``.
-    """
-    path = Path(path)
-    try:
-        status = path.stat()
-    except OSError:
-        return read_bank(path, make)  # which raises the error
-    return _read_version(path.resolve(), status.st_mtime_ns, status.st_size, make)
-
-
-@cached_once(maxsize=4)
-def _read_version(path: Path, changed: int, size: int, make: Callable[..., Bank]) -> Bank:
-    return read_bank(path, make)
 
 
 def read_bank(path: str | Path, make: Callable[..., Bank]) -> Bank:

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import typer
 
-from mesa_mobility.commands import experiment, mobility_map, new, plugins
+from mesa_mobility.commands import experiment, new, plugins
 from mesa_mobility.commands.animate import animate, render
-from mesa_mobility.commands.bootstrap import bootstrap
 from mesa_mobility.commands.dashboard import dashboard
-from mesa_mobility.commands.map_poses import poses
+from mesa_mobility.commands.maps.app import app as maps
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.validate import validate
@@ -35,9 +34,7 @@ app.command("dashboard")(dashboard)
 app.command("animate")(animate)
 app.command("render")(render)
 app.command("replay")(replay)
-mobility_map.app.command("poses")(poses)
-mobility_map.app.command("bootstrap")(bootstrap)
-app.add_typer(mobility_map.app, name="map")
+app.add_typer(maps, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")
 app.command("models")(plugins.models)

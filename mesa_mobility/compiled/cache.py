@@ -170,7 +170,7 @@ def _version() -> str:
 def _sources() -> Iterator[Path]:
     yield from sorted(PACKAGE.rglob("*.py"))
     if not (PACKAGE / "behaviors").is_dir():  # a checkout
-        yield from sorted(PACKAGE.parent.glob("behaviors/*.py"))
+        yield from sorted(PACKAGE.parent.glob("behaviors/**/*.py"))
 
 
 class _Place:

@@ -20,13 +20,14 @@ if TYPE_CHECKING:
         wall_kernel,
     )
     from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
+    from mesa_mobility.crowd.insertion.inflow import Inflow
+    from mesa_mobility.crowd.insertion.source import Source
     from mesa_mobility.crowd.model import PedestrianModel
     from mesa_mobility.crowd.options.capability import Capability
-    from mesa_mobility.crowd.pedestrian import Pedestrian
-    from mesa_mobility.crowd.pedestrian_type import PedestrianType
+    from mesa_mobility.crowd.people.pedestrian import Pedestrian
+    from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
     from mesa_mobility.crowd.planning.explanation import FREE, PERSON, WALL, Explanation, Watch
     from mesa_mobility.crowd.presets import PRESETS, Preset
-    from mesa_mobility.crowd.sources import Inflow, Source
     from mesa_mobility.crowd.tactics.route_choice import RouteChoice
     from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
     from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
@@ -44,14 +45,14 @@ _MODULES = {
     "Deciding": "tactics.target_choice",
     "Desired": "tactics.tactic",
     "Explanation": "planning.explanation",
-    "Inflow": "sources",
+    "Inflow": "insertion.inflow",
     "RouteChoice": "tactics.route_choice",
     "SpeedRule": "tactics.speed_rules",
-    "Pedestrian": "pedestrian",
+    "Pedestrian": "people.pedestrian",
     "PedestrianModel": "model",
-    "PedestrianType": "pedestrian_type",
+    "PedestrianType": "people.pedestrian_type",
     "Preset": "presets",
-    "Source": "sources",
+    "Source": "insertion.source",
     "Tactic": "tactics.tactic",
     "TargetChoice": "tactics.target_choice",
     "Watch": "planning.explanation",

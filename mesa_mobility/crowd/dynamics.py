@@ -10,17 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.hooks import Plugin, Saved
-from mesa_mobility.crowd.insertion import Newcomers
+from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED
+from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
-from mesa_mobility.crowd.pedestrian import Pedestrian
-from mesa_mobility.crowd.planning.candidate_batch import make_candidates
+from mesa_mobility.crowd.people.pedestrian import Pedestrian
 from mesa_mobility.crowd.planning.decision_order import decision_order, due
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.explanation import Explanation, judge, weigh
 from mesa_mobility.crowd.planning.grid import Grid, build_grid
 from mesa_mobility.crowd.planning.replanning import stop_where_blocked
 from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
 from mesa_mobility.crowd.scene import Scene
-from mesa_mobility.crowd.sources import PLACES_TRIED
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
 from mesa_mobility.errors import ModelError

@@ -2,38 +2,36 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from copy import deepcopy
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import mesa
 import numpy as np
 from mesa.datacollection import DataCollector
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.crowd.checkpoint.saved_model import SavedModel
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
-from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
-from mesa_mobility.crowd.insertion import Newcomers
+from mesa_mobility.crowd.hooks import Saved, scheduled_events
+from mesa_mobility.crowd.insertion.inflow import Inflow, Sources
+from mesa_mobility.crowd.insertion.newcomers import Newcomers
+from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.pedestrian import (
+from mesa_mobility.crowd.people.pedestrian import (
     Pedestrian,
     check_pedestrian_class,
-    last_number,
-    number_from,
 )
-from mesa_mobility.crowd.pedestrian_type import PedestrianType, types_of
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset, read_preset
 from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.scene import make_scene
-from mesa_mobility.crowd.sources import Inflow, Source, Sources
 from mesa_mobility.crowd.space import space_of
 from mesa_mobility.crowd.stall import StallWatch, stall_reason
 from mesa_mobility.crowd.state.fields import read_fields
@@ -51,7 +49,7 @@ from mesa_mobility.plugins.seeds import seed_of
 from mesa_mobility.populations import Population
 
 
-class PedestrianModel(mesa.Model):
+class PedestrianModel(SavedModel):
     """Pedestrians on a floor plan, driven by recorded movement.
 
     Concrete models build a floor plan, call this constructor and then
@@ -121,9 +119,6 @@ class PedestrianModel(mesa.Model):
     frame_rate = 1.0 / FRAME_SECONDS
     """Frames a second."""
 
-    made_with: tuple[tuple[Any, ...], dict[str, Any]]
-    """The arguments that the constructor was called with."""
-
     def __init__(
         self,
         floor_plan: FloorPlan,
@@ -178,81 +173,10 @@ class PedestrianModel(mesa.Model):
         self.datacollector = DataCollector(model_reporters=REPORTERS)
         self._framework = frozenset(vars(self))
 
-    def __new__(cls, *args: Any, **keywords: Any) -> Self:
-        """A model that knows what it was made with."""
-        model = super().__new__(cls)
-        model.made_with = args, keywords
-        return model
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        """An independent copy that continues exactly as this model would.
-
-        Both share the mobility map and compiled code, which neither changes.
-        """
-        copied = type(self).__new__(type(self))
-        memo[id(self)] = copied
-        # Its agents go into registers that use their model's number.
-        number_from(copied, self.last_id)
-        for name, value in self.__dict__.items():
-            copied.__dict__[name] = value if name == "made_with" else deepcopy(value, memo)
-        add_occupants(copied.floor_plan, copied.population)
-        return copied
-
-    def __reduce_ex__(self, protocol: Any) -> Any:
-        raise ModelError(
-            f"{type(self).__name__}: a model can be copied by copy.deepcopy, neither by copy.copy "
-            "nor by pickle; expected its parameters and seed, which make it anew"
-        )
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a checkpoint, from which ``load`` goes on to the same trajectories.
-
-        It holds the constructor's arguments and all that has changed since: people, behaviours,
-        generators, records, and attributes of the model and its people. Maps are not in it but
-        their digest is.
-
-        Args:
-            path: the file, a zip of arrays and JSON.
-
-        Raises:
-            ModelError: an attribute or a behaviour's state that cannot be saved, people who wait
-                for a function, or a file that cannot be written.
-        """
-        from mesa_mobility.crowd.checkpoint.snapshot import save_model
-
-        save_model(self, path)
-
-    @classmethod
-    def load(
-        cls, path: str | os.PathLike[str], *, plugins: Iterable[Plugin] = (), **arguments: Any
-    ) -> Self:
-        """The model of a checkpoint, in this process or another.
-
-        Args:
-            path: the file.
-            plugins: behaviours that the model had, and that are neither installed nor made by its
-                constructor.
-            arguments: constructor's arguments that the file cannot hold, such as a mobility map.
-
-        Raises:
-            ModelError: a file that cannot be read or is another model's, other mobility maps, or
-                missing arguments or behaviours.
-        """
-        from mesa_mobility.crowd.checkpoint.snapshot import load_model
-
-        loaded = load_model(cls, path, plugins, arguments)
-        assert isinstance(loaded, cls)
-        return loaded
-
     @property
     def elapsed(self) -> float:
         """Simulated seconds since the start."""
         return self.frame * FRAME_SECONDS
-
-    @property
-    def last_id(self) -> int:
-        """``unique_id`` of the last agent that came."""
-        return last_number(self)
 
     def parts(self) -> dict[str, Saved]:
         """The parts that a checkpoint holds, in the order in which they are restored."""
@@ -270,10 +194,6 @@ class PedestrianModel(mesa.Model):
         if self.decisions is not None:
             parts["decisions"] = self.decisions
         return parts
-
-    def own_attributes(self) -> list[str]:
-        """Names of the attributes that subclasses and users have added."""
-        return sorted(vars(self).keys() - self._framework - {"_framework"})
 
     def bind(self) -> None:
         """Bind behaviours that the model has not used yet."""

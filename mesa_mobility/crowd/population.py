@@ -3,35 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.hooks import Saved
-from mesa_mobility.crowd.insertion import (
-    TOUCHING,
-    Assigned,
-    Newcomers,
-    check_beside_walls,
-    check_column,
-    check_places,
-    distinct,
-    face,
-    first_free,
-    place,
-    too_close,
-)
-from mesa_mobility.crowd.pedestrian import Pedestrian, number_from
+from mesa_mobility.crowd.insertion.free_space import first_free
+from mesa_mobility.crowd.insertion.newcomers import Newcomers
+from mesa_mobility.crowd.insertion.placement import face, place_newcomers
+from mesa_mobility.crowd.people.pedestrian import Pedestrian, number_from
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state.advance import Moved
 from mesa_mobility.crowd.state.aggregates import EMPTY, Aggregates, aggregate, split_active
 from mesa_mobility.crowd.state.departed import Departed
-from mesa_mobility.crowd.suited_places import suited
-from mesa_mobility.errors import MobilityError, ModelError
-from mesa_mobility.floorplan.walls.line_of_sight import distances_to_walls
+from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -130,80 +117,11 @@ class Population(Saved):
             ModelError: see ``PedestrianModel.add_pedestrians``.
             FloorPlanError: see there.
         """
-        scene = self._scene
-        points = check_places(positions, scene.plan)
-        n = len(points)
-        if new.type_index is None and new.population is None:
-            new = replace(new, population=scene.shares)
-        kinds = new.draw_types(n, scene.types, rng)
-        ways = {
-            kind: scene.journeys.start(new.exits, new.route, new.loop, kind)
-            for kind in distinct(kinds)
-        }
-        if new.population is not None and len(ways) > 1:
-            kinds = self._suited(points, kinds, ways, rng)
-        speeds = new.draw_speeds(kinds, scene.types, rng)
-        sets_off = frame + new.draw_waits(n, rng)
-        if new.headings is not None:
-            check_column("headings", new.headings, n)
-        fields = new.field_columns(n, scene.crowd)
-        rows = np.arange(self.count, self.count + n, dtype=np.int64)
-        if self.count + n > len(scene.crowd.x):
-            scene.crowd.grow(max(self.count + n, 2 * len(scene.crowd.x)))
-        placed = rows[:0]
-        try:
-            for kind, (destination, journey) in ways.items():
-                own = np.flatnonzero(kinds == kind)
-                core, there = scene.types[kind].core_radius, points[own]
-                check_beside_walls(there, core, scene.plan, own)
-                self._check_room(there, core, frame, own, placed)
-                scene.environment.check_way_out(there, destination)
-                assigned = Assigned(
-                    type_index=kind,
-                    core=core,
-                    standing=int(scene.rules.standing[kind]),
-                    destination=destination,
-                    journey=journey,
-                )
-                place(scene.crowd, rows[own], there, speeds[own], frame, sets_off[own], assigned)
-                placed = np.sort(np.concatenate([placed, rows[own]]))
-        except MobilityError:
-            scene.crowd.active[placed] = False
-            raise
-        scene.crowd.agenda["group"][rows] = self._group_number(new.group)
-        for name, values in fields.items():
-            scene.crowd.fields[name][rows] = values
+        rows = place_newcomers(
+            self._scene, positions, new, frame, rng, count=self.count, present=self.present
+        )
+        self._scene.crowd.agenda["group"][rows] = self._group_number(new.group)
         return rows
-
-    def _suited(
-        self,
-        points: NDArray[np.float64],
-        kinds: NDArray[np.int64],
-        ways: dict[int, tuple[int, int]],
-        rng: np.random.Generator,
-    ) -> NDArray[np.int64]:
-        """(n,) the same types, at places with room for their bodies and a way out as wide."""
-        scene = self._scene
-        cores = np.array([kind.core_radius for kind in scene.types])
-        _, others, radii = self.bodies()
-
-        def suits(kind: int) -> NDArray[np.bool_]:
-            away = distances_to_walls(scene.plan, points, float(cores[kind]))
-            lost = scene.environment.without_way_out(points, ways[kind][0])
-            return (away >= cores[kind] - TOUCHING) & ~lost
-
-        if not scene.rules.hard_bodies:
-            others, radii = others[:0], radii[:0]
-        found, short = suited(points, kinds, cores, suits, (others, radii), rng)
-        if short is not None:
-            kind, room = short
-            raise ModelError(
-                f"population: {int((kinds == kind).sum())} people are of type "
-                f"{scene.types[kind].name!r}, but only {room} of them can stand at the "
-                f"{len(points)} places and leave, expected room and a way out for bodies of "
-                f"{cores[kind]:g} m radius"
-            )
-        return found
 
     def admit(
         self,
@@ -298,30 +216,6 @@ class Population(Saved):
             scene.crowd.records, scene.rules.search_radius,
         )  # fmt: skip
         return places[free] if free >= 0 else None
-
-    def _check_room(
-        self,
-        points: NDArray[np.float64],
-        core: float,
-        frame: int,
-        numbers: NDArray[np.int64],
-        placed: NDArray[np.int64],
-    ) -> None:
-        """Refuse places without room; (n,) ``numbers`` of people, and rows of newcomers before."""
-        scene = self._scene
-        if not scene.rules.hard_bodies:
-            return
-        where, who = too_close(
-            points, core, frame, np.concatenate([self.present, placed]), scene.repertoire.table,
-            scene.crowd.records, scene.rules.search_radius,
-        )  # fmt: skip
-        if where >= 0:
-            newcomer = who < 0 or who >= self.count
-            other = "another newcomer" if newcomer else f"where pedestrian {who} is or will be"
-            raise ModelError(
-                f"pedestrian {numbers[where]} at {points[where].tolist()}: too close to {other}, "
-                "expected room for both bodies"
-            )
 
     def awaits(self, row: int | None) -> bool:
         """Whether somebody inside has this row and no agent yet."""

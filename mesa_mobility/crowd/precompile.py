@@ -23,8 +23,8 @@ from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import OPTION, SAMPLES, OptionTable, boxes
 from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.planning.decision_order import select_due
+from mesa_mobility.crowd.planning.evaluation.term_table import compile_terms
 from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
-from mesa_mobility.crowd.planning.term_table import compile_terms
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.state.advance import move

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
-from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.environment import Environment

@@ -16,11 +16,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from fsspec.implementations.local import LocalFileSystem
 
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.rows import DONE, FAILED, STALLED, TIMED_OUT, Row
-from mesa_mobility.results.parquet import METADATA_KEY
-from mesa_mobility.results.seal import FIELD, UNSEALED, check_open, seal_open
+from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.formats.parquet import METADATA_KEY
+from mesa_mobility.results.formats.seal import FIELD, UNSEALED, check_open, seal_open
 
 RUN_COLUMNS: dict[str, pa.DataType] = {
     "run": pa.string(),

@@ -11,8 +11,8 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.extent import check_coordinates
 from mesa_mobility.floorplan.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.zones import SpeedZone

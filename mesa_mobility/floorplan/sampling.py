@@ -12,7 +12,8 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.poisson_disk import lattice, throw
 from mesa_mobility.floorplan.reachability import with_way_out
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
-from mesa_mobility.floorplan.walls.line_of_sight import Sight, sight_of, wall_distances
+from mesa_mobility.floorplan.walls.sight import Sight, sight_of
+from mesa_mobility.floorplan.walls.wall_distances import wall_distances
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan

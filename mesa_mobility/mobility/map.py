@@ -170,10 +170,11 @@ class MobilityMap:
         Raises:
             MapError: the file is missing, damaged, of another version or inconsistent.
         """
-        from mesa_mobility.mobility.mapfile import read_map_once, shipped_map_path
+        from mesa_mobility.files.read_once import read_once
+        from mesa_mobility.mobility.mapfile import read_map, shipped_map_path
 
         path = Path(shipped_map_path("able_bodied") if path is None else path)
-        found = read_map_once(path, cls)
+        found = read_once(path, read_map, cls)
         object.__setattr__(found, "file", path)
         return found
 

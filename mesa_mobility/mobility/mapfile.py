@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility._once import cached_once
 from mesa_mobility.errors import MapError
+from mesa_mobility.files.read_once import read_once
 from mesa_mobility.mobility.storing.archive import read_arrays, read_metadata, write_arrays
 from mesa_mobility.mobility.storing.layouts import FAMILIES, OPTIONS
 from mesa_mobility.mobility.storing.steps import COST_STEP, PATH_STEPS
@@ -81,29 +81,6 @@ def write_map(map_: MobilityMap, path: str | Path) -> None:
     write_arrays(path, OPTIONS, arrays, metadata)
 
 
-def read_map_once(path: str | Path, make: Callable[..., Map]) -> Map:
-    """Read a map file; return the cached map if the file has not changed.
-
-    Args:
-        path: the file.
-        make: builds the map from its fields, given by name.
-
-    Raises:
-        MapError: as ``read_map``.
-    """
-    path = Path(path)
-    try:
-        status = path.stat()
-    except OSError:
-        return read_map(path, make)  # which raises the error
-    return _read_version(path.resolve(), status.st_mtime_ns, status.st_size, make)
-
-
-@cached_once(maxsize=16)
-def _read_version(path: Path, changed: int, size: int, make: Callable[..., Map]) -> Map:
-    return read_map(path, make)
-
-
 def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
     """Read and check a map file, of all options or of families of options.
 
@@ -121,9 +98,10 @@ def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
             return make(**_decode(arrays))
         from mesa_mobility.mobility.storing.families import read_families
 
-        def lender() -> Any:
+        def lender() -> Map:
             """The able-bodied map, of which a map borrows what it lacks."""
-            return read_map_once(shipped_map_path("able_bodied"), make)
+            read: Callable[[Path, Callable[..., Map]], Map] = read_map
+            return read_once(shipped_map_path("able_bodied"), read, make)
 
         return make(**read_families(arrays).fields(lender))
     except MapError as error:

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.files import json_text
 
 if TYPE_CHECKING:

@@ -3,32 +3,37 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from mesa_mobility.results.by_type import by_type, occupancy_by_type
-from mesa_mobility.results.export import to_pedpy, write_juelich_text, write_jupedsim_sqlite
 from mesa_mobility.results.files import check_writable
-from mesa_mobility.results.gait import Sway, lateral_sway
-from mesa_mobility.results.lines import flow_over_time, passed_by
-from mesa_mobility.results.measures import (
+from mesa_mobility.results.formats.export import to_pedpy, write_juelich_text, write_jupedsim_sqlite
+from mesa_mobility.results.formats.parquet import write_parquet
+from mesa_mobility.results.measures.by_type import by_type, occupancy_by_type
+from mesa_mobility.results.measures.crossings import (
     Crossings,
-    SpeedsAlong,
     crossings,
-    density,
-    departures,
-    direction_changes,
-    egress_time,
     flow,
-    mean_speed,
-    occupancy,
+    flow_over_time,
     passages,
+    passed_by,
+)
+from mesa_mobility.results.measures.density import (
+    density,
+    individual_densities,
+    voronoi_cells,
+    voronoi_density,
+)
+from mesa_mobility.results.measures.gait import Sway, lateral_sway
+from mesa_mobility.results.measures.occupancy import departures, egress_time, occupancy
+from mesa_mobility.results.measures.speeds import (
+    SpeedsAlong,
+    direction_changes,
+    mean_speed,
     speeds,
     speeds_along,
 )
 from mesa_mobility.results.overlaps import Overlap
-from mesa_mobility.results.parquet import write_parquet
 from mesa_mobility.results.run import write_run
 from mesa_mobility.results.safety import SafetyReport, WallCrossing, check_safety
 from mesa_mobility.results.trajectories import Trajectories, read_parquet
-from mesa_mobility.results.voronoi import individual_densities, voronoi_cells, voronoi_density
 
 if TYPE_CHECKING:
     from mesa_mobility.results.plots import plot_occupancy, plot_snapshots, plot_trajectories

@@ -14,9 +14,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.seal import FIELD, UNSEALED, check_seal, seal
+from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.formats.seal import FIELD, UNSEALED, check_seal, seal
 
 if TYPE_CHECKING:
     from mesa_mobility.bodies import Movements

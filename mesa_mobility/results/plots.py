@@ -21,10 +21,10 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.by_type import people_by
+from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.floor import draw_floor, floor_figure
+from mesa_mobility.results.measures.by_type import people_by
 from mesa_mobility.results.trajectories import Trajectories
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.by_type import occupancy_by_type
 from mesa_mobility.results.files import all_or_none, json_text
-from mesa_mobility.results.measures import egress_time, occupancy
+from mesa_mobility.results.measures.by_type import occupancy_by_type
+from mesa_mobility.results.measures.occupancy import egress_time, occupancy
 from mesa_mobility.results.trajectories import Trajectories, read_parquet
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.columns import (
+    COLUMNS,
+    checked_person_data,
+    in_order,
+    one_dimensional,
+    radii_of,
+    read_only,
+    real_numbers,
+    whole_numbers,
+)
 
 if TYPE_CHECKING:
     import os
@@ -23,8 +33,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
-
-COLUMNS = ("frame", "person", "x", "y", "heading")
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,13 +83,13 @@ class Trajectories:
 
     def __post_init__(self) -> None:
         columns: dict[str, NDArray[Any]] = {
-            "frame": _whole_numbers("frame", self.frame),
-            "person": _whole_numbers("person", self.person),
-            "x": _real_numbers("x", self.x),
-            "y": _real_numbers("y", self.y),
-            "heading": _real_numbers("heading", self.heading),
+            "frame": whole_numbers("frame", self.frame),
+            "person": whole_numbers("person", self.person),
+            "x": real_numbers("x", self.x),
+            "y": real_numbers("y", self.y),
+            "heading": real_numbers("heading", self.heading),
         }
-        own = {name: _one_dimensional(name, values) for name, values in self.fields.items()}
+        own = {name: one_dimensional(name, values) for name, values in self.fields.items()}
         taken = columns.keys() & own.keys()
         if taken:
             raise ResultsError(f"trajectories: a field is named {min(taken)!r}, as a column is")
@@ -89,15 +97,15 @@ class Trajectories:
         lengths = {name: len(values) for name, values in columns.items()}
         if len(set(lengths.values())) != 1:
             raise ResultsError(f"trajectories: columns of unequal length: {lengths}")
-        columns = _sorted(columns)
-        object.__setattr__(self, "fields", {name: _read_only(columns[name]) for name in own})
+        columns = in_order(columns)
+        object.__setattr__(self, "fields", {name: read_only(columns[name]) for name in own})
         for name in columns.keys() - own.keys():
-            object.__setattr__(self, name, _read_only(columns[name]))
+            object.__setattr__(self, name, read_only(columns[name]))
         if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
             raise ResultsError(
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
             )
-        object.__setattr__(self, "core_radius", _radii(self.core_radius, columns["person"]))
+        object.__setattr__(self, "core_radius", radii_of(self.core_radius, columns["person"]))
         object.__setattr__(
             self, "person_data", checked_person_data(self.person_data, columns["person"], own)
         )
@@ -116,14 +124,14 @@ class Trajectories:
         present = self.person[self.frame == self.last_frame]
         if self.inside_at_end is None:
             object.__setattr__(self, "inside_at_end", present)
-        inside = np.unique(_whole_numbers("inside_at_end", self.remaining))
+        inside = np.unique(whole_numbers("inside_at_end", self.remaining))
         absent = np.setdiff1d(inside, present)
         if len(absent):
             raise ResultsError(
                 f"trajectories: person {absent[0]} is said to be inside at the end, but has no "
                 f"row in frame {self.last_frame}"
             )
-        object.__setattr__(self, "inside_at_end", _read_only(inside))
+        object.__setattr__(self, "inside_at_end", read_only(inside))
 
     @classmethod
     def of(cls, model: Any) -> Trajectories:
@@ -288,13 +296,13 @@ class Trajectories:
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Write a Parquet file: see :func:`mesa_mobility.results.write_parquet`."""
-        from mesa_mobility.results.parquet import write_parquet
+        from mesa_mobility.results.formats.parquet import write_parquet
 
         write_parquet(self, path)
 
     def to_pedpy(self) -> pedpy.TrajectoryData:
         """As PedPy's trajectory data: see :func:`mesa_mobility.results.to_pedpy`."""
-        from mesa_mobility.results.export import to_pedpy
+        from mesa_mobility.results.formats.export import to_pedpy
 
         return to_pedpy(self)
 
@@ -306,104 +314,10 @@ def read_parquet(path: str | os.PathLike[str]) -> Trajectories:
         ResultsError: no such file, not a Parquet file, any byte of it changed, columns or
             metadata missing, or rows that are not trajectories.
     """
-    from mesa_mobility.results.parquet import read_columns
+    from mesa_mobility.results.formats.parquet import read_columns
 
     fields = read_columns(path)
     try:
         return Trajectories(**fields)
     except ResultsError as error:
         raise ResultsError(f"{path}: {error}") from error
-
-
-def _whole_numbers(name: str, values: ArrayLike) -> NDArray[np.int32]:
-    array = _one_dimensional(name, values)
-    if array.size and not np.issubdtype(array.dtype, np.integer):
-        raise ResultsError(f"trajectories: {name} holds {array.dtype}, expected whole numbers")
-    if array.size and (array.min() < 0 or array.max() > np.iinfo(np.int32).max):
-        raise ResultsError(
-            f"trajectories: {name} runs from {array.min()} to {array.max()}, expected 0 or more"
-        )
-    return np.ascontiguousarray(array, dtype=np.int32)
-
-
-def _real_numbers(name: str, values: ArrayLike) -> FloatArray:
-    array = np.ascontiguousarray(_one_dimensional(name, values), dtype=np.float64)
-    wrong = np.flatnonzero(~np.isfinite(array))
-    if len(wrong):
-        raise ResultsError(
-            f"trajectories: {name} of row {wrong[0]} is {array[wrong[0]]}, expected a number"
-        )
-    return array
-
-
-def _one_dimensional(name: str, values: ArrayLike) -> NDArray[Any]:
-    array = np.asarray(values)
-    if array.ndim != 1:
-        raise ResultsError(f"trajectories: {name} has shape {array.shape}, expected (n,)")
-    return array
-
-
-def _sorted(columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    # One 64-bit key for a row makes both the check and the sort a single pass.
-    key = (columns["frame"].astype(np.int64) << 32) | columns["person"]
-    if np.any(np.diff(key) <= 0):
-        order = np.argsort(key, kind="stable")
-        columns = {name: values[order] for name, values in columns.items()}
-        twice = np.flatnonzero(np.diff(key[order]) == 0)
-        if len(twice):
-            row = int(twice[0])
-            raise ResultsError(
-                f"trajectories: person {columns['person'][row]} is twice in frame "
-                f"{columns['frame'][row]}"
-            )
-    return columns
-
-
-def _radii(value: ArrayLike, person: IntArray) -> FloatArray:
-    people = int(person.max()) + 1 if len(person) else 0
-    radii = np.asarray(value, dtype=np.float64)
-    if radii.ndim == 0:
-        radii = np.full(people, float(radii))
-    if radii.ndim != 1 or len(radii) < people:
-        raise ResultsError(
-            f"trajectories: core_radius has shape {radii.shape}, expected one for each of "
-            f"{people} people"
-        )
-    if not np.all((radii > 0) & np.isfinite(radii)):
-        raise ResultsError("trajectories: core_radius must be positive for everybody")
-    return _read_only(radii)
-
-
-DATA_KINDS = "Uifb"
-"""What data of people may be: texts, whole numbers, numbers, and whether something is so."""
-
-
-def checked_person_data(
-    data: Mapping[str, ArrayLike], person: IntArray, fields: Collection[str] = ()
-) -> Mapping[str, NDArray[Any]]:
-    """Data of people as read-only arrays, with an entry for each person.
-
-    Raises:
-        ResultsError: a name that is a column already, too few entries, or neither texts nor
-            numbers.
-    """
-    people = int(person.max()) + 1 if len(person) else 0
-    found = {}
-    for name, values in data.items():
-        array = np.asarray(values)
-        if name in COLUMNS or name in fields or not name.isidentifier():
-            raise ResultsError(f"trajectories: person_data {name!r}, expected a name of its own")
-        if array.ndim != 1 or len(array) < people or array.dtype.kind not in DATA_KINDS:
-            raise ResultsError(
-                f"trajectories: person_data {name!r} has {array.dtype} in shape {array.shape}, "
-                f"expected texts or numbers for each of {people} people"
-            )
-        found[name] = _read_only(array)
-    return found
-
-
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
-    # A view, so that the caller's own array stays writable.
-    view = array.view()
-    view.flags.writeable = False
-    return view

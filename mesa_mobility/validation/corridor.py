@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesa_mobility.crowd.free_speeds import ADULTS
+from mesa_mobility.crowd.people.free_speeds import ADULTS
 from mesa_mobility.distributions import Normal
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs

@@ -16,7 +16,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, Source
 from mesa_mobility.plugins.registry import load_model
-from mesa_mobility.results.motion import (
+from mesa_mobility.results.measures.motion import (
     Selection,
     accelerations,
     facing_angles,

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from mesa_mobility.behaviors import Anticipation
 
 from mesa_mobility.errors import ModelError
-from tests.fixtures.movements import Body
 from tests.fixtures.options import (
     Chooser,
     Ending,
@@ -20,7 +19,8 @@ from tests.fixtures.options import (
     turned_and_moved,
     turns,
 )
-from tests.fixtures.oracle_costs import anticipation
+from tests.fixtures.oracles.costs import anticipation
+from tests.fixtures.oracles.movements import Body
 
 STILL = (0.0, 0.0)
 ELSEWHERE = (9.0, 0.0)

@@ -107,7 +107,7 @@ def test_nearest_exit_is_a_behaviour_like_any_other():
 
 
 def test_behaviours_use_public_names_only():
-    for path in Path(behaviors.__file__).parent.glob("*.py"):
+    for path in Path(behaviors.__file__).parent.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if not isinstance(node, ast.ImportFrom) or not node.module:
                 continue

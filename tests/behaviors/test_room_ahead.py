@@ -7,7 +7,6 @@ from mesa_mobility.behaviors import RoomAhead
 from shapely import LineString
 
 from mesa_mobility.errors import ModelError
-from tests.fixtures.movements import Body
 from tests.fixtures.options import (
     Chooser,
     Ending,
@@ -19,7 +18,8 @@ from tests.fixtures.options import (
     turned_and_moved,
     turns,
 )
-from tests.fixtures.oracle_costs import room_ahead
+from tests.fixtures.oracles.costs import room_ahead
+from tests.fixtures.oracles.movements import Body
 
 EDGE = 1e-4
 A_METRE_A_SECOND = Ending(displacement=1.5, duration=1.5)

@@ -7,8 +7,8 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, SpeedRule
 from mesa_mobility.errors import ModelError
-from tests.fixtures.counting import overlaps, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import overlaps, wall_crossings
 from tests.fixtures.scenes import core_of, corridor, model_of, put
 
 

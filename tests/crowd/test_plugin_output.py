@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mesa_mobility.behaviors import NearestExit, QuickestExit
-from mesa_mobility.behaviors.random_utility import RandomUtility
+from mesa_mobility.behaviors.exits.random_utility import RandomUtility
 
 from mesa_mobility import CompiledTerm, CostTerm, PedestrianType, SpeedRule, option_kernel
 from mesa_mobility.distributions import Distribution

@@ -12,8 +12,8 @@ from mesa_mobility import PedestrianModel
 from mesa_mobility.crowd import PRESETS
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.registry import load_behavior
-from tests.fixtures.counting import overlaps
 from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
+from tests.fixtures.oracles.counting import overlaps
 from tests.fixtures.scenes import advance, corridor, model_of, put, two_doors
 
 

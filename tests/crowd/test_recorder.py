@@ -8,8 +8,8 @@ import pytest
 
 from mesa_mobility import Trajectories
 from mesa_mobility.errors import ResultsError
-from tests.fixtures.counting import track
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import track
 from tests.fixtures.scenes import advance, corridor, model_of, put, two_doors
 
 

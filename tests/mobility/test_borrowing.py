@@ -9,8 +9,7 @@ from mesa_mobility.mobility import build_map, cluster_poses, motion_graph, reach
 from mesa_mobility.mobility.borrowing import borrow, missing
 from mesa_mobility.mobility.ways_back import check_ways_back
 from tests.fixtures.maps import shipped_map
-
-from .conftest import random_poses
+from tests.fixtures.poses import random_poses
 
 
 @pytest.fixture(scope="module")

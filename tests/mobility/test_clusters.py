@@ -7,8 +7,7 @@ import pytest
 
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import cluster_poses, motion_graph
-
-from .conftest import random_poses
+from tests.fixtures.poses import random_poses
 
 
 def textbook_centres(points, wanted, radius):

@@ -6,8 +6,7 @@ import pytest
 
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import motion_graph, shortest_paths
-
-from .conftest import make_poses, random_poses
+from tests.fixtures.poses import make_poses, random_poses
 
 
 def plain_graph(poses):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from mesa_mobility.mobility import cluster_poses, motion_graph, reachable_options
-
-from .conftest import random_poses
+from tests.fixtures.poses import random_poses
 
 BUDGET, PENALTY, CELL = 3.3, 1.0, (0.10, 0.10, np.deg2rad(15.0))
 

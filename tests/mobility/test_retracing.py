@@ -4,8 +4,7 @@ import numpy as np
 
 from mesa_mobility.mobility import cluster_poses, motion_graph, reachable_options
 from mesa_mobility.mobility.retracing import chains_of
-
-from .conftest import random_poses
+from tests.fixtures.poses import random_poses
 
 
 def test_stretches_lead_along_the_recorded_motion():

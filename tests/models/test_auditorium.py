@@ -6,9 +6,9 @@ import shapely
 from mesa_mobility.models import Auditorium
 from shapely import Point
 
-from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map
-from tests.fixtures.raster import Raster
+from tests.fixtures.oracles.counting import crossings, overlaps, track, wall_crossings
+from tests.fixtures.oracles.raster import Raster
 from tests.fixtures.scenes import core_of
 
 

@@ -5,8 +5,8 @@ import pytest
 import shapely
 from mesa_mobility.models import Doorway
 
-from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map
+from tests.fixtures.oracles.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.scenes import core_of
 
 

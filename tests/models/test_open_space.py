@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from mesa_mobility.models import OpenSpace
 
-from tests.fixtures.counting import overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map
+from tests.fixtures.oracles.counting import overlaps, track, wall_crossings
 from tests.fixtures.scenes import core_of
 
 

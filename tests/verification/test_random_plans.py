@@ -10,7 +10,7 @@ from mesa_mobility.verification.scenarios.random_plans import (
     draw_plan,
     random_run,
 )
-from tests.fixtures.counting import off_floor, overlaps, wall_crossings
+from tests.fixtures.oracles.counting import off_floor, overlaps, wall_crossings
 from tests.fixtures.scenes import core_of
 
 PLANS = [(shape, both_ways) for both_ways in (False, True) for shape in SHAPES]

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility import distributions
-from mesa_mobility.crowd.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.insertion.source import Source
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import Preset
-from mesa_mobility.crowd.sources import Source
 from mesa_mobility.crowd.state.fields import KINDS
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone

@@ -18,91 +18,20 @@ from typing import Any, ClassVar, Self, overload
 from numba import njit, types
 
 from mesa_mobility.compiled.cache import kept_cfunc
+from mesa_mobility.crowd.costs.kernel_loops import (
+    BOUND_LOOP,
+    OPTION_LOOP,
+    PAIR_BOUND_LOOP,
+    PAIR_LOOP,
+    PAIRS_LOOP,
+    WALL_LOOP,
+)
 from mesa_mobility.errors import ModelError
 
 _F = types.float64
 FLOATS = types.CPointer(_F)
 _N = types.int64
 INTS = types.CPointer(_N)
-
-_OPTION_LOOP = """
-def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, mine,
-    at, p, weight, out
-):
-    for k in range(n):
-        out[k] += weight * each(
-            x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, preferred,
-            {own}{taken}p
-        )
-"""
-
-_BOUND_LOOP = """
-def {name}(
-    n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, sx, sy, tx, ty,
-    preferred, own_vx, own_vy, p, weight, out
-):
-    for k in range(n):
-        out[k] += weight * each(
-            x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
-            fastest[k], sx, sy, tx, ty, preferred, {own}p
-        )
-"""
-
-_PAIR_LOOP = """
-def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-    mine, theirs, width, at, p, out
-):
-    for k in range(n):
-        out[k] = each(
-            x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx[k], ny[k], nvx[k], nvy[k],
-            nex[k], ney[k], lead[k], {taken}p
-        )
-"""
-
-_PAIRS_LOOP = """
-def {name}(
-    m, n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney,
-    lead, mine, theirs, width, at, p, weight, out
-):
-    for a in range(m):
-        ax, ay, avx, avy, aex, aey, alead = nx[a], ny[a], nvx[a], nvy[a], nex[a], ney[a], lead[a]
-        for k in range(n):
-            out[k] += weight * each(
-                x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, ax, ay,
-                avx, avy, aex, aey, alead, {taken}p
-            )
-"""
-
-_PAIR_BOUND_LOOP = """
-def {name}(
-    m, n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, sx, sy, tx, ty, nx,
-    ny, nvx, nvy, nex, ney, lead, p, weight, out
-):
-    for a in range(m):
-        ax, ay, avx, avy, aex, aey, alead = nx[a], ny[a], nvx[a], nvy[a], nex[a], ney[a], lead[a]
-        for k in range(n):
-            out[k] += weight * each(
-                x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
-                fastest[k], sx, sy, tx, ty, ax, ay, avx, avy, aex, aey, alead, p
-            )
-"""
-
-_WALL_LOOP = """
-def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, core, walls, p
-):
-    worst = 0.0
-    for k in range(n):
-        cost = each(
-            x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, walls[5 * k],
-            walls[5 * k + 1], walls[5 * k + 2], walls[5 * k + 3], core, p
-        )
-        # A cost that is not a number stays the worst.
-        worst = cost if worst == worst and not cost <= worst else worst
-    return worst
-"""
 
 
 class CostKernel:
@@ -172,14 +101,14 @@ class CostKernel:
 class OptionKernel(CostKernel):
     """Cost of one movement option."""
 
-    loop = _OPTION_LOOP
+    loop = OPTION_LOOP
     signature = types.void(_N, *[FLOATS] * 6, *[_F] * 7, FLOATS, INTS, FLOATS, _F, FLOATS)
 
 
 class BoundKernel(CostKernel):
     """Lower bound of the cost of a group of movement options."""
 
-    loop = _BOUND_LOOP
+    loop = BOUND_LOOP
     signature = types.void(_N, *[FLOATS] * 9, *[_F] * 7, FLOATS, _F, FLOATS)
 
 
@@ -190,7 +119,7 @@ class PairKernel(CostKernel):
     options.
     """
 
-    loop = _PAIR_LOOP
+    loop = PAIR_LOOP
     signature = types.void(_N, *[_F] * 10, *[FLOATS] * 9, _N, INTS, FLOATS, FLOATS)
     all_pairs: ClassVar[Any] = types.void(
         _N, _N, *[FLOATS] * 6, *[_F] * 4, *[FLOATS] * 9, _N, INTS, FLOATS, _F, FLOATS
@@ -202,7 +131,7 @@ class PairKernel(CostKernel):
 
     @cached_property
     def _compiled_pairs(self) -> Any:
-        return self._compile(_PAIRS_LOOP, self.all_pairs, "pairs", neighbour="a")
+        return self._compile(PAIRS_LOOP, self.all_pairs, "pairs", neighbour="a")
 
     @property
     def pairs_address(self) -> int:
@@ -213,14 +142,14 @@ class PairKernel(CostKernel):
 class PairBoundKernel(CostKernel):
     """Lower bound of the cost of a group of movement options with respect to one neighbour."""
 
-    loop = _PAIR_BOUND_LOOP
+    loop = PAIR_BOUND_LOOP
     signature = types.void(_N, _N, *[FLOATS] * 9, *[_F] * 4, *[FLOATS] * 8, _F, FLOATS)
 
 
 class WallKernel(CostKernel):
     """Cost of one movement option with respect to one wall."""
 
-    loop = _WALL_LOOP
+    loop = WALL_LOOP
     signature = types.float64(_N, *[_F] * 11, FLOATS, FLOATS)
 
 

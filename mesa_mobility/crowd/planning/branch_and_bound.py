@@ -32,16 +32,15 @@ from mesa_mobility.crowd.collision.simd_transforms import lanes_to_world
 from mesa_mobility.crowd.costs.layout import END_ROWS, SPEED
 from mesa_mobility.crowd.options.option_groups import DURATION, OptionGroups
 from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.planning.feasibility import option_gone_or_blocked
-from mesa_mobility.crowd.planning.neighbour_costs import (
+from mesa_mobility.crowd.planning.evaluation.lanes import fill_ends, pick_between
+from mesa_mobility.crowd.planning.evaluation.neighbour_costs import (
     ENOUGH,
     LITTLE_LESS,
-    fill_ends,
     pair_cost,
     pair_costs_at_least,
-    pick_between,
 )
-from mesa_mobility.crowd.planning.option_costs import Terms, option_costs, wall_cost
+from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, option_costs, wall_cost
+from mesa_mobility.crowd.planning.feasibility import option_gone_or_blocked
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
 from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
 from mesa_mobility.crowd.state.records import CrowdState

@@ -24,16 +24,15 @@ from mesa_mobility.crowd.planning.branch_and_bound import (
     NOT_A_NUMBER,
     cheapest_free,
 )
-from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
-from mesa_mobility.crowd.planning.grid import Grid, cover_in, neighbours_within, place_in
-from mesa_mobility.crowd.planning.neighbour_costs import (
-    add_pair_bounds,
-    fill_lane,
-    least,
+from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, least
+from mesa_mobility.crowd.planning.evaluation.neighbour_costs import add_pair_bounds
+from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, group_bounds
+from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
     mark_relevant,
     select_relevant,
 )
-from mesa_mobility.crowd.planning.option_costs import Terms, group_bounds
+from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
+from mesa_mobility.crowd.planning.grid import Grid, cover_in, neighbours_within, place_in
 from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Rules, Workspace
 from mesa_mobility.crowd.state.environment import MARGIN, Surroundings

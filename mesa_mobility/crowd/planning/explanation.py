@@ -19,7 +19,7 @@ from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
-from mesa_mobility.crowd.planning.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
 from mesa_mobility.crowd.planning.grid import Grid
 from mesa_mobility.crowd.planning.workspace import Rules

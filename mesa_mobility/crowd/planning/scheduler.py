@@ -17,12 +17,12 @@ from mesa_mobility.crowd.costs.candidates import Moment
 from mesa_mobility.crowd.costs.layout import FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
-from mesa_mobility.crowd.planning.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.decision import decide
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.evaluation.sample_checks import SampleChecks, check_terms
+from mesa_mobility.crowd.planning.evaluation.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
 from mesa_mobility.crowd.planning.grid import Grid, build_grid, headways
-from mesa_mobility.crowd.planning.sample_checks import SampleChecks, check_terms
-from mesa_mobility.crowd.planning.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
 from mesa_mobility.crowd.state.environment import Surroundings

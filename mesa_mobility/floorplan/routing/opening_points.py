@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import inlined, internal
 from mesa_mobility.floorplan.routing.route_graph import Ways, in_view
 from mesa_mobility.floorplan.routing.route_nodes import CORNER
-from mesa_mobility.floorplan.walls.line_of_sight import Sight
+from mesa_mobility.floorplan.walls.sight import Sight
 
 # People aim this far inside the outermost places of an opening, or at its middle (metres).
 # A recorded step ends some centimetres from where it was meant to: beside the jamb is too late.

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal, kept
 from mesa_mobility.floorplan.routing.route_nodes import EXIT, GATE
-from mesa_mobility.floorplan.walls.line_of_sight import Sight, clear_line
+from mesa_mobility.floorplan.walls.line_of_sight import clear_line
+from mesa_mobility.floorplan.walls.sight import Sight
 
 # People this near to a gate's line stand in it and count as past it (metres).
 IN_LINE = 0.01

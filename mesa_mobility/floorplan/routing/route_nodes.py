@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
 from mesa_mobility.floorplan.openings import Exit, Opening
 from mesa_mobility.floorplan.walls.boundaries import rings, turns
-from mesa_mobility.floorplan.walls.line_of_sight import Sight, wall_distances
 from mesa_mobility.floorplan.walls.narrow_gaps import walls_near
+from mesa_mobility.floorplan.walls.sight import Sight
+from mesa_mobility.floorplan.walls.wall_distances import wall_distances
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan

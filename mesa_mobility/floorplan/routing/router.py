@@ -25,8 +25,8 @@ from mesa_mobility.floorplan.routing.target_cache import empty_cache
 from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
 from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
-from mesa_mobility.floorplan.walls.line_of_sight import Sight, sight_of
 from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
+from mesa_mobility.floorplan.walls.sight import Sight, sight_of
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan

@@ -21,14 +21,9 @@ from mesa_mobility.floorplan.routing.visibility_cache import (
     nodes_maybe_in_view,
 )
 from mesa_mobility.floorplan.walls.geometry import segments_cross
-from mesa_mobility.floorplan.walls.line_of_sight import (
-    NO_WALL,
-    Sight,
-    clear_line,
-    free_length,
-    unwalled,
-    wall_distance,
-)
+from mesa_mobility.floorplan.walls.line_of_sight import clear_line, free_length, unwalled
+from mesa_mobility.floorplan.walls.sight import NO_WALL, Sight
+from mesa_mobility.floorplan.walls.wall_distances import wall_distance
 
 # A target behind a gate lies at least this far behind it, however near the next wall is (metres).
 _LEAST_BEYOND = 0.3

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import inlined, internal
 from mesa_mobility.floorplan.walls.geometry import segments_cross
-from mesa_mobility.floorplan.walls.line_of_sight import (
+from mesa_mobility.floorplan.walls.sight import (
     NO_WALL,
     Sight,
     cells_in_row,

@@ -1,7 +1,6 @@
 """Line of sight: whether a body can go straight from one point to another."""
 
-from typing import TYPE_CHECKING, NamedTuple, cast
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,93 +13,26 @@ from mesa_mobility.floorplan.walls.geometry import (
     segment_segment_distance2,
     segments_cross,
 )
-from mesa_mobility.floorplan.walls.wall_boxes import boxes_around, near_line
-from mesa_mobility.floorplan.walls.wall_index import CellTable, as_segments, cell_table
+from mesa_mobility.floorplan.walls.sight import (
+    FEW_WALLS,
+    NO_WALL,
+    TOUCH,
+    Sight,
+    cells_in_row,
+    per_metre_up,
+    rows_crossed,
+    sight_on,
+)
+from mesa_mobility.floorplan.walls.wall_boxes import near_line
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
 
-TOUCH = 1e-9
-"""A line nearer to a wall than this touches it (metres)."""
-
-NO_WALL = np.int64(-1)
-"""Stands for no wall; typed, as functions are compiled again for literal numbers."""
-
 # Somebody close to a convex wall has to come a little nearer to it.
 _OWN_SHARE = 0.5
 
-# Least side of a grid cell (metres).
-_CELL = 1.0
-
 # More than the rounding error of the distance between a wall and a line (metres).
 _ROUNDING = 1e-6
-
-# Up to this many walls, boxes are the fastest test of which are near a line; beyond, the grid.
-_FEW_WALLS = 512
-
-
-class Sight(NamedTuple):
-    """Wall segments and their grid, as the compiled functions take them.
-
-    The first `solid` rows of `walls` are walls; the others are lines that no view
-    crosses but that need no clearance. `boxes` and `boxed` are their boxes and numbers from
-    `boxes_around`, empty if there are many walls.
-    """
-
-    walls: NDArray[np.float64]
-    solid: int
-    table: CellTable
-    boxes: NDArray[np.float64]
-    boxed: NDArray[np.int64]
-
-
-def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
-    """Prepare walls (m, 4), and lines not to be crossed (k, 4), for views of clearance `reach`."""
-    solid = as_segments(walls)
-    rows = np.concatenate([solid, as_segments(curtains)])
-    extent = float(np.ptp(rows.reshape(-1, 2), axis=0).max()) if len(rows) else 1.0
-    # The extra millimetre keeps walls that rounding would put just out of reach of a cell.
-    table = cell_table(rows, max(_CELL, extent / 400), reach + 1e-3)
-    boxes, boxed = boxes_around(rows if len(rows) <= _FEW_WALLS else rows[:0])
-    return Sight(rows, len(solid), table, boxes, boxed)
-
-
-@internal()
-def rows_crossed(table: CellTable, py: float, qy: float) -> tuple[int, int]:
-    """First and last row of the grid that a segment from y = py to y = qy meets."""
-    first = int(np.floor((min(py, qy) - table.y0) / table.cell_size))
-    last = int(np.floor((max(py, qy) - table.y0) / table.cell_size))
-    return max(0, first), min(table.ny - 1, last)
-
-
-@internal()
-def per_metre_up(py: float, qy: float) -> float:
-    """Share of a segment from y = py to y = qy that lies within a metre of y; 0 if it is level."""
-    return 1.0 / (qy - py) if py != qy else 0.0
-
-
-@internal()
-def cells_in_row(
-    table: CellTable, row: int, px: float, py: float, qx: float, share: float
-) -> tuple[int, int]:
-    """First and last column of the cells of one row that a segment pq meets.
-
-    `share` is `per_metre_up` of its ends. Rounding errors are within the extra millimetre.
-    """
-    cell = table.cell_size
-    t0 = 0.0
-    t1 = 1.0
-    if share != 0.0:
-        ta = (table.y0 + row * cell - py) * share
-        tb = (table.y0 + (row + 1) * cell - py) * share
-        t0 = min(1.0, max(0.0, min(ta, tb)))
-        t1 = max(0.0, min(1.0, max(ta, tb)))
-    xa = px + t0 * (qx - px)
-    xb = px + t1 * (qx - px)
-    per_cell = 1.0 / cell
-    first = int(np.floor((min(xa, xb) - table.x0) * per_cell))
-    last = int(np.floor((max(xa, xb) - table.x0) * per_cell))
-    return max(0, first), min(table.nx - 1, last)
 
 
 @internal()
@@ -122,7 +54,7 @@ def clear_line(
     (`NO_WALL`: all count).
     """
     table = sight.table
-    if len(sight.walls) <= _FEW_WALLS:
+    if len(sight.walls) <= FEW_WALLS:
         return _clear_of_boxes(sight, px, py, qx, qy, clearance, own, ignored)
     first_row, last_row = rows_crossed(table, py, qy)
     share = per_metre_up(py, qy)
@@ -211,37 +143,6 @@ def _bars(
 
 
 @internal()
-def wall_distance(sight: Sight, x: float, y: float, at_most: float) -> float:
-    """Metres from a point to the nearest wall, `at_most` if none is nearer.
-
-    `at_most` must not exceed the reach that the sight was prepared for.
-    """
-    walls, solid, table = sight.walls, sight.solid, sight.table
-    nearest = at_most
-    column = int(np.floor((x - table.x0) / table.cell_size))
-    row = int(np.floor((y - table.y0) / table.cell_size))
-    if 0 <= column < table.nx and 0 <= row < table.ny:
-        at = row * table.nx + column
-        for j in range(table.offsets[at], table.offsets[at + 1]):
-            wall = table.indices[j]
-            if wall < solid:
-                ax, ay, bx, by = walls[wall]
-                nearest = min(nearest, np.sqrt(point_segment_distance2(x, y, ax, ay, bx, by)))
-    return nearest
-
-
-@kept()
-def wall_distances(
-    sight: Sight, points: NDArray[np.float64], at_most: float
-) -> NDArray[np.float64]:
-    """(n,) `wall_distance` of (n, 2) points."""
-    distances = np.empty(len(points))
-    for i in range(len(points)):
-        distances[i] = wall_distance(sight, points[i, 0], points[i, 1], at_most)
-    return distances
-
-
-@internal()
 def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
     """Whether no wall lies across the segment pq, except one that p stands on."""
     walls, solid, table = sight.walls, sight.solid, sight.table
@@ -286,13 +187,6 @@ def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> flo
     return nearest * np.sqrt(dx * dx + dy * dy)
 
 
-def distances_to_walls(
-    plan: "FloorPlan", points: NDArray[np.float64], at_most: float
-) -> NDArray[np.float64]:
-    """(n,) metres from (n, 2) points to the nearest wall of a plan, `at_most` if none is nearer."""
-    return wall_distances(_prepared(plan, at_most), np.ascontiguousarray(points), at_most)
-
-
 def line_of_sight(
     plan_or_walls: "FloorPlan | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
 ) -> bool:
@@ -322,7 +216,7 @@ def lines_of_sight(
         )
     if not (np.isfinite(clearance) and clearance >= 0):
         raise FloorPlanError(f"clearance must be at least 0 m, found {clearance}")
-    return _clear_lines(_prepared(plan_or_walls, float(clearance)), starts, ends, float(clearance))
+    return _clear_lines(sight_on(plan_or_walls, float(clearance)), starts, ends, float(clearance))
 
 
 @kept()
@@ -335,17 +229,3 @@ def _clear_lines(
         qx, qy = ends[i]
         clear[i] = clear_line(sight, px, py, qx, qy, clearance, np.inf, NO_WALL)
     return clear
-
-
-_CACHE: "WeakKeyDictionary[FloorPlan, tuple[int, float, Sight]]" = WeakKeyDictionary()
-
-
-def _prepared(plan_or_walls: "FloorPlan | ArrayLike", clearance: float) -> Sight:
-    if not hasattr(plan_or_walls, "walls"):
-        return sight_of(plan_or_walls, (), clearance)
-    plan = cast("FloorPlan", plan_or_walls)
-    found = _CACHE.get(plan)
-    if found is None or found[0] != plan.version or found[1] < clearance:
-        found = (plan.version, clearance, sight_of(plan.walls, (), clearance))
-        _CACHE[plan] = found
-    return found[2]

@@ -6,7 +6,6 @@ import io
 import json
 import math
 import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,8 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.atomic_files import replacing
 from mesa_mobility.errors import MapError
+from mesa_mobility.files.archives import add_array, reading
+from mesa_mobility.files.atomic import replacing
 
 Layout = Mapping[str, str]
 """Names and types of the arrays of a file."""
@@ -51,12 +51,7 @@ def write_arrays(
     every = {**arrays, "metadata": np.frombuffer(text, dtype=np.uint8)}
     with replacing(path, MapError) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         for name, dtype in layout.items():
-            buffer = io.BytesIO()
-            array = np.ascontiguousarray(every[name].astype(dtype))
-            np.lib.format.write_array(buffer, array, allow_pickle=False)
-            # A fixed date: the same arrays give the same bytes on any day.
-            entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-            archive.writestr(entry, buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=9)
+            add_array(archive, name, every[name].astype(dtype), level=9)
 
 
 def read_arrays(path: Path, layouts: Sequence[Layout], kind: Kind = MAP) -> dict[str, NDArray[Any]]:
@@ -65,22 +60,11 @@ def read_arrays(path: Path, layouts: Sequence[Layout], kind: Kind = MAP) -> dict
     Raises:
         MapError: the file is missing or invalid; the message names it and the fault.
     """
-    try:
-        with path.open("rb") as file:
-            if file.read(len(np.lib.format.MAGIC_PREFIX)) == np.lib.format.MAGIC_PREFIX:
-                raise MapError(f"{path}: a single array, expected a {kind.name} ({kind.suffix})")
-            with zipfile.ZipFile(file) as archive:
-                return _read_layout(archive, path, layouts, kind)
-    except MapError:
-        raise
-    except FileNotFoundError:
-        raise MapError(f"{path}: no such file, expected a {kind.name} ({kind.suffix})") from None
-    except OSError as error:
-        raise MapError(f"{path}: cannot be read ({error.strerror or error})") from error
-    except (ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
-            RuntimeError, MemoryError, TypeError, SyntaxError) as error:  # fmt: skip
-        reason = next(iter(str(error).splitlines()), type(error).__name__)[:200]
-        raise MapError(f"{path}: not a readable {kind.name} ({reason})") from error
+    with reading(path, kind.name, MapError, kind.suffix), path.open("rb") as file:
+        if file.read(len(np.lib.format.MAGIC_PREFIX)) == np.lib.format.MAGIC_PREFIX:
+            raise MapError(f"{path}: a single array, expected a {kind.name} ({kind.suffix})")
+        with zipfile.ZipFile(file) as archive:
+            return _read_layout(archive, path, layouts, kind)
 
 
 def read_metadata(raw: NDArray[np.uint8], version: int) -> dict[str, Any]:

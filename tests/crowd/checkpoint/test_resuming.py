@@ -12,7 +12,7 @@ from shapely import box
 from mesa_mobility import CostTerm, PedestrianModel, PedestrianType, Source
 from mesa_mobility.crowd import Pedestrian
 from mesa_mobility.errors import ModelError
-from tests.crowd.test_copies import all_there_is, state
+from tests.crowd.checkpoint.test_copies import all_there_is, state
 from tests.fixtures.maps import wanderer
 from tests.fixtures.scenes import advance, corridor
 

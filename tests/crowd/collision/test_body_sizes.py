@@ -9,14 +9,14 @@ from mesa_mobility.behaviors import QuickestExit
 from shapely import Polygon, box, union_all
 
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel, PedestrianType
-from mesa_mobility.crowd.insertion import check_beside_walls
+from mesa_mobility.crowd.insertion.placement import check_beside_walls
 from mesa_mobility.crowd.state import environment
 from mesa_mobility.crowd.state.corners import Corners
 from mesa_mobility.crowd.state.environment import clearance_of
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import Router
-from tests.fixtures.counting import track
 from tests.fixtures.maps import shipped_map
+from tests.fixtures.oracles.counting import track
 
 
 def neck(width: float) -> FloorPlan:

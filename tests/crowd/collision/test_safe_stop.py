@@ -8,8 +8,8 @@ from mesa_mobility.behaviors import Displacement
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
-from tests.fixtures.counting import overlaps
 from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
+from tests.fixtures.oracles.counting import overlaps
 from tests.fixtures.scenes import advance, corridor, model_of, put, statues
 
 

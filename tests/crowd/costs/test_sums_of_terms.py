@@ -19,7 +19,9 @@ from shapely import Point, box
 
 from mesa_mobility import CostTerm, FloorPlan
 from tests.fixtures.maps import shipped_map, wanderer
-from tests.fixtures.numpy_terms import (
+from tests.fixtures.oracles.costs import equation_one
+from tests.fixtures.oracles.decisions import Oracle
+from tests.fixtures.oracles.numpy_terms import (
     Change,
     Clearance,
     Deviation,
@@ -32,8 +34,6 @@ from tests.fixtures.numpy_terms import (
     Velocity,
     Way,
 )
-from tests.fixtures.oracle import Oracle
-from tests.fixtures.oracle_costs import equation_one
 from tests.fixtures.plugin_terms import CompiledKeepRight, KeepOff, KeepRight, SameSpeed
 from tests.fixtures.scenes import corridor, model_of, two_doors
 

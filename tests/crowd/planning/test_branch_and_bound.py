@@ -16,7 +16,7 @@ from mesa_mobility.behaviors import (
 from mesa_mobility.models import Doorway
 
 from mesa_mobility import CostTerm
-from tests.fixtures.numpy_terms import Clearance, StraightOn
+from tests.fixtures.oracles.numpy_terms import Clearance, StraightOn
 from tests.fixtures.plugin_terms import KeepOff
 
 

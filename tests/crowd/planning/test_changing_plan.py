@@ -9,8 +9,8 @@ from mesa_mobility.behaviors import Displacement
 from shapely import box
 
 from mesa_mobility.errors import FloorPlanError, ModelError
-from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.scenes import advance, core_of, corridor, dead_end, model_of, put, two_doors
 
 

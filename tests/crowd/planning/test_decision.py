@@ -9,8 +9,8 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from tests.fixtures.maps import make_map, stand, straight, strider, through, wanderer
-from tests.fixtures.oracle import Oracle
-from tests.fixtures.oracle_costs import PAPER_COST, cost_of
+from tests.fixtures.oracles.costs import PAPER_COST, cost_of
+from tests.fixtures.oracles.decisions import Oracle
 from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, statues
 
 

@@ -11,7 +11,7 @@ from mesa_mobility.crowd import FREE, PERSON, WALL, Watch
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit
 from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
-from tests.fixtures.numpy_terms import Clearance
+from tests.fixtures.oracles.numpy_terms import Clearance
 from tests.fixtures.plugin_terms import KeepOff
 from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, statues
 

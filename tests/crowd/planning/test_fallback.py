@@ -14,8 +14,8 @@ from mesa_mobility.behaviors import (
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
-from tests.fixtures.counting import overlaps, wall_crossings
 from tests.fixtures.maps import STANDING, WALKING, make_map, shipped_map, straight
+from tests.fixtures.oracles.counting import overlaps, wall_crossings
 from tests.fixtures.scenes import (
     advance,
     core_of,

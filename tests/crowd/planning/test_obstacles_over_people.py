@@ -10,8 +10,8 @@ from shapely import LineString, Point, affinity, box
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel, PedestrianType
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.results import Trajectories, check_safety
-from tests.fixtures.counting import off_floor, overlaps, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import off_floor, overlaps, wall_crossings
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put
 
 

@@ -8,8 +8,8 @@ from shapely import LineString, box
 from mesa_mobility import Exit, FloorPlan, Gate
 from mesa_mobility.crowd.state.departed import Departed
 from mesa_mobility.crowd.state.records import Crowd
-from tests.fixtures.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import crossings, overlaps, track, wall_crossings
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put, same_rows, two_doors
 
 

@@ -10,8 +10,8 @@ from shapely import LineString, box
 from mesa_mobility import Exit, FloorPlan, Gate
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.results import Trajectories, crossings
-from tests.fixtures.counting import overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import overlaps, track, wall_crossings
 from tests.fixtures.scenes import advance, core_of, model_of, put, statues
 
 CORNERS = ["south", "east", "north", "west"]

@@ -6,8 +6,8 @@ from mesa_mobility.models import Doorway
 
 from mesa_mobility.distributions import Constant, Uniform
 from mesa_mobility.errors import ModelError
-from tests.fixtures.counting import overlaps, track, wall_crossings
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import overlaps, track, wall_crossings
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put, two_doors
 
 

@@ -6,8 +6,8 @@ from mesa_mobility.behaviors import TargetDistance
 
 from mesa_mobility.crowd import Deciding, TargetChoice
 from mesa_mobility.floorplan import Targets
-from tests.fixtures.counting import crossings
 from tests.fixtures.maps import make_map, shipped_map, stand, straight, strider
+from tests.fixtures.oracles.counting import crossings
 from tests.fixtures.scenes import advance, corridor, model_of, put, statues, two_doors
 
 

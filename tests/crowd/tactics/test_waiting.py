@@ -5,8 +5,8 @@ import pytest
 
 from mesa_mobility.crowd.planning.explanation import Watch
 from mesa_mobility.errors import ModelError
-from tests.fixtures.counting import overlaps, track
 from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.oracles.counting import overlaps, track
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put
 
 

@@ -1,0 +1,87 @@
+"""Leaving by a familiar exit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from mesa_mobility.behaviors.exits.exit_choice import Choosing
+from mesa_mobility.behaviors.exits.random_utility import RandomUtility
+
+from mesa_mobility import FloorPlan, Pedestrian
+from mesa_mobility.errors import ModelError
+
+
+class FamiliarExit(RandomUtility):
+    """People leave by an exit that they know, unless another is much nearer.
+
+    Place affiliation (Sime 1985, Environment and Behavior 17: 697-724): an exit that somebody
+    knows, mostly the one by which it came, is worth ``affiliation`` metres of route. An exit that
+    is not known is taken if it is nearer by more than that, tastes aside. The value depends on the
+    place and has to be calibrated; the default is 15 m.
+
+    Args:
+        familiar: names of the exits that people know by default; ``know`` sets others.
+        affiliation: what a known exit is worth, metres.
+        scale: of people's tastes, metres.
+        interval: mean seconds between two choices.
+
+    Raises:
+        ModelError: a parameter out of range.
+    """
+
+    name = "familiar_exit"
+
+    def __init__(
+        self,
+        familiar: Iterable[str] = (),
+        affiliation: float = 15.0,
+        scale: float = 2.0,
+        interval: float = 2.0,
+    ) -> None:
+        super().__init__(scale, interval)
+        if not 0.0 <= affiliation < np.inf:
+            raise ModelError(f"{self.name}: affiliation {affiliation}, expected 0 m or more")
+        self.affiliation = affiliation
+        self.familiar = _names(familiar)
+        self._known = np.empty((0, 0), dtype=np.bool_)
+
+    def know(self, people: Iterable[Pedestrian], exits: Iterable[str]) -> None:
+        """Set the exits that some people know; they choose again at their next decision.
+
+        Raises:
+            ModelError: a name that is not an exit's.
+        """
+        names = _names(exits)
+        for person in people:
+            plan = person.model.floor_plan
+            self._make_known(person.row, plan)
+            self._known[person.row] = self._mask(names, plan)
+            self.forget(person.row)
+
+    def bonus(self, choosing: Choosing):  # type: ignore[no-untyped-def]
+        """(k, e) metres: the affiliation where an exit is known."""
+        self._make_known(int(choosing.pedestrians.max()), choosing.deciding.site.plan)
+        return self.affiliation * self._known[choosing.pedestrians]
+
+    def _make_known(self, row: int, plan: FloorPlan) -> None:
+        """Have rows for everybody up to this one."""
+        more = row + 1 - len(self._known)
+        if more > 0:
+            new = np.tile(self._mask(self.familiar, plan), (more, 1))
+            self._known = np.concatenate([self._known.reshape(-1, new.shape[1]), new])
+
+    def _mask(self, names: frozenset[str], plan: FloorPlan):  # type: ignore[no-untyped-def]
+        """(e,) which exits have one of these names."""
+        there = [exit_.name for exit_ in plan.exits]
+        for name in sorted(names.difference(there)):
+            raise ModelError(
+                f"{self.name}: exit {name!r} is unknown, expected one of {', '.join(there)}"
+            )
+        return np.array([name in names for name in there], dtype=np.bool_)
+
+
+def _names(exits: Iterable[str]) -> frozenset[str]:
+    if isinstance(exits, str):
+        raise ModelError(f"exits: got {exits!r}, expected a list of names such as [{exits!r}]")
+    return frozenset(exits)

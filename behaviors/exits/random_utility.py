@@ -1,0 +1,60 @@
+"""Exit choice as a logit model: the nearer the better, with other reasons and tastes added."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+
+import numpy as np
+from mesa_mobility.behaviors.exits.exit_choice import Choosing, ExitChoice
+from numpy.typing import NDArray
+
+from mesa_mobility.errors import ModelError
+
+
+class RandomUtility(ExitChoice):
+    """Everybody takes the exit of the greatest utility, in metres of way.
+
+    The utility of an exit is minus the way to it, plus what ``bonus`` says, plus a taste of one's
+    own for it: Gumbel distributed and drawn once for each person and exit, so that the shares of
+    the exits are those of a multinomial logit model with scale ``scale`` and nobody wavers.
+
+    Args:
+        scale: of the tastes, metres; with 0 everybody chooses alike.
+        interval: mean seconds between two choices.
+
+    Raises:
+        ModelError: a parameter out of range.
+    """
+
+    def __init__(self, scale: float = 2.0, interval: float = 2.0) -> None:
+        super().__init__(interval)
+        if not 0.0 <= scale < np.inf:
+            raise ModelError(f"{self.name}: scale {scale}, expected 0 m or more")
+        self.scale = scale
+        self._tastes: NDArray[np.float64] = np.empty((0, 0))
+
+    @abstractmethod
+    def bonus(self, choosing: Choosing) -> NDArray[np.float64]:
+        """(k, e) metres that people would walk farther for the sake of each exit."""
+
+    def choose(self, choosing: Choosing) -> NDArray[np.int64]:
+        """(k,) number of the exit of the greatest utility."""
+        bonus = np.asarray(self.bonus(choosing))
+        if bonus.shape != choosing.distances.shape or not np.isfinite(bonus).all():
+            raise ModelError(
+                f"behaviour {self.name!r}: gave a bonus of shape {bonus.shape}, expected "
+                f"{choosing.distances.shape} finite numbers"
+            )
+        utility = bonus - choosing.distances
+        return (utility + self._tastes_of(choosing)).argmax(axis=1)
+
+    def _tastes_of(self, choosing: Choosing) -> NDArray[np.float64]:
+        """(k, e) tastes; those of people without any yet are drawn."""
+        rows, exits = choosing.pedestrians, choosing.distances.shape[1]
+        more = int(rows.max(initial=-1)) + 1 - len(self._tastes)
+        if more > 0:
+            rest = np.full((more, exits), np.nan)
+            self._tastes = np.concatenate([self._tastes.reshape(-1, exits), rest])
+        new = rows[np.isnan(self._tastes[rows, 0])]
+        self._tastes[new] = self.scale * choosing.deciding.rng.gumbel(size=(len(new), exits))
+        return self._tastes[rows]

@@ -1,0 +1,1 @@
+"""Inserting people on the floor, at once or over time."""

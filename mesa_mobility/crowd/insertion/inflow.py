@@ -1,0 +1,193 @@
+"""Inflows: people who come in from the sources of a model, frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_types
+from mesa_mobility.crowd.insertion.source import Source
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.people.pedestrian_type import indices_of
+from mesa_mobility.crowd.scene import Scene
+from mesa_mobility.crowd.state.environment import passing_of
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan.entrance import Entrance, read_entrance
+from mesa_mobility.populations import Population
+
+PLACES_TRIED = 16
+"""Places tried in a frame for the next person."""
+
+DECK = 100
+"""People of a population who are drawn together."""
+
+
+class Inflow(Saved):
+    """A source in a model, with its counts.
+
+    Args:
+        source: the source.
+        newcomers: people of each type, by its index.
+        entrances: where they come in, likewise.
+        population: whose shares they have, or None for those of ``source.type_index``.
+        frame: the current frame, before which nobody comes.
+        rng: the model's generator.
+
+    Attributes:
+        source: the source.
+        arrived: people who have come, those held back included.
+        entered: those of them who have entered.
+    """
+
+    saved = ("arrived", "entered", "_next", "_deck")
+
+    def __init__(
+        self,
+        source: Source,
+        newcomers: Mapping[int, Newcomers],
+        entrances: Mapping[int, Entrance],
+        population: Population | None,
+        frame: int,
+        rng: np.random.Generator,
+    ) -> None:
+        self.source = source
+        self.arrived = 0
+        self.entered = 0
+        self._entrances = entrances
+        self._newcomers = newcomers
+        self._kinds = list(entrances)
+        self._population = population
+        self._deck: list[int] = []
+        self._rng = rng
+        times = source.times
+        self._times: NDArray[np.float64] | None = None if times is None else np.asarray(times)
+        self._next = max(source.start, frame * FRAME_SECONDS)
+        self._draw_next()
+
+    @property
+    def next_type(self) -> int:
+        """Index of the type of the next person to enter."""
+        if not self._deck:
+            self._deck = [self._kinds[0]]
+            if self._population is not None:
+                drawn = self._population.draw(DECK, self._rng)
+                self._deck = [self._kinds[k] for k in drawn.tolist()]
+        return self._deck[-1]
+
+    @property
+    def entrance(self) -> Entrance:
+        """Where the next person comes in."""
+        return self._entrances[self.next_type]
+
+    @property
+    def newcomers(self) -> Newcomers:
+        """The next person."""
+        return self._newcomers[self.next_type]
+
+    def let_in(self) -> None:
+        """The next person has entered."""
+        self._deck.pop()
+        self.entered += 1
+
+    @property
+    def waiting(self) -> int:
+        """Number of arrivals that wait for a free place."""
+        return self.arrived - self.entered
+
+    @property
+    def finished(self) -> bool:
+        """Whether everybody has come and entered."""
+        return self.waiting == 0 and self._next == np.inf
+
+    def count(self, frame: int) -> None:
+        """Count the arrivals until ``frame``."""
+        now = frame * FRAME_SECONDS + 1e-9
+        while self._next <= now:
+            self.arrived += 1
+            self._draw_next()
+
+    def _draw_next(self) -> None:
+        source = self.source
+        if self._times is None:
+            assert source.rate is not None
+            self._next += self._rng.exponential(1.0 / source.rate)
+        else:
+            self._next = self._times[self.arrived] if self.arrived < len(self._times) else np.inf
+        full = source.number is not None and self.arrived >= source.number
+        if full or self._next >= source.until:
+            self._next = np.inf
+
+
+class Sources(Sequence[Inflow], Saved):
+    """A model's sources: an ``Inflow`` for each, in the order in which they were added.
+
+    Args:
+        scene: the floor and what people can do on it.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._inflows: list[Inflow] = []
+
+    @overload
+    def __getitem__(self, index: int) -> Inflow: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Inflow]: ...
+
+    def __getitem__(self, index: int | slice) -> Inflow | list[Inflow]:
+        return self._inflows[index]
+
+    def __len__(self) -> int:
+        return len(self._inflows)
+
+    def state(self) -> dict[str, Any]:
+        """The sources, and who has come by each."""
+        return {"inflows": [(each.source, each.state()) for each in self._inflows]}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        del self._inflows[len(state["inflows"]) :]
+        for number, (source, inflow) in enumerate(state["inflows"]):
+            if number == len(self._inflows):
+                self.add(source, 0, np.random.default_rng(0))
+            self._inflows[number].restore(inflow)
+
+    @property
+    def expecting(self) -> bool:
+        """Whether a source has more people to come."""
+        return not all(inflow.finished for inflow in self._inflows)
+
+    @property
+    def endless(self) -> bool:
+        """Whether people come for ever."""
+        return any(inflow.source.endless for inflow in self._inflows)
+
+    def add(self, source: Source, frame: int, rng: np.random.Generator) -> Inflow:
+        """Let people in from ``frame`` on; ``PedestrianModel.add_source`` says what is refused."""
+        scene, area = self._scene, read_entrance(source.area)
+        if source.type_index is not None and source.population is not None:
+            raise ModelError("source: type_index and population, expected one of them")
+        population = None if source.population is None else Population.of(source.population)
+        if source.type_index is None and population is None:
+            population = scene.shares
+        kinds = check_types(source.type_index, 1, scene.types)
+        if population is not None:
+            kinds = indices_of(population, scene.types)
+        newcomers = {kind: source.newcomers(kind) for kind in kinds.tolist()}
+        entrances: dict[int, Entrance] = {}
+        for kind in newcomers:
+            core = scene.types[kind].core_radius
+            entrances[kind] = Entrance(
+                scene.plan, area, clearance=core + 0.01, passing=passing_of(core)
+            )
+            destination, _ = scene.journeys.start(source.exits, source.route, source.loop, kind)
+            somewhere = entrances[kind].room.representative_point()
+            scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
+        inflow = Inflow(source, newcomers, entrances, population, frame, rng)
+        self._inflows.append(inflow)
+        return inflow

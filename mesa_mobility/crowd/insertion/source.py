@@ -1,0 +1,135 @@
+"""Sources: places where people come in over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from numbers import Real
+
+import numpy as np
+from numpy.typing import ArrayLike
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.crowd.insertion.newcomers import Newcomers
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.tactics.speed_rules import FASTEST
+from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.errors import ModelError
+from mesa_mobility.populations import Population
+
+HIGHEST_RATE = 1000.0
+"""Most people a second from one source: the flow through some 800 m of doors."""
+
+LATEST = LONGEST_WAIT
+"""Latest time in seconds of an arrival, ``start`` or ``until``."""
+
+MOST_PEOPLE = 10_000_000
+"""Most people from one source."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Source:
+    """A place where people come in over time.
+
+    Attributes:
+        area: where they appear: a polygon or a line on the floor, shapely or WKT, metres.
+        rate: people a second, as a Poisson process from ``start`` on.
+        times: (k,) seconds at which they come, instead of a rate.
+        start: seconds at which a rate begins.
+        until: seconds at which it ends, if ever.
+        number: most people.
+
+    The other attributes are as ``PedestrianModel.add_pedestrians`` takes them: numbers or
+    distributions, no arrays. Of a population each hundred people together have its shares.
+
+    Raises:
+        ModelError: neither a rate nor times, both, or one out of range; shares of a population that
+            do not add up to 1.
+    """
+
+    area: BaseGeometry | str
+    rate: float | None = None
+    times: ArrayLike | None = None
+    start: float = 0.0
+    until: float = np.inf
+    number: int | None = None
+    exits: Sequence[str] | None = None
+    route: Sequence[str] = ()
+    loop: bool = False
+    group: str | int | None = None
+    type_index: int | None = None
+    population: Population | Mapping[str | PedestrianType, float] | str | None = None
+    preferred_speeds: float | Distribution | None = None
+    pre_movement: float | Distribution = 0.0
+    fields: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if (self.rate is None) == (self.times is None):
+            raise ModelError("source: expected either a rate or times")
+        if self.rate is not None and not (_real(self.rate) and 0.0 < self.rate <= HIGHEST_RATE):
+            raise ModelError(
+                f"source: rate {self.rate!r}, expected more than 0 and at most {HIGHEST_RATE:g} "
+                "people a second"
+            )
+        if not (
+            _real(self.start) and _real(self.until) and 0.0 <= self.start <= LATEST
+            and self.start <= self.until
+        ):  # fmt: skip
+            raise ModelError(
+                f"source: start {self.start!r} and until {self.until!r}, expected "
+                f"0 <= start <= until and a start of at most {LATEST:g} s"
+            )
+        if self.number is not None and not (
+            isinstance(self.number, int) and 0 <= self.number <= MOST_PEOPLE
+        ):
+            raise ModelError(f"source: number {self.number!r}, expected 0 to {MOST_PEOPLE} people")
+        if self.times is not None:
+            try:
+                times = np.sort(np.asarray(self.times, dtype=np.float64))
+            except (TypeError, ValueError):
+                raise ModelError("source: times, expected a row of seconds") from None
+            if times.ndim != 1 or not ((times >= 0.0) & (times <= LATEST)).all():
+                raise ModelError(f"source: times, expected a row of seconds, 0 to {LATEST:g}")
+            object.__setattr__(self, "times", times)
+        if self.population is not None:
+            object.__setattr__(self, "population", Population.of(self.population))
+        self._check_people()
+
+    def _check_people(self) -> None:
+        """Refuse at once what ``add_pedestrians`` would refuse at the first arrival."""
+        speed, wait = self.preferred_speeds, self.pre_movement
+        if not (speed is None or isinstance(speed, Distribution)) and not (
+            _real(speed) and 0.0 < speed <= FASTEST
+        ):
+            raise ModelError(
+                f"source: preferred_speeds {speed!r}, expected a distribution, or more than 0 and "
+                f"at most {FASTEST:g} m/s"
+            )
+        if not isinstance(wait, Distribution) and not (_real(wait) and 0.0 <= wait <= LONGEST_WAIT):
+            raise ModelError(
+                f"source: pre_movement {wait!r}, expected a distribution, or 0 to "
+                f"{LONGEST_WAIT:g} s"
+            )
+
+    @property
+    def endless(self) -> bool:
+        """Whether people come for ever."""
+        return self.rate is not None and self.until > LATEST and self.number is None
+
+    def newcomers(self, type_index: int | None) -> Newcomers:
+        """The newcomers of one type."""
+        return Newcomers(
+            preferred_speeds=self.preferred_speeds,
+            pre_movement=self.pre_movement,
+            exits=self.exits,
+            route=self.route,
+            loop=self.loop,
+            group=self.group,
+            type_index=type_index,
+            fields=self.fields,
+        )
+
+
+def _real(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)

@@ -1,0 +1,1 @@
+"""Pedestrians: their agents, types, speeds and bodies."""

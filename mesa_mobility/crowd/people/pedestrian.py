@@ -1,0 +1,282 @@
+"""A pedestrian: a Mesa agent that is a view of one row of the crowd's arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from mesa.experimental.continuous_space import ContinuousSpaceAgent
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.options.capability import Capability
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.state.fields import field_column
+from mesa_mobility.crowd.state.records import FALLBACK
+from mesa_mobility.errors import ModelError
+
+if TYPE_CHECKING:
+    from mesa_mobility.bodies import BodyMotion, PoseBank
+    from mesa_mobility.crowd.model import PedestrianModel
+
+
+class _Counter:
+    """A counter from 1 on."""
+
+    def __init__(self) -> None:
+        self.last = 0
+
+    def __next__(self) -> int:
+        self.last += 1
+        return self.last
+
+
+class _Counters(WeakKeyDictionary[Any, _Counter]):
+    """A counter for each model, freed with the model."""
+
+    def __getitem__(self, model: Any) -> _Counter:
+        return self.setdefault(model, _Counter())
+
+
+_FOLLOWING = "agent_id_counter"
+"""Where models of a newer Mesa keep the number of the next agent."""
+
+
+def last_number(model: PedestrianModel) -> int:
+    """Number of the last agent that a model has got."""
+    following: int | None = getattr(model, _FOLLOWING, None)
+    return Pedestrian._ids[model].last if following is None else following - 1
+
+
+def number_from(model: PedestrianModel, last: int) -> None:
+    """Let the numbers of a model's agents go on after ``last``."""
+    Pedestrian._ids[model].last = last
+    if hasattr(model, _FOLLOWING):
+        setattr(model, _FOLLOWING, last + 1)
+
+
+def _fields_of(person: Pedestrian) -> dict[str, NDArray[Any]]:
+    """The fields of a person's model; none while the agent is being made or copied."""
+    model = person.__dict__.get("model")
+    crowd = None if model is None else model.__dict__.get("crowd")
+    return {} if crowd is None else crowd.fields
+
+
+class Pedestrian(ContinuousSpaceAgent):
+    """One person.
+
+    The fields that a model declares for its people are attributes, read and written. A subclass
+    may have attributes of its own, and a ``step``, which is called for each person inside once a
+    step of the model, before anybody moves.
+
+    Attributes:
+        row: row of this person in the crowd's arrays, the same for ever.
+    """
+
+    # Mesa 3.3 keeps agent numbers in a dictionary that never frees a model.
+    _ids = _Counters()
+
+    def __init__(self, model: PedestrianModel, row: int | None = None) -> None:
+        if not model.population.awaits(row):
+            raise ModelError(
+                f"{type(self).__name__}(...): nobody stands on the floor for this agent, expected "
+                "add_pedestrians or add_source, which make agents"
+            )
+        super().__init__(model.space, model)
+        assert row is not None
+        self.row = row
+
+    def __getattr__(self, name: str) -> Any:
+        """The value of a field that the model declares; called where there is nothing else."""
+        fields = _fields_of(self)
+        if name in fields:
+            return fields[name][self.row].item()
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        fields = _fields_of(self)
+        if name in fields:
+            column = fields[name]
+            column[self.row] = field_column(name, column.dtype, value, 1)[0]
+        else:
+            object.__setattr__(self, name, value)
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """(2,) position, metres; people walk, and cannot be put elsewhere."""
+        state = self.model.crowd
+        return np.array([state.x[self.row], state.y[self.row]])
+
+    @position.setter
+    def position(self, value: object) -> None:
+        raise ModelError(
+            f"pedestrian {self.row}: people walk by themselves; expected remove() and "
+            "add_pedestrians to put somebody elsewhere"
+        )
+
+    @property
+    def pos(self) -> NDArray[np.float64]:
+        """(2,) the position, by the name that Mesa's drawings use."""
+        return self.position
+
+    @pos.setter
+    def pos(self, value: object) -> None:
+        if value is not None:  # Mesa begins with None
+            self.position = value
+
+    @property
+    def heading(self) -> float:
+        """Facing, radians counter-clockwise from +x."""
+        return float(self.model.crowd.heading[self.row])
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """(2,) mean velocity of the movement under way, m/s."""
+        state = self.model.crowd
+        return np.array([state.vx[self.row], state.vy[self.row]])
+
+    @property
+    def speed(self) -> float:
+        """Mean speed of the movement under way, m/s."""
+        return float(np.hypot(*self.velocity))
+
+    @property
+    def preferred_speed(self) -> float:
+        """Preferred speed, m/s; a new one counts from the next decision on."""
+        return float(self.model.crowd.agenda["speed"][self.row])
+
+    @preferred_speed.setter
+    def preferred_speed(self, speed: float) -> None:
+        self.model.population.set_speed(self.row, speed)
+
+    @property
+    def exits(self) -> tuple[str, ...]:
+        """Names of the exits by which the person may leave; none if it goes round for ever.
+
+        New ones count from the next decision on, and end its route; None stands for all.
+        """
+        return self.model.population.exits(self.row)
+
+    @exits.setter
+    def exits(self, names: Sequence[str] | None) -> None:
+        self.model.population.send(self.row, names, (), self.model.frame)
+
+    @property
+    def start_time(self) -> float:
+        """Simulated time in seconds at which the person sets off, after its pre-movement time."""
+        return float(self.model.crowd.agenda["sets_off"][self.row]) * FRAME_SECONDS
+
+    def wait(
+        self, seconds: float | None = None, *, until: Callable[[], bool] | None = None
+    ) -> None:
+        """Let the person stop when the movement under way has ended, and wait.
+
+        Args:
+            seconds: how long it waits, from now on.
+            until: instead, a function that is called whenever the person could decide; the wait
+                ends when it returns true.
+
+        It walks on with its next decision, 0.4 s later at most.
+
+        Raises:
+            ModelError: neither of them, both, or a time out of range.
+        """
+        self.model.waits.tell(self.row, seconds, until, self.model.frame, self.model.crowd)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether the person waits, by ``wait`` or during its pre-movement time."""
+        return bool(self.model.crowd.agenda["waits_until"][self.row] > self.model.frame)
+
+    @property
+    def group(self) -> str | int | None:
+        """The group that the person belongs to, if any; None leaves it."""
+        number = int(self.model.crowd.agenda["group"][self.row])
+        return self.model.population.groups[number - 1] if number else None
+
+    @group.setter
+    def group(self, name: str | int | None) -> None:
+        self.model.population.join(self.row, name)
+
+    @property
+    def route(self) -> tuple[str, ...]:
+        """Names of the gates on the person's journey, in order; none if it has no journey.
+
+        A new one begins with the next decision, and ends at the exits that the person had.
+        """
+        return self.model.journeys.gates(int(self.model.crowd.agenda["journey"][self.row]))
+
+    @route.setter
+    def route(self, gates: Sequence[str]) -> None:
+        self.model.population.send(self.row, self.exits or None, gates, self.model.frame)
+
+    @property
+    def gates_crossed(self) -> int:
+        """Gates that the person had crossed when it last decided, over all laps."""
+        return int(self.model.crowd.agenda["crossed"][self.row])
+
+    @property
+    def target(self) -> NDArray[np.float64]:
+        """(2,) target of the last decision, metres."""
+        state = self.model.crowd
+        return np.array([state.target_x[self.row], state.target_y[self.row]])
+
+    @property
+    def pedestrian_type(self) -> PedestrianType:
+        """The person's type."""
+        return self.model.pedestrian_types[int(self.model.crowd.type_index[self.row])]
+
+    @property
+    def capability(self) -> Capability:
+        """The component through which the person consults its type's mobility map."""
+        return self.model.capabilities[int(self.model.crowd.type_index[self.row])]
+
+    @property
+    def cluster(self) -> int:
+        """Cluster, in the type's map, of the pose in which the movement under way ends."""
+        return self.model.population.cluster_of(self.row)
+
+    @property
+    def in_fallback(self) -> bool:
+        """Whether the movement under way is the fallback."""
+        return bool(self.model.crowd.option[self.row] == FALLBACK)
+
+    @property
+    def next_decision(self) -> float:
+        """Seconds until the person decides again."""
+        return float(self.model.crowd.end[self.row] - self.model.frame) * FRAME_SECONDS
+
+    def pose(self, bank: PoseBank | None = None) -> BodyMotion:
+        """The person's body now: joint positions and orientations, see ``BodyMotion``.
+
+        Feet are held where they bear on the floor, as far as the last 3 s tell.
+
+        Args:
+            bank: poses of the person's type; by default those that ship for its map.
+
+        Raises:
+            ModelError: the model does not record decisions, or has taken no step.
+            MapError: no poses of the person's map ship, or the bank is of another map.
+        """
+        from mesa_mobility.crowd.people.body import body_now
+
+        return body_now(self, bank)
+
+    def movement_options(self) -> Candidates:
+        """The person's movement options, were it to decide here and now."""
+        return self.model.candidates(np.array([self.row], dtype=np.int64))
+
+    def remove(self) -> None:
+        """Take the person out of the model."""
+        self.model.remove_pedestrians([self])
+
+
+def check_pedestrian_class(kind: object) -> None:
+    """Raise ModelError unless this is a class of agents for people."""
+    if not (isinstance(kind, type) and issubclass(kind, Pedestrian)):
+        raise ModelError(
+            f"pedestrian_class: got {kind!r}, expected a class derived from Pedestrian"
+        )

@@ -1,0 +1,132 @@
+"""Types of pedestrians: a mobility map, a body and preferred speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from numbers import Real
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.people.free_speeds import free_speeds
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.errors import ModelError
+from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility.map import CORE_RADIUS
+from mesa_mobility.populations import Population
+
+
+@dataclass(frozen=True, kw_only=True)
+class PedestrianType:
+    """Pedestrians who share one mobility map.
+
+    Attributes:
+        mobility_map: the type's clustered mobility map.
+        name: by default the map's own.
+        preferred_speed: distribution of preferred speeds, m/s, or one speed for everybody; by
+            default that of the map (see ``free_speeds``).
+        core_radius: radius of the disc that no other body enters, metres; by default the map's.
+    """
+
+    mobility_map: MobilityMap
+    name: str = ""
+    preferred_speed: Distribution | float | None = None
+    core_radius: float = field(default=0.0)
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            object.__setattr__(self, "name", self.mobility_map.pedestrian_type)
+        if self.core_radius == 0.0:
+            body = self.mobility_map.metadata.get("body", {})
+            object.__setattr__(self, "core_radius", float(body.get("core_radius_m", CORE_RADIUS)))
+        if not 0.0 < self.core_radius < 1.0:
+            raise ModelError(
+                f"type {self.name!r}: core_radius {self.core_radius}, expected 0 to 1 m"
+            )
+        if self.preferred_speed is None:
+            object.__setattr__(self, "preferred_speed", free_speeds(self.mobility_map))
+        elif not isinstance(self.preferred_speed, Distribution):
+            speed = self.preferred_speed
+            if not (isinstance(speed, Real) and 0.0 < speed < np.inf):
+                raise ModelError(
+                    f"type {self.name!r}: preferred_speed {speed!r}, expected a distribution or "
+                    "more than 0 m/s"
+                )
+
+    @classmethod
+    def named(cls, name: str) -> Self:
+        """The type of a map that ships, such as ``"child"`` or ``"wheelchair_manual"``.
+
+        Raises:
+            MapError: no such map ships; the message lists those that do.
+        """
+        return cls(mobility_map=MobilityMap.named(name), name=name)
+
+    @classmethod
+    def all_of(cls, population: Population) -> tuple[PedestrianType, ...]:
+        """The types of a population, in its order.
+
+        Raises:
+            MapError: no map of one of them ships.
+        """
+        return tuple(
+            cls.named(kind) if isinstance(kind, str) else kind for kind in population.shares
+        )
+
+    def draw_speeds(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
+        """(n,) preferred speeds, m/s."""
+        if isinstance(self.preferred_speed, Distribution):
+            return self.preferred_speed.draw(n, rng)
+        assert self.preferred_speed is not None
+        return np.full(n, float(self.preferred_speed))
+
+
+def types_of(
+    mobility_map: MobilityMap | str | Path | None,
+    types: Sequence[PedestrianType] | None,
+    population: Population | None,
+) -> tuple[PedestrianType, ...]:
+    """A model's types: those given, of a population, or a single one for a map, its file, or the
+    map that ships.
+
+    Raises:
+        ModelError: two of them are given, or no types at all.
+        MapError: an unusable map file, or a population's type of which no map ships.
+    """
+    given = {
+        "mobility_map": mobility_map, "pedestrian_types": types, "population": population
+    }  # fmt: skip
+    names = [name for name, value in given.items() if value is not None]
+    if len(names) > 1:
+        raise ModelError(f"{' and '.join(names)}: got both, expected one of them")
+    if population is not None:
+        return PedestrianType.all_of(population)
+    if types is None:
+        if not isinstance(mobility_map, MobilityMap):
+            mobility_map = MobilityMap.load(mobility_map)
+        return (PedestrianType(mobility_map=mobility_map),)
+    if not types:
+        raise ModelError("pedestrian_types: got none, expected at least one")
+    return tuple(types)
+
+
+def indices_of(population: Population, types: Sequence[PedestrianType]) -> NDArray[np.int64]:
+    """Index among a model's types of each type of a population.
+
+    Raises:
+        ModelError: the model does not have one of them.
+    """
+    names = [kind.name for kind in types]
+    found = []
+    for kind, name in zip(population.shares, population.names, strict=True):
+        same = [k for k, other in enumerate(types)
+                if other is kind or (isinstance(kind, str) and other.name == name)]  # fmt: skip
+        if not same:
+            raise ModelError(
+                f"population: the model has no type {name!r}, expected one of {', '.join(names)}"
+            )
+        found.append(same[0])
+    return np.array(found, dtype=np.int64)

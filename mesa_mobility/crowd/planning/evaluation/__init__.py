@@ -1,0 +1,1 @@
+"""Costs of movement options, as the search needs them."""

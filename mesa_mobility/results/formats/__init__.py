@@ -1,0 +1,1 @@
+"""Files of trajectories: Parquet with its seal, and the formats of other programs."""

@@ -1,0 +1,90 @@
+"""Figures of a run by type of people, or by other data."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.measures.occupancy import occupancy
+from mesa_mobility.results.measures.speeds import mean_speed
+from mesa_mobility.results.trajectories import Trajectories
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+COLUMNS = ("people", "left", "mean_egress_s", "p95_egress_s", "mean_speed_mps")
+
+
+def by_type(trajectories: Trajectories, key: str = "type") -> pd.DataFrame:
+    """How many people of each type there were, how many left and when, and how fast they walked.
+
+    Args:
+        trajectories: the run.
+        key: by which of ``person_data`` people are told apart; ``"group"`` for instance.
+
+    Returns:
+        A row for each type, by name: ``people``, ``left``; ``mean_egress_s`` and ``p95_egress_s``,
+        mean and 95th percentile of the seconds from a person's first frame to its leaving, of those
+        who left; ``mean_speed_mps``, as ``mean_speed`` has it. nan where there is nothing to count.
+
+    Raises:
+        ResultsError: the trajectories have no such data.
+    """
+    import pandas as pd
+
+    rows = []
+    seconds = _egress_seconds(trajectories)
+    for name, own in people_by(trajectories, key).items():
+        times = seconds[own]
+        times = times[np.isfinite(times)]
+        speed = mean_speed(trajectories.of_people(own))
+        rows.append(
+            {
+                key: name,
+                "people": len(own),
+                "left": len(times),
+                "mean_egress_s": times.mean() if len(times) else np.nan,
+                "p95_egress_s": np.percentile(times, 95) if len(times) else np.nan,
+                "mean_speed_mps": np.nan if speed is None else speed,
+            }
+        )
+    return pd.DataFrame(rows, columns=[key, *COLUMNS]).set_index(key)
+
+
+def occupancy_by_type(
+    trajectories: Trajectories, every: float = 1.0, key: str = "type"
+) -> dict[str, list[list[float]]]:
+    """``occupancy`` of the people of each type alone, by its name.
+
+    Raises:
+        ResultsError: the trajectories have no such data, or ``every`` is shorter than a frame.
+    """
+    return {
+        name: occupancy(trajectories.of_people(own), every)
+        for name, own in people_by(trajectories, key).items()
+    }
+
+
+def people_by(trajectories: Trajectories, key: str) -> dict[str, NDArray[np.int64]]:
+    """The people who appear, by a value of ``person_data``, in order of the values.
+
+    Raises:
+        ResultsError: the trajectories have no such data.
+    """
+    if key not in trajectories.person_data:
+        known = ", ".join(trajectories.person_data) or "none"
+        raise ResultsError(f"trajectories: no person_data {key!r}, expected one of: {known}")
+    people = np.unique(trajectories.person).astype(np.int64)
+    values = trajectories.person_data[key][people]
+    return {str(value): people[values == value] for value in np.unique(values).tolist()}
+
+
+def _egress_seconds(trajectories: Trajectories) -> NDArray[np.float64]:
+    """(m,) seconds from each person's first frame to its leaving; nan for those inside."""
+    left = trajectories.exit_frames
+    first = np.zeros(len(left), dtype=np.int64)
+    first[trajectories.person[::-1]] = trajectories.frame[::-1]
+    return np.where(left >= 0, (left - first) / trajectories.frame_rate, np.nan)

@@ -1,0 +1,92 @@
+"""Costs of options from neighbours, and when an approximation suffices."""
+
+import numpy as np
+import pytest
+from mesa_mobility.behaviors import Headway, Interference, RightOfWay
+from numba import njit
+
+from mesa_mobility.crowd.collision.sampled import EgoPose
+from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, pick_between
+from mesa_mobility.crowd.planning.evaluation.neighbour_costs import ENOUGH, pair_cost
+from mesa_mobility.crowd.planning.evaluation.term_table import compile_terms
+from mesa_mobility.crowd.state.records import Crowd
+
+NEIGHBOURS = 21
+
+
+@njit
+def _cost(x, y, ends, count, others, enough, state, terms, sums, most_selective_term):
+    fill_lane(count, others)
+    me = EgoPose(0, x, y, 1.0, 0.0, 0.14)
+    return pair_cost(me, 0, ends, count, others, enough, state, terms, sums, most_selective_term)
+
+
+@njit
+def _pick(bounds, above, up_to, first, picked):
+    return pick_between(bounds, above, up_to, first, picked)
+
+
+@pytest.fixture
+def cost():
+    """A function of what is enough and of the term to begin with, and the costs by term."""
+    rng = np.random.default_rng(8)
+    crowd = Crowd(1)
+    crowd.target_x[0] = 5.0
+    ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
+    others = np.zeros((8, 32))
+    others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
+    others[4, :NEIGHBOURS] = -1.0
+    others[6, :NEIGHBOURS] = 1.0
+    terms = [Interference(weight=1000.0), Headway(weight=2.0), RightOfWay(weight=3.0)]
+    compiled, _ = compile_terms(terms)
+    sums = np.zeros(3)
+
+    def of(enough, first):
+        most_selective_term = np.array([first])
+        given = (
+            ends,
+            NEIGHBOURS,
+            others,
+            enough,
+            crowd.records,
+            compiled,
+            sums,
+            most_selective_term,
+        )
+        return _cost(0.0, 0.0, *given), most_selective_term[0]
+
+    each = [
+        term.weight
+        * sum(
+            term.kernel.function(*ends[:, 0], 0.0, 0.0, 5.0, 0.0, *others[:7, a], term.parameters())
+            for a in range(NEIGHBOURS)
+        )
+        for term in terms
+    ]
+    return of, each
+
+
+def test_the_sum_does_not_depend_on_the_term_to_begin_with(cost):
+    of, each = cost
+    assert min(each) > 0.1
+    found = {of(np.inf, first)[0] for first in range(3)}
+    assert len(found) == 1
+    assert found.pop() == pytest.approx(sum(each), rel=1e-6)
+
+
+def test_a_sum_ends_with_the_term_that_makes_it_enough(cost):
+    of, each = cost
+    for first in range(3):
+        second = (first + 1) % 3
+        assert of(0.9 * each[first], first) == (ENOUGH, first)
+        assert of(each[first] + 0.5 * each[second], first) == (ENOUGH, second)
+        assert of(0.999 * sum(each), first) == (ENOUGH, (first + 2) % 3)
+        assert of(1.001 * sum(each), first)[0] == pytest.approx(sum(each), rel=1e-6)
+
+
+def test_groups_are_picked_by_their_bounds():
+    bounds = np.array([3.0, 1.0, np.inf, 2.0, 1.5, 0.5, 2.5, 2.0, 1.0, 2.0, 9.0] + [2.0] * 8)
+    picked = np.zeros(30, dtype=np.int64)
+    # The last 8 are room to read.
+    assert _pick(bounds[:11], 1.0, 2.0, 100, picked) == 4
+    assert picked[:4].tolist() == [103, 104, 107, 109]

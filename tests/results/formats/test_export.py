@@ -1,0 +1,138 @@
+import binascii
+import math
+import sqlite3
+import sys
+
+import numpy as np
+import pytest
+import shapely
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.results import (
+    Trajectories,
+    density,
+    to_pedpy,
+    write_juelich_text,
+    write_jupedsim_sqlite,
+)
+from mesa_mobility.results.formats import export
+
+
+@pytest.fixture
+def pedpy():
+    return pytest.importorskip("pedpy")
+
+
+@pytest.fixture
+def run(two_leave_one_stays):
+    return two_leave_one_stays
+
+
+def test_pedpy_gets_every_row(run, pedpy):
+    data = run.to_pedpy()
+    assert isinstance(data, pedpy.TrajectoryData)
+    assert data.frame_rate == 2.0
+    rows = data.data[["frame", "id", "x", "y"]].to_numpy().tolist()
+    assert rows == np.column_stack((run.frame, run.person, run.x, run.y)).tolist()
+
+
+def test_pedpy_measures_the_same_density(run, pedpy):
+    box = shapely.box(7.5, 0, 10, 4)
+    theirs = pedpy.compute_classic_density(
+        traj_data=run.to_pedpy(), measurement_area=pedpy.MeasurementArea(box)
+    )
+    ours = density(run, box, every=0.5)
+    # Frame by frame: 0 at 8; 0 at 9; 2 at 8; 2 at 9; nobody.  10 m2.
+    assert [value for _, value in ours] == [0.1, 0.1, 0.1, 0.1, 0.0]
+    assert theirs["density"].tolist() == [value for _, value in ours]
+
+
+def test_without_pedpy_it_says_how_to_get_it(run, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pedpy", None)
+    with pytest.raises(ResultsError, match="pip install pedpy"):
+        to_pedpy(run)
+
+
+def test_jupedsim_database_reads_in_pedpy(run, room, pedpy, tmp_path):
+    path = tmp_path / "run.sqlite"
+    write_jupedsim_sqlite(run, path, room.free)
+    data = pedpy.load_trajectory_from_jupedsim_sqlite(trajectory_file=path)
+    assert data.frame_rate == 2.0
+    assert data.data[["frame", "id", "x", "y"]].to_numpy().tolist() == (
+        np.column_stack((run.frame, run.person, run.x, run.y)).tolist()
+    )
+    area = pedpy.load_walkable_area_from_jupedsim_sqlite(trajectory_file=path)
+    assert area.polygon.equals(room.free)
+    assert area.polygon.area == pytest.approx(39.0)
+
+
+def test_jupedsim_database_has_what_its_viewer_asks_for(room, tmp_path):
+    path = tmp_path / "run.sqlite"
+    run = Trajectories(
+        frame=[0, 2], person=[7, 7], x=[1.0, 2.0], y=[3.5, 0.5], heading=[0.0, math.pi / 2]
+    )
+    write_jupedsim_sqlite(run, path, room.free)
+    connection = sqlite3.connect(path)
+    try:
+        metadata = dict(connection.execute("SELECT key, value FROM metadata"))
+        frames = connection.execute("SELECT frame, geometry_hash FROM frame_data").fetchall()
+        geometry = connection.execute("SELECT hash FROM geometry").fetchall()
+        rows = connection.execute("SELECT * FROM trajectory_data").fetchall()
+    finally:
+        connection.close()
+    assert metadata == {
+        "version": "2", "fps": "30.0", "xmin": "1.0", "xmax": "2.0", "ymin": "0.5", "ymax": "3.5",
+    }  # fmt: skip
+    # A frame without anybody is a frame too.
+    assert [frame for frame, _ in frames] == [0, 1, 2]
+    # The same in every process: a checksum of the text.
+    assert (
+        {key for _, key in frames} == {geometry[0][0]} == {binascii.crc32(room.free.wkt.encode())}
+    )
+    assert rows[0] == (0, 7, 1.0, 3.5, 1.0, 0.0)
+    assert rows[1] == (2, 7, 2.0, 0.5, pytest.approx(0.0, abs=1e-12), 1.0)
+
+
+def test_juelich_text_reads_in_pedpy(run, pedpy, tmp_path):
+    path = tmp_path / "run.txt"
+    write_juelich_text(run, path)
+    data = pedpy.load_trajectory(trajectory_file=path)
+    assert data.frame_rate == 2.0
+    order = np.lexsort((run.frame, run.person))
+    assert data.data[["id", "frame", "x", "y"]].to_numpy().tolist() == (
+        np.column_stack((run.person, run.frame, run.x, run.y))[order].tolist()
+    )
+
+
+def test_juelich_text_is_as_the_archive_writes_it(walk, tmp_path):
+    path = tmp_path / "run.txt"
+    write_juelich_text(walk({3: (1, [(0.12344, -2.0)])}, frame_rate=12.5), path)
+    assert path.read_text() == "# framerate: 12.5\n# id frame x/m y/m z/m\n3 1 0.1234 -2.0000 0\n"
+
+
+@pytest.mark.parametrize("writer", [write_juelich_text, write_jupedsim_sqlite])
+def test_exports_are_whole_or_absent(writer, walk, run, room, tmp_path):
+    area = (room.free,) if writer is write_jupedsim_sqlite else ()
+    with pytest.raises(ResultsError, match="nothing to export"):
+        writer(walk({}), tmp_path / "empty", *area)
+    with pytest.raises(ResultsError, match=r"away/run: cannot be written"):
+        writer(run, tmp_path / "away" / "run", *area)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("writer", [write_juelich_text, write_jupedsim_sqlite])
+def test_rows_go_out_in_portions(writer, run, room, tmp_path, monkeypatch):
+    area = (room.free,) if writer is write_jupedsim_sqlite else ()
+    writer(run, tmp_path / "at once", *area)
+    monkeypatch.setattr(export, "CHUNK", 5)
+    writer(run, tmp_path / "in portions", *area)
+    assert (tmp_path / "in portions").read_bytes() == (tmp_path / "at once").read_bytes()
+
+
+@pytest.mark.parametrize("writer", [write_juelich_text, write_jupedsim_sqlite])
+def test_equal_runs_give_equal_exports(writer, run, room, tmp_path):
+    area = (room.free,) if writer is write_jupedsim_sqlite else ()
+    for name in ("a", "b", "a"):
+        writer(run, tmp_path / name, *area)
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b"]
