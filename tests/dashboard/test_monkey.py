@@ -171,13 +171,15 @@ class Monkey:
             return
         # The view shows the clicked person's decision, or that the person has left, or another run.
         try:
-            self.tab.wait(
+            # Steps under way end first: with a million people on two pages, they take a minute.
+            self.page.wait_for_function(
                 f"""([rows, run]) => {{
                     const shown = {DECISION}.__vue__.decision, now = {SHOWN};
                     return rows.includes(shown.pedestrian) && rows.includes(now.selected)
                         || rows.includes(shown.left) || now.run !== run;
                 }}""",
-                [sorted(rows), clicks[-1]["run"]],
+                arg=[sorted(rows), clicks[-1]["run"]],
+                timeout=60_000 + 0.05 * len(clicks[-1]["people"]),
             )
         except playwright_timeout():
             state = self.page.evaluate(
@@ -224,14 +226,17 @@ class Monkey:
 
     def type(self):
         label = self.rng.choice((*PARAMETERS, "weight of headway", "weight of target distance"))
+        self.fill(label, self.rng.choice(TYPED))
+
+    def fill(self, label, text):
+        """Type into a field, if it is there, and does not go meanwhile with its model."""
         field = self.page.get_by_label(label, exact=True)
         if field.count() != 1:
             return
         try:
-            field.fill(self.rng.choice(TYPED), timeout=3000)
-            field.press("Enter", timeout=3000)
+            field.fill(text, timeout=30_000)
+            field.press("Enter", timeout=30_000)
         except playwright_timeout():
-            # Gone in between, when the model that it belongs to was left.
             assert field.count() == 0 or not field.is_enabled()
 
     def change_model(self):
@@ -242,9 +247,8 @@ class Monkey:
         """With room for it, where the model has a size; then leave it, or make it and cancel."""
         if self.page.get_by_label("pedestrians", exact=True).count() != 1:
             return
-        if self.page.get_by_label("size", exact=True).count() == 1:
-            self.tab.set("size", self.rng.choice(("50", "2000")))
-        self.tab.set("pedestrians", self.rng.choice(HUGE))
+        self.fill("size", self.rng.choice(("50", "2000")))
+        self.fill("pedestrians", self.rng.choice(HUGE))
         # Asked, or refused at once; what is typed next withdraws the question.
         if self.is_there("Make it", 3.0) and self.rng.random() < 0.8:
             if self.rng.random() < 0.2:
