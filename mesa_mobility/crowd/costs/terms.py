@@ -61,6 +61,13 @@ def is_weight(value: float) -> bool:
 EXPECTED_WEIGHT = f"a finite number, {MOST_WEIGHT:.0e} at most either way"
 
 
+def _checked_weight(of: str, value: float) -> float:
+    """The weight, or one error that names what it is of."""
+    if not is_weight(value):
+        raise ModelError(f"weight of {of}: got {value}, expected {EXPECTED_WEIGHT}")
+    return float(value)
+
+
 class CostTerm(Plugin):
     """One additive term of the cost of a movement option.
 
@@ -100,9 +107,7 @@ class CostTerm(Plugin):
 
     @weight.setter
     def weight(self, value: float) -> None:
-        if not is_weight(value):
-            raise ModelError(f"weight of {self.name!r}: got {value}, expected {EXPECTED_WEIGHT}")
-        self._weight = float(value)
+        self._weight = _checked_weight(repr(self.name), value)
 
     @property
     def weight_by_type(self) -> Mapping[str, float]:
@@ -111,12 +116,10 @@ class CostTerm(Plugin):
 
     @weight_by_type.setter
     def weight_by_type(self, weights: Mapping[str, float]) -> None:
-        for name, value in weights.items():
-            if not is_weight(value):
-                raise ModelError(
-                    f"weight of {self.name!r} for {name!r}: got {value}, expected {EXPECTED_WEIGHT}"
-                )
-        self._by_type = {name: float(value) for name, value in weights.items()}
+        self._by_type = {
+            name: _checked_weight(f"{self.name!r} for {name!r}", value)
+            for name, value in weights.items()
+        }
 
     def weights(self, types: Sequence[str]) -> NDArray[np.float64]:
         """(types,) the factor for people of each of a model's types, given by their names.
