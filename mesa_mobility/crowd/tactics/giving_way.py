@@ -6,7 +6,8 @@ reservations: one at a time may use it, in the order in which they come, and the
 it (Dresner and Stone, Journal of Artificial Intelligence Research 31, 2008).  Here, of the wide
 people who are about to enter an opening too narrow for two of them, the one who is nearest to it
 has the right to go first.  The others keep the width of a body clear of the opening until it is
-through.  People on foot neither wait nor are waited for.
+through.  One that is up against a jamb first goes back to the middle, since it cannot step
+aside either.  People on foot neither wait nor are waited for.
 """
 
 from __future__ import annotations
@@ -32,6 +33,9 @@ stop."""
 BESIDE_JAMB = 0.35
 """Metres by which the way of somebody who goes by an opening may miss it: half a wide body."""
 
+AT_JAMB = 0.05
+"""Metres from a jamb within which somebody is up against it."""
+
 SECONDS_TO_STOP = 1.5
 """Time in which those who wait come to a halt: the longest movement."""
 
@@ -40,6 +44,9 @@ BACKING = 0.8
 
 GETTING_NEARER = 0.25
 """Metres that the one who goes first must come nearer for it to count as progress."""
+
+STUCK = 3.0
+"""Seconds without progress after which one that is up against a jamb goes back."""
 
 PATIENT = 10.0
 """Seconds without progress after which somebody else goes first."""
@@ -127,9 +134,12 @@ class Precedence(Saved):
                 self._choose(mouth, heeding[self._at[heeding] == mouth], elapsed, crowd)
         at = self._at[who]
         waits = (at != NOBODY) & (self._first[at] != who) & self._too_narrow(who, at, crowd)
-        if not waits.any():
+        stuck = (at != NOBODY) & ~waits & (elapsed - self._since[at] > STUCK)
+        stuck[stuck] = at_a_jamb(self._mouths[at[stuck]], places[stuck], crowd.core[who[stuck]])
+        if not (waits.any() or stuck.any()):
             return points, speeds
         points, speeds = points.copy(), speeds.copy()
+        points[mine[stuck]] = axis_points(self._mouths[at[stuck]], crowd.core[who[stuck]])
         own = mine[waits]
         crowd.agenda["since"][who[waits]] = elapsed
         points[own], speeds[own] = wait_clear(
@@ -211,6 +221,27 @@ def mouths_ahead(
 def clear_of(width: NDArray[np.float64], cores: NDArray[np.float64]) -> NDArray[np.float64]:
     """Metres from the middle of a mouth that a body's width beside it reaches to."""
     return width / 2.0 + 2.0 * cores
+
+
+def at_a_jamb(
+    mouths: NDArray[np.float64], places: NDArray[np.float64], cores: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """(n,) whether each is up against a jamb of the mouth that it is at, and cannot go on."""
+    lines = mouths[:, :4].reshape(-1, 2, 2)
+    to_jamb = np.hypot(*(lines - places[:, None]).transpose(2, 0, 1)).min(axis=1)
+    along = lines[:, 1] - lines[:, 0]
+    width = np.hypot(along[:, 0], along[:, 1])
+    aside = ((places - lines.mean(axis=1)) * along).sum(axis=1) / width
+    against: NDArray[np.bool_] = (to_jamb < cores + AT_JAMB) & (abs(aside) > width / 2.0 - cores)
+    return against
+
+
+def axis_points(mouths: NDArray[np.float64], cores: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, 2) where people may turn into the mouth that each is at: a body before its middle."""
+    points: NDArray[np.float64] = (mouths[:, :2] + mouths[:, 2:4]) / 2.0 - 2.0 * cores[
+        :, None
+    ] * mouths[:, 4:]
+    return points
 
 
 def wait_clear(

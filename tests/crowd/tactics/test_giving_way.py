@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from mesa_mobility import PedestrianModel, PedestrianType
-from mesa_mobility.crowd.tactics.giving_way import mouths_ahead, wait_clear
+from mesa_mobility.crowd.tactics.giving_way import (
+    at_a_jamb,
+    axis_points,
+    mouths_ahead,
+    wait_clear,
+)
 from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.oracles.counting import overlaps, track
 from tests.fixtures.scenes import advance, model_of, put, two_rooms
@@ -126,3 +131,12 @@ def test_a_saved_model_goes_on_alike(tmp_path):
     for each in (model, again):
         each.run(max_seconds=4)
     assert again.crowd.records[:4].tobytes() == model.crowd.records[:4].tobytes()
+
+
+def test_up_against_a_jamb():
+    """A body of 0.35 m fits through 1 m where its centre is within 0.15 m of the middle."""
+    places = np.array([[0.74, -0.25], [0.6, -0.34], [0.9, -0.5]])
+    cores = np.full(3, 0.35)
+    # 0.36 m from the jamb at (1, 0); within 0.15 m of the middle; 0.51 m from the jamb.
+    assert at_a_jamb(MOUTH.repeat(3, axis=0), places, cores).tolist() == [True, False, False]
+    assert axis_points(MOUTH, cores[:1]).tolist() == [[0.5, -0.7]]
