@@ -111,8 +111,8 @@ class Population:
         """(n,) which type each of n people is of, as its index in ``shares``, in random order.
 
         Each type gets its share of n, rounded up or down: the people are drawn at equal distances
-        along the shares, from a random start (systematic sampling, Madow and Madow 1944). Of a
-        single type nothing is drawn from the generator.
+        along the shares, from a random start (systematic sampling; W. G. Madow, Annals of
+        Mathematical Statistics 20, 1949). Of a single type nothing is drawn from the generator.
         """
         if len(self.shares) == 1:
             return np.zeros(n, dtype=np.int64)

@@ -51,7 +51,8 @@ OFFICE_DOOR = 0.9
 
 WHEELCHAIR_SPACING = 1.25
 """Room for two wheelchairs, 1.2 m long, beside each other whichever way they face, metres."""
-BEFORE_THE_FIRST_ROW = box(0.0, 0.0, WIDTH, FIRST_ROW)
+BEFORE_THE_FIRST_ROW = box(0.0, 0.0, WIDTH, 2.55)
+"""Places of wheelchairs, clear of people who stand before the seats of the first row."""
 
 FORECOURT = (3.0, 8.0)
 """Depth and width of the paved area outside each exit door; people leave by crossing it."""

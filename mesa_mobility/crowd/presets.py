@@ -11,6 +11,7 @@ from mesa_mobility.crowd.costs.terms import EXPECTED_WEIGHT, CostTerm, is_weight
 from mesa_mobility.crowd.tactics.shipped import (
     CompensateSpeed,
     FollowSpeedRules,
+    GiveWay,
     Impatience,
     SlowInZones,
     SpreadAtCorners,
@@ -41,7 +42,8 @@ class Preset:
             first of the shortest ones, then of the next longer, and so on.
         hard_bodies: whether no two cores may overlap.
         abreast: whether a crowd spreads out to pass a corner.
-        turns: whether people take turns at passages too narrow for two.
+        turns: whether people take turns at passages too narrow for two, and wide ones give way to
+            each other at openings too narrow for two of them.
         impatience: whether people who make no progress look for a way round.
         even_pace: whether free walkers correct their accumulated distance error.
 
@@ -98,6 +100,7 @@ class Preset:
             (True, SlowInZones),
             (True, FollowSpeedRules),
             (self.turns, TakeTurns),
+            (self.turns, GiveWay),
             (True, Wait),
             (self.even_pace, CompensateSpeed),
             (self.impatience, Impatience),

@@ -76,6 +76,17 @@ def test_in_the_auditorium_wide_people_are_before_the_seats_and_exit_doors_wider
     assert {gate.name: gate.length for gate in narrow.gates}["left exit door"] == pytest.approx(0.7)
 
 
+def test_in_the_auditorium_wheelchairs_are_clear_of_the_first_row():
+    """Half a wheelchair, 0.35 m, and the widest person on foot, 0.25 m, from where people stand."""
+    for seed in range(1, 6):
+        model = Auditorium(pedestrians=600, population=people(0.04), rng=seed)
+        places = np.array([person.position for person in model.agents])
+        wide = model.core_radii == 0.35
+        hall = places[~wide & (places[:, 1] < 24.0)]
+        apart = np.hypot(*(places[wide][:, None] - hall).transpose(2, 0, 1))
+        assert apart.min() > 0.6
+
+
 @pytest.mark.parametrize("model", [Doorway, OpenSpace, StraightWalk])
 def test_every_model_takes_a_population(model):
     made = model(pedestrians=40, population=people(), rng=1)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
+from mesa_mobility.crowd.tactics.giving_way import WIDE, Precedence
 from mesa_mobility.crowd.tactics.impatience import perturb_targets
 from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_compensation import compensate_speed
@@ -96,6 +97,38 @@ class TakeTurns(_OfTheCrowd):
         if not desired.newcomers:
             desired.points, desired.speeds = self._turns.take(
                 deciding.pedestrians, deciding.inside.pedestrians, _frame(deciding), self._crowd,
+                desired.points, desired.speeds,
+            )  # fmt: skip
+
+
+class GiveWay(_OfTheCrowd):
+    """Wide people go one after the other through openings too narrow for two of them."""
+
+    name = "giving_way"
+
+    _precedence: Precedence | None = None
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the crowd; without wide types there is nothing to do."""
+        super().bind(model)
+        widest = max(each.core_radius for each in model.pedestrian_types)
+        if widest > WIDE:
+            self._precedence = Precedence(model.floor_plan, widest)
+
+    def state(self) -> dict[str, Any]:
+        """Who goes first where."""
+        return {} if self._precedence is None else self._precedence.state()
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        if self._precedence is not None:
+            self._precedence.restore(state)
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Let wide people wait clear of openings where another goes first."""
+        if self._precedence is not None and not desired.newcomers:
+            desired.points, desired.speeds = self._precedence.heed(
+                deciding.pedestrians, deciding.inside.pedestrians, deciding.elapsed, self._crowd,
                 desired.points, desired.speeds,
             )  # fmt: skip
 

@@ -19,6 +19,9 @@ Planning and Design, 1971)."""
 # floor of its own, as between walls without thickness (metres).
 _BESIDE = 0.01
 
+# Distance from an exit at which the floor is looked for, metres: it may lie 1 cm off the edge.
+_OFF_EXIT = 0.02
+
 _DIGITS = 6
 
 
@@ -44,6 +47,43 @@ def narrow_passages(plan: "FloorPlan", width: float = FOR_TWO) -> Passages:
     Dead ends, and passages that lead to an exit, have only one mouth and are left out: nobody comes
     towards those who enter them.
     """
+    floors, mouths = _floors_and_mouths(plan, width)
+    both = [(floor, own) for floor, own in zip(floors, mouths, strict=True) if len(own) > 1]
+    outlines = [shapely.get_coordinates(floor.exterior) for floor, _ in both]
+    return Passages(
+        mouths=np.array([mouth for _, own in both for mouth in own]).reshape(-1, 6),
+        first_mouth=np.cumsum([0] + [len(own) for _, own in both], dtype=np.int64),
+        outline=np.concatenate([np.empty((0, 2)), *outlines]),
+        first_corner=np.cumsum([0] + [len(outline) for outline in outlines], dtype=np.int64),
+        boxes=np.array(
+            [_box(outline, own) for outline, (_, own) in zip(outlines, both, strict=True)]
+        ).reshape(-1, 4),
+    )
+
+
+def narrow_mouths(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
+    """(m, 6) the mouths of all passages narrower than ``width`` metres, and exits as narrow.
+
+    Each is a line from (x, y) to (x, y), metres, and the unit vector into the passage, or out by
+    the exit.
+    """
+    mouths = [mouth for own in _floors_and_mouths(plan, width)[1] for mouth in own]
+    for exit_ in plan.open_exits():
+        line = np.array([*exit_.a, *exit_.b])
+        if exit_.length >= width:
+            continue
+        along = (line[2:] - line[:2]) / exit_.length
+        normal, middle = np.array([-along[1], along[0]]), (line[:2] + line[2:]) / 2.0
+        floor = plan.contains(middle + np.outer([-_OFF_EXIT, _OFF_EXIT], normal))
+        if floor[0] != floor[1]:
+            mouths.append(np.append(line, normal if floor[0] else -normal))
+    return np.array(mouths).reshape(-1, 6)
+
+
+def _floors_and_mouths(
+    plan: "FloorPlan", width: float
+) -> tuple[list[shapely.Polygon | shapely.LineString], list[list[NDArray[np.float64]]]]:
+    """The floors of passages narrower than ``width`` metres, and the (6,) mouths of each."""
     gaps = _gaps(plan, width)
     narrow = _narrow_floor(plan, gaps, width)
     along = gaps[:, 2:] - gaps[:, :2]
@@ -60,17 +100,7 @@ def narrow_passages(plan: "FloorPlan", width: float = FOR_TWO) -> Passages:
             mouths[other].append(np.append(line, -normal))
         elif other < 0:
             mouths[one].append(np.append(line, normal))
-    both = [(floor, own) for floor, own in zip(floors, mouths, strict=True) if len(own) > 1]
-    outlines = [shapely.get_coordinates(floor.exterior) for floor, _ in both]
-    return Passages(
-        mouths=np.array([mouth for _, own in both for mouth in own]).reshape(-1, 6),
-        first_mouth=np.cumsum([0] + [len(own) for _, own in both], dtype=np.int64),
-        outline=np.concatenate([np.empty((0, 2)), *outlines]),
-        first_corner=np.cumsum([0] + [len(outline) for outline in outlines], dtype=np.int64),
-        boxes=np.array(
-            [_box(outline, own) for outline, (_, own) in zip(outlines, both, strict=True)]
-        ).reshape(-1, 4),
-    )
+    return floors, mouths
 
 
 def _box(outline: NDArray[np.float64], mouths: list[NDArray[np.float64]]) -> NDArray[np.float64]:

@@ -13,7 +13,8 @@ from mesa_mobility.mobility.primitives import DifferentialDrive, map_of_primitiv
 BOYCE = "Boyce, Shields and Silcock 1999"
 
 LENGTH, WIDTH = 1.2, 0.7
-"""Footprint of an occupied wheelchair in metres, the greatest of ISO 7193."""
+"""Footprint of an occupied wheelchair in metres: the greatest of class A of EN 12184:2014, powered
+wheelchairs for use indoors."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Wheelchair:
                     "core_radius_m": WIDTH / 2,
                     "length_m": LENGTH,
                     "width_m": WIDTH,
-                    "source": "greatest footprint of ISO 7193; a disc as wide as that",
+                    "source": "greatest of class A of EN 12184:2014; a disc as wide as that",
                 },
                 "preferred_speed_m_s": {
                     "mean": mean,
@@ -71,11 +72,9 @@ class Wheelchair:
 
 
 _COMFORT = 1.0
-"""m/s^2: about 0.1 g, what seated passengers find comfortable in studies (Hoberock 1977)."""
+"""m/s^2: about 0.1 g, an assumption."""
 
-_LIMITS = (
-    "accelerations up to 0.1 g, the lower bound of comfort in Hoberock 1977; turn rates assumed"
-)
+_LIMITS = "accelerations up to 0.1 g and turn rates assumed"
 
 WHEELCHAIRS = {
     "wheelchair_manual": Wheelchair(
@@ -88,7 +87,7 @@ WHEELCHAIRS = {
         DifferentialDrive(1.6, _COMFORT, _COMFORT, np.deg2rad(90.0), _COMFORT),
         (0.89, 0.22),
         f"{BOYCE} (two people); deviation assumed",
-        f"fastest: 6 km/h, class A of EN 12184; {_LIMITS}",
+        f"fastest: 6 km/h, assumed; {_LIMITS}",
     ),
     "wheelchair_assisted": Wheelchair(
         DifferentialDrive(2.0, _COMFORT, _COMFORT, np.deg2rad(60.0), _COMFORT),

@@ -5,7 +5,7 @@ import pytest
 from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan
-from mesa_mobility.floorplan.routing.passages import narrow_passages
+from mesa_mobility.floorplan.routing.passages import narrow_mouths, narrow_passages
 from tests.fixtures.scenes import two_rooms
 
 
@@ -40,3 +40,17 @@ def test_a_passage_round_a_bend_is_one():
     middles = (found.mouths[:, :2] + found.mouths[:, 2:4]) / 2
     assert sorted(map(tuple, middles.tolist())) == [(8.0, 1.5), (11.5, 8.0)]
     assert np.allclose(np.hypot(*found.mouths[:, 4:].T), 1.0)
+
+
+def test_mouths_of_passages_and_of_exits():
+    """Both sides of a door; an exit in a wall; not one as wide as asked for."""
+    found = narrow_mouths(two_rooms(0.9, 0.2), 1.4)
+    assert sorted(map(tuple, found[:, 4:].round(6).tolist())) == [(-1.0, 0.0), (1.0, 0.0)]
+    plan = FloorPlan(
+        box(0.0, 0.0, 8.0, 8.0),
+        exits=[Exit("right", (8.0, 5.0), (8.0, 6.2)), Exit("below", (2.0, 0.0), (3.4, 0.0))],
+    )
+    assert narrow_mouths(plan, 1.4).tolist() == [[8.0, 5.0, 8.0, 6.2, 1.0, 0.0]]
+    assert narrow_mouths(plan, 1.2).shape == (0, 6)
+    plan.close_gate("right")
+    assert narrow_mouths(plan, 1.4).shape == (0, 6)

@@ -65,7 +65,7 @@ def test_turns_are_the_wider_the_quicker(chair):
 
 
 def test_it_turns_right_round_within_the_turning_circle(chair):
-    """1.5 m across (ISO 21542); the footprint sweeps its diagonal, 1.39 m, if it turns in place."""
+    """1.5 m across (DIN 18040-1); in place, the footprint sweeps its diagonal, 1.39 m."""
     body = chair.metadata["body"]
     rows = np.asarray(chair.options_of(chair.standing))
     spot = rows[np.hypot(*chair.end_points[rows].T) == 0.0]
