@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import mesa
 import numpy as np
 from mesa.datacollection import DataCollector
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.crowd.checkpoint.saved_model import SavedModel
+from mesa_mobility.crowd.checkpoint.copying import copy_model
+from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
-from mesa_mobility.crowd.hooks import Saved, scheduled_events
+from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
 from mesa_mobility.crowd.insertion.inflow import Inflow, Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.insertion.source import Source
@@ -49,7 +51,7 @@ from mesa_mobility.plugins.seeds import seed_of
 from mesa_mobility.populations import Population
 
 
-class PedestrianModel(SavedModel):
+class PedestrianModel(mesa.Model):
     """Pedestrians on a floor plan, driven by recorded movement.
 
     Concrete models build a floor plan, call this constructor and then
@@ -92,6 +94,7 @@ class PedestrianModel(SavedModel):
             ``stall_reason`` says why.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
         events_at_first: events that Mesa itself has scheduled.
+        framework_attributes: names of the attributes that this class has made.
         datacollector: time, people inside, mean speed and fallback share after each step.
 
     Raises:
@@ -118,6 +121,15 @@ class PedestrianModel(SavedModel):
 
     frame_rate = 1.0 / FRAME_SECONDS
     """Frames a second."""
+
+    made_with: tuple[tuple[Any, ...], dict[str, Any]]
+    """The arguments that the constructor was called with."""
+
+    def __new__(cls, *args: Any, **keywords: Any) -> Self:
+        """A model that knows what it was made with."""
+        model = super().__new__(cls)
+        model.made_with = args, keywords
+        return model
 
     def __init__(
         self,
@@ -171,7 +183,7 @@ class PedestrianModel(SavedModel):
         self._stall_watch, self.stalled = StallWatch(), False
         add_occupants(floor_plan, self.population)
         self.datacollector = DataCollector(model_reporters=REPORTERS)
-        self._framework = frozenset(vars(self))
+        self.framework_attributes = frozenset({*vars(self), "framework_attributes"})
 
     @property
     def elapsed(self) -> float:
@@ -409,3 +421,50 @@ class PedestrianModel(SavedModel):
             ([[t, inside], ...] each second).
         """
         return self.statistics.summary()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """An independent copy that continues exactly as this model would.
+
+        Both share the mobility map and compiled code, which neither changes.
+        """
+        return copy_model(self, memo)
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise ModelError(
+            f"{type(self).__name__}: a model can be copied by copy.deepcopy, neither by copy.copy "
+            "nor by pickle; expected its parameters and seed, which make it anew"
+        )
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a checkpoint, from which ``load`` goes on to the same trajectories.
+
+        It holds the constructor's arguments and all that has changed since: people, behaviours,
+        generators, records, and attributes of the model and its people. Maps are not in it but
+        their digest is.
+
+        Args:
+            path: the file, a zip of arrays and JSON.
+
+        Raises:
+            ModelError: an attribute or a behaviour's state that cannot be saved, people who wait
+                for a function, or a file that cannot be written.
+        """
+        save_model(self, path)
+
+    @classmethod
+    def load(
+        cls, path: str | os.PathLike[str], *, plugins: Iterable[Plugin] = (), **arguments: Any
+    ) -> Self:
+        """The model of a checkpoint, in this process or another.
+
+        Args:
+            path: the file.
+            plugins: behaviours that the model had, and that are neither installed nor made by its
+                constructor.
+            arguments: constructor's arguments that the file cannot hold, such as a mobility map.
+
+        Raises:
+            ModelError: a file that cannot be read or is another model's, other mobility maps, or
+                missing arguments or behaviours.
+        """
+        return load_model(cls, path, plugins, arguments)

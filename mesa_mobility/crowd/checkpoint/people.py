@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.crowd.checkpoint.plain import Packer, Unpacker
+from mesa_mobility.crowd.people.pedestrian import last_number
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def pack_people(model: PedestrianModel, packer: Packer) -> dict[str, Any]:
             }
     return {
         "unique_ids": [agent.unique_id for agent in agents],
-        "last_id": model.last_id,
+        "last_id": last_number(model),
         "own": own,
     }
 

@@ -12,7 +12,7 @@ import inspect
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -34,6 +34,8 @@ from mesa_mobility.plugins import registry
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
+
+Model = TypeVar("Model", bound="PedestrianModel")
 
 SHIPPED = "able_bodied"
 """The map that a model without a map has."""
@@ -68,19 +70,26 @@ def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
         },
         "own": {
             name: packer.pack(vars(model)[name], f"{type(model).__name__}.{name}")
-            for name in model.own_attributes()
+            for name in own_attributes(model)
         },
     }  # fmt: skip
     write_archive(path, content, packer.arrays)
 
 
 def load_model(
-    kind: type[PedestrianModel],
+    kind: type[Model],
     path: str | os.PathLike[str],
     plugins: Iterable[Plugin],
     given: Mapping[str, Any],
-) -> PedestrianModel:
-    """A model from a checkpoint; see ``PedestrianModel.load``."""
+) -> Model:
+    """The model of a checkpoint; see ``PedestrianModel.load``.
+
+    Args:
+        kind: the class, or one above it.
+        path: the file.
+        plugins: behaviours that are neither installed nor made by the constructor.
+        given: constructor's arguments that the file cannot hold.
+    """
     content, arrays = read_archive(path)
     try:
         return _load(kind, content, arrays, plugins, given)
@@ -94,12 +103,12 @@ def load_model(
 
 
 def _load(
-    kind: type[PedestrianModel],
+    kind: type[Model],
     content: Mapping[str, Any],
     arrays: Mapping[str, Any],
     plugins: Iterable[Plugin],
     given: Mapping[str, Any],
-) -> PedestrianModel:
+) -> Model:
     made = _class_of(kind, content["model"])
     needed = [name for name in content["missing_arguments"] if name not in given]
     if needed:
@@ -146,6 +155,11 @@ def _load(
     model.rng.bit_generator.state = bits
     model.random.setstate(state)
     return model
+
+
+def own_attributes(model: PedestrianModel) -> list[str]:
+    """Names of the attributes that subclasses and users have added to a model."""
+    return sorted(vars(model).keys() - model.framework_attributes)
 
 
 def map_digest(map_: MobilityMap) -> str:
@@ -257,7 +271,7 @@ def _restore_collected(model: PedestrianModel, saved: Mapping[str, Any]) -> None
         there.update(saved[name])
 
 
-def _class_of(kind: type[PedestrianModel], name: str) -> type[PedestrianModel]:
+def _class_of(kind: type[Model], name: str) -> type[Model]:
     """The class of a saved model: ``kind``, one below it that is imported, or an installed one."""
     known = [kind, *_below(kind)]
     for each in known:
@@ -269,7 +283,7 @@ def _class_of(kind: type[PedestrianModel], name: str) -> type[PedestrianModel]:
     wanted = name.rpartition(".")[2].rpartition(":")[2]
     for plugin in registry.models().values():
         if plugin.target.rpartition(":")[2] == wanted:
-            installed = plugin.load()
+            installed: type[Any] = plugin.load()
             if class_name(installed) == name and issubclass(installed, kind):
                 return installed
     raise ModelError(
@@ -278,6 +292,6 @@ def _class_of(kind: type[PedestrianModel], name: str) -> type[PedestrianModel]:
     )
 
 
-def _below(kind: type[PedestrianModel]) -> list[type[PedestrianModel]]:
-    children: list[type[PedestrianModel]] = kind.__subclasses__()
+def _below(kind: type[Model]) -> list[type[Model]]:
+    children: list[type[Model]] = kind.__subclasses__()
     return [each for child in children for each in (child, *_below(child))]
