@@ -71,7 +71,7 @@ class Dynamics(Saved):
         """Bind behaviours that have come in since the last time, and look at all their names.
 
         Raises:
-            ModelError: two cost terms of one name.
+            ModelError: two cost terms of one name for people of one type.
         """
         model = self._model
         if model.population.groups and not self._grouped:
@@ -80,12 +80,13 @@ class Dynamics(Saved):
         now = [*model.terms, *model.speed_rules, model.target_choice, *model.tactics]
         if now == self._bound:
             return
-        names = [term.name for term in model.terms]
-        for name in names:
-            if names.count(name) > 1:
-                raise ModelError(
-                    f"terms: two of them are named {name!r}, expected names of their own"
-                )
+        for kind in model.pedestrian_types:
+            names = [term.name for term in model.terms if term.is_for(kind.name)]
+            for name in names:
+                if names.count(name) > 1:
+                    raise ModelError(
+                        f"terms: two of them are named {name!r}, expected names of their own"
+                    )
         known = set(map(id, self._bound))
         self._bound = now
         for each in now:

@@ -8,7 +8,7 @@ number for each.  Terms are independent of one another, so their order does not 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -78,6 +78,9 @@ class CostTerm(Plugin):
         weight: factor of the term in the sum; may be changed while a model runs.
         weight_by_type: factors for people of some types, as ``{"child": 0.0}``; 0 switches the
             term off for them.
+        for_types: names of the types whose people alone have the term, as ``["child"]``; None, by
+            default, for everybody. Terms of one name may have different parameters for different
+            types.
 
     Examples:
         >>> import numpy as np
@@ -96,6 +99,7 @@ class CostTerm(Plugin):
     default_weight: ClassVar[float] = 1.0
 
     _by_type: Mapping[str, float] = MappingProxyType({})
+    _for_types: tuple[str, ...] | None = None
 
     def __init__(self, weight: float | None = None) -> None:
         self.weight = self.default_weight if weight is None else weight
@@ -121,19 +125,41 @@ class CostTerm(Plugin):
             for name, value in weights.items()
         }
 
+    @property
+    def for_types(self) -> tuple[str, ...] | None:
+        """Names of the types whose people alone have the term; None for everybody."""
+        return self._for_types
+
+    @for_types.setter
+    def for_types(self, names: Iterable[str] | None) -> None:
+        if isinstance(names, str):
+            raise ModelError(
+                f"for_types of {self.name!r}: got {names!r}, expected a list such as [{names!r}]"
+            )
+        self._for_types = None if names is None else tuple(dict.fromkeys(names))
+
+    def is_for(self, type_name: str) -> bool:
+        """Whether people of the type of this name have the term."""
+        return self._for_types is None or type_name in self._for_types
+
     def weights(self, types: Sequence[str]) -> NDArray[np.float64]:
         """(types,) the factor for people of each of a model's types, given by their names.
 
+        It is 0 for types that do not have the term.
+
         Raises:
-            ModelError: a weight for a type that the model does not have.
+            ModelError: a weight for a type that the model does not have, or a term for one.
         """
-        unknown = [name for name in self._by_type if name not in types]
-        if unknown:
-            raise ModelError(
-                f"behaviour {self.name!r}: has a weight for the type {unknown[0]!r}; the model has "
-                f"{', '.join(types)}"
-            )
-        return np.array([self._by_type.get(name, self.weight) for name in types])
+        for what, names in (("has a weight", self._by_type), ("is", self._for_types or ())):
+            unknown = [name for name in names if name not in types]
+            if unknown:
+                raise ModelError(
+                    f"behaviour {self.name!r}: {what} for the type {unknown[0]!r}; the model has "
+                    f"{', '.join(types)}"
+                )
+        return np.array(
+            [self._by_type.get(name, self.weight) if self.is_for(name) else 0.0 for name in types]
+        )
 
     @abstractmethod
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:

@@ -41,7 +41,7 @@ class Explanation:
         taken: whether it was taken; if not, it is the decision that would be taken.
         cluster: cluster of the pose it decides from, in the map of its type.
         candidates: its options, of a batch of one.
-        terms: names of the terms.
+        terms: names of the terms that people of its type have.
         weights: (terms,) their factors in the sum.
         costs: (terms, n) cost of each option, without the weights.
         verdicts: (n,) ``FREE``, ``WALL`` or ``PERSON``.
@@ -111,6 +111,7 @@ def weigh(
         np.array([row], dtype=np.int64), known.table, crowd, grid, around, rules, moment
     )
     n, kind = len(candidates), crowd.type_index[row]
+    terms = [term for term in terms if term.is_for(types[kind])]
     costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
     return Explanation(
         pedestrian=row,

@@ -210,6 +210,66 @@ def test_weights_by_type(term):
         Stay().weight_by_type = {"child": float("nan")}
 
 
+class ForChildren(Down):
+    """A term that has nothing to say of adults."""
+
+    def cost(self, candidates):
+        assert set(candidates.types.tolist()) <= {1}
+        return super().cost(candidates)
+
+
+@pytest.mark.parametrize("term", [Stay, ForChildren])
+def test_terms_by_type(term):
+    """A term for children is as if it had weight 0 for adults, and sees no adult in NumPy."""
+
+    def paths_of(*terms):
+        same = wanderer(5, options=60)
+        types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
+        model = PedestrianModel(
+            corridor(), pedestrian_types=types, rng=1, fields={"mood": float}, record=True
+        )
+        model.terms += terms
+        for kind in (0, 1):
+            model.add_pedestrians(
+                [(2.0 + 0.7 * k, 1.0 + kind) for k in range(3)],
+                type_index=kind, fields={"mood": [1.0] * 3},
+            )  # fmt: skip
+        model.run(max_seconds=2.0)
+        return model, tracks(model)
+
+    limited = term(4.0)
+    limited.for_types = ["child"]
+    weighed = (Stay if term is Stay else Down)(0.0)
+    weighed.weight_by_type = {"child": 4.0}
+    model, found = paths_of(limited)
+    assert found == paths_of(weighed)[1] != paths_of()[1]
+    assert limited.name in model.explain(3).terms
+    assert limited.name not in model.explain(0).terms
+
+
+def test_one_term_with_other_numbers_for_each_type():
+    def model_with(*kinds):
+        same = wanderer(5)
+        types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
+        model = PedestrianModel(corridor(), pedestrian_types=types, rng=1)
+        model.add_pedestrians([(2.0, 2.0), (5.0, 2.0)], type_index=[0, 1])
+        for weight, names in enumerate(kinds, start=1):
+            term = Down(weight)
+            term.for_types = names
+            model.terms.append(term)
+        return model
+
+    model = model_with(["adult"], ["child"])
+    model.step()
+    assert [model.explain(row).weights[-1] for row in (0, 1)] == [1.0, 2.0]
+    with pytest.raises(ModelError, match="terms: two of them are named 'down'"):
+        model_with(["adult"], None).step()
+    with pytest.raises(ModelError, match="'down': is for the type 'elder'; the model has adult"):
+        model_with(["elder"]).step()
+    with pytest.raises(ModelError, match=r"got 'child', expected a list such as \['child'\]"):
+        Down().for_types = "child"
+
+
 @pytest.mark.parametrize("weight", [1e308, -1e10, float("inf"), float("nan")])
 def test_a_weight_with_which_sums_overflow_is_refused(weight):
     with pytest.raises(ModelError, match=r"weight of 'stay': got .*, expected a finite number, 1e"):

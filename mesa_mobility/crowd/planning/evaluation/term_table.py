@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.costs.candidates import Moment
+from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.kernel_reads import parameters_read
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
@@ -157,7 +157,7 @@ class CompiledTerms:
             self._terms, self._key = list(terms), None
             self._compiled = [term for term in terms if isinstance(term, CompiledTerm)]
         key = (
-            [(term.weight, term.weight_by_type) for term in self._terms],
+            [(term.weight, term.weight_by_type, term.for_types) for term in self._terms],
             [term.parameters() for term in self._compiled],
         )
         if key != self._key:
@@ -226,20 +226,29 @@ def extra_costs(
         candidates = make_candidates(part, table, state, grid, around, rules, moment)
         total = np.zeros(len(candidates))
         for term in terms:
-            giver = f"behaviour {term.name!r}"
-            cost = numbers_given(giver, "costs", term.cost(candidates), total.shape)
-            if not np.isfinite(cost).all():
-                option = int(np.argmin(np.isfinite(cost)))
-                raise ModelError(
-                    f"{giver}: gave a cost of {cost[option]} for option {option} of {len(cost)}, "
-                    "expected finite numbers"
-                )
-            if term.weight_by_type:
-                cost = cost * term.weights(types)[candidates.types[candidates.owner]]
-            else:
-                cost = term.weight * cost
-            total += cost
+            if term.for_types is None:
+                total += _weighted(term, candidates, types)
+                continue
+            having = (term.weights(types) != 0.0)[candidates.types]
+            if having.any():
+                own = make_candidates(part[having], table, state, grid, around, rules, moment)
+                total[having[candidates.owner]] += _weighted(term, own, types)
         parts.append(total)
         counts.append(np.diff(candidates.offsets))
     offsets = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
     return np.concatenate(parts), offsets
+
+
+def _weighted(term: CostTerm, candidates: Candidates, types: Sequence[str]) -> NDArray[np.float64]:
+    """(n,) costs of options with their weights."""
+    giver = f"behaviour {term.name!r}"
+    cost = numbers_given(giver, "costs", term.cost(candidates), (len(candidates),))
+    if not np.isfinite(cost).all():
+        option = int(np.argmin(np.isfinite(cost)))
+        raise ModelError(
+            f"{giver}: gave a cost of {cost[option]} for option {option} of {len(cost)}, "
+            "expected finite numbers"
+        )
+    if term.weight_by_type:
+        return cost * term.weights(types)[candidates.types[candidates.owner]]
+    return term.weight * cost
