@@ -3,11 +3,11 @@
     python benchmarks/experiments.py overhead --runs 10000 --workers 2 --store STORE
     python benchmarks/experiments.py coverage --store STORE
 
-The first runs 30 people through a door on a Dask cluster on this machine. It prints the time of the
+The first runs people through a door on a Dask cluster on this machine. It prints the time of the
 runs, the time that the workers were there for them, processor time likewise, the memory of this
 process over time, and the files and messages. The second takes the runs of the store's first point
-for the truth, repeats an experiment with `replications="auto"` on runs drawn from them, and counts
-how often the interval that it states holds their mean.
+for the truth, repeats an experiment with `replications="auto"` on runs drawn from them with
+replacement, and counts how often the interval that it states holds their mean.
 """
 
 from __future__ import annotations
@@ -34,7 +34,6 @@ from mesa_mobility.experiments import (
 from mesa_mobility.experiments.convergence import assess
 from mesa_mobility.experiments.driver import BATCH_SECONDS
 
-PEOPLE = 30
 WIDTHS = [1.0, 1.2]
 
 
@@ -44,20 +43,21 @@ def main() -> None:
     parser.add_argument("what", choices=("overhead", "coverage"))
     parser.add_argument("--store", type=Path, required=True)
     parser.add_argument("--runs", type=int, default=1000)
+    parser.add_argument("--people", type=int, default=30)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--repetitions", type=int, default=100)
     arguments = parser.parse_args()
     if arguments.what == "overhead":
-        overhead(arguments.store, arguments.runs, arguments.workers)
+        overhead(arguments.store, arguments.runs, arguments.people, arguments.workers)
     else:
         coverage(arguments.store, arguments.repetitions)
 
 
-def overhead(place: Path, runs: int, workers: int) -> None:
+def overhead(place: Path, runs: int, people: int, workers: int) -> None:
     """Run an experiment and compare the time of its runs with that of everything."""
     experiment = Experiment(
         "doorway", {"door_width": WIDTHS}, replications=runs // len(WIDTHS), seed=1,
-        fixed={"pedestrians": PEOPLE}, max_seconds=120, keep=("occupancy",),
+        fixed={"pedestrians": people}, max_seconds=120, keep=("occupancy",),
     )  # fmt: skip
     process = psutil.Process()
     memory: list[tuple[int, float]] = []
@@ -126,11 +126,11 @@ def coverage(place: Path, repetitions: int) -> None:
         rng = np.random.default_rng(1)
         held, counts = 0, []
         for _ in range(repetitions):
-            order = rng.permutation(len(egress))
+            drawn = rng.integers(len(egress), size=precision.most)
             count = 0
             while True:
                 count = precision.next_count(count)
-                taken = order[:count]
+                taken = drawn[:count]
                 known = assess(precision, count, {"egress_s": egress[taken]}, list(curves[taken]))
                 if known.enough or count >= precision.most:
                     break

@@ -111,7 +111,19 @@ class Precision:
 
     def next_count(self, count: int) -> int:
         """Replications to have after ``count``."""
-        return min(max(self.least, math.ceil(count * _GROWTH)), self.most)
+        return self.least if count < self.least else min(math.ceil(count * _GROWTH), self.most)
+
+    def last_look(self, count: int) -> int:
+        """The last number of replications, of those looked at, that ``count`` of them reach.
+
+        A look at any other number would make the result depend on where runs were interrupted.
+        """
+        if count < self.least:
+            return count
+        look = self.least
+        while look < (following := self.next_count(look)) <= count:
+            look = following
+        return look
 
     def definition(self) -> dict[str, Any]:
         """What a file says of it."""
@@ -133,7 +145,8 @@ class Assessment:
     """What is known of a point after so many runs.
 
     Attributes:
-        runs: replications.
+        runs: replications that count: the first ones, without a gap, up to a number at which
+            results are looked at.
         estimates: estimate and interval of each figure.
         met: whether each figure is known well enough; "occupancy" stands for the curve.
     """
@@ -146,6 +159,11 @@ class Assessment:
     def enough(self) -> bool:
         """Whether everything asked for is known well enough."""
         return all(self.met.values())
+
+    @property
+    def hopeless(self) -> bool:
+        """Whether no run has some figure, as where all of them fail."""
+        return any(known.value is None for known in self.estimates.values())
 
 
 def estimate(figure: str, values: NDArray[np.float64], confidence: float) -> Estimate:

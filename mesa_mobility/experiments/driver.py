@@ -21,14 +21,17 @@ from mesa_mobility.experiments.rows import DONE, RUNS, STALLED
 from mesa_mobility.experiments.session import session_of
 from mesa_mobility.experiments.store import Store
 from mesa_mobility.experiments.workers.batches import (
+    DEATHS,
     Batch,
     Finished,
+    Journal,
     rows_of_lost_workers,
     salvage,
 )
 from mesa_mobility.experiments.workers.choice import workers_for
 from mesa_mobility.experiments.workers.executors import WorkerDied, Workers
 from mesa_mobility.experiments.workers.one_run import Setup
+from mesa_mobility.plugins.model_files import is_model_file
 from mesa_mobility.processes import check_importable, check_main
 
 BATCH_SECONDS = 5.0
@@ -45,6 +48,9 @@ _LOOSE = 48
 
 _ATTEMPTS = 3
 """Workers that may die with a batch before its runs go out one by one, or count as failed."""
+
+_MOST_ATTEMPTS = 20
+"""The same for a run that these workers had not begun, but waited with."""
 
 Missing = Iterator[tuple[Point, int]]
 
@@ -203,9 +209,8 @@ class _Driver:
         for index in order.tolist():
             known = found.get(keys[index].decode())
             have = known.runs if known else 0
-            wanted[index] = have if known and have >= precision.least and known.enough else (
-                max(have, precision.next_count(have))
-            )  # fmt: skip
+            ended = known and have >= precision.least and (known.enough or known.hopeless)
+            wanted[index] = have if ended else precision.next_count(have)
         return wanted
 
     def _do(self, setup: Setup, runs: Missing) -> None:
@@ -265,10 +270,21 @@ class _Driver:
             return [batch]
         if len(batch.runs) > 1:
             return [Batch(f"{batch.name}-{k}", (run,)) for k, run in enumerate(batch.runs)]
+        if self._is_innocent(batch):
+            return [batch]
         reason = f"{_ATTEMPTS} workers died during this run"
         rows_of_lost_workers(setup, batch, reason)
         self._note(Finished({"failed": 1}, 0.0))
         return []
+
+    def _is_innocent(self, batch: Batch) -> bool:
+        """Whether a batch of one run waited behind others whenever its worker died."""
+        folder = self._store.folder
+        if not folder.local or self._attempts[batch.name] >= _MOST_ATTEMPTS:
+            return False
+        [(point, replication)] = batch.runs
+        begun = Journal.of(folder, batch.name).begun
+        return begun[run_name(point_key(point), replication)] < DEATHS
 
     def _as_told(self, error: BaseException) -> BaseException:
         done = f"{self.progress.ended} of {self.progress.total} runs have ended and are kept"
@@ -283,7 +299,7 @@ class _Driver:
         experiment = self._experiment
         folder = self._store.folder
         return Setup(
-            model=experiment.model,
+            model=_found_anywhere(experiment.model),
             seed=experiment.seed,
             max_seconds=experiment.max_seconds,
             time_limit=experiment.time_limit,
@@ -294,3 +310,8 @@ class _Driver:
             store=os.path.abspath(folder.root) if folder.local else folder.url,
             may_end=own_processes,
         )
+
+
+def _found_anywhere(model: type | str) -> type | str:
+    """A model as workers find it that were started in another folder."""
+    return os.path.abspath(model) if isinstance(model, str) and is_model_file(model) else model

@@ -18,6 +18,7 @@ from mesa_mobility.experiments.points import (
     check_whole,
     plain_value,
 )
+from mesa_mobility.experiments.rows import SERIES
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.plugins.registry import did_you_mean
 
@@ -149,9 +150,19 @@ def model_class(model: type | str) -> type:
 
 def check_parameters(experiment: Experiment) -> None:
     """Raise ModelError if the model does not take a parameter of the experiment, or no ``rng``."""
+    from mesa_mobility.experiments.shards import RUN_COLUMNS
+
     kind = model_class(experiment.model)
     called = model_name(experiment.model)
     taken = parameters_of(kind)
+    for name in experiment.column_types():
+        if name in ("rng", "record"):
+            raise ModelError(f"experiment: {name} is a parameter, but each run is given its own")
+        if name in {*RUN_COLUMNS, *SERIES}:
+            raise ModelError(
+                f"model {called}: parameter {name} is called like a column of the store, expected "
+                "another name"
+            )
     if any(each.kind is each.VAR_KEYWORD for each in inspect.signature(kind).parameters.values()):
         return
     needed = ["rng", *(["record"] if "trajectories" in experiment.keep else [])]
@@ -159,8 +170,6 @@ def check_parameters(experiment: Experiment) -> None:
         if name not in taken:
             raise ModelError(f"model {called}: its constructor does not take {name}")
     for name in experiment.column_types():
-        if name in ("rng", "record"):
-            raise ModelError(f"experiment: {name} is a parameter, but each run is given its own")
         if name not in taken:
             raise ModelError(
                 f"model {called}: unknown parameter {name!r}{did_you_mean(name, taken)}"

@@ -120,6 +120,12 @@ def _estimates(page: Page, store: Store, frame: pd.DataFrame, shown: list[str]) 
         "Means have intervals of Student's t. Percentiles have intervals between two of the runs, "
         "which need about 72 runs for the 95th percentile; where there are fewer, none is given.",
     )  # fmt: skip
+    for figure in shown:
+        if lacking := len(frame) - int(done[figure].notna().sum()):
+            page.text(
+                f"{lacking} of {len(frame)} runs have no {figure}, and are in no mean or "
+                "percentile of it: they have failed, stalled, or ended with people inside."
+            )
     if done["point"].nunique() > _MOST_ROWS:
         page.text(f"The first {_MOST_ROWS} of {done['point'].nunique()} points.")
 
@@ -134,9 +140,14 @@ def _convergence(page: Page, store: Store) -> None:
         if known is None:
             continue
         point = experiment.design[index]
-        end = "all reached" if known.enough else (
-            "maximum of runs" if known.runs >= precision.most else "not finished"
-        )  # fmt: skip
+        if known.runs < precision.least:
+            end = "not finished"
+        elif known.enough:
+            end = "all reached"
+        elif known.hopeless:
+            end = "no run has a figure"
+        else:
+            end = "maximum of runs" if known.runs >= precision.most else "not finished"
         rows.append(
             [*[_text(value) for value in point.values()], known.runs, end,
              *["reached" if met else "not reached" for met in known.met.values()]]

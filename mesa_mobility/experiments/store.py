@@ -197,7 +197,12 @@ class Store:
             self._check_figures(precision.columns, table.schema)
         frame = table.to_pandas().sort_values(["point", "replication"])
         found = {}
-        for key, rows in frame.groupby("point"):
+        for key, every in frame.groupby("point"):
+            # What has ended after an interruption are the short runs: only rounds that are
+            # complete are looked at.
+            whole = every["replication"].to_numpy() == np.arange(len(every))
+            count = precision.last_look(len(every) if whole.all() else int(np.argmin(whole)))
+            rows = every[:count]
             done = rows[rows["status"] == DONE]
             values = {
                 name: done[name].dropna().to_numpy(dtype=np.float64)
@@ -205,7 +210,7 @@ class Store:
                 if name in done
             }
             curves = done["occupancy"].dropna() if "occupancy" in done else ()
-            found[str(key)] = assess(precision, len(rows), values, list(curves))
+            found[str(key)] = assess(precision, count, values, list(curves))
         return found
 
     def _check_figures(self, columns: Sequence[str], schema: pa.Schema) -> None:

@@ -162,7 +162,7 @@ def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
             row[f"summary_{name}" if name in taken or name in SERIES else name] = value
     if not _has_pedestrians(model):
         return row
-    row |= _by_type(model)
+    row |= {f"summary_{n}" if n in taken else n: v for n, v in _by_type(model).items()}
     if occupancy:
         row["occupancy"] = [people for _, people in summary["occupancy"]]
     return row
