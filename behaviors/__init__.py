@@ -12,6 +12,7 @@ from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
 from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.room_ahead import RoomAhead
+from mesa_mobility.behaviors.sideways import Sideways
 from mesa_mobility.behaviors.stepping import Stepping
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
 from mesa_mobility.behaviors.velocity import (
@@ -39,6 +40,7 @@ __all__ = [
     "RandomUtility",
     "RightOfWay",
     "RoomAhead",
+    "Sideways",
     "SocialInfluence",
     "Stepping",
     "TargetDistance",

@@ -11,6 +11,7 @@ from mesa_mobility.behaviors import (
     FacingDeviation,
     PreferredSpeed,
     PreferredVelocity,
+    Sideways,
     Stepping,
     TargetDistance,
     VelocityChange,
@@ -18,7 +19,7 @@ from mesa_mobility.behaviors import (
 
 TERMS = [
     Displacement, FacingDeviation, PreferredSpeed, PreferredVelocity, Stepping, TargetDistance,
-    VelocityChange,
+    VelocityChange, Sideways,
 ]  # fmt: skip
 
 START = (0.25, 0.5)

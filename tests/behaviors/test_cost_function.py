@@ -21,6 +21,7 @@ from mesa_mobility.behaviors import (
     PreferredVelocity,
     RightOfWay,
     RoomAhead,
+    Sideways,
     Stepping,
     TargetDistance,
     VelocityChange,
@@ -34,6 +35,7 @@ from tests.fixtures.options import Ending, crowded, one_option
 TERMS = [
     TargetDistance, FacingDeviation, Displacement, Interference, PreferredSpeed, PreferredVelocity,
     Headway, RightOfWay, Anticipation, RoomAhead, Stepping, VelocityChange,
+    Sideways,
 ]  # fmt: skip
 
 

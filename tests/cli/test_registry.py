@@ -7,7 +7,7 @@ SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium", "mixed
 SHIPPED_BEHAVIORS = {
     "target_distance", "facing_deviation", "displacement", "interference", "preferred_speed",
     "preferred_velocity", "headway", "right_of_way", "stepping", "anticipation", "room_ahead",
-    "velocity_change",
+    "velocity_change", "sideways",
 }  # fmt: skip
 
 

@@ -111,7 +111,8 @@ def test_workers_in_another_folder_find_the_model_file(tmp_path, monkeypatch):
 def test_a_run_is_not_to_blame_for_workers_that_died_before_it_began(tmp_path):
     experiment = Experiment(MODELS + "Quick", {"x": [0.0]})
     store = Store(tmp_path / "s")
-    store.folder.make("work")
+    for name in ("runs", "work"):
+        store.folder.make(name)
     crew = SimpleNamespace(count=1, address="")
     driver = _Driver(experiment, store, crew, lambda now: None)
     setup = driver._setup(own_processes=True)

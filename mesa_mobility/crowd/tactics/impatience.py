@@ -28,7 +28,7 @@ ANOTHER_WAY = 2.0
 PATIENCE = 5.0
 """Seconds without progress until somebody grows impatient."""
 
-RATE, MOST = 0.1, 1.5
+RATE, MOST = 0.1, 0.5
 """Standard deviation of the angle: radians a second of impatience, and its maximum."""
 
 LOOKS = 0.15

@@ -77,6 +77,7 @@ def same(one, other):
     assert frames[0].equals(frames[1])
 
 
+@pytest.mark.slow
 def test_sources_journeys_groups_and_waits_go_on(tmp_path):
     model = all_there_is()
     advance(model, 60)

@@ -183,3 +183,19 @@ def test_people_who_have_left_walk_straight_away_from_the_exit(line, begun, velo
     # After 1.5 s it stays in place, however many frames pass.
     after = np.array([8.0, 1.0]) + 3.0 * (np.array(then) - [8.0, 1.0])
     assert (crowd.x[1], crowd.y[1]) == pytest.approx(tuple(after))
+
+
+@pytest.mark.parametrize(
+    ("preferred", "metres"),
+    # 0.5 m/s in the exit. Of the difference to 1.3 m/s, which decays with 0.54 s, 1.5 s leave
+    # 0.36 (1 - exp(-1.5 / 0.54)) = 0.3376 on average: 1.030 m/s.
+    [(1.3, 0.515), (0.5, 0.25), (0.3, 0.25)],
+)
+def test_people_who_were_held_up_in_the_exit_speed_up_beyond_it(preferred, metres):
+    crowd, beyond = Crowd(1), Departed()
+    crowd.x[0], crowd.y[0], crowd.from_x[0], crowd.from_y[0] = 8.0, 1.0, 7.5, 1.0
+    crowd.vx[0], crowd.preferred[0] = 0.5, preferred
+    beyond.add(np.array([0]))
+    beyond.set_off(30, crowd, np.array([[8.0, 0.0, 8.0, 1.2]]))
+    beyond.move(45, crowd)
+    assert (crowd.x[0], crowd.y[0]) == pytest.approx((8.0 + metres, 1.0), abs=1e-3)

@@ -94,6 +94,7 @@ def test_held_out_clips_are_covered_and_builds_repeat(captures_dir, tmp_path):
 
 
 @pytest.mark.captures
+@pytest.mark.slow
 def test_literal_shortest_paths_hardly_ever_have_45_frames(captures_dir):
     """Why the map uses paths of exactly 45 frames (unconstrained: hundreds of frames)."""
     manifest = read_manifest(captures_dir / "manifest.tsv")
@@ -106,6 +107,7 @@ def test_literal_shortest_paths_hardly_ever_have_45_frames(captures_dir):
 
 
 @pytest.mark.captures
+@pytest.mark.slow
 def test_clusters_of_real_poses_hold_alike_poses(captures_dir):
     manifest = read_manifest(captures_dir / "manifest.tsv")
     clips = load_clips(manifest, pedestrian_type="able_bodied", mirrored=False).recordings
