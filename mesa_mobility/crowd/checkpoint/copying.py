@@ -26,6 +26,6 @@ def copy_model(model: Model, memo: dict[int, Any]) -> Model:
     # Its agents go into registers that use their model's number.
     number_from(copied, last_number(model))
     for name, value in vars(model).items():
-        vars(copied)[name] = value if name == "made_with" else deepcopy(value, memo)
+        copied.__dict__[name] = value if name == "made_with" else deepcopy(value, memo)
     add_occupants(copied.floor_plan, copied.population)
     return copied
