@@ -31,7 +31,7 @@ def _sideways_bound(  # type: ignore[no-untyped-def]
 class Sideways(CompiledTerm):
     """Avoids steps to the side and back.
 
-    (|s| + k b) x 1.5 / t: s is the part of the displacement across the facing direction at the
+    ``(|s| + k b) x 1.5 / t``: s is the part of the displacement across the facing direction at the
     mobility point, b the part against it, 0 if it leads forward, k is ``backwards`` and t the
     duration of the option.  In metres over the paper's 1.5 s whatever the duration, so that options
     of different durations compare.  An arc costs as well, half as much as a step to the side that
