@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from mesa_mobility.bodies.rotations import matrices
 from mesa_mobility.bodies.skeleton import COUNTERPARTS, TURN_OF, TURNING
 from mesa_mobility.errors import MapError
+from mesa_mobility.files.read_once import read_once
 
 QUATERNION_STEP = 1.0 / 32767
 """Quaternions are stored as 16-bit integers: to 0.004 degrees."""
@@ -147,10 +148,13 @@ class PoseBank:
         Raises:
             MapError: the file is missing, damaged, of another version or inconsistent.
         """
-        from mesa_mobility.bodies.bankfile import read_bank
-        from mesa_mobility.files.read_once import read_once
+        return read_once(path, cls._read)
 
-        return read_once(path, read_bank, cls)
+    @classmethod
+    def _read(cls, path: Path) -> PoseBank:
+        from mesa_mobility.bodies.bankfile import read_bank
+
+        return read_bank(path, cls)
 
     @classmethod
     def of(cls, digest: str, path: str | Path | None = None) -> PoseBank:

@@ -12,17 +12,12 @@ Content = TypeVar("Content")
 """What is made of a file."""
 
 
-def read_once(
-    path: str | Path,
-    read: Callable[[Path, Callable[..., Content]], Content],
-    make: Callable[..., Content],
-) -> Content:
+def read_once(path: str | Path, read: Callable[[Path], Content]) -> Content:
     """What `read` makes of a file, or what it made before if the file has not changed since.
 
     Args:
         path: the file.
-        read: reads the file, given its path and `make`.
-        make: makes the content from its fields, given by name.
+        read: reads the file; a function or a class method, by which the content is kept.
 
     Raises:
         MobilityError: as `read`.
@@ -31,13 +26,11 @@ def read_once(
     try:
         status = path.stat()
     except OSError:
-        return read(path, make)  # which raises the error
-    found: Content = _read_version(path.resolve(), status.st_mtime_ns, status.st_size, read, make)
+        return read(path)  # which raises the error
+    found: Content = _read_version(path.resolve(), status.st_mtime_ns, status.st_size, read)
     return found
 
 
 @cached_once(maxsize=20)
-def _read_version(
-    path: Path, changed: int, size: int, read: Callable[[Path, Any], Any], make: Callable[..., Any]
-) -> Any:
-    return read(path, make)
+def _read_version(path: Path, changed: int, size: int, read: Callable[[Path], Any]) -> Any:
+    return read(path)

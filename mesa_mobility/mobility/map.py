@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import MapError
+from mesa_mobility.files.read_once import read_once
 from mesa_mobility.human_limits import FASTEST_SPRINT
 
 SAMPLE_SECONDS = 0.1
@@ -170,13 +171,18 @@ class MobilityMap:
         Raises:
             MapError: the file is missing, damaged, of another version or inconsistent.
         """
-        from mesa_mobility.files.read_once import read_once
-        from mesa_mobility.mobility.mapfile import read_map, shipped_map_path
+        from mesa_mobility.mobility.mapfile import shipped_map_path
 
         path = Path(shipped_map_path("able_bodied") if path is None else path)
-        found = read_once(path, read_map, cls)
+        found = read_once(path, cls._read)
         object.__setattr__(found, "file", path)
         return found
+
+    @classmethod
+    def _read(cls, path: Path) -> MobilityMap:
+        from mesa_mobility.mobility.mapfile import read_map
+
+        return read_map(path, cls, lender=cls.load)
 
     @classmethod
     def named(cls, name: str) -> MobilityMap:

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import MapError
-from mesa_mobility.files.read_once import read_once
 from mesa_mobility.mobility.storing.archive import read_arrays, read_metadata, write_arrays
 from mesa_mobility.mobility.storing.layouts import FAMILIES, OPTIONS
 from mesa_mobility.mobility.storing.steps import COST_STEP, PATH_STEPS
@@ -81,12 +80,13 @@ def write_map(map_: MobilityMap, path: str | Path) -> None:
     write_arrays(path, OPTIONS, arrays, metadata)
 
 
-def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
+def read_map(path: str | Path, make: Callable[..., Map], lender: Callable[[], MobilityMap]) -> Map:
     """Read and check a map file, of all options or of families of options.
 
     Args:
         path: the file.
         make: builds the map from its fields, given by name.
+        lender: the map of which a map of families borrows what it lacks.
 
     Raises:
         MapError: the file is missing or invalid; the message names it and the fault.
@@ -97,11 +97,6 @@ def read_map(path: str | Path, make: Callable[..., Map]) -> Map:
         if "sources" not in arrays:
             return make(**_decode(arrays))
         from mesa_mobility.mobility.storing.families import read_families
-
-        def lender() -> Map:
-            """The able-bodied map, of which a map borrows what it lacks."""
-            read: Callable[[Path, Callable[..., Map]], Map] = read_map
-            return read_once(shipped_map_path("able_bodied"), read, make)
 
         return make(**read_families(arrays).fields(lender))
     except MapError as error:
