@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import inspect
 from contextlib import suppress
@@ -37,8 +38,7 @@ def _inputs(experiment: Experiment) -> dict[str, str]:
         files["model file"] = Path(name.partition(".py")[0] + ".py")
     elif ":" in name:  # the others are of installed packages, which have versions
         with suppress(OSError, TypeError):  # of what has been typed at a prompt
-            source = inspect.getsource(kind)
-            sources["source of the model"] = hashlib.sha256(source.encode()).hexdigest()
+            sources["source of the model"] = hashlib.sha256(_source(kind).encode()).hexdigest()
     design = experiment.design
     maps = {experiment.fixed.get("mobility_map")}
     if "mobility_map" in design.column_types():
@@ -46,3 +46,24 @@ def _inputs(experiment: Experiment) -> dict[str, str]:
     for path in sorted(str(each) for each in maps if isinstance(each, str)):
         files[f"map {path}"] = Path(path)
     return {label: sha256_of(file) for label, file in files.items()} | sources
+
+
+def _source(kind: type) -> str:
+    """The text of a class in its module's file as it is now.
+
+    From Python 3.13 on ``inspect.getsource`` of a class reads the lines where it stood when it
+    was imported: other ones, once something above it has changed.
+    """
+    module = inspect.getmodule(kind)
+    if getattr(module, "__file__", None) is None:  # a notebook keeps the text of its cells
+        return inspect.getsource(kind)
+    text = inspect.getsource(module)  # type: ignore[arg-type]
+    body: list[ast.stmt] = ast.parse(text).body
+    for name in kind.__qualname__.split("."):
+        found = [node for node in body if isinstance(node, ast.ClassDef) and node.name == name]
+        if not found:  # made by a call, or inside a function
+            return inspect.getsource(kind)
+        body = found[-1].body
+    node = found[-1]
+    first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
+    return "".join(text.splitlines(keepends=True)[first - 1 : node.end_lineno])
