@@ -20,9 +20,9 @@ from mesa_mobility.floorplan import (
     reachability,
     sampling,
 )
+from mesa_mobility.floorplan.free_area import FreeArea
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.router import Router
-from mesa_mobility.floorplan.walls import boundaries
 from mesa_mobility.floorplan.walls.wall_index import WallIndex
 from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
 
@@ -79,12 +79,11 @@ class FloorPlan:
         extent.check_extent(self._walkable)
         self._exits = tuple(exits)
         self._gates = tuple(gates)
-        self._closed: set[str] = set()
-        self._obstacles: dict[int, Polygon] = {
+        polygons = {
             i: checks.read_polygon(obstacle, f"obstacle {i}")
             for i, obstacle in enumerate(obstacles)
         }
-        self._next_obstacle = len(self._obstacles)
+        self._next_obstacle = len(polygons)
         checks.check_exits(self._walkable, self._exits, self._gates)
         checks.check_gates(self._walkable, self._gates)
         self._zones = tuple(zones)
@@ -92,8 +91,7 @@ class FloorPlan:
         checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
         self._router: Router | None = None
-        self._set_free(self._obstacles, self._without(self._obstacles))
-        self._set_walls()
+        self._take(FreeArea(self._walkable, self._exits, self._gates, polygons))
 
     @classmethod
     def from_wkt(
@@ -160,7 +158,7 @@ class FloorPlan:
     @property
     def free(self) -> BaseGeometry:
         """Walkable area minus obstacles: a Polygon, or a MultiPolygon, an exit at each piece."""
-        return self._free
+        return self._area.geometry
 
     @property
     def walls(self) -> NDArray[np.float64]:
@@ -185,7 +183,7 @@ class FloorPlan:
     @property
     def obstacles(self) -> dict[int, Polygon]:
         """The obstacles by id."""
-        return dict(self._obstacles)
+        return dict(self._area.obstacles)
 
     @property
     def zones(self) -> tuple[SpeedZone, ...]:
@@ -204,7 +202,7 @@ class FloorPlan:
     @property
     def area(self) -> float:
         """Free area in square metres."""
-        return self._free.area
+        return self._area.geometry.area
 
     def openings(self) -> tuple[Gate | Exit, ...]:
         """Gates, then exits: the numbering of `Targets.gates`."""
@@ -232,19 +230,17 @@ class FloorPlan:
 
     def is_open(self, name: str) -> bool:
         """Whether the gate or exit of this name is open."""
-        return self.gate(name).name not in self._closed
+        return self.gate(name).name not in self._area.closed
 
     def close_gate(self, name: str) -> None:
         """Make the gate or exit of this name a wall."""
         if self.is_open(name):
-            self._closed.add(name)
-            self._changed()
+            self._change(self._area.with_closed(self._area.closed | {name}))
 
     def open_gate(self, name: str) -> None:
         """Open the gate or exit of this name again."""
         if not self.is_open(name):
-            self._closed.discard(name)
-            self._changed()
+            self._change(self._area.with_closed(self._area.closed - {name}))
 
     def add_obstacle(self, polygon: Polygon | str) -> int:
         """Put an obstacle (shapely or WKT, metres) in the way and return its id.
@@ -256,40 +252,36 @@ class FloorPlan:
         number = self._next_obstacle
         name = f"obstacle {number}"
         obstacle = checks.read_polygon(polygon, name)
-        obstacles = {**self._obstacles, number: obstacle}
-        free = self._without(obstacles)
-        occupants.check_vacant(self, obstacle, name, free)
-        self._set_free(obstacles, free)
+        area = self._area.with_obstacles({**self._area.obstacles, number: obstacle})
+        occupants.check_vacant(self, obstacle, name, area.geometry)
         self._next_obstacle += 1
-        self._changed()
+        self._change(area)
         return number
 
     def remove_obstacle(self, obstacle: int) -> None:
         """Remove the obstacle with this id; FloorPlanError if there is none."""
-        if obstacle not in self._obstacles:
-            raise FloorPlanError(
-                f"there is no obstacle {obstacle}; there are {list(self._obstacles)}"
-            )
-        obstacles = {i: p for i, p in self._obstacles.items() if i != obstacle}
-        self._set_free(obstacles, self._without(obstacles))
-        self._changed()
+        obstacles = self.obstacles
+        if obstacle not in obstacles:
+            raise FloorPlanError(f"there is no obstacle {obstacle}; there are {list(obstacles)}")
+        del obstacles[obstacle]
+        self._change(self._area.with_obstacles(obstacles))
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """(n,) whether each of the (n, 2) points is in the free area, its edge included."""
         xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-        return shapely.intersects_xy(self._free, xy[:, 0], xy[:, 1])
+        return shapely.intersects_xy(self._area.geometry, xy[:, 0], xy[:, 1])
 
     def open_exits(self) -> tuple[Exit, ...]:
         """The exits that are open now."""
-        return tuple(e for e in self._exits if e.name not in self._closed)
+        return self._area.open_ones(self._exits)
 
     def open_gates(self) -> tuple[Gate, ...]:
         """The gates that are open now."""
-        return tuple(g for g in self._gates if g.name not in self._closed)
+        return self._area.open_ones(self._gates)
 
     def closed_gates(self) -> tuple[Gate, ...]:
         """The gates that are closed now."""
-        return tuple(g for g in self._gates if g.name in self._closed)
+        return self._area.closed_ones(self._gates)
 
     def check_reachable(self, points: ArrayLike, clearance: float) -> None:
         """Raise FloorPlanError if a body of radius `clearance` metres cannot reach an open exit.
@@ -327,9 +319,9 @@ class FloorPlan:
     def state(self) -> dict[str, Any]:
         """All that changes while models run: obstacles, the next one's id, and what is closed."""
         return {
-            "obstacles": dict(self._obstacles),
+            "obstacles": self.obstacles,
             "next_obstacle": self._next_obstacle,
-            "closed": sorted(self._closed),
+            "closed": sorted(self._area.closed),
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
@@ -339,24 +331,14 @@ class FloorPlan:
         """
         if state == self.state():
             return
-        obstacles = dict(state["obstacles"])
-        self._set_free(obstacles, self._without(obstacles))
-        self._next_obstacle, self._closed = state["next_obstacle"], set(state["closed"])
-        self._changed()
+        area = self._area.with_obstacles(state["obstacles"]).with_closed(state["closed"])
+        self._next_obstacle = state["next_obstacle"]
+        self._change(area)
 
-    def _without(self, obstacles: dict[int, Polygon]) -> BaseGeometry:
-        free = checks.free_area(self._walkable, list(obstacles.values()), self._exits, self._gates)
-        shapely.prepare(free)
-        return free
-
-    def _set_free(self, obstacles: dict[int, Polygon], free: BaseGeometry) -> None:
-        self._obstacles, self._free = obstacles, free
-
-    def _set_walls(self) -> None:
-        edge = boundaries.cut_out(boundaries.boundary_segments(self._free), self.open_exits())
-        self._walls = np.concatenate([edge, boundaries.opening_segments(self.closed_gates())])
+    def _take(self, area: FreeArea) -> None:
+        self._area, self._walls = area, area.walls()
         self._wall_index.replace(self._walls)
 
-    def _changed(self) -> None:
-        self._set_walls()
+    def _change(self, area: FreeArea) -> None:
+        self._take(area)
         self.version += 1

@@ -1,0 +1,81 @@
+"""The part of a floor plan that is free at one time, and its walls."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.floorplan import checks
+from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.walls import boundaries
+
+Opening = TypeVar("Opening", bound=Gate | Exit)
+
+
+class FreeArea:
+    """The walkable area minus obstacles, with some openings closed. A change gives another one.
+
+    Args:
+        walkable: the walkable area.
+        exits: all exits, open at first.
+        gates: all gates, open at first.
+        obstacles: by id.
+
+    Raises:
+        FloorPlanError: a piece of the area has no exit.
+
+    Attributes:
+        geometry: a Polygon, or a MultiPolygon with an exit at each piece.
+        obstacles: by id.
+        closed: names of the closed gates and exits.
+    """
+
+    def __init__(
+        self,
+        walkable: Polygon,
+        exits: Sequence[Exit],
+        gates: Sequence[Gate],
+        obstacles: Mapping[int, Polygon],
+    ) -> None:
+        self._walkable, self._exits, self._gates = walkable, exits, gates
+        self.closed: frozenset[str] = frozenset()
+        self._subtract(obstacles)
+
+    def with_obstacles(self, obstacles: Mapping[int, Polygon]) -> "FreeArea":
+        """The area with these obstacles instead; FloorPlanError for a piece without an exit."""
+        changed = copy(self)
+        changed._subtract(obstacles)
+        return changed
+
+    def with_closed(self, names: Iterable[str]) -> "FreeArea":
+        """The area with these gates and exits closed, and all others open."""
+        changed = copy(self)
+        changed.closed = frozenset(names)
+        return changed
+
+    def open_ones(self, openings: Iterable[Opening]) -> tuple[Opening, ...]:
+        """Those of some gates or exits that are open."""
+        return tuple(each for each in openings if each.name not in self.closed)
+
+    def closed_ones(self, openings: Iterable[Opening]) -> tuple[Opening, ...]:
+        """Those of some gates or exits that are closed."""
+        return tuple(each for each in openings if each.name in self.closed)
+
+    def walls(self) -> NDArray[np.float64]:
+        """(m, 4) x1, y1, x2, y2 in metres: the edge without open exits, and closed gates."""
+        edge = boundaries.boundary_segments(self.geometry)
+        walls = boundaries.cut_out(edge, self.open_ones(self._exits))
+        gates = boundaries.opening_segments(self.closed_ones(self._gates))
+        return np.concatenate([walls, gates])
+
+    def _subtract(self, obstacles: Mapping[int, Polygon]) -> None:
+        self.obstacles = dict(obstacles)
+        self.geometry: BaseGeometry = checks.free_area(
+            self._walkable, list(self.obstacles.values()), self._exits, self._gates
+        )
+        shapely.prepare(self.geometry)
