@@ -205,9 +205,9 @@ class Store:
             rows = every[:count]
             done = rows[rows["status"] == DONE]
             values = {
-                name: done[name].dropna().to_numpy(dtype=np.float64)
+                name: rows[name].where(rows["status"] == DONE).to_numpy(dtype=np.float64)
                 for name in precision.columns
-                if name in done
+                if name in rows
             }
             curves = done["occupancy"].dropna() if "occupancy" in done else ()
             found[str(key)] = assess(precision, count, values, list(curves))
