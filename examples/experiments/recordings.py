@@ -42,7 +42,9 @@ class Hall(PedestrianModel):
             exits=[Exit("door", (length, low), (length, high))],
         )
         super().__init__(plan, mobility_map=mobility_map, rng=rng)
-        speeds = self.pedestrian_types[0].draw_speeds(pedestrians, np.random.default_rng(crowd))
+        # One by one: drawn together, people are spread evenly, and crowds are alike.
+        people, kind = np.random.default_rng(crowd), self.pedestrian_types[0]
+        speeds = [kind.draw_speeds(1, people)[0] for _ in range(pedestrians)]
         places = plan.random_points(pedestrians, self.rng, spacing=0.5, clearance=0.3)
         self.add_pedestrians(places, preferred_speeds=speeds)
 
