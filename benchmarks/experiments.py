@@ -91,8 +91,7 @@ def overhead(place: Path, runs: int, people: int, workers: int) -> None:
     first = next(m for ended, m in memory if ended >= runs / 10)
     files = [path for path in place.rglob("*") if path.is_file()]
     size = sum(store.shards().values())
-    point = experiment.point(0)
-    message = len(pickle.dumps(tuple((point, number) for number in range(100)))) / 100
+    message = len(pickle.dumps(tuple((experiment.point(0), k) for k in range(100)))) / 100
     print(f"load of the machine {os.getloadavg()}, {os.cpu_count()} processors")
     print(f"wall clock: runs {own:.1f} s, workers there for {there:.1f} s: "
           f"overhead {(there - own) / own:.1%}")  # fmt: skip
@@ -124,7 +123,7 @@ def coverage(place: Path, repetitions: int) -> None:
         Precision(),
     ):
         rng = np.random.default_rng(1)
-        held, counts = 0, []
+        held, counts = [], []
         for _ in range(repetitions):
             drawn = rng.integers(len(egress), size=precision.most)
             count = 0
@@ -137,12 +136,15 @@ def coverage(place: Path, repetitions: int) -> None:
             found = known.estimates["mean egress_s"]
             assert found.low is not None
             assert found.high is not None
-            held += found.low <= true <= found.high
+            held.append(found.low <= true <= found.high)
             counts.append(count)
         asked = ", ".join([*precision.figures, *(["occupancy"] if precision.occupancy else [])])
+        share = np.mean(held)
+        noise = np.sqrt(share * (1 - share) / repetitions)
         print(
-            f"{asked}, to {precision.tolerance:.0%}: {held} of {repetitions} intervals hold the "
-            f"mean; {min(counts)} to {max(counts)} runs, median {np.median(counts):.0f}"
+            f"{asked}, to {precision.tolerance:.0%}: {sum(held)} of {repetitions} intervals hold "
+            f"the mean, {share:.1%} (standard error {noise:.1%}); {sum(held[:100])} of the first "
+            f"100; {min(counts)} to {max(counts)} runs, median {np.median(counts):.0f}"
         )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import time
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -17,7 +16,7 @@ import numpy as np
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.experiment import Experiment, check_parameters
 from mesa_mobility.experiments.points import Point, point_key, run_name
-from mesa_mobility.experiments.rows import DONE, RUNS, STALLED
+from mesa_mobility.experiments.rows import DONE, RUNS, STALLED, TRAJECTORIES
 from mesa_mobility.experiments.session import session_of
 from mesa_mobility.experiments.store import Store
 from mesa_mobility.experiments.workers.batches import (
@@ -118,20 +117,22 @@ def run_experiment(
     told = progress or (lambda now: None)
 
     if executor in ("processes", "dask"):  # before the lock: this may be a trial of the script
-        if isinstance(experiment.model, type):
+        # Dask sends a class of a notebook along with its runs.
+        if executor == "processes" and isinstance(experiment.model, type):
             check_importable(experiment.model, "run_experiment")
         check_main("run_experiment")
     with kept.locked():
         kept.prepare(experiment, session_of(experiment, executor))
-        kept.folder.remove_half_written(RUNS)
-        salvage(kept.folder, experiment.column_types(), f"salvaged-{time.time_ns()}")
+        for name in ("", RUNS, TRAJECTORIES):
+            kept.folder.remove_half_written(name)
+        salvage(kept.folder, experiment.column_types())
         crew, closing = workers_for(executor, workers)
         driver = _Driver(experiment, kept, crew, told)
         try:
             with closing:
                 driver.run()
         finally:
-            salvage(kept.folder, experiment.column_types(), f"salvaged-{time.time_ns()}")
+            salvage(kept.folder, experiment.column_types())
             kept.compact()
     return kept
 
@@ -232,6 +233,7 @@ class _Driver:
                 under_way -= 1
                 if isinstance(answer, Finished):
                     self._attempts.pop(batch.name, None)
+                    self._check_kept(batch)
                     self._note(answer)
                     loose += 1
                 elif isinstance(answer, WorkerDied):
@@ -242,6 +244,18 @@ class _Driver:
                 self._store.compact()
                 loose = 0
             self._told(self.progress)
+
+    def _check_kept(self, batch: Batch) -> None:
+        """Raise ResultsError where a worker has written its rows, but not to this store."""
+        if self._store.folder.exists(f"{RUNS}/{batch.name}.parquet"):
+            return
+        # Another driver may have merged the file, where there are no locks.
+        names = [run_name(point_key(point), number) for point, number in batch.runs]
+        if not np.isin(np.array(names, dtype="S40"), self._store.run_names()).all():
+            raise ResultsError(
+                f"{self._store}: has no rows of runs that have ended, expected a folder or URL "
+                "that all workers share"
+            )
 
     def _batch(self, runs: Missing) -> Batch | None:
         """The next batch; the first ones are single runs, which tell how long a run takes."""

@@ -31,6 +31,13 @@ def plain_value(name: str, value: Any) -> Value:
         raise ModelError(f"parameter {name}: got {value}, expected a finite number")
     if isinstance(value, int) and not -(2**63) <= value < 2**63:
         raise ModelError(f"parameter {name}: got {value}, expected a number of at most 64 bits")
+    if isinstance(value, str):
+        try:
+            value.encode()
+        except UnicodeEncodeError:  # a file's name in another encoding, for instance
+            raise ModelError(
+                f"parameter {name}: got {value!r}, expected text that UTF-8 can hold"
+            ) from None
     if value is None or isinstance(value, bool | int | float | str):
         return value
     raise ModelError(

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from mesa_mobility.experiments.experiment import Experiment, model_class, model_name
-from mesa_mobility.plugins.model_files import is_model_file
+from mesa_mobility.plugins.model_files import is_model_file, path_and_name
 from mesa_mobility.reports.versions import machine, sha256_of, versions
 
 
@@ -35,7 +35,7 @@ def _inputs(experiment: Experiment) -> dict[str, str]:
     kind = model_class(experiment.model)
     sources = {}
     if is_model_file(name):
-        files["model file"] = Path(name.partition(".py")[0] + ".py")
+        files["model file"], _ = path_and_name(name)
     elif ":" in name:  # the others are of installed packages, which have versions
         with suppress(OSError, TypeError):  # of what has been typed at a prompt
             sources["source of the model"] = hashlib.sha256(_source(kind).encode()).hexdigest()

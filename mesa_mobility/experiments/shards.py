@@ -6,8 +6,8 @@ import io
 import json
 import os
 import time
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +82,8 @@ class Folder:
     def make(self, name: str) -> None:
         """Make a folder below this one, if it is not there."""
         try:
-            self.fs.makedirs(self.path(name), exist_ok=True)
+            with self._reached(name):
+                self.fs.makedirs(self.path(name), exist_ok=True)
         except OSError as error:
             raise ResultsError(
                 f"{self.url}: cannot be written: {error.strerror or error}"
@@ -90,8 +91,9 @@ class Folder:
 
     def exists(self, name: str) -> bool:
         """Whether there is such a file."""
-        self.fs.invalidate_cache()
-        return bool(self.fs.exists(self.path(name)))
+        with self._reached(name):
+            self.fs.invalidate_cache()
+            return bool(self.fs.exists(self.path(name)))
 
     def write_bytes(self, name: str, content: bytes) -> None:
         """Write a file; it is complete or absent.
@@ -100,29 +102,33 @@ class Folder:
             ResultsError: it cannot be written.
         """
         if self.local:
-            with replacing(self.path(name), ResultsError) as temporary:
-                temporary.write_bytes(content)
+            path = self.path(name)
+            with replacing(path, ResultsError) as temporary, temporary.open("wb") as file:
+                file.write(content)
+                file.flush()
+                # Without power a renamed file may be empty, and what it holds gone elsewhere.
+                os.fsync(file.fileno())
             return
-        try:
+        with self._reached(name):
             self.fs.pipe_file(self.path(name), content)  # an object is put as a whole
-        except OSError as error:
-            raise ResultsError(f"{self.url}/{name}: cannot be written: {error}") from error
 
     def read_bytes(self, name: str) -> bytes:
         """The content of a file."""
-        content: bytes = self.fs.cat_file(self.path(name))
-        return content
+        with self._reached(name):
+            content: bytes = self.fs.cat_file(self.path(name))
+            return content
 
     def remove(self, name: str) -> None:
-        """Delete a file, if it is still there."""
-        with suppress(FileNotFoundError):
+        """Delete a file, if it is there and nobody reads it."""
+        with suppress(OSError):
             self.fs.rm_file(self.path(name))
 
     def files(self, folder: str, suffix: str) -> dict[str, int]:
         """Name and bytes of the files of a folder, in alphabetical order."""
-        self.fs.invalidate_cache()
         try:
-            found = self.fs.ls(self.path(folder), detail=True)
+            with self._reached(folder):
+                self.fs.invalidate_cache()
+                found = self.fs.ls(self.path(folder), detail=True)
         except FileNotFoundError:
             return {}
         except OSError as error:
@@ -135,6 +141,19 @@ class Folder:
             for name in sorted(names)
             if name.endswith(suffix) and not name.startswith(".")
         }
+
+    @contextmanager
+    def _reached(self, name: str) -> Iterator[None]:
+        """Turn what a remote file system may raise, which is anything, into one line."""
+        try:
+            yield
+        except FileNotFoundError:
+            raise
+        except Exception as error:
+            if self.local:
+                raise
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            raise ResultsError(f"{self.url}/{name}: cannot be reached: {reason}") from error
 
     def remove_half_written(self, folder: str) -> None:
         """Delete temporary files that killed processes have left behind."""
@@ -241,6 +260,9 @@ def _cast(table: pa.Table, types: dict[str, pa.DataType]) -> pa.Table:
             columns[name] = table[name]
         elif table[name].null_count == table.num_rows:
             columns[name] = pa.nulls(table.num_rows, kind)
+        elif pa.types.is_string(kind):
+            # As in a table of both from the start; Arrow writes numbers in its own way.
+            columns[name] = pa.array([_fitting(v, kind) for v in table[name].to_pylist()], kind)
         else:
             columns[name] = table[name].cast(kind)
     return pa.table(columns)
@@ -267,5 +289,5 @@ def _fitting(value: Any, kind: pa.DataType) -> Any:
     if value is None or pa.types.is_nested(kind):
         return value
     if pa.types.is_string(kind):
-        return value if isinstance(value, str) else str(value)
+        return str(value)
     return float(value) if pa.types.is_floating(kind) else value

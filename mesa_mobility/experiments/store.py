@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import os
-import time
+import uuid
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -40,6 +40,7 @@ from mesa_mobility.experiments.shards import (
     read_table,
     write_table,
 )
+from mesa_mobility.plugins.model_files import is_model_file, path_and_name
 from mesa_mobility.plugins.registry import did_you_mean
 
 if TYPE_CHECKING:
@@ -110,10 +111,13 @@ class Store:
         """
         wanted = None if columns is None else list(dict.fromkeys(["run", "status", *columns]))
         while True:
-            tables = [read_table(self.folder, name, wanted) for name in self.shards()]
+            tables = {name: read_table(self.folder, name, wanted) for name in self.shards()}
+            gone = [name for name, table in tables.items() if table is None]
+            if not gone:
+                return joined(table for table in tables.values() if table is not None)
             # Where files were merged meanwhile, their rows are in a file that was not listed.
-            if all(table is not None for table in tables):
-                return joined(table for table in tables if table is not None)
+            if still := sorted({*gone} & {*self.shards()}):
+                raise ResultsError(f"{self}/{still[0]}: is listed, but is no file")
 
     def frame(self, *, series: bool = False) -> pd.DataFrame:
         """Rows as a pandas data frame, by point of the experiment's design and replication.
@@ -205,9 +209,9 @@ class Store:
             rows = every[:count]
             done = rows[rows["status"] == DONE]
             values = {
-                name: done[name].dropna().to_numpy(dtype=np.float64)
+                name: rows[name].where(rows["status"] == DONE).to_numpy(dtype=np.float64)
                 for name in precision.columns
-                if name in done
+                if name in rows
             }
             curves = done["occupancy"].dropna() if "occupancy" in done else ()
             found[str(key)] = assess(precision, count, values, list(curves))
@@ -251,7 +255,8 @@ class Store:
             before = self.definition()
             self._check_same(before["experiment"], said)
             sessions = before["sessions"]
-            self._check_inputs(sessions[-1]["inputs"], session["inputs"])
+            known = {name: digest for each in sessions for name, digest in each["inputs"].items()}
+            self._check_inputs(known, session["inputs"])
         for name in (RUNS, WORK, *([TRAJECTORIES] if "trajectories" in experiment.keep else [])):
             self.folder.make(name)
         values = {
@@ -261,7 +266,9 @@ class Store:
 
     def _check_same(self, before: dict[str, Any], said: dict[str, Any]) -> None:
         for key in ("model", "seed", "max_seconds"):
-            if before.get(key) != said.get(key):
+            if before.get(key) != said.get(key) and not (
+                key == "model" and _is_same_file(before, said)
+            ):
                 raise ModelError(
                     f"{self}: holds runs with {key} {before.get(key)}, got {said.get(key)}; "
                     "expected another store"
@@ -286,7 +293,7 @@ class Store:
             return
         tables = [read_table(self.folder, name) for name in small]
         whole = joined(table for table in tables if table is not None)
-        write_table(self.folder, f"{RUNS}/merged-{time.time_ns()}.parquet", whole)
+        write_table(self.folder, f"{RUNS}/merged-{uuid.uuid4().hex}.parquet", whole)
         # Only now: rows are twice in the store for a moment, but never not at all.
         for name in small:
             self.folder.remove(name)
@@ -302,14 +309,15 @@ class Store:
                 return False
         except Timeout:
             return True
-        except OSError:  # a folder that can only be read
+        except (OSError, NotImplementedError):  # a folder that can only be read, or has no locks
             return False
 
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Be the only process that runs the experiment; the lock ends with the process.
 
-        Object stores have no locks. Two drivers would there do runs twice, and count them once.
+        Object stores and some shared file systems have no locks. Two drivers would there do runs
+        twice, and count them once.
 
         Raises:
             ResultsError: another process runs it, or the folder cannot be written.
@@ -325,10 +333,21 @@ class Store:
             raise ResultsError(f"{self}: another process is running this experiment") from error
         except OSError as error:
             raise ResultsError(f"{self}: cannot be written: {error.strerror or error}") from error
+        except NotImplementedError:  # of the file system, says filelock
+            pass
         try:
             yield
         finally:
             lock.release()
+
+
+def _is_same_file(before: dict[str, Any], said: dict[str, Any]) -> bool:
+    """Whether two models are of one file, from wherever; its content is compared elsewhere."""
+    names = [str(each["model"]) for each in (before, said)]
+    if not all(is_model_file(name) for name in names):
+        return False
+    one, other = (path_and_name(name) for name in names)
+    return one[0].name == other[0].name and one[1] == other[1]
 
 
 def open_store(url: str | os.PathLike[str]) -> Store:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -20,8 +21,10 @@ def replacing(path: str | os.PathLike[str], error: type[MobilityError]) -> Itera
         error: raised where the folder or the file cannot be written, or the disk is full.
     """
     target = Path(path)
-    # The suffix stays last: writers of pictures choose the format by it.
-    temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
+    # Machines that share a folder may have processes of one number. The suffix stays last: writers
+    # of pictures choose the format by it.
+    mine = f"{os.getpid()}-{secrets.token_hex(4)}"
+    temporary = target.with_name(f".{target.stem}.{mine}.tmp{target.suffix}")
     try:
         with cleaning_up(lambda: temporary.unlink(missing_ok=True)):
             yield temporary

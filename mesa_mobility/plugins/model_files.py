@@ -20,6 +20,18 @@ def is_model_file(text: str) -> bool:
     return _FILE.fullmatch(text) is not None
 
 
+def path_and_name(text: str) -> tuple[Path, str | None]:
+    """The file and the model's name of ``FILE.py:NAME``, or of ``FILE.py``, which has no name.
+
+    Raises:
+        ModelError: neither of them.
+    """
+    found = _FILE.fullmatch(text)
+    if found is None:
+        raise ModelError(f"{text}: expected FILE.py or FILE.py:NAME")
+    return Path(found["path"]), found["name"]
+
+
 def load_model_file(text: str) -> type:
     """The class of a model in a Python file, which is executed.
 
@@ -29,10 +41,7 @@ def load_model_file(text: str) -> type:
     Raises:
         ModelError: no such file, an error in it, or not exactly one model that could be meant.
     """
-    found = _FILE.fullmatch(text)
-    if found is None:
-        raise ModelError(f"{text}: expected FILE.py or FILE.py:NAME")
-    path, name = Path(found["path"]), found["name"]
+    path, name = path_and_name(text)
     if not path.is_file():
         raise ModelError(f"{path}: no such file, expected a Python file with a model")
     models = _models_of(_execute(path))

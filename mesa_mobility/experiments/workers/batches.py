@@ -12,6 +12,7 @@ import json
 import os
 import tempfile
 import threading
+import uuid
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -165,7 +166,7 @@ class Journal:
             ) from error
 
 
-def salvage(folder: Folder, column_types: dict[str, str], name: str) -> None:
+def salvage(folder: Folder, column_types: dict[str, str]) -> None:
     """Bring the rows in the journals of dead workers into the store, and delete the journals."""
     if not folder.local:
         return
@@ -173,7 +174,8 @@ def salvage(folder: Folder, column_types: dict[str, str], name: str) -> None:
     journals = [Journal(path) for path in paths]
     rows: list[Row] = [row for journal in journals for row in journal.rows.values()]
     if rows:
-        write_table(folder, f"{RUNS}/{name}.parquet", table_of(rows, column_types))
+        name = f"{RUNS}/salvaged-{uuid.uuid4().hex}.parquet"
+        write_table(folder, name, table_of(rows, column_types))
     for journal in journals:
         journal.remove()
 

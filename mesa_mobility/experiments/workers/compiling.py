@@ -19,20 +19,26 @@ def compile_once(model: type | str) -> None:
     from mesa_mobility.compiled.cache import folder
     from mesa_mobility.crowd import PedestrianModel
 
+    if not issubclass(model_class(model), PedestrianModel):
+        return
     place = folder()
-    if place is None or not issubclass(model_class(model), PedestrianModel):
+    if place is None:  # before the first run, whose time may be limited
+        _compile()
         return
     pattern = "*/decision.decide-*.nbc"
     if any(place.glob(pattern)):
         return
-    from mesa_mobility.crowd.precompile import compile_decisions, compile_the_rest
-
     try:
         with FileLock(place / "compiling.lock"):
-            if any(place.glob(pattern)):
-                return
-            compile_the_rest()
-            # Last: its file says that all is there.
-            compile_decisions()
-    except OSError:  # a cache that cannot be written, or has no locks
-        return
+            if not any(place.glob(pattern)):
+                _compile()
+    except (OSError, NotImplementedError):  # a cache that cannot be written, or has no locks
+        _compile()
+
+
+def _compile() -> None:
+    from mesa_mobility.crowd.precompile import compile_decisions, compile_the_rest
+
+    compile_the_rest()
+    # Last: its file says that all is there.
+    compile_decisions()

@@ -97,8 +97,13 @@ def first_columns(setup: Setup, point: Point, replication: int) -> Row:
 
 def one_line(error: BaseException) -> str:
     """An error's type and message on one line."""
-    text = " ".join(f"{type(error).__name__}: {error}".split())
+    text = _plain(" ".join(f"{type(error).__name__}: {error}".split()))
     return text if len(text) <= _LONGEST_ERROR else text[:_LONGEST_ERROR] + "..."
+
+
+def _plain(text: str) -> str:
+    """A text that files can hold; names of files may have bytes that are no letters."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 @lru_cache(maxsize=8)
@@ -158,8 +163,12 @@ def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
     row: Row = {}
     for name, value in summary.items():
         value = value.item() if hasattr(value, "item") and not hasattr(value, "__len__") else value
-        if value is None or isinstance(value, bool | int | float | str):
-            row[f"summary_{name}" if name in taken or name in SERIES else name] = value
+        if isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)  # as the store has it; one without end is an error of the run
+        if isinstance(value, str):
+            value = _plain(value)
+        if value is None or isinstance(value, bool | float | str):
+            row[f"summary_{name}" if name in taken or name in SERIES else str(name)] = value
     if not _has_pedestrians(model):
         return row
     row |= {f"summary_{n}" if n in taken else n: v for n, v in _by_type(model).items()}
