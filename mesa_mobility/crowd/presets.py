@@ -169,10 +169,10 @@ PRESETS = {
     "steady": Preset(
         name="steady",
         terms={
-            "target_distance": 1.0,
-            "facing_deviation": 3.0,
-            "preferred_velocity": 3.0,
-            "velocity_change": 1.5,
+            "target_distance": 0.5,
+            "facing_deviation": 1.25,
+            "preferred_velocity": 2.75,
+            "velocity_change": 1.25,
             "sideways": 2.0,
             "room_ahead": 2.0,
             "interference": 1.0,
