@@ -12,6 +12,10 @@ from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
 from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.room_ahead import RoomAhead
+from mesa_mobility.behaviors.routes.blocked_ways import BlockedWays
+from mesa_mobility.behaviors.routes.congestion_routing import CongestionRouting
+from mesa_mobility.behaviors.routes.familiar_routes import FamiliarRoutes
+from mesa_mobility.behaviors.routes.signs import Sign, Signs
 from mesa_mobility.behaviors.sideways import Sideways
 from mesa_mobility.behaviors.stepping import Stepping
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
@@ -25,11 +29,14 @@ from mesa_mobility.behaviors.walk_together import WalkTogether
 
 __all__ = [
     "Anticipation",
+    "BlockedWays",
     "Choosing",
+    "CongestionRouting",
     "Displacement",
     "ExitChoice",
     "FacingDeviation",
     "FamiliarExit",
+    "FamiliarRoutes",
     "Headway",
     "Interference",
     "KeepDistance",
@@ -41,6 +48,8 @@ __all__ = [
     "RightOfWay",
     "RoomAhead",
     "Sideways",
+    "Sign",
+    "Signs",
     "SocialInfluence",
     "Stepping",
     "TargetDistance",

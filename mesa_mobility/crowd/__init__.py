@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
     from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
     from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
+    from mesa_mobility.crowd.tactics.visits.visit import Visit
 
 _MODULES = {
     "FREE": "planning.explanation",
@@ -55,6 +56,7 @@ _MODULES = {
     "Source": "insertion.source",
     "Tactic": "tactics.tactic",
     "TargetChoice": "tactics.target_choice",
+    "Visit": "tactics.visits.visit",
     "Watch": "planning.explanation",
     "bound_kernel": "costs.kernels",
     "option_kernel": "costs.kernels",
@@ -85,6 +87,7 @@ __all__ = [
     "SpeedRule",
     "Tactic",
     "TargetChoice",
+    "Visit",
     "Watch",
     "bound_kernel",
     "option_kernel",

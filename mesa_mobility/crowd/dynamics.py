@@ -195,7 +195,7 @@ class Dynamics(Saved):
         scene, rows, now = self._scene, self._model.population.present, self._model.frame
         self._plan_version = scene.plan.version
         # Those who stop lose their paths, on which crossed gates are found.
-        scene.journeys.advance(rows, now, scene.crowd, scene.repertoire.table)
+        scene.journeys.advance(rows, now, scene.crowd, scene.repertoire.table, self._model.rng)
         stop_where_blocked(
             rows, now, scene.repertoire.table, scene.crowd.records,
             scene.environment.surroundings, scene.rules,
@@ -216,7 +216,9 @@ class Dynamics(Saved):
     def _decide(self, deciding: NDArray[np.int64]) -> None:
         model, scene, people = self._model, self._scene, self._model.population
         inside = people.present
-        scene.journeys.advance(deciding, model.frame, scene.crowd, scene.repertoire.table)
+        scene.journeys.advance(
+            deciding, model.frame, scene.crowd, scene.repertoire.table, model.rng
+        )
         model.waits.ask(deciding, model.frame, scene.crowd)
         # The crowd has the rest of the targets by then, so they can be freed here.
         order = decision_order(deciding, self._set_targets(deciding, inside))

@@ -41,6 +41,7 @@ from mesa_mobility.crowd.statistics import REPORTERS, Statistics
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
+from mesa_mobility.crowd.tactics.visits.visit import Route
 from mesa_mobility.crowd.tactics.waiting import Waits
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
@@ -83,7 +84,7 @@ class PedestrianModel(mesa.Model):
         population: who has come and who is inside; see ``Population``.
         statistics: the figures of the run so far; see ``Statistics``.
         sources: an ``Inflow`` for each ``add_source``.
-        journeys: the routes of people who cross gates in order.
+        journeys: the routes of people who cross gates and visit places in order.
         speed_rules: behaviours that change preferred speeds; the preset's rule for groups is added
             with the first group. May be changed at run time.
         tactics: the steps from a target to what somebody wants of its next movement, in order; may
@@ -251,7 +252,7 @@ class PedestrianModel(mesa.Model):
         preferred_speeds: ArrayLike | Distribution | None = None,
         pre_movement: ArrayLike | Distribution = 0.0,
         exits: Sequence[str] | None = None,
-        route: Sequence[str] = (),
+        route: Route = (),
         loop: bool = False,
         group: str | int | None = None,
         type_index: ArrayLike | None = None,
@@ -267,9 +268,9 @@ class PedestrianModel(mesa.Model):
             pre_movement: (n,) seconds, or a distribution of them, for which they stand before they
                 set off; their first decision is in the first frame after that.
             exits: names of the exits by which they may leave; by default all.
-            route: names of gates that they cross in this order, in either direction, before they
-                leave.
-            loop: whether the route starts over after its last gate, and they never leave. On a
+            route: names of gates that they cross, in either direction, and places that they visit
+                (``Visit``), in this order, before they leave.
+            loop: whether the route starts over after its last stop, and they never leave. On a
                 closed track three gates or more determine the direction.
             group: name or number of the group that they join.
             type_index: index of their type in ``pedestrian_types``, or (n,) of them; by default
@@ -283,8 +284,8 @@ class PedestrianModel(mesa.Model):
             ModelError: positions off the floor, too near to a wall, or where somebody is or will
                 be; an unknown type; arrays of the wrong length; numbers out of range; shares that
                 do not add up to 1, or too few places for people of a wide type.
-            FloorPlanError: an unknown exit or gate, or no way from a position to any exit, or to
-                the route's first gate, or on from a gate.
+            FloorPlanError: an unknown exit or gate, a place to visit without room for their bodies,
+                or no way from a position to any exit, or to the route's first stop, or on from one.
         """
         new = Newcomers(
             headings=headings,

@@ -18,6 +18,7 @@ from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state.advance import Moved
 from mesa_mobility.crowd.state.aggregates import EMPTY, Aggregates, aggregate, split_active
 from mesa_mobility.crowd.state.departed import Departed
+from mesa_mobility.crowd.tactics.visits.visit import Route
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
@@ -226,12 +227,12 @@ class Population(Saved):
                 and bool(self._scene.crowd.active[row]))
         )  # fmt: skip
 
-    def send(self, row: int, exits: Sequence[str] | None, route: Sequence[str], frame: int) -> None:
-        """Send somebody across the gates of a route and out by one of these exits.
+    def send(self, row: int, exits: Sequence[str] | None, route: Route, frame: int) -> None:
+        """Send somebody along a route and out by one of these exits.
 
         Raises:
-            ModelError: the person has left, or a route that is no list of gates.
-            FloorPlanError: an unknown exit or gate, or no way there.
+            ModelError: the person has left, or a route that is no list of gates and visits.
+            FloorPlanError: an unknown exit or gate, a place without room, or no way there.
         """
         self._check_inside(row)
         scene, crowd = self._scene, self._scene.crowd
@@ -240,6 +241,7 @@ class Population(Saved):
         destination, journey = scene.journeys.start(exits, route, False, kind)
         place = np.array([[crowd.x[row], crowd.y[row]]])
         scene.environment.check_way_out(place, destination)
+        scene.journeys.stays.end(row, frame, crowd)
         crowd.destination[row] = destination
         agenda = crowd.agenda
         agenda["journey"][row], agenda["crossed"][row] = journey, 0

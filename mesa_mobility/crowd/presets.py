@@ -15,6 +15,7 @@ from mesa_mobility.crowd.tactics.shipped import (
     Impatience,
     SlowInZones,
     SpreadAtCorners,
+    StayAtPlaces,
     TakeTurns,
     Wait,
 )
@@ -97,6 +98,7 @@ class Preset:
         """The steps from a target to what somebody wants of its next movement, in order."""
         tactics: list[tuple[bool, type[Tactic]]] = [
             (self.abreast, SpreadAtCorners),
+            (True, StayAtPlaces),
             (True, SlowInZones),
             (True, FollowSpeedRules),
             (self.turns, TakeTurns),

@@ -23,6 +23,9 @@ SMALLEST_EXTENT = 0.2
 _MILLIMETRES = 1000.0, 400.0
 """Extent and narrowest opening from which on a plan is hardly in metres."""
 
+_DEGREES = 1.0
+"""Extent below which a plan is hardly in metres."""
+
 
 def check_coordinates(xy: ArrayLike, what: str) -> None:
     """Coordinates must be finite and within ``LARGEST_COORDINATE``; FloorPlanError otherwise.
@@ -53,25 +56,35 @@ def check_extent(walkable: Polygon) -> None:
             "(are its coordinates millimetres?)"
         )
     if max(width, height) < SMALLEST_EXTENT:
-        x, y = np.abs(shapely.get_coordinates(walkable)).max(axis=0)
-        degrees = x <= 180.0 and y <= 90.0
         raise FloorPlanError(
             f"{size}, too small to stand in: expected metres"
-            + (", found what look like degrees of longitude and latitude" if degrees else "")
+            + (_FOUND_DEGREES if _may_be_degrees(walkable) else "")
         )
 
 
-def warn_of_millimetres(walkable: Polygon, openings: Sequence[Opening]) -> None:
-    """Warn where an area of kilometres has no opening narrower than some hundred metres."""
+_FOUND_DEGREES = ", found what look like degrees of longitude and latitude"
+
+
+def warn_of_other_units(walkable: Polygon, openings: Sequence[Opening]) -> None:
+    """Warn where an area of kilometres has no opening narrower than some hundred metres, and where
+    an area of less than a metre could be in degrees."""
     width, height = _size(walkable)
     narrowest = min((opening.length for opening in openings), default=0.0)
     large, wide = _MILLIMETRES
+    size = f"the walkable area is {width:.6g} by {height:.6g} m"
     if max(width, height) >= large and narrowest >= wide:
         warnings.warn(
-            f"the walkable area is {width:.6g} by {height:.6g} m and its narrowest opening "
-            f"{narrowest:.6g} m wide: expected metres, found what look like millimetres",
+            f"{size} and its narrowest opening {narrowest:.6g} m wide: expected metres, found what "
+            "look like millimetres",
             stacklevel=3,
         )
+    elif max(width, height) < _DEGREES and _may_be_degrees(walkable):
+        warnings.warn(f"{size}: expected metres{_FOUND_DEGREES}", stacklevel=3)
+
+
+def _may_be_degrees(walkable: Polygon) -> bool:
+    x, y = np.abs(shapely.get_coordinates(walkable)).max(axis=0)
+    return bool(x <= 180.0 and y <= 90.0)
 
 
 def _size(walkable: Polygon) -> tuple[float, float]:

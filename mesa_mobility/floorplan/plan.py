@@ -30,6 +30,8 @@ from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
 class FloorPlan:
     """A walkable polygon with exits, gates and obstacles.
 
+    Warns, with the extent, of coordinates that look like millimetres or degrees.
+
     Args:
         walkable: one connected polygon, holes allowed; shapely or WKT, metres.
         exits: lines on the edge of the walkable area (within 1 cm); at least one, unless there are
@@ -92,6 +94,7 @@ class FloorPlan:
         self._wall_index = WallIndex(())
         self._router: Router | None = None
         self._take(FreeArea(self._walkable, self._exits, self._gates, polygons))
+        extent.warn_of_other_units(self._walkable, self.openings())
 
     @classmethod
     def from_wkt(
@@ -104,20 +107,15 @@ class FloorPlan:
         zones: Iterable[SpeedZone] = (),
         name: str = "",
     ) -> "FloorPlan":
-        """A floor plan whose walkable area is given as the WKT of a POLYGON, in metres.
-
-        Warns of coordinates that look like millimetres.
-        """
-        plan = cls(wkt, exits=exits, gates=gates, obstacles=obstacles, zones=zones, name=name)
-        extent.warn_of_millimetres(plan.walkable, plan.openings())
-        return plan
+        """A floor plan whose walkable area is given as the WKT of a POLYGON, in metres."""
+        return cls(wkt, exits=exits, gates=gates, obstacles=obstacles, zones=zones, name=name)
 
     @classmethod
     def from_geojson(cls, source: "str | os.PathLike[str] | dict[str, Any]") -> "FloorPlan":
         """Read a plan from a GeoJSON file, or from the FeatureCollection itself.
 
         See `to_geojson` for what it holds. Raises FloorPlanError naming the file
-        and the feature; warns of coordinates that look like millimetres.
+        and the feature.
         """
         content = geojson.read(source)
         try:
@@ -134,7 +132,6 @@ class FloorPlan:
         for closed in content.closed:
             plan.close_gate(closed)
         plan.version = 0
-        extent.warn_of_millimetres(plan.walkable, plan.openings())
         return plan
 
     def to_geojson(self) -> dict[str, Any]:

@@ -78,6 +78,25 @@ def test_exits_chosen(capsys: pytest.CaptureFixture[str]) -> None:
     assert numbers(r"after (\S+) s", quickest) < numbers(r"after (\S+) s", nearest)
 
 
+def test_places_to_visit(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = run("places_to_visit", capsys).splitlines()
+
+    # 20 to 40 s at the shelves, 10 s at the till, and some 25 m of way.
+    assert len(lines) == 4
+    for seconds in numbers(r"after (\S+) s", "\n".join(lines)):
+        assert 45.0 < seconds < 130.0
+
+
+def test_routes_chosen(capsys: pytest.CaptureFixture[str]) -> None:
+    shortest, quickest = run("routes_chosen", capsys).splitlines()
+
+    assert "40 by the lower corridor, 0 by the upper one" in shortest
+    # The upper way is some 3.3 m, 2.5 s, longer, and 2.5 people a second pass 1.2 m: the shares
+    # differ by about 6 of 40.
+    assert numbers(r"(\d+) by the upper", quickest)[0] == pytest.approx(17, abs=5)
+    assert numbers(r"after (\S+) s", quickest) < numbers(r"after (\S+) s", shortest)
+
+
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
 

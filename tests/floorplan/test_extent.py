@@ -7,6 +7,7 @@ import warnings
 
 import pytest
 from shapely import Polygon, affinity, box
+from shapely.geometry import mapping, shape
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, FloorPlan, SpeedZone
@@ -81,14 +82,28 @@ def test_a_plan_in_millimetres_gives_a_warning_with_its_size():
     with pytest.warns(UserWarning, match="12000 by 8000 m .* opening 1000 m wide: .* millimetres"):
         FloorPlan.from_geojson(collection(1000))
     wkt = "POLYGON((0 0, 12000 0, 12000 8000, 0 8000, 0 0))"
-    with pytest.warns(UserWarning, match="millimetres"):
-        FloorPlan.from_wkt(wkt, exits=[Exit("e", (0, 0), (0, 900))])
+    for make in (FloorPlan.from_wkt, FloorPlan):
+        with pytest.warns(UserWarning, match="12000 by 8000 m .* millimetres"):
+            make(wkt, exits=[Exit("e", (0, 0), (0, 900))])
+
+
+def test_a_plan_that_may_be_in_degrees_gives_a_warning_with_its_size():
+    plan = hall(12, 8).to_geojson()
+    for feature in plan["features"]:
+        feature["geometry"] = mapping(
+            affinity.scale(shape(feature["geometry"]), 0.05, 0.05, origin=(0, 0))
+        )
+    with pytest.warns(UserWarning, match=r"0.6 by 0.4 m: expected metres, found .* degrees"):
+        FloorPlan.from_geojson(plan)
+    with pytest.warns(UserWarning, match=r"0.5 by 0.4 m: .* degrees of longitude and latitude"):
+        hall(0.5, 0.4, door=0.4)
 
 
 def test_plans_in_metres_give_none():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         FloorPlan.from_geojson(collection(1))
+        hall(1, 1)
         FloorPlan.from_geojson(hall(5000, 5000, door=5).to_geojson())
 
 

@@ -21,6 +21,7 @@ from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.fields import KINDS
+from mesa_mobility.crowd.tactics.visits.visit import Visit
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone
 
@@ -30,7 +31,7 @@ TAG = "$"
 _DATACLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
-        Exit, Gate, SpeedZone, Source, Preset, PedestrianType,
+        Exit, Gate, SpeedZone, Source, Preset, PedestrianType, Visit,
         *(each for each in vars(distributions).values()
           if isinstance(each, type) and is_dataclass(each)),
     )

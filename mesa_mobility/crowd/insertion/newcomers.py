@@ -13,6 +13,7 @@ from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, indices_o
 from mesa_mobility.crowd.state.fields import field_column
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
+from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.crowd.tactics.waiting import frames_of
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
@@ -25,14 +26,15 @@ class Newcomers:
     """Newcomers, described as in ``PedestrianModel.add_pedestrians``.
 
     Raises:
-        ModelError: exits that are one text, a loop without a route, or a group without a name.
+        ModelError: exits that are one text, a route that is one stop, a loop without a route, or a
+            group without a name.
     """
 
     headings: ArrayLike | None = None
     preferred_speeds: ArrayLike | Distribution | None = None
     pre_movement: ArrayLike | Distribution = 0.0
     exits: Sequence[str] | None = None
-    route: Sequence[str] = ()
+    route: Route = ()
     loop: bool = False
     group: str | int | None = None
     type_index: ArrayLike | None = None
@@ -44,8 +46,12 @@ class Newcomers:
             raise ModelError(
                 f"exits: got {self.exits!r}, expected a list of names such as [{self.exits!r}]"
             )
+        if isinstance(self.route, str | Visit):
+            raise ModelError(
+                f"route: got {self.route!r}, expected a list of names of gates and visits"
+            )
         if self.loop and not len(self.route):
-            raise ModelError("loop: got no route, expected names of at least two gates")
+            raise ModelError("loop: got no route, expected at least two gates or visits")
         if self.group is not None and not isinstance(self.group, str | int):
             raise ModelError(f"group: got {self.group!r}, expected a name or number")
         if self.type_index is not None and self.population is not None:

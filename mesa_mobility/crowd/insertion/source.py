@@ -13,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
+from mesa_mobility.crowd.tactics.visits.visit import Route
 from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
@@ -55,7 +56,7 @@ class Source:
     until: float = np.inf
     number: int | None = None
     exits: Sequence[str] | None = None
-    route: Sequence[str] = ()
+    route: Route = ()
     loop: bool = False
     group: str | int | None = None
     type_index: int | None = None

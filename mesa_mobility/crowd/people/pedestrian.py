@@ -16,6 +16,7 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.state.fields import field_column
 from mesa_mobility.crowd.state.records import FALLBACK
+from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
@@ -188,7 +189,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def waiting(self) -> bool:
-        """Whether the person waits, by ``wait`` or during its pre-movement time."""
+        """Whether the person waits: told to, at a place that it visits, or before it sets off."""
         return bool(self.model.crowd.agenda["waits_until"][self.row] > self.model.frame)
 
     @property
@@ -202,20 +203,28 @@ class Pedestrian(ContinuousSpaceAgent):
         self.model.population.join(self.row, name)
 
     @property
-    def route(self) -> tuple[str, ...]:
-        """Names of the gates on the person's journey, in order; none if it has no journey.
+    def route(self) -> tuple[str | Visit, ...]:
+        """Names of the gates, and the places, on the person's journey, in order; none if it has no
+        journey.
 
         A new one begins with the next decision, and ends at the exits that the person had.
         """
-        return self.model.journeys.gates(int(self.model.crowd.agenda["journey"][self.row]))
+        return self.model.journeys.stops(int(self.model.crowd.agenda["journey"][self.row]))
 
     @route.setter
-    def route(self, gates: Sequence[str]) -> None:
-        self.model.population.send(self.row, self.exits or None, gates, self.model.frame)
+    def route(self, stops: Route) -> None:
+        self.model.population.send(self.row, self.exits or None, stops, self.model.frame)
+
+    @property
+    def next_stop(self) -> str | Visit | None:
+        """The gate or place of its route to which the person goes, or at which it stays; None where
+        it goes to its exits."""
+        return self.model.journeys.next_stop(self.row, self.model.crowd)
 
     @property
     def gates_crossed(self) -> int:
-        """Gates that the person had crossed when it last decided, over all laps."""
+        """Gates that the person had crossed, and places that it had visited, when it last decided,
+        over all laps."""
         return int(self.model.crowd.agenda["crossed"][self.row])
 
     @property

@@ -13,6 +13,7 @@ from mesa_mobility.crowd.state.corners import Corners
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Router, Targets
 from mesa_mobility.floorplan.routing.route_nodes import NODE_SHARE
+from mesa_mobility.floorplan.routing.router import Destination, is_point
 from mesa_mobility.floorplan.walls.wall_index import cell_table
 
 CELL_SIZE = 1.0
@@ -66,8 +67,8 @@ class Environment(Saved):
     """Walls for the collision tests and routes for the targets of one floor plan.
 
     Bodies of each core radius have routes of their own, which are searched for when the first of
-    them has a destination. The number of a destination stands for both a set of exits, or a gate,
-    and a core radius.
+    them has a destination. The number of a destination stands for both a set of exits, a gate or a
+    point, and a core radius.
 
     Args:
         plan: the floor plan; obstacles and doors may change while a model runs.
@@ -87,7 +88,7 @@ class Environment(Saved):
         self._body_of = [self._radii.index(core) for core in core_radii]
         self._make_routers([None])
 
-    def _make_routers(self, destinations: list[tuple[str, ...] | None]) -> None:
+    def _make_routers(self, destinations: list[Destination]) -> None:
         self._routers: list[Router | None] = [None] * len(self._radii)
         self._destinations = destinations
         self._version = -1
@@ -112,6 +113,10 @@ class Environment(Saved):
         """Index of the core radius of a pedestrian type."""
         return self._body_of[type_index]
 
+    def core_radius(self, body: int) -> float:
+        """Core radius with this index, metres."""
+        return self._radii[body]
+
     def destination(self, exits: tuple[str, ...] | None, type_index: int = 0) -> int:
         """Number of the destination "the nearest of these exits"; None stands for all.
 
@@ -127,7 +132,12 @@ class Environment(Saved):
         body = self._body_of[type_index]
         return self._numbered(self._router(body).crossing(gate), (gate,), body)
 
-    def _numbered(self, number: int, names: tuple[str, ...] | None, body: int) -> int:
+    def point(self, place: tuple[float, float], type_index: int = 0) -> int:
+        """Number of the destination "to this point", metres; routes lead through no exit."""
+        body = self._body_of[type_index]
+        return self._numbered(self._router(body).point(place), place, body)
+
+    def _numbered(self, number: int, names: Destination, body: int) -> int:
         if number == len(self._destinations):
             self._destinations.append(names)
             self._version = -1
@@ -150,14 +160,16 @@ class Environment(Saved):
             self._tell(router, names)
         return router
 
-    def _tell(self, router: Router, names: tuple[str, ...] | None) -> None:
-        if names is not None and any(gate.name == names[0] for gate in self.plan.gates):
-            router.crossing(names[0])
+    def _tell(self, router: Router, names: Destination) -> None:
+        if is_point(names):
+            router.point(names)
+        elif names is not None and any(gate.name == names[0] for gate in self.plan.gates):
+            router.crossing(str(names[0]))
         else:
-            router.destination(names)
+            router.destination(None if names is None else [str(each) for each in names])
 
     def exits(self, destination: int) -> tuple[str, ...]:
-        """Names of the exits of a destination, open or closed; none if it is a gate to cross."""
+        """Names of the exits of a destination, open or closed; none for a gate or a point."""
         names = self._destinations[destination // self.bodies]
         return tuple(e.name for e in self.plan.exits if names is None or e.name in names)
 
@@ -226,7 +238,7 @@ class Environment(Saved):
         router = self._router(body) if self._all_open() else self._router_when_open(body)
         passable = {name for _, name in router.graph.nodes(data="opening")}
         names = self._destinations[destination // self.bodies]
-        wanted = names or tuple(exit_.name for exit_ in self.plan.exits)
+        wanted = [] if is_point(names) else names or [exit_.name for exit_ in self.plan.exits]
         narrow = [name for name in wanted if name not in passable]
         if not narrow:
             slim = self._new_router(self.plan, _SLIM)
@@ -242,12 +254,15 @@ class Environment(Saved):
             f"{', '.join(repr(name) for name in narrow)}"
         )
 
-    def check_way_on(self, gate: str, destination: int) -> None:
-        """Raise FloorPlanError if no route leads on from a gate even if everything were open."""
+    def check_way_on(self, stop: int, destination: int) -> None:
+        """Raise FloorPlanError if no route leads on from a gate or point, even if everything were
+        open."""
         number, body = divmod(destination, self.bodies)
         router = self._router(body) if self._all_open() else self._router_when_open(body)
-        if not np.isfinite(router.way_from(gate, number)):
-            raise FloorPlanError(f"there is no way from {gate!r} to {self._text(destination)}")
+        if not np.isfinite(router.way_from(stop // self.bodies, number)):
+            raise FloorPlanError(
+                f"there is no way from {self._text(stop)} to {self._text(destination)}"
+            )
 
     def _all_open(self) -> bool:
         return all(self.plan.is_open(opening.name) for opening in self.plan.openings())
@@ -262,6 +277,8 @@ class Environment(Saved):
 
     def _text(self, destination: int) -> str:
         names = self._destinations[destination // self.bodies]
+        if is_point(names):
+            return f"({names[0]:.2f}, {names[1]:.2f})"
         return "any exit" if names is None else " or ".join(repr(name) for name in names)
 
     @property

@@ -1,14 +1,15 @@
-"""Journeys: people cross gates in a given order, then leave by an exit or start over.
+"""Journeys: people cross gates and visit places in a given order, then leave or start over.
 
-Crossed gates are found when a pedestrian decides, from the path that it has just walked.  Between
-decisions nothing has to be checked, and people without a journey cost nothing.
+Crossed gates are found when a pedestrian decides, from the path that it has just walked; a place is
+reached where it decides.  Between decisions nothing has to be checked, and people without a journey
+cost nothing.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,9 @@ from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.paths import waypoint
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.tactics.visits.place import Place
+from mesa_mobility.crowd.tactics.visits.stays import Stays
+from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.route_graph import IN_LINE
@@ -28,18 +32,20 @@ from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
 
 @dataclass(frozen=True)
 class Journey:
-    """The gates of one route.
+    """The gates and places of one route.
 
     Attributes:
-        gates: names of the gates, in the order in which they are crossed.
-        loop: whether the first gate follows the last.
+        stops: names of the gates, and the places to visit, in order.
+        loop: whether the first stop follows the last.
+        body: index of the core radius of those who go there.
         legs: destination number of each leg.  Unless it is a loop, one more leg leads from the last
-            gate to the exits.
-        lines: (legs, 4) line of the gate that ends each leg, metres; nan for the exits.
+            stop to the exits.
+        lines: (legs, 4) line of the gate that ends each leg, metres; nan for places and exits.
     """
 
-    gates: tuple[str, ...]
+    stops: tuple[str | Visit, ...]
     loop: bool
+    body: int
     legs: NDArray[np.int32]
     lines: NDArray[np.float64]
 
@@ -48,7 +54,8 @@ class Journeys(Saved):
     """The journeys of a model's people.
 
     Attributes:
-        crossed: gates that all people together have crossed so far.
+        crossed: gates that all people together have crossed so far, and places they have visited.
+        stays: who is at a place of its route.
     """
 
     saved = ("_numbers", "crossed")
@@ -57,51 +64,57 @@ class Journeys(Saved):
         self._plan = plan
         self._site = site
         self._known: list[Journey] = []
+        self._places: list[tuple[Visit, int, Place]] = []
+        self.stays = Stays()
         self._take_stock()
         self._numbers: dict[tuple[object, ...], int] = {}
         self.crossed = 0
 
     def state(self) -> dict[str, Any]:
-        """The journeys, and how many gates have been crossed."""
-        return {**super().state(), "known": [astuple(each) for each in self._known]}
+        """The journeys, who stays where, and how many gates have been crossed."""
+        known = [tuple(vars(each).values()) for each in self._known]
+        return {**super().state(), "known": known, "stays": self.stays.state()}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given."""
         super().restore(state)
+        self.stays.restore(state["stays"])
         self._known = [Journey(*each) for each in state["known"]]
+        self._places.clear()
         self._take_stock()
 
-    def add(
-        self, route: Sequence[str], loop: bool, exits: tuple[str, ...] | None, kind: int
-    ) -> int:
+    def add(self, route: Route, loop: bool, exits: tuple[str, ...] | None, kind: int) -> int:
         """Number, above 0, of this route for people of one pedestrian type.
 
         Raises:
-            ModelError: not a list of gates, one gate twice in a row, or a loop that ends at exits.
-            FloorPlanError: an unknown gate, or no way from one to the next.
+            ModelError: not a list of gates and places, one of them twice in a row, or a loop that
+                ends at exits.
+            FloorPlanError: an unknown gate, a place without room, or no way from one to the next.
         """
-        names = tuple(route)
-        key = names, loop, exits, self._site.body(kind)
+        stops, body = tuple(route), self._site.body(kind)
+        key = stops, loop, exits, body
         if key in self._numbers:
             return self._numbers[key]
-        if isinstance(route, str) or not names:
-            raise ModelError(f"route: got {route!r}, expected a list of names of gates")
-        following = [*names[1:], names[0]] if loop else names[1:]
-        for one, next_one in zip(names, following, strict=False):
+        if isinstance(route, str) or not all(isinstance(each, str | Visit) for each in stops):
+            raise ModelError(f"route: got {route!r}, expected a list of names of gates and visits")
+        following = [*stops[1:], stops[0]] if loop else stops[1:]
+        for one, next_one in zip(stops, following, strict=False):
             if one == next_one:
-                raise ModelError(f"route: gate {one!r} follows itself, expected another one next")
+                what = str(one) if isinstance(one, Visit) else f"gate {one!r}"
+                raise ModelError(f"route: {what} follows itself, expected another one next")
         if loop and exits is not None:
             raise ModelError("exits: got some for a route that goes round for ever, expected none")
-        legs = [self._site.crossing(name, kind) for name in names]
+        legs = [self._leg(stop, kind) for stop in stops]
         if not loop:
             legs.append(self._site.destination(exits, kind))
-        for name, leg in zip(names, [*legs[1:], legs[0]] if loop else legs[1:], strict=True):
-            self._site.check_way_on(name, leg)
-        lines = [(*self._plan.gate(name).a, *self._plan.gate(name).b) for name in names]
+        for leg, next_leg in zip(legs, [*legs[1:], legs[0]] if loop else legs[1:], strict=False):
+            self._site.check_way_on(leg, next_leg)
+        lines = [self._line(stop) for stop in stops]
         self._known.append(
             Journey(
-                gates=names,
+                stops=stops,
                 loop=loop,
+                body=body,
                 legs=np.array(legs, dtype=np.int32),
                 lines=np.array([*lines, *[(np.nan,) * 4] * (not loop)]),
             )
@@ -111,14 +124,14 @@ class Journeys(Saved):
         return len(self._known)
 
     def start(
-        self, exits: Sequence[str] | None, route: Sequence[str], loop: bool, type_index: int
+        self, exits: Sequence[str] | None, route: Route, loop: bool, type_index: int
     ) -> tuple[int, int]:
         """Numbers of the first destination and of the journey, 0 for none.
 
         Args:
             exits: names of the exits by which people leave; None stands for all.
-            route: names of the gates that they cross before.
-            loop: whether they start over after the last gate.
+            route: the gates that they cross before, and the places that they visit.
+            loop: whether they start over after the last of these.
             type_index: index of their type.
 
         Raises:
@@ -131,9 +144,18 @@ class Journeys(Saved):
         number = self.add(route, loop, names, type_index)
         return int(self._known[number - 1].legs[0]), number
 
-    def gates(self, number: int) -> tuple[str, ...]:
-        """Names of the gates of the journey with this number."""
-        return self._known[number - 1].gates if number else ()
+    def stops(self, number: int) -> tuple[str | Visit, ...]:
+        """Names of the gates, and the places, of the journey with this number, in order."""
+        return self._known[number - 1].stops if number else ()
+
+    def next_stop(self, row: int, crowd: Crowd) -> str | Visit | None:
+        """The gate or place to which somebody goes now, or at which it stays; None for exits."""
+        number, crossed = (int(crowd.agenda[name][row]) for name in ("journey", "crossed"))
+        if not number:
+            return None
+        journey = self._known[number - 1]
+        over = crossed >= len(journey.stops) and not journey.loop
+        return None if over else journey.stops[crossed % len(journey.stops)]
 
     def exits(self, number: int) -> tuple[str, ...]:
         """Names of the exits at the end of the journey with this number; none if it is a loop."""
@@ -147,12 +169,41 @@ class Journeys(Saved):
 
     def _take_stock(self) -> None:
         """Lay out the legs of all journeys one after the other."""
-        none = Journey((), False, np.zeros(1, dtype=np.int32), np.full((1, 4), np.nan))
+        none = Journey((), False, 0, np.zeros(1, dtype=np.int32), np.full((1, 4), np.nan))
         known = [none, *self._known]
         self._counts = np.array([len(each.legs) for each in known], dtype=np.int64)
         self._firsts = np.cumsum(self._counts) - self._counts
         self._legs = np.concatenate([each.legs for each in known])
         self._lines = np.concatenate([each.lines for each in known])
+        # Index of the place at the end of each leg, -1 for gates and exits.
+        self._place_of = np.full(len(self._legs), -1, dtype=np.int64)
+        for journey, first in zip(known, self._firsts.tolist(), strict=True):
+            for k, stop in enumerate(journey.stops):
+                if isinstance(stop, Visit):
+                    self._place_of[first + k] = self._place(stop, journey.body)
+
+    def _place(self, visit: Visit, body: int) -> int:
+        """Index of a place for people of one core radius."""
+        for number, (known, whose, _) in enumerate(self._places):
+            if known == visit and whose == body:
+                return number
+        place = Place(self._plan, visit, self._site.core_radius(body))
+        self._places.append((visit, body, place))
+        return len(self._places) - 1
+
+    def _leg(self, stop: str | Visit, kind: int) -> int:
+        """Number of the destination of a stop."""
+        if isinstance(stop, str):
+            return self._site.crossing(stop, kind)
+        place = Place(self._plan, stop, self._site.core_radius(self._site.body(kind)))
+        return self._site.point(place.way_point(), kind)
+
+    def _line(self, stop: str | Visit) -> tuple[float, ...]:
+        """(4,) the line of a gate, metres; nan for a place."""
+        if isinstance(stop, Visit):
+            return (np.nan,) * 4
+        gate = self._plan.gate(stop)
+        return *gate.a, *gate.b
 
     def _now(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.int64]:
         """(n,) index of each person's current leg among the legs of all journeys."""
@@ -161,23 +212,49 @@ class Journeys(Saved):
         return legs
 
     def advance(
-        self, rows: NDArray[np.int64], frame: int, crowd: Crowd, table: OptionTable
+        self,
+        rows: NDArray[np.int64],
+        frame: int,
+        crowd: Crowd,
+        table: OptionTable,
+        rng: np.random.Generator,
     ) -> None:
-        """Send those in ``rows`` who have crossed their gate to the next one."""
+        """Send those in ``rows`` who have crossed their gate, or stayed at their place, to the next
+        one."""
         if not self._known:
             return
         agenda = crowd.agenda
         on = rows[agenda["journey"][rows] > 0]
+        stayed = self._stayed(on, frame, crowd, rng)
         while len(on):
             lines = self._lines[self._now(on, crowd)]
             when = np.full(len(on), np.inf)
             _find_crossings(on, lines, frame, agenda["checked"][on], table, crowd.records, when)
             over = np.isfinite(when)
             agenda["checked"][on] = np.where(over, when, frame)
+            if len(stayed):
+                over |= np.isin(on, stayed)
+                agenda["nearest"][stayed] = np.inf
+                stayed = stayed[:0]
             on = on[over]
             agenda["crossed"][on] += 1
             self.crossed += len(on)
             crowd.destination[on] = self._legs[self._now(on, crowd)]
+
+    def _stayed(
+        self, on: NDArray[np.int64], frame: int, crowd: Crowd, rng: np.random.Generator
+    ) -> NDArray[np.int64]:
+        """(k,) rows of those ``on`` a journey whose stay at a place is over."""
+        if not self._places or len(on) == 0:
+            return on[:0]
+        numbers = self._place_of[self._now(on, crowd)]
+        over = []
+        for row, number in zip(on.tolist(), numbers.tolist(), strict=True):
+            if number >= 0:
+                place = self._places[number][2]
+                if self.stays.over(row, number, place, frame, crowd, rng):
+                    over.append(row)
+        return np.array(over, dtype=np.int64)
 
 
 @entry_point()

@@ -51,8 +51,9 @@ class RouteChoice(TargetChoice):
         return self._model.floor_plan.route_graph
 
     @abstractmethod
-    def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> Sequence[Sequence[str]]:
-        """Names of the gates that people cross, in order; none for the shortest way.
+    def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> Sequence[Sequence[str] | None]:
+        """Names of the gates that people cross, in order; none of them for the shortest way, and
+        None for who goes on as before.
 
         Args:
             deciding: everybody who decides.
@@ -74,7 +75,8 @@ class RouteChoice(TargetChoice):
                 )
             people, frame = self._model.population, self._model.frame
             for row, gates in zip(rows[who].tolist(), given, strict=True):
-                people.send(row, people.exits(row) or None, gates, frame)
+                if gates is not None:
+                    people.send(row, people.exits(row) or None, gates, frame)
             destinations = self._model.crowd.destination[rows].astype(np.int64)
         return deciding.site.targets(deciding.positions, destinations)
 

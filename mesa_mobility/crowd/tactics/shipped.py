@@ -19,6 +19,7 @@ from mesa_mobility.crowd.tactics.speed_rules import apply_speed_rules
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
 from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.crowd.tactics.turns import Turns
+from mesa_mobility.crowd.tactics.visits.stays import Stays
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -42,6 +43,29 @@ class SpreadAtCorners(_OfTheCrowd):
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Change the points of those who pass a corner after others."""
         desired.points = spread_at_corners(deciding, desired.targets, self._crowd)
+
+
+class StayAtPlaces(Tactic):
+    """People who have arrived at a place of their route walk to where they stand there."""
+
+    name = "visits"
+
+    _stays: Stays
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep who stays where."""
+        self._stays = model.journeys.stays
+
+    def state(self) -> dict[str, Any]:
+        """Nothing: the stays are the model's."""
+        return {}
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Send those who are on the way to a spot there."""
+        who, spots = self._stays.spots(deciding.pedestrians)
+        if len(who) and not desired.newcomers:
+            desired.points = desired.points.copy()
+            desired.points[who] = spots
 
 
 class SlowInZones(Tactic):

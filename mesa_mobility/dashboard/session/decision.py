@@ -32,6 +32,7 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     return {
         "pedestrian": row,
         "when": _when(explained, model),
+        "goes": _goes(row, model),
         "taken": explained.taken,
         "frame": explained.frame,
         "type": kind.name,
@@ -67,6 +68,18 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
             )
         ],
     }
+
+
+def _goes(row: int, model: PedestrianModel) -> str:
+    """Where somebody goes next on its way, in a few words."""
+    stop, agenda = model.journeys.next_stop(row, model.crowd), model.crowd.agenda
+    if stop is None:
+        return f"It goes to {' or '.join(model.population.exits(row)) or 'no exit'}"
+    if model.journeys.stays.stands(row):
+        return f"It stays at {stop} until {agenda['waits_until'][row] / model.frame_rate:.1f} s"
+    later = len(model.journeys.stops(int(agenda["journey"][row]))) - int(agenda["crossed"][row]) - 1
+    place = f"gate {stop}" if isinstance(stop, str) else str(stop)
+    return f"It goes to {place}" + (f", then to {later} more" if later > 0 else "")
 
 
 def _when(explained: Explanation, model: PedestrianModel) -> str:

@@ -1,5 +1,6 @@
 """The nodes of routes: corners, gates and exits."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -86,6 +87,19 @@ def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
         np.ascontiguousarray(np.concatenate(points)),
         np.concatenate(numbers),
         np.ascontiguousarray(np.concatenate(normals)),
+    )
+
+
+def with_points(nodes: Nodes, points: Sequence[tuple[float, float]]) -> Nodes:
+    """The nodes, and one like a corner at each of these points, metres."""
+    if not points:
+        return nodes
+    n = len(points)
+    return Nodes(
+        np.concatenate([nodes.kind, np.full(n, CORNER, dtype=np.int64)]),
+        np.ascontiguousarray(np.concatenate([nodes.xy, np.array(points, dtype=np.float64)])),
+        np.concatenate([nodes.opening, np.full(n, -1, dtype=np.int64)]),
+        np.ascontiguousarray(np.concatenate([nodes.normal, np.zeros((n, 2))])),
     )
 
 

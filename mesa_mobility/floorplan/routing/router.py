@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
 import networkx as nx
 import numpy as np
@@ -20,6 +20,7 @@ from mesa_mobility.floorplan.routing.route_nodes import (
     VIEW_SHARE,
     Nodes,
     find_nodes,
+    with_points,
 )
 from mesa_mobility.floorplan.routing.target_cache import empty_cache
 from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
@@ -34,6 +35,15 @@ if TYPE_CHECKING:
 _KIND_NAMES = ("corner", "gate", "exit")
 
 
+Destination: TypeAlias = tuple[str, ...] | tuple[float, float] | None
+"""Names of exits, or of a gate; a point, metres; or None for all exits."""
+
+
+def is_point(destination: Destination) -> TypeGuard[tuple[float, float]]:
+    """Whether a destination is a point."""
+    return destination is not None and not isinstance(destination[0], str)
+
+
 @dataclass(frozen=True)
 class Targets:
     """Targets of n people.
@@ -44,8 +54,8 @@ class Targets:
             its own position.
         gates: (n,) the gate or exit aimed through, as its number in `FloorPlan.openings()` (gates
             first, then exits); -1 for a corner.
-        distances: (n,) length of the route to the line of the exit, or of the gate to cross, in
-            metres; inf where there is none.
+        distances: (n,) length of the route to the line of the exit, or of the gate to cross, or to
+            the point, in metres; inf where there is none.
         corners: (n, 2) the next corner of the route and the node after it, as their numbers in
             `Router.graph`; -1 where the next node is a gate or exit. None if unknown.
     """
@@ -62,7 +72,7 @@ class Targets:
 
 
 class Router:
-    """Shortest routes to the exits and gates of a floor plan, kept up to date with it.
+    """Shortest routes to exits, gates and points of a floor plan, kept up to date with it.
 
     Routes bend at corners that stand `clearance` from the walls and lead through gates and exits,
     but through no exits other than the destination's. A person aims at the node in view with the
@@ -89,7 +99,7 @@ class Router:
         self._plan = plan
         self._clearance = float(clearance)
         self._beyond = float(beyond)
-        self._destinations: list[tuple[str, ...] | None] = [None]
+        self._destinations: list[Destination] = [None]
         self._version = -1
         self._distances: dict[int, NDArray[np.float64]] = {}
         self._lengths: NDArray[np.float64] = np.empty((0, 0))
@@ -108,9 +118,9 @@ class Router:
     def graph(self) -> nx.DiGraph:
         """The routes, as a graph of nodes in view of each other.
 
-        Nodes have `kind` (corner, gate or exit), `position` (x, y), `opening` (the name of
-        the gate or exit) and `direction`, the unit vector in which that is crossed: every
-        place in a gate is two nodes. Edges have their length as `weight`, metres.
+        Nodes have `kind` (corner, gate or exit; points are corners), `position` (x, y), `opening`
+        (the name of the gate or exit) and `direction`, the unit vector in which that is crossed:
+        every place in a gate is two nodes. Edges have their length as `weight`, metres.
         """
         self._update()
         return self._graph
@@ -136,7 +146,16 @@ class Router:
             raise FloorPlanError(f"{gate_name!r} is an exit, expected a gate to cross")
         return self._number((gate_name,))
 
-    def _number(self, names: tuple[str, ...]) -> int:
+    def point(self, place: tuple[float, float]) -> int:
+        """A number for "to this point", metres; the routes are searched for anew for each new one.
+
+        The point should be on the floor and 85 % of the clearance from walls.
+        """
+        if place not in self._destinations:
+            self._version = -1
+        return self._number((float(place[0]), float(place[1])))
+
+    def _number(self, names: tuple[str, ...] | tuple[float, float]) -> int:
         if names not in self._destinations:
             self._destinations.append(names)
         return self._destinations.index(names)
@@ -223,15 +242,21 @@ class Router:
         self._lengths = np.stack([self.distances(i) for i in every])
         self._nexts = np.stack([self._follow[i] for i in every])
 
-    def way_from(self, gate_name: str, destination: int) -> float:
-        """Least distance in metres from a gate to a destination; inf without a route."""
+    def way_from(self, start: int, destination: int) -> float:
+        """Least distance in metres from one destination to another; inf without a route."""
         lengths = self.distances(destination)
-        there = [n for n, name in self._graph.nodes(data="opening") if name == gate_name]
-        return float(lengths[there].min(initial=np.inf))
+        return float(lengths[self._nodes_of(self._destinations[start])].min(initial=np.inf))
 
-    def _shortest(self, opening_names: tuple[str, ...] | None) -> NDArray[np.float64]:
-        names = set(opening_names or (e.name for e in self._plan.exits))
-        sources = {n for n, name in self._graph.nodes(data="opening") if name in names}
+    def _nodes_of(self, destination: Destination) -> list[int]:
+        """The nodes at which routes to a destination end."""
+        if is_point(destination):
+            points = [each for each in self._destinations if is_point(each)]
+            return [len(self._ways.kind) - len(points) + points.index(destination)]
+        names = set(destination or (e.name for e in self._plan.exits))
+        return [n for n, name in self._graph.nodes(data="opening") if name in names]
+
+    def _shortest(self, destination: Destination) -> NDArray[np.float64]:
+        sources = set(self._nodes_of(destination))
         result = np.full(self._graph.number_of_nodes(), np.inf)
         if sources:
             backwards = self._graph.reverse(copy=False)
@@ -248,7 +273,7 @@ class Router:
         first = order[np.unique(start[order], return_index=True)[1]]
         first = first[np.isfinite(through[first])]
         follow[start[first]] = end[first]
-        # A gate that is the destination ends its route, though other routes lead on from it.
+        # A gate or point that is the destination ends its route, though others lead on from it.
         follow[lengths == 0.0] = -1
         return follow
 
@@ -262,7 +287,8 @@ class Router:
             narrow_gaps(plan, 2 * NODE_SHARE * self._clearance),
         ]
         self._sight: Sight = sight_of(walls, np.concatenate(curtains), self._clearance)
-        nodes = find_nodes(plan, self._sight, self._clearance)
+        points = [each for each in self._destinations if is_point(each)]
+        nodes = with_points(find_nodes(plan, self._sight, self._clearance), points)
         self._ways = self._prepare(nodes, len(walls))
         edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         self._edges = np.array(edges, dtype=np.int64).reshape(-1, 2)

@@ -222,13 +222,15 @@ def _aim_at(
     if ways.kind[node] == GATE and after[node] >= 0 and np.hypot(qx - x, qy - y) < _THROUGH:
         node = after[node]
         qx, qy, away = place(sight, ways, x, y, node, after[node], own)
-    elif ways.kind[node] == CORNER:
+    elif ways.kind[node] == CORNER and after[node] >= 0:
         corner = node
         door, sx, sy = opening_behind(sight, ways, x, y, node, to_go, after, own)
         if door >= 0:
             node, qx, qy, away = door, sx, sy, length
     opening = ways.opening[node]
-    if ways.kind[node] == CORNER:
+    if ways.kind[node] == CORNER and after[node] < 0:  # a point, at which the route ends
+        px, py = nx, ny
+    elif ways.kind[node] == CORNER:
         px, py = past_corner(sight, ways, x, y, ways.xy[node, 0], ways.xy[node, 1], after[node])
     else:
         leaves = ways.kind[node] == EXIT

@@ -42,12 +42,12 @@ def names(model):
 
 def test_those_of_the_presets():
     everything = [
-        "corner_spreading", "speed_zones", "speed_rules", "taking_turns", "giving_way",
+        "corner_spreading", "visits", "speed_zones", "speed_rules", "taking_turns", "giving_way",
         "waiting", "speed_compensation", "impatience",
     ]  # fmt: skip
     assert names(model_of(corridor(), strider())) == everything
     assert names(model_of(corridor(), strider(), preset="paper")) == [
-        "speed_zones", "speed_rules", "waiting"
+        "visits", "speed_zones", "speed_rules", "waiting"
     ]  # fmt: skip
 
 

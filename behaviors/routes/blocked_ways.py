@@ -1,0 +1,133 @@
+"""Blocked ways are learned when they are seen."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility import Deciding, FloorPlan, TargetChoice, Targets
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import Router, lines_of_sight
+
+# Metres before a closed gate, which is a wall, that must be in sight.
+_BEFORE = 0.05
+
+# Metres that routes keep from walls beside the radius of the body.
+_BERTH = 0.05
+
+
+class BlockedWays(TargetChoice):
+    """A gate or exit that has been closed is taken for open by those who have not seen that.
+
+    They walk up to it by the shortest way that they know, and take another one as soon as it is in
+    view: no wall before it, and nearer than ``sight``. That a broken escape route costs more where
+    people have to find out is from Kemloh Wagoum, Seyfried and Holl (2012, Advances in Complex
+    Systems 15, 1250029; arXiv 1103.4080). Everybody knows what is open. Those with a route of gates
+    or places know all of the plan.
+
+    Args:
+        sight: how far people look, metres; walls hide, people do not.
+
+    Raises:
+        ModelError: a sight out of range.
+    """
+
+    name = "blocked_ways"
+
+    def __init__(self, sight: float = 15.0) -> None:
+        if not 0.0 < sight < np.inf:
+            raise ModelError(f"{self.name}: sight {sight}, expected more than 0 m")
+        self.sight = sight
+        self._seen: dict[str, NDArray[np.bool_]] = {}
+        self._routers: dict[tuple[tuple[str, ...], float], Router] = {}
+        self._version = -1
+
+    def state(self) -> dict[str, Any]:
+        """Who has seen what; the routes follow from the floor plan."""
+        return {"sight": self.sight, "_seen": self._seen}
+
+    def targets(self, deciding: Deciding) -> Targets:
+        """Targets on the shortest ways that people believe in."""
+        site, plan = deciding.site, deciding.site.plan
+        found = site.targets(deciding.positions, deciding.destinations)
+        closed = [each for each in plan.openings() if not plan.is_open(each.name)]
+        self._seen = {each.name: self._seen.get(each.name, _NOBODY) for each in closed}
+        if not closed:
+            return found
+        rows = deciding.pedestrians
+        unseen = np.zeros((len(rows), len(closed)), dtype=np.bool_)
+        for number, opening in enumerate(closed):
+            middle = np.add(opening.a, opening.b) / 2.0
+            unseen[:, number] = ~self._look(opening.name, rows, deciding.positions, middle, plan)
+        # The gates of a route are numbers without exits.
+        leaving = [bool(site.exits(int(number))) for number in deciding.destinations]
+        unseen &= np.array(leaving, dtype=np.bool_)[:, None]
+        if not unseen.any():
+            return found
+        points, gates = np.array(found.points), np.array(found.gates)
+        distances, corners = np.array(found.distances), None
+        if found.corners is not None:
+            corners = np.array(found.corners)
+        names = [each.name for each in closed]
+        cores = np.array([each.core_radius for each in self._model.pedestrian_types])
+        keys = np.column_stack([unseen, deciding.destinations, deciding.types])
+        for key in np.unique(keys[unseen.any(axis=1)], axis=0):
+            own = np.flatnonzero((keys == key).all(axis=1))
+            believed = tuple(
+                name for name, not_seen in zip(names, key[:-2].tolist(), strict=True) if not_seen
+            )
+            router = self._router(plan, believed, float(cores[key[-1]]))
+            to = router.destination(site.exits(int(key[-2])))
+            theirs = router.targets(deciding.positions[own], np.full(len(own), to))
+            points[own], gates[own] = theirs.points, theirs.gates
+            distances[own] = theirs.distances
+            if corners is not None:
+                corners[own] = -1
+        return Targets(points, gates, distances, corners)
+
+    def bind(self, model: Any) -> None:
+        """Keep the model, whose types have bodies of different widths."""
+        self._model = model
+
+    def _look(
+        self,
+        name: str,
+        rows: NDArray[np.int64],
+        places: NDArray[np.float64],
+        middle: NDArray[np.float64],
+        plan: FloorPlan,
+    ) -> NDArray[np.bool_]:
+        """(n,) whether people have seen by now that an opening is closed."""
+        known = self._seen[name]
+        more = int(rows.max(initial=-1)) + 1 - len(known)
+        if more > 0:
+            known = self._seen[name] = np.append(known, np.zeros(more, dtype=np.bool_))
+        way = places - middle
+        away = np.maximum(np.hypot(*way.T), 1e-9)
+        before = middle + way * np.minimum(_BEFORE / away, 1.0)[:, None]
+        near = np.flatnonzero(~known[rows] & (away <= self.sight))
+        clear = lines_of_sight(plan, places[near], before[near])
+        known[rows[near[clear | (away[near] <= _BEFORE)]]] = True
+        return known[rows]
+
+    def _router(self, plan: FloorPlan, believed: tuple[str, ...], core: float) -> Router:
+        """Routes with these openings open."""
+        if self._version != plan.version:
+            self._version = plan.version
+            self._routers.clear()
+        key = believed, core
+        if key not in self._routers:
+            open_ = FloorPlan(
+                plan.walkable, exits=plan.exits, gates=plan.gates,
+                obstacles=plan.obstacles.values(),
+            )  # fmt: skip
+            for each in plan.openings():
+                if not plan.is_open(each.name) and each.name not in believed:
+                    open_.close_gate(each.name)
+            self._routers[key] = Router(open_, clearance=core + _BERTH)
+        return self._routers[key]
+
+
+_NOBODY = np.empty(0, dtype=np.bool_)

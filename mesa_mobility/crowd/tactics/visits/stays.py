@@ -1,0 +1,119 @@
+"""Stays: who is at a place of its route, where it stands, and until when."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.visits.place import Place
+from mesa_mobility.crowd.tactics.visits.visit import Visit
+from mesa_mobility.crowd.tactics.waiting import frames_of
+from mesa_mobility.distributions import Distribution
+
+THERE = 0.3
+"""Metres from its spot at which somebody stops."""
+
+GIVES_UP = 10 * FRAMES_A_SECOND
+"""Frames after which somebody who does not get to its spot stays where it is."""
+
+_WALKING = -1
+
+
+class Stays(Saved):
+    """The people who stay at a place of their route. Rows are those of the crowd.
+
+    Whoever arrives gets a spot to stand at, walks there, and stands from then on. Nobody costs
+    anything before the first has arrived.
+    """
+
+    saved = ("_place", "_spot", "_came", "_stay", "_until")
+
+    def __init__(self) -> None:
+        self._place = np.empty(0, dtype=np.int64)
+        self._spot = np.empty((0, 2))
+        self._came = np.empty(0, dtype=np.int64)
+        self._stay = np.empty(0, dtype=np.int64)
+        self._until = np.empty(0, dtype=np.int64)
+
+    def spots(self, rows: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Indices among ``rows`` of those on the way to a spot, and their (k, 2) spots, metres."""
+        known = rows < len(self._place)
+        there = np.where(known, rows, 0)
+        if not known.any():
+            return np.empty(0, dtype=np.intp), np.empty((0, 2))
+        walking = known & (self._place[there] >= 0) & (self._until[there] == _WALKING)
+        who = np.flatnonzero(walking)
+        return who, self._spot[rows[who]]
+
+    def stands(self, row: int) -> bool:
+        """Whether somebody stands at a place."""
+        return row < len(self._place) and self._place[row] >= 0 and self._until[row] != _WALKING
+
+    def end(self, row: int, frame: int, crowd: Crowd) -> None:
+        """End the stay of somebody, if it has one."""
+        if self.stands(row):
+            crowd.agenda["waits_until"][row] = frame
+        if row < len(self._place):
+            self._place[row] = -1
+
+    def over(
+        self, row: int, number: int, place: Place, frame: int, crowd: Crowd,
+        rng: np.random.Generator,
+    ) -> bool:  # fmt: skip
+        """Whether somebody has been at a place for as long as it stays.
+
+        Args:
+            row: the person, who decides now.
+            number: of the place.
+            place: the place to which it goes, or at which it is.
+            frame: now.
+            crowd: the crowd.
+            rng: the model's generator, from which stays and spots are drawn.
+        """
+        x, y = float(crowd.x[row]), float(crowd.y[row])
+        if row >= len(self._place) or self._place[row] < 0:
+            others = np.flatnonzero((self._place >= 0) & crowd.active[: len(self._place)])
+            staying = int((self._place[others] == number).sum())
+            if not place.reached(x, y, staying):
+                return False
+            stay = _frames(place.visit, rng)
+            if stay == 0:
+                return True
+            spot = place.spot(x, y, staying, self._spot[others], rng)
+            self._make_room(row + 1)
+            self._place[row], self._spot[row], self._until[row] = number, spot, _WALKING
+            self._came[row], self._stay[row] = frame, stay
+        if self._until[row] == _WALKING:
+            sx, sy = self._spot[row]
+            if math.hypot(sx - x, sy - y) <= THERE or frame - self._came[row] >= GIVES_UP:
+                self._spot[row] = x, y
+                self._until[row] = frame + self._stay[row]
+                waits = crowd.agenda["waits_until"]
+                waits[row] = max(waits[row], self._until[row])
+            return False
+        if self._until[row] > frame:
+            return False
+        self._place[row] = -1
+        return True
+
+    def _make_room(self, count: int) -> None:
+        more = max(count, 2 * len(self._place)) - len(self._place)
+        if count > len(self._place):
+            none = np.full(more, -1, dtype=np.int64)
+            self._place = np.append(self._place, none)
+            self._spot = np.append(self._spot, np.zeros((more, 2)), axis=0)
+            self._came, self._stay = np.append(self._came, none), np.append(self._stay, none)
+            self._until = np.append(self._until, none)
+
+
+def _frames(visit: Visit, rng: np.random.Generator) -> int:
+    """Frames for which somebody stays."""
+    seconds = visit.stay
+    if isinstance(seconds, Distribution):
+        seconds = float(np.asarray(seconds.draw(1, rng), dtype=np.float64).reshape(-1)[0])
+    return int(frames_of(np.array([seconds], dtype=np.float64), "visit: stay")[0])

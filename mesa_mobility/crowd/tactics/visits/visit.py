@@ -1,0 +1,83 @@
+"""A place to visit, and the time to stay there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any, TypeAlias
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.errors import FloorPlanError, ModelError
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A place that people visit on their way, and stay at for a time.
+
+    It stands in a ``route`` like the name of a gate. In an area everybody looks for a place of its
+    own; at a point those who find others there stand around it.
+
+    Attributes:
+        place: a point (x, y) in metres, or an area, a polygon (shapely or WKT).
+        stay: seconds for which people stand there, or a distribution of them.
+
+    Raises:
+        ModelError: a stay that is no time.
+        FloorPlanError: a place that is neither a point nor a polygon.
+    """
+
+    place: Any
+    stay: float | Distribution = 0.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.stay, Distribution) and not (
+            isinstance(self.stay, Real) and 0.0 <= self.stay <= LONGEST_WAIT
+        ):
+            raise ModelError(
+                f"visit: stay {self.stay!r}, expected a distribution, or 0 to {LONGEST_WAIT:g} s"
+            )
+        object.__setattr__(self, "place", _read(self.place))
+
+    @property
+    def area(self) -> BaseGeometry | None:
+        """The polygon to visit, if it is no point."""
+        return None if isinstance(self.place, tuple) else self.place
+
+    def __str__(self) -> str:
+        if isinstance(self.place, tuple):
+            return f"the point ({self.place[0]:g}, {self.place[1]:g})"
+        x, y = self.place.centroid.coords[0]
+        return f"the area around ({x:.6g}, {y:.6g})"
+
+
+Route: TypeAlias = Sequence[str | Visit]
+"""Gates and places in the order in which people go there."""
+
+
+def _read(place: Any) -> tuple[float, float] | BaseGeometry:
+    given = place
+    if isinstance(given, str):
+        try:
+            given = shapely.from_wkt(given)
+        except shapely.errors.GEOSException as error:
+            text = " ".join(str(error).split())
+            raise FloorPlanError(f"visit: the WKT cannot be read ({text})") from None
+    if isinstance(given, BaseGeometry) and given.geom_type == "Polygon":
+        if given.is_empty or not given.is_valid:
+            raise FloorPlanError("visit: the Polygon is empty or not valid")
+        return given
+    if isinstance(given, BaseGeometry) and given.geom_type == "Point" and not given.is_empty:
+        given = given.x, given.y
+    try:
+        point = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        point = np.empty(0)
+    if point.shape != (2,) or not np.isfinite(point).all():
+        raise FloorPlanError(f"visit: place {place!r}, expected a point (x, y) or a polygon")
+    return float(point[0]), float(point[1])
