@@ -12,6 +12,17 @@ from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, HEEL_BACK, JOINT, OFFSET
 AROUND = 10
 """Vertices round a tube."""
 
+FEWER_AROUND = 4
+"""The same of a figure seen from afar."""
+
+_FEWER_RINGS = {
+    "trunk": (0, 1, 6, 9),
+    "head": (1, 4, 7),
+    "leg": (0, 4, 8),
+    "foot": (0, 3),
+    "arm": (2, 5, 9),
+}
+
 Ring = tuple[tuple[float, float, float], float, float, dict[str, float]]
 """Centre in metres from a joint, radii along and across, and the joints that move it."""
 
@@ -43,14 +54,41 @@ def rest_positions() -> NDArray[np.float64]:
     return places
 
 
-def human_figure() -> Figure:
+def human_figure(around: int = AROUND) -> Figure:
     """The figure of an adult."""
-    tubes = [_trunk(), _head()]
+    return _joined([tube for _, tube in _tubes()], around)
+
+
+def distant_figure() -> Figure:
+    """The figure of an adult seen from afar: fewer rings, fewer corners."""
+    return _joined(
+        [([rings[k] for k in _FEWER_RINGS[name]], axis) for name, (rings, axis) in _tubes()],
+        FEWER_AROUND,
+    )
+
+
+def pawn() -> Figure:
+    """Somebody seen from so far that limbs do not show: shoulders and a head, feet at the origin."""
+
+    def rings(*each: tuple[float, float, float]) -> list[Ring]:
+        return [((0.0, 0.0, z), deep, wide, {"pelvis": 1}) for z, deep, wide in each]
+
+    body = rings((0.0, 0.09, 0.13), (0.9, 0.11, 0.17), (1.38, 0.12, 0.22), (1.5, 0.05, 0.06))
+    head = rings((1.5, 0.04, 0.04), (1.63, 0.10, 0.08), (1.75, 0.03, 0.03))
+    return _joined([(body, 2), (head, 2)], 6)
+
+
+def _tubes() -> list[tuple[str, Tube]]:
+    tubes = [("trunk", _trunk()), ("head", _head())]
     for side in ("left", "right"):
-        tubes += [_leg(side), _foot(side), _arm(side)]
+        tubes += [("leg", _leg(side)), ("foot", _foot(side)), ("arm", _arm(side))]
+    return tubes
+
+
+def _joined(tubes: list[Tube], around: int) -> Figure:
     vertices, normals, triangles, joints, weights, count = [], [], [], [], [], 0
     for rings, axis in tubes:
-        v, n, t, j, w = _tube(rings, axis)
+        v, n, t, j, w = _tube(rings, axis, around)
         vertices.append(v)
         normals.append(n)
         triangles.append(t + count)
@@ -138,27 +176,27 @@ def _arm(side: str) -> Tube:
     ], 2
 
 
-def _tube(rings: list[Ring], axis: int) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
+def _tube(rings: list[Ring], axis: int, around: int) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
     """Vertices, normals, triangles, joints and weights of a closed tube along an axis."""
-    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    angle = 2.0 * np.pi * np.arange(around) / around
     across = [each for each in range(3) if each != axis]
     if axis == 0:
         across.reverse()  # radii are given along z first, then y
     vertices, joints, weights = [], [], []
     for centre, along, aside, moved in rings:
-        ring = np.tile(np.array(centre, dtype=np.float64), (AROUND, 1))
+        ring = np.tile(np.array(centre, dtype=np.float64), (around, 1))
         ring[:, across[0]] += along * np.cos(angle)
         ring[:, across[1]] += aside * np.sin(angle)
         vertices.append(ring)
         names, shares = list(moved), list(moved.values())
-        joints.append(np.tile([JOINT[n] for n in names] + [0] * (4 - len(names)), (AROUND, 1)))
-        weights.append(np.tile(shares + [0.0] * (4 - len(shares)), (AROUND, 1)))
+        joints.append(np.tile([JOINT[n] for n in names] + [0] * (4 - len(names)), (around, 1)))
+        weights.append(np.tile(shares + [0.0] * (4 - len(shares)), (around, 1)))
     for place in (0, -1):  # the ends are closed by their middles
         vertices.append(np.array([rings[place][0]], dtype=np.float64))
         joints.append(joints[place if place == 0 else len(rings) - 1][:1])
         weights.append(weights[place if place == 0 else len(rings) - 1][:1])
     points = np.concatenate(vertices)
-    triangles = np.array(_faces(len(rings)))
+    triangles = np.array(_faces(len(rings), around))
     corner = points[triangles]
     facing = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     outward = corner.mean(axis=1) - points.mean(axis=0)
@@ -171,16 +209,16 @@ def _tube(rings: list[Ring], axis: int) -> tuple[NDArray, NDArray, NDArray, NDAr
     return points, normals, triangles, np.concatenate(joints), np.concatenate(weights)
 
 
-def _faces(rings: int) -> list[tuple[int, int, int]]:
+def _faces(rings: int, around: int) -> list[tuple[int, int, int]]:
     faces = []
     for ring in range(rings - 1):
-        for a in range(AROUND):
-            b = (a + 1) % AROUND
-            low, high = ring * AROUND, (ring + 1) * AROUND
+        for a in range(around):
+            b = (a + 1) % around
+            low, high = ring * around, (ring + 1) * around
             faces += [(low + a, low + b, high + b), (low + a, high + b, high + a)]
-    first, last = rings * AROUND, rings * AROUND + 1
-    end = (rings - 1) * AROUND
-    for a in range(AROUND):
-        b = (a + 1) % AROUND
+    first, last = rings * around, rings * around + 1
+    end = (rings - 1) * around
+    for a in range(around):
+        b = (a + 1) % around
         faces += [(first, b, a), (last, end + a, end + b)]
     return faces

@@ -1,61 +1,200 @@
-"""A page that plays a run in three dimensions, in one file that needs no network."""
+"""A page that plays a run, in one file that needs no network."""
 
 from __future__ import annotations
 
-import base64
 import html
 import os
-import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from importlib.resources import files
-from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from mesa_mobility.animation.gltf import write_glb
-from mesa_mobility.animation.people import Walker
-from mesa_mobility.errors import ResultsError
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
+from mesa_mobility.animation.floor import drawn_floor
+from mesa_mobility.animation.people import Selection
+from mesa_mobility.bodies import PoseBank
+from mesa_mobility.bodies.motion import FRAME_RATE
+from mesa_mobility.bodies.sequence import stretches
+from mesa_mobility.errors import MapError, ResultsError
 from mesa_mobility.files.atomic import replacing
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.results import Decisions, Trajectories
+
+EVERY = 3
+"""Frames between two places of a person: 0.1 s, as of the options' own paths."""
+
+PLACE_STEP, TURN_STEP = 0.001, 0.001
+"""Metres and radians in which places and headings are stored."""
+
+SHARE_STEP = 0.001
+
+
+def viewer_part(name: str) -> str:
+    """The text of a file of the viewer."""
+    folder = files("mesa_mobility.animation") / "viewer"
+    return (folder / name).read_text(encoding="utf-8")
 
 
 def write_page(
-    people: Iterable[Walker],
+    trajectories: Trajectories,
     plan: FloorPlan,
     path: str | os.PathLike[str],
+    selection: Selection | None = None,
     *,
     title: str,
+    bank: PoseBank | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> None:
     """Write a page with a run, its player and all that it needs.
 
+    People are figures whose limbs move where the run has its decisions and the poses of their map
+    are known. Others are drawn without limbs.
+
     Args:
-        people: those shown.
+        trajectories: the run.
         plan: floor and walls.
         path: the page (.html).
+        selection: whom and when; everybody all the time by default.
         title: shown on it.
+        bank: poses of a map whose poses do not ship.
         progress: called with the number of people done.
 
     Raises:
-        ResultsError: the file cannot be written, or pygltflib is not installed.
+        ResultsError: the file cannot be written, nobody to show, or not 30 frames a second.
+        MapError: the bank is of none of the run's maps.
     """
-    folder = files("mesa_mobility.animation") / "viewer"
-
-    def part(name: str) -> str:
-        return (folder / name).read_text(encoding="utf-8")
-
-    with tempfile.TemporaryDirectory() as temporary:
-        model = Path(temporary) / "crowd.glb"
-        write_glb(people, plan, model, progress=progress)
-        content = base64.b64encode(model.read_bytes()).decode()
-    page = Template(part("page.html")).substitute(
+    header, arrays = run_parts(trajectories, selection or Selection(), bank, progress)
+    header |= {"title": title, "floor": drawn_floor(plan)}
+    page = Template(viewer_part("page.html")).substitute(
         title=html.escape(title),
         # Would end the script early.
-        three=part("three.bundle.js").replace("</script", "<\\/script"),
-        file=content,
-        viewer=part("viewer.js"),
+        three=viewer_part("three.bundle.js").replace("</script", "<\\/script"),
+        content=bundled(header, arrays),
+        viewer="\n".join(viewer_part(f"{each}.js") for each in ("bundle", "bodies", "stage", "player")),
     )
     with replacing(path, ResultsError) as target:
         target.write_text(page, encoding="utf-8")
+
+
+def run_parts(
+    trajectories: Trajectories,
+    selection: Selection,
+    bank: PoseBank | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """Header and arrays of a run: people's places, movements and decisions, and the poses."""
+    if trajectories.frame_rate != FRAME_RATE:
+        raise ResultsError(
+            f"{trajectories.frame_rate:g} frames a second: expected {FRAME_RATE:g}"
+        )
+    first, last = selection.frames_of(trajectories)
+    people = selection.people_of(trajectories)
+    decisions = trajectories.decisions
+    banks = {} if decisions is None else _banks(decisions, bank)
+    digests = list(banks)
+    types = trajectories.person_data.get("type")
+    names = [] if types is None else np.unique(types[people]).tolist()
+    tracks, courses, decided, rows = [], [], [], []
+    ordered = trajectories.by_person
+    begins = np.searchsorted(trajectories.person[ordered], np.arange(max(people) + 2))
+    for done, person in enumerate(people, start=1):
+        track = _track(trajectories, ordered[begins[person] : begins[person + 1]], first, last)
+        course, own, which = _course(decisions, banks, person, int(track[0, 0]), last)
+        tracks.append(track)
+        courses.append(course)
+        decided.append(own)
+        kind = 0 if types is None else names.index(str(types[person]))
+        which = -1 if which is None else digests.index(which)
+        rows.append((person, len(track), len(course), len(own), kind, which))
+        if progress is not None:
+            progress(done)
+    header, arrays = figure_parts()
+    header |= {
+        "first": first,
+        "last": last,
+        "types": names,
+        "scales": [found.scale for found in banks.values()],
+        "clips": [[str(clip["clip"]) for clip in each.metadata["clips"]] for each in banks.values()],
+        "decided": decisions is not None,
+        "steps": {"place": PLACE_STEP, "turn": TURN_STEP, "share": SHARE_STEP},
+    }
+    for number, found in enumerate(banks.values()):
+        arrays |= bank_arrays(found, f"bank{number}")
+    arrays["people"] = np.array(rows, dtype=np.int32)
+    for name, each in (("tracks", tracks), ("courses", courses), ("decisions", decided)):
+        together = np.concatenate(each)
+        for k, column in enumerate(together.T):
+            arrays[f"{name}.{k}"] = np.ascontiguousarray(column, dtype=np.int32)
+    return header, arrays
+
+
+def _banks(decisions: Decisions, given: PoseBank | None) -> dict[str, PoseBank]:
+    """The poses known of the run's maps, by the maps' digests."""
+    if given is not None and given.metadata["map_digest"] not in decisions.maps:
+        given.check_map(decisions.maps[0])
+    found = {}
+    for digest in dict.fromkeys(decisions.maps):
+        if given is not None and given.metadata["map_digest"] == digest:
+            found[digest] = given
+            continue
+        try:
+            found[digest] = PoseBank.of(digest)
+        except MapError:
+            continue
+    return found
+
+
+def _track(
+    trajectories: Trajectories, rows: NDArray[np.int64], first: int, last: int
+) -> NDArray[np.int64]:
+    """(n, 4) frames, x, y and heading of a person, the differences of successive rows in steps."""
+    rows = rows[(trajectories.frame[rows] >= first) & (trajectories.frame[rows] <= last)]
+    rows = np.append(rows[:-1:EVERY], rows[-1])
+    heading = np.unwrap(trajectories.heading[rows])
+    table = np.column_stack(
+        [
+            trajectories.frame[rows],
+            np.rint(trajectories.x[rows] / PLACE_STEP),
+            np.rint(trajectories.y[rows] / PLACE_STEP),
+            np.rint(heading / TURN_STEP),
+        ]
+    ).astype(np.int64)
+    return np.diff(table, axis=0, prepend=0)
+
+
+def _course(
+    decisions: Decisions | None,
+    banks: dict[str, PoseBank],
+    person: int,
+    first: int,
+    last: int,
+) -> tuple[NDArray[np.int64], NDArray[np.int64], str | None]:
+    """(s, 5) stretches and (d, 3) decisions of a person, and the digest of its map if known.
+
+    A stretch is frame, pose, whether it moves, stride in thousandths, decision; a decision is
+    frame, option, share. Frames are differences of successive rows.
+    """
+    none = np.zeros((0, 5), dtype=np.int64), np.zeros((0, 3), dtype=np.int64)
+    if decisions is None:
+        return *none, None
+    rows = decisions.rows_of(person)
+    movements = decisions.movements_of(person)
+    share = np.rint(movements.shares / SHARE_STEP).astype(np.int64)
+    own = np.column_stack([movements.starts, movements.options, share])
+    kind = int(decisions.type_index[rows[0]]) if len(rows) else 0
+    digest = decisions.maps[kind]
+    table = none[0]
+    if digest in banks:
+        began = min(first, int(movements.starts.min(initial=first)))
+        found = stretches(banks[digest], movements, began)
+        stride = np.rint(found.strides * 1000).astype(np.int64)
+        table = np.column_stack([found.frames, found.poses, found.moving, stride, found.own])
+        table = table[table[:, 0] <= last]
+    for each in (table, own):
+        each[:, 0] = np.diff(each[:, 0], prepend=0)
+    return table, own, digest if digest in banks else None

@@ -27,7 +27,8 @@ STRIDE_STEP = 0.01
 _MIRROR = np.array([-1.0, 1.0, -1.0, 1.0])
 """A rotation seen in a mirror along y, as factors of its quaternion."""
 
-_OTHER_SIDE = np.array([TURN_OF[int(COUNTERPARTS[j])] for j in TURNING])
+OTHER_SIDE = np.array([TURN_OF[int(COUNTERPARTS[j])] for j in TURNING])
+"""(17,) place among ``TURNING`` of each joint's counterpart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +116,7 @@ class PoseBank:
         """(n, 17, 3, 3) turns of the joints in the poses of these numbers."""
         rows, mirrored = np.divmod(np.asarray(numbers, dtype=np.int64), 2)
         found = self.rotations[rows] * QUATERNION_STEP
-        other = found[:, _OTHER_SIDE] * _MIRROR
+        other = found[:, OTHER_SIDE] * _MIRROR
         return matrices(np.where((mirrored == 1)[:, None, None], other, found))
 
     def pelvis_heights(self, numbers: NDArray[np.integer]) -> NDArray[np.float64]:

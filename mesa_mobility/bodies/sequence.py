@@ -77,6 +77,62 @@ def pose_sequence(bank: PoseBank, frames: NDArray[np.int64], movements: Movement
     )
 
 
+class Stretches(NamedTuple):
+    """The stretches of recordings that one person goes through, in the order of time.
+
+    Fields: ``frames`` (s,) at which each begins; ``poses`` (s,) numbers of the bank's poses then;
+    ``moving`` (s,) whether the later poses of the clip follow; ``strides`` (s,) factor of the
+    recorded strides; ``own`` (s,) decision, -1 before the first.
+    """
+
+    frames: NDArray[np.int64]
+    poses: NDArray[np.int64]
+    moving: NDArray[np.bool_]
+    strides: NDArray[np.float64]
+    own: NDArray[np.int64]
+
+
+def stretches(bank: PoseBank, movements: Movements, first: int) -> Stretches:
+    """The stretches of a person who is there from frame ``first`` on.
+
+    Args:
+        bank: poses of the person's type.
+        movements: what the person does.
+        first: frame; it stands until its first movement.
+    """
+    standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
+    begins, poses, strides = _stretches(bank, movements, standing)
+    until = np.append(np.diff(movements.starts), NEVER)
+    # The first row stands for the time before the first movement.
+    used = begins < np.append(NEVER, until)[:, None]
+    if len(movements.starts) and movements.starts[0] <= first:
+        used[0] = False
+    row, place = np.nonzero(used)
+    start = np.append(first, movements.starts)[row] + begins[row, place]
+    return Stretches(start, poses[row, place], _moving(movements)[row], strides[row], row - 1)
+
+
+def stretch_of_each(
+    bank: PoseBank, movements: Movements, phases: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_], NDArray[np.float64]]:
+    """Of several people, each with one movement under way: the stretch that each is in.
+
+    Args:
+        bank: poses of their type.
+        movements: one movement for each person.
+        phases: (n,) frames since it began.
+
+    Returns:
+        (n,) frames since the stretch began, (n,) number of the pose then, (n,) whether it moves,
+        (n,) factor of its strides.
+    """
+    standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
+    begins, poses, strides = (each[1:] for each in _stretches(bank, movements, standing))
+    place = np.maximum((phases[:, None] >= begins).sum(axis=1) - 1, 0)
+    row = np.arange(len(phases))
+    return phases - begins[row, place], poses[row, place], _moving(movements)[1:], strides
+
+
 def _stretches(
     bank: PoseBank, movements: Movements, standing: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:

@@ -17,6 +17,7 @@ class Format(StrEnum):
 
     GLB = "glb"
     BVH = "bvh"
+    HTML = "html"
 
 
 RunDir = Annotated[Path, typer.Argument(metavar="RUN_DIR", help="Folder that `run --out` wrote.")]
@@ -43,7 +44,11 @@ def animate(
     run: RunDir,
     output: Output,
     kind: Annotated[
-        Format, typer.Option("--format", help="glb: one file; bvh: a folder, one file a person.")
+        Format,
+        typer.Option(
+            "--format",
+            help="glb: one file; bvh: a folder, one file a person; html: a page that plays offline.",
+        ),
     ] = Format.GLB,
     people: People = None,
     start: Start = 0.0,
@@ -51,9 +56,9 @@ def animate(
     poses: Poses = None,
 ) -> None:
     """Write the people of a run as moving figures, for Blender and the web."""
-    from mesa_mobility.animation import Selection, walkers, write_bvh, write_glb
+    from mesa_mobility.animation import Selection, walkers, write_bvh, write_glb, write_page
     from mesa_mobility.bodies import PoseBank
-    from mesa_mobility.results.run import read_run
+    from mesa_mobility.results.run import read_run, title_of
 
     found = read_run(run)
     selection = Selection(numbers(people), start, end)
@@ -61,12 +66,21 @@ def animate(
     count = len(selection.people_of(found.trajectories))
     each = walkers(found.trajectories, selection, bank)
     with progress_bar() as report:
+
+        def progress(done: int) -> None:
+            report("writing people", done, count)
+
         if kind is Format.GLB:
-            write_glb(
-                each,
+            write_glb(each, found.plan, output, progress=progress)
+        elif kind is Format.HTML:
+            write_page(
+                found.trajectories,
                 found.plan,
                 output,
-                progress=lambda done: report("writing people", done, count),
+                selection,
+                title=title_of(found.summary, found.trajectories),
+                bank=bank,
+                progress=progress,
             )
         else:
             try:
@@ -75,8 +89,9 @@ def animate(
                 raise ResultsError(f"{output}: expected a folder for one file a person") from error
             for done, walker in enumerate(each, start=1):
                 write_bvh(walker.motion, output / f"person_{walker.person}.bvh")
-                report("writing people", done, count)
-    say(f"{count} people written to {output}")
+                progress(done)
+    size = f", {output.stat().st_size / 1e6:.1f} MB" if output.is_file() else ""
+    say(f"{count} people written to {output}{size}")
 
 
 def render(

@@ -33,7 +33,7 @@ def replay(
     ] = False,
 ) -> None:
     """Watch a run in three dimensions: a page with a time slider that needs no network."""
-    from mesa_mobility.animation import Selection, walkers
+    from mesa_mobility.animation import Selection
     from mesa_mobility.animation.page import write_page
     from mesa_mobility.bodies import PoseBank
     from mesa_mobility.results.run import read_run, title_of
@@ -45,12 +45,14 @@ def replay(
     count = len(selection.people_of(found.trajectories))
     with progress_bar() as report:
         write_page(
-            walkers(found.trajectories, selection, bank),
+            found.trajectories,
             found.plan,
             page,
+            selection,
+            bank=bank,
             title=title_of(found.summary, found.trajectories),
             progress=lambda done: report("bodies", done, count),
         )
-    say(f"{count} people written to {page}")
+    say(f"{count} people written to {page}, {page.stat().st_size / 1e6:.1f} MB")
     if not no_open:
         webbrowser.open(page.resolve().as_uri())

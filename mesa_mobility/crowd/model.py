@@ -32,7 +32,7 @@ from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset, read_preset
-from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder
+from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder, movements_under_way
 from mesa_mobility.crowd.scene import make_scene
 from mesa_mobility.crowd.space import space_of
 from mesa_mobility.crowd.stall import StallWatch, stall_reason
@@ -238,6 +238,11 @@ class PedestrianModel(mesa.Model):
         if self.decisions is None:
             return None
         return self.decisions.arrays(self._scene.repertoire, since)
+
+    def under_way(self) -> dict[str, NDArray[np.generic]]:
+        """What everybody inside is doing now: an entry for each of ``rows``, otherwise as
+        ``decided``."""
+        return movements_under_way(self.crowd, self.rows, self._scene.repertoire)
 
     @property
     def stall_reason(self) -> str | None:

@@ -90,13 +90,33 @@ class DecisionRecorder(Saved):
         names = ("frame", "person", "type_index", "option")
         columns = [np.concatenate(each) for each in zip(*_since(self._blocks, since), strict=True)]
         found = dict(zip(names, columns or [np.empty(0, np.int32)] * 4, strict=True))
-        option, share = found["option"].copy(), np.ones(len(found["option"]), dtype=np.float32)
-        for number, capability in enumerate(repertoire.capabilities):
-            own = (found["type_index"] == number) & (option >= 0)
-            rows = option[own] - repertoire.first_option[number]
-            option[own] = capability.parts.rows[rows]
-            share[own] = capability.parts.share[rows]
-        return {**found, "option": option, "share": share}
+        return _in_maps(found, repertoire)
+
+
+def movements_under_way(
+    crowd: Crowd, rows: NDArray[np.int64], repertoire: Repertoire
+) -> dict[str, NDArray[np.generic]]:
+    """What the people in ``rows`` are doing, as ``DecisionRecorder.arrays`` has it of decisions."""
+    found = {
+        "frame": crowd.start[rows],
+        "person": rows.astype(np.int32),
+        "type_index": crowd.type_index[rows].astype(np.int32),
+        "option": crowd.option[rows],
+    }
+    return _in_maps(found, repertoire)
+
+
+def _in_maps(
+    found: dict[str, NDArray[Any]], repertoire: Repertoire
+) -> dict[str, NDArray[np.generic]]:
+    """The same with rows of the types' maps for options, and the share of their ground."""
+    option, share = found["option"].copy(), np.ones(len(found["option"]), dtype=np.float32)
+    for number, capability in enumerate(repertoire.capabilities):
+        own = (found["type_index"] == number) & (option >= 0)
+        rows = option[own] - repertoire.first_option[number]
+        option[own] = capability.parts.rows[rows]
+        share[own] = capability.parts.share[rows]
+    return {**found, "option": option, "share": share}
 
 
 def _by_frame(columns: Iterable[NDArray[Any]]) -> list[tuple[NDArray[Any], ...]]:

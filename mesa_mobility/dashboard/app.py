@@ -16,6 +16,7 @@ from mesa_mobility.dashboard.forms import ParameterForm
 from mesa_mobility.dashboard.quiet import keep_quiet
 from mesa_mobility.dashboard.session.feed import Fed
 from mesa_mobility.dashboard.session.session import AS_TAKEN, IF_NOW, Session
+from mesa_mobility.dashboard.views.body_view import BodyCanvas
 from mesa_mobility.dashboard.views.charts import Charts
 from mesa_mobility.dashboard.views.crowd_view import CrowdCanvas
 from mesa_mobility.dashboard.views.decision_view import DecisionCanvas
@@ -24,6 +25,9 @@ from mesa_mobility.dashboard.views.page_frame import PageFrame
 from mesa_mobility.plugins import registry
 
 DEFAULT_MODEL = "doorway"
+
+PLAN, BODIES = "plan", "three dimensions"
+"""The two views of the crowd."""
 
 # A page that imports this is served by Solara a moment later.
 keep_quiet()
@@ -166,17 +170,30 @@ def _Crowd(session: Session) -> None:
         else:
             session.toggle_obstacle(what["obstacle"], what["run"])
 
-    Fed(
-        session.frame,
-        CrowdCanvas,
-        floor=session.floor.value,
-        selected=session.selected.value,
-        event_seen=session.seen,
-        event_pick=pick,
-        event_toggle=toggle,
-        event_play=lambda _: session.play(session.status.peek().state != "playing"),
-        shortcuts=True,
-    )
+    shared = {
+        "floor": session.floor.value,
+        "selected": session.selected.value,
+        "event_seen": session.seen,
+        "event_pick": pick,
+        "event_play": lambda _: session.play(session.status.peek().state != "playing"),
+    }
+    view, set_view = solara.use_state(PLAN)
+
+    def choose(name: str) -> None:
+        set_view(name)
+        session.show_bodies(name == BODIES)
+
+    with solara.Column(gap="6px"):
+        with solara.ToggleButtonsSingle(view, on_value=choose, dense=True):
+            solara.Button(PLAN, value=PLAN, small=True)
+            solara.Button(BODIES, value=BODIES, small=True)
+        if view == BODIES and session.poses.value:
+            poses = session.poses.value
+            Fed(session.frame, BodyCanvas, poses=poses, **shared).key("bodies")
+        elif view == PLAN:
+            Fed(
+                session.frame, CrowdCanvas, event_toggle=toggle, shortcuts=True, **shared
+            ).key("plan")
 
 
 @solara.component

@@ -4,7 +4,14 @@ from hypothesis import strategies as st
 
 from mesa_mobility.bodies import Movements
 from mesa_mobility.bodies.rotations import angles
-from mesa_mobility.bodies.sequence import FADE, blended, fading, pose_sequence
+from mesa_mobility.bodies.sequence import (
+    FADE,
+    blended,
+    fading,
+    pose_sequence,
+    stretch_of_each,
+    stretches,
+)
 from mesa_mobility.bodies.skeleton import JOINT, TURN_OF
 from tests.bodies.conftest import make_bank
 
@@ -51,3 +58,26 @@ def test_differences_add_up(places, size):
     together = fading(each, np.full((len(each), 1), size), 20)
     alone = sum(fading(np.array([p]), np.full((1, 1), size), 20) for p in each)
     np.testing.assert_allclose(together, alone, atol=1e-12)
+
+
+def test_stretches_begin_where_the_sequence_has_its_joins(bank):
+    # Option 1 plays the first clip for a frame, then the second clip.
+    both = movements([2, 6], [1, -2])
+    found = stretches(bank, both, 0)
+    assert found.frames.tolist() == [0, 2, 3, 6]
+    assert found.poses.tolist() == [0, 0, 4, 0]
+    assert found.moving.tolist() == [False, True, True, False]
+    assert found.own.tolist() == [-1, 0, 0, 1]
+    # Somebody who moves from its first frame on has not stood before.
+    assert stretches(bank, both, 2).frames.tolist() == [2, 3, 6]
+
+
+def test_the_stretch_that_each_is_in(bank):
+    # Three people: in the second stretch, in the first one, falling back.
+    into, poses, moving, strides = stretch_of_each(
+        bank, movements([0, 0, 0], [1, 1, -2]), np.array([4, 0, 7])
+    )
+    assert into.tolist() == [3, 0, 7]
+    assert poses.tolist() == [4, 0, 0]
+    assert moving.tolist() == [True, True, False]
+    assert strides.tolist() == [1.0, 1.0, 1.0]

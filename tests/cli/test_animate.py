@@ -1,3 +1,5 @@
+import re
+
 import pytest
 
 
@@ -26,6 +28,15 @@ def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
                       "--people", "1")  # fmt: skip
     assert outcome.status == 0
     assert [each.name for each in (tmp_path / "bvh").iterdir()] == ["person_1.bvh"]
+    outcome = command("animate", run_dir, "-o", tmp_path / "crowd.html", "--format", "html")
+    assert outcome.status == 0
+    # One file: nothing is asked for from elsewhere.
+    page = (tmp_path / "crowd.html").read_text()
+    size = len(page.encode()) / 1e6
+    assert f"2 people written to {tmp_path / 'crowd.html'}, {size:.1f} MB" in " ".join(
+        outcome.err.split()
+    )
+    assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=", page)
     for name in ("crowd.gif", "crowd.png"):
         outcome = command("render", run_dir, "-o", tmp_path / name)
         assert (outcome.status, (tmp_path / name).is_file()) == (0, True), outcome.err

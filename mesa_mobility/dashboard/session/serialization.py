@@ -11,6 +11,8 @@ import shapely
 from numpy.typing import ArrayLike
 
 from mesa_mobility import FloorPlan, PedestrianModel
+from mesa_mobility.animation.floor import drawn_floor, ring
+from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.colouring import Colouring
 from mesa_mobility.dashboard.session.observer import Observer
 
@@ -24,7 +26,13 @@ def packed(values: ArrayLike) -> str:
 
 
 def frame(
-    model: PedestrianModel, colouring: Colouring, observer: Observer, *, run: int, number: int
+    model: PedestrianModel,
+    colouring: Colouring,
+    observer: Observer,
+    *,
+    run: int,
+    number: int,
+    bodies: Bodies | None = None,
 ) -> dict[str, Any]:
     """The crowd as the canvas draws it.
 
@@ -37,6 +45,7 @@ def frame(
         observer: what has been counted of the model.
         run: changes when time starts anew.
         number: of this frame.
+        bodies: adds ``bodies``, the poses in the three-dimensional view.
     """
     rows, crowd = model.rows, model.crowd
     people = np.empty((len(rows), 5), dtype="<f4")
@@ -46,7 +55,9 @@ def frame(
     # Within one round: a heading that has wound up keeps its precision.
     people[:, 3] = np.remainder(crowd.heading[rows], 2.0 * np.pi)
     people[:, 4] = colouring.values(model, observer)
+    posed = {} if bodies is None else {"bodies": packed(bodies.now())}
     return {
+        **posed,
         "run": run,
         "number": number,
         "elapsed": model.elapsed,
@@ -66,31 +77,9 @@ def floor(
         obstacles: those that a click takes away or brings back, and whether each is there now.
     """
     return {
-        "bounds": list(plan.bounds),
-        "outline": [_ring(plan.walkable.exterior)],
-        "free": [
-            [_ring(each) for each in (part.exterior, *part.interiors)]
-            for part in shapely.get_parts(plan.free)
-        ],
-        "walls": plan.walls.tolist(),
-        "zones": [_ring(zone.area.exterior) for zone in plan.zones],
-        "openings": [
-            {
-                "name": opening.name,
-                "kind": opening.kind,
-                "a": list(opening.a),
-                "b": list(opening.b),
-                "open": plan.is_open(opening.name),
-            }
-            for opening in plan.openings()
-        ],
+        **drawn_floor(plan),
         "obstacles": [
-            {"number": number, "ring": _ring(polygon.exterior), "there": there}
+            {"number": number, "ring": ring(polygon.exterior), "there": there}
             for number, (polygon, there) in enumerate(obstacles)
         ],
     }
-
-
-def _ring(line: shapely.LinearRing) -> list[list[float]]:
-    points: list[list[float]] = np.asarray(line.coords)[:, :2].tolist()
-    return points

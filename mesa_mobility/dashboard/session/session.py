@@ -120,6 +120,15 @@ class Session(Engine):
 
         self._commands.put(command)
 
+    def show_bodies(self, on: bool) -> None:
+        """Send what the three-dimensional view needs, or not."""
+
+        def command() -> None:
+            self.use_bodies(on, None if self._current is None else self._current.model)
+            self._publish()
+
+        self._commands.put(command)
+
     def select(self, row: int, shown: int | None = None) -> None:
         """Show the decisions of the person in ``row``; none if it is negative.
 

@@ -12,6 +12,7 @@ import solara
 from mesa_mobility import PedestrianModel, PedestrianType
 from mesa_mobility.crowd import Explanation
 from mesa_mobility.dashboard.session import serialization
+from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.behaviours import Behaviours, ChoiceState, TermState
 from mesa_mobility.dashboard.session.colouring import COLOURINGS, colourings_of
 from mesa_mobility.dashboard.session.decision import described
@@ -79,6 +80,7 @@ class Shown:
         colourings: names of all by which they can be.
         run_number: number of the run that is shown, 1 for the page's first.
         hypothetical: whether the shown decision is the one that the person would take now.
+        poses: figures and poses for the three-dimensional view, "" while it is not shown.
         together: within it the page is not drawn; at its end once.
     """
 
@@ -98,6 +100,9 @@ class Shown:
         self.colourings = solara.reactive(tuple(COLOURINGS))
         self._colour = "speed"
         self.hypothetical = False
+        self.poses = solara.reactive("")
+        self._posing = False
+        self._bodies: Bodies | None = None
         self.together: AbstractContextManager[Any] = nullcontext()
         self.run_number = 0
         self._sent = self._seen = self._series_number = 0
@@ -123,9 +128,16 @@ class Shown:
         self.types.set(model.pedestrian_types)
         self.floor.set(plan.drawn())
         self.colourings.set(tuple(colourings_of(model)))
+        self.use_bodies(self._posing, model)
         self.use_colour(self._colour, model)
         self.behaviours.set(terms.states(model))
         self.choice.set(terms.choice(model))
+
+    def use_bodies(self, on: bool, model: PedestrianModel | None) -> None:
+        """Send the poses of this model's people from now on, or not."""
+        self._posing = on
+        self._bodies = Bodies(model) if on and model is not None else None
+        self.poses.set("" if self._bodies is None else self._bodies.bundle())
 
     def use_colour(self, name: str, model: PedestrianModel | None) -> None:
         """Colour people by this name from now on; by their speed where the model has none such."""
@@ -153,7 +165,12 @@ class Shown:
             self._sent, self._frame_at = self._sent + 1, now
             self.frame.set(
                 serialization.frame(
-                    model, self.colouring, observer, run=self.run_number, number=self._sent
+                    model,
+                    self.colouring,
+                    observer,
+                    run=self.run_number,
+                    number=self._sent,
+                    bodies=self._bodies,
                 )
             )
         if always or now - self._series_at >= SERIES_INTERVAL:

@@ -1,0 +1,114 @@
+"""The page of a run in a real browser without a graphics card: frames a second, opening, seeking.
+
+    mesa-mobility run auditorium --seed 1 --record decisions --out out/auditorium
+    mesa-mobility replay out/auditorium --no-open
+    python benchmarks/replay.py out/auditorium/replay.html
+
+Processor time is that of all of the browser's processes: on a busy machine frames a second say
+little, and the processor time of a frame says more. Needs `pip install 'mesa-mobility[test]'`, and
+Chromium: `--browser`, by default that on the path.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import time
+from pathlib import Path
+
+from playwright.sync_api import Page, sync_playwright
+
+ARGUMENTS = (
+    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-vsync",
+    "--no-first-run", "--disable-background-networking", "--disable-component-update",
+)  # fmt: skip
+TICKS = os.sysconf("SC_CLK_TCK")
+
+COUNT = """async (seconds) => {
+  const frame = () => new Promise(requestAnimationFrame);
+  const begin = performance.now(), drawn = state.stage.drawn;
+  while (performance.now() - begin < 1000 * seconds) await frame();
+  return [(performance.now() - begin) / 1000, state.stage.drawn - drawn];
+}"""
+
+SEEK = """async (share) => {
+  const begin = performance.now();
+  show(state.first + share * (state.last - state.first));
+  state.stage.renderer.getContext().finish();
+  return (performance.now() - begin) / 1000;
+}"""
+
+
+def processor_time(parent: int) -> float:
+    """Seconds used so far by the processes that descend from one."""
+    parents, used = {}, {}
+    for each in Path("/proc").iterdir():
+        if each.name.isdigit():
+            try:
+                fields = (each / "stat").read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            parents[int(each.name)] = int(fields[1])
+            used[int(each.name)] = (int(fields[11]) + int(fields[12])) / TICKS
+
+    def below(process: int) -> bool:
+        while process > 1:
+            if process == parent:
+                return True
+            process = parents.get(process, 0)
+        return False
+
+    return sum(value for process, value in used.items() if below(process))
+
+
+def measure(page: Page, path: Path, seconds: float) -> None:
+    """Print the figures of one page."""
+    started = time.perf_counter()
+    page.goto(path.resolve().as_uri())
+    page.wait_for_selector("body[data-ready=yes]", timeout=300_000)
+    opened = time.perf_counter() - started
+    page.click("#play")
+    took = sorted(page.evaluate(SEEK, (7 * k % 20 + 0.5) / 20) for k in range(20))
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB, opened in {opened:.1f} s")
+    print(f"any instant: median {took[10]:.3f} s, longest {took[-1]:.3f} s")
+    people = page.evaluate("Math.max(...[1, 5, 10].map((s) => (state.frame = s * 30, present().length)))")
+    for view in ("orbit", "plan", "follow", "eyes"):
+        page.evaluate("show(30)")
+        page.select_option("#camera", view)
+        page.click("#play")
+        page.evaluate(COUNT, 1.0)
+        before = processor_time(os.getpid())
+        real, drawn = page.evaluate(COUNT, seconds)
+        used = processor_time(os.getpid()) - before
+        share, figures = page.evaluate("[DETAIL[state.stage.detail].share, state.stage.figures]")
+        page.click("#play")
+        print(
+            f"{view}, {people} people: {drawn / real:.1f} frames/s, {1000 * used / drawn:.0f} ms of "
+            f"processor time each; {100 * share:.0f} % of the pixels' width; near, far, pawns: "
+            f"{figures}; load {os.getloadavg()[0]:.1f}",
+            flush=True,
+        )
+
+
+def main() -> None:
+    """Read the command line and measure."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("pages", type=Path, nargs="+", help="what `mesa-mobility replay` wrote")
+    parser.add_argument("--browser", default=shutil.which("chromium"))
+    parser.add_argument("--seconds", type=float, default=8.0)
+    parser.add_argument("--picture", type=Path, help="write a picture of the last page")
+    chosen = parser.parse_args()
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=chosen.browser, args=list(ARGUMENTS))
+        page = browser.new_page(viewport={"width": 1000, "height": 640})
+        page.on("pageerror", lambda error: print("error:", error))
+        for each in chosen.pages:
+            measure(page, each, chosen.seconds)
+        if chosen.picture:
+            page.screenshot(path=chosen.picture)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,368 @@
+// A crowd in three dimensions: floor, walls, people as figures, and cameras. z is up, in metres.
+"use strict";
+
+const WALL_HEIGHT = 1.2, EYES = 0.1, BONES = 22;
+const FINE_PIXELS = 110, FIGURE_PIXELS = 16; // height on the screen from which people are figures
+const FINE_MOST = 24, HELD_MOST = 100; // figures with all corners, with feet held on the floor
+const QUICK = 0.018; // seconds between pictures from which on there is more detail
+// Where pictures come more slowly than in so many seconds: fewer pixels, then fewer figures.
+const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
+  { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
+const channels = (colour) => (colour[0] === "#" ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
+  : colour.match(/\d+/g).map(Number)).map((each) => each / 255);
+const OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
+
+// Light is worked out for each corner: without a graphics card each pixel is dear.
+const SHADE = `
+  vec3 shaded(vec3 colour, vec3 normal) {
+    float sun = max(dot(normal, vec3(0.35, -0.42, 0.84)), 0.0);
+    return colour * (0.62 + 0.12 * normal.z + 0.34 * sun);
+  }`;
+const FRAGMENT = "in vec3 vColour; out vec4 painted; void main() { painted = vec4(vColour, 1.0); }";
+// From afar a corner goes with one joint.
+const FIGURE_VERTEX = (fine) => `
+  uniform sampler2D bones; uniform int first;
+  in vec2 joints; in float weight; in vec3 colour; out vec3 vColour;
+  vec3 turn(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+  ${SHADE}
+  void main() {
+    int row = first + gl_InstanceID, a = 2 * int(joints.x);
+    vec4 q = texelFetch(bones, ivec2(a, row), 0), p = texelFetch(bones, ivec2(a + 1, row), 0);
+    vec3 place = turn(q, position) * p.w + p.xyz, facing = turn(q, normal);
+    if (${fine} && weight < 0.999) {
+      int b = 2 * int(joints.y);
+      q = texelFetch(bones, ivec2(b, row), 0); p = texelFetch(bones, ivec2(b + 1, row), 0);
+      place = mix(turn(q, position) * p.w + p.xyz, place, weight);
+    }
+    vColour = shaded(colour, facing);
+    gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
+  }`;
+const PAWN_VERTEX = `
+  in vec4 stand; in vec3 colour; out vec3 vColour; ${SHADE}
+  void main() {
+    float c = cos(stand.z), s = sin(stand.z);
+    mat3 turned = mat3(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
+    vColour = shaded(colour, turned * normal);
+    gl_Position = projectionMatrix * viewMatrix * vec4(turned * position * stand.w + vec3(stand.xy, 0.0), 1.0);
+  }`;
+const WALL_VERTEX = `
+  uniform vec3 colour; out vec3 vColour;
+  void main() {
+    vColour = colour * (0.72 + 0.28 * abs(normal.y) + 0.12 * normal.z);
+    gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+  }`;
+
+// People of one level of detail, drawn at once.
+class Troop {
+  constructor(mesh, vertex, uniforms, scene, extra) {
+    this.geometry = new THREE.InstancedBufferGeometry();
+    const set = (name, values, size) => this.geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
+    set("position", mesh.vertices, 3);
+    set("normal", mesh.normals, 3);
+    if (mesh.joints) {
+      set("joints", mesh.joints, 2);
+      set("weight", mesh.weights, 1);
+    }
+    this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangles, 1));
+    const material = new THREE.ShaderMaterial({ vertexShader: vertex, fragmentShader: FRAGMENT, uniforms,
+      glslVersion: THREE.GLSL3 });
+    this.mesh = new THREE.Mesh(this.geometry, material);
+    this.mesh.frustumCulled = false;
+    this.uniforms = uniforms;
+    this.sizes = { colour: 3, ...extra };
+    this.room = 0;
+    this.count = 0;
+    scene.add(this.mesh);
+  }
+
+  reserve(count) {
+    this.count = 0;
+    if (count <= this.room) return;
+    this.room = 2 * count;
+    for (const [name, size] of Object.entries(this.sizes)) {
+      const values = new THREE.InstancedBufferAttribute(new Float32Array(this.room * size), size);
+      values.setUsage(THREE.DynamicDrawUsage);
+      this.geometry.setAttribute(name, values);
+    }
+  }
+
+  add(values) {
+    for (const [name, each] of Object.entries(values)) {
+      this.geometry.attributes[name].array.set(each, this.count * this.sizes[name]);
+    }
+    this.count += 1;
+  }
+
+  finish(first = 0) {
+    this.geometry.instanceCount = this.count;
+    this.mesh.visible = this.count > 0;
+    if (this.uniforms.first) this.uniforms.first.value = first;
+    for (const [name, size] of Object.entries(this.sizes)) {
+      const each = this.geometry.attributes[name];
+      if (!each) continue;
+      each.clearUpdateRanges();
+      each.addUpdateRange(0, this.count * size);
+      each.needsUpdate = true;
+    }
+  }
+}
+
+class Stage {
+  // figure: {skeleton, near, far, pawn}, meshes of people. Throws where a page cannot draw so.
+  constructor(holder, figure) {
+    this.holder = holder;
+    this.skeleton = figure.skeleton;
+    this.renderer = new THREE.WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
+    this.canvas = this.renderer.domElement;
+    this.canvas.style.cssText = "display: block; width: 100%; height: 100%; touch-action: none";
+    holder.appendChild(this.canvas);
+    this.scene = new THREE.Scene();
+    this.scene.matrixWorldAutoUpdate = false;
+    this.perspective = new THREE.PerspectiveCamera(50, 1, 0.1, 1000);
+    this.above = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 500);
+    for (const camera of [this.perspective, this.above]) camera.up.set(0, 0, 1);
+    this.orbit = new THREE.OrbitControls(this.perspective, this.canvas);
+    this.body = new Body(this.skeleton);
+    this.rows = 0;
+    this.bones = { value: null };
+    this.near = new Troop(figure.near, FIGURE_VERTEX(true), { bones: this.bones, first: { value: 0 } }, this.scene);
+    this.far = new Troop(figure.far, FIGURE_VERTEX(false), { bones: this.bones, first: { value: 0 } }, this.scene);
+    this.pawns = new Troop(figure.pawn, PAWN_VERTEX, {}, this.scene, { stand: 4 });
+    this.ring = new THREE.Mesh(new THREE.RingGeometry(0.36, 0.46, 24),
+      new THREE.MeshBasicMaterial({ color: 0xe6007e, side: THREE.DoubleSide }));
+    this.scene.add(this.ring);
+    this.fixed = [];
+    this.how = "orbit";
+    this.detail = 0;
+    this.pace = 0.03;
+    this.since = 0;
+    this.drawn = 0;
+  }
+
+  dispose() {
+    this.setFloor(null);
+    this.orbit.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+  }
+
+  // floor: what `serialization.floor` makes; colours: {ground, free, wall} as "#rrggbb".
+  setFloor(floor, colours) {
+    for (const each of this.fixed) {
+      this.scene.remove(each);
+      each.geometry.dispose();
+      each.material.dispose();
+    }
+    this.fixed = [];
+    if (!floor) return;
+    this.scene.background = new THREE.Color(colours.ground);
+    const put = (geometry, material) => {
+      const mesh = new THREE.Mesh(geometry, material);
+      this.fixed.push(mesh);
+      this.scene.add(mesh);
+      mesh.updateMatrixWorld();
+    };
+    const points = (ring, path) => path.setFromPoints(ring.map(([x, y]) => new THREE.Vector3(x, y, 0)));
+    const shapes = floor.free.map(([outer, ...holes]) => {
+      const shape = points(outer, new THREE.Shape());
+      shape.holes = holes.map((each) => points(each, new THREE.Path()));
+      return shape;
+    });
+    put(new THREE.ShapeGeometry(shapes), new THREE.MeshBasicMaterial({ color: colours.free }));
+    for (const { a, b, kind, open } of floor.openings || []) {
+      const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, wide = 0.12;
+      const across = [(-wide * (b[1] - a[1])) / long, (wide * (b[0] - a[0])) / long];
+      const corners = [[a, 1], [b, 1], [b, -1], [a, -1]].flatMap(([p, s]) => [p[0] + s * across[0], p[1] + s * across[1], 0.01]);
+      put(triangles(corners, [0, 1, 2, 0, 2, 3]),
+        new THREE.MeshBasicMaterial({ color: open === false ? OPENINGS.closed : OPENINGS[kind] || OPENINGS.door, side: THREE.DoubleSide }));
+    }
+    put(wallGeometry(floor.walls), new THREE.ShaderMaterial({ vertexShader: WALL_VERTEX, fragmentShader: FRAGMENT,
+      glslVersion: THREE.GLSL3, side: THREE.DoubleSide, uniforms: { colour: { value: channels(colours.wall) } } }));
+    const same = this.bounds && String(this.bounds) === String(floor.bounds);
+    this.bounds = floor.bounds;
+    if (!same) this.fit();
+  }
+
+  fit() {
+    const [x0, y0, x1, y1] = this.bounds, far = Math.max(x1 - x0, y1 - y0) * 0.75;
+    this.orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, 0.8);
+    this.perspective.position.set((x0 + x1) / 2 + far * 0.4, (y0 + y1) / 2 - far, far * 0.7 + 2);
+    this.orbit.update();
+    this.resize(true);
+  }
+
+  resize(always = false) {
+    const { clientWidth: width, clientHeight: height } = this.holder;
+    const ratio = (window.devicePixelRatio || 1) * DETAIL[this.detail].share, size = `${width} ${height} ${ratio}`;
+    if (!width || !height || (size === this.size && !always)) return;
+    this.size = size;
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.perspective.aspect = width / height;
+    this.perspective.updateProjectionMatrix();
+    if (!this.bounds) return;
+    const [x0, y0, x1, y1] = this.bounds;
+    const half = Math.max((y1 - y0) / 2, ((x1 - x0) / 2) * (height / width)) * 1.1;
+    Object.assign(this.above, { left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half });
+    this.above.position.set((x0 + x1) / 2, (y0 + y1) / 2, 50);
+    this.above.up.set(0, 1, 0);
+    this.above.lookAt((x0 + x1) / 2, (y0 + y1) / 2, 0);
+    this.above.updateProjectionMatrix();
+  }
+
+  get camera() { return this.how === "plan" ? this.above : this.perspective; }
+
+  // Less detail where pictures come slowly, more where there is time.
+  adapt(seconds) {
+    if (seconds > 2) return; // another tab was shown
+    this.pace += 0.15 * (seconds - this.pace);
+    this.since += seconds;
+    if (this.since < 0.5) return;
+    this.since = 0;
+    if (this.pace > DETAIL[this.detail].slow) this.detail += 1;
+    else if (this.pace < QUICK && this.detail > 0) this.detail -= 1;
+    this.resize();
+  }
+
+  // people: [{row, track, course or null, colour: [r, g, b]}]; chosen: a row or -1.
+  draw(people, frame, chosen) {
+    this.resize();
+    const rows = people.length;
+    if (rows > this.rows) this.enlarge(2 * rows);
+    const who = people.find((each) => each.row === chosen);
+    this.follow(who, frame);
+    const camera = this.camera, data = this.bones.value && this.bones.value.image.data;
+    camera.updateMatrixWorld();
+    const { x: cx, y: cy, z: cz } = camera.position, ahead = camera.getWorldDirection(new THREE.Vector3());
+    const pixels = camera === this.above ? this.canvas.clientHeight / (this.above.top - this.above.bottom)
+      : this.canvas.clientHeight / (2 * Math.tan((this.perspective.fov * Math.PI) / 360));
+    for (const each of [this.near, this.far, this.pawns]) each.reserve(rows);
+    this.ring.visible = Boolean(who);
+    const figures = [], least = FIGURE_PIXELS * DETAIL[this.detail].afar;
+    for (const person of people) {
+      const [x, y, heading] = person.track.at(frame), dx = x - cx, dy = y - cy;
+      const depth = dx * ahead.x + dy * ahead.y + (1 - cz) * ahead.z;
+      if (depth < -1 || (person === who && this.how === "eyes")) continue;
+      const high = camera === this.above ? pixels : (1.75 * pixels) / Math.max(depth, 0.3);
+      if (person === who) this.mark(x, y);
+      if (person.course && high >= least) figures.push({ person, high });
+      else {
+        const scale = person.course ? person.course.bank.scale : person.scale || 1;
+        this.pawns.add({ stand: [x, y, heading, scale], colour: person.colour });
+      }
+    }
+    figures.sort((a, b) => b.high - a.high);
+    let fine = 0;
+    while (fine < Math.min(FINE_MOST, figures.length) && figures[fine].high >= FINE_PIXELS) fine += 1;
+    figures.forEach(({ person }, row) => {
+      this.body.pose(person, frame, row < HELD_MOST || person === who);
+      this.write(data, row, person.course.bank.scale);
+      (row < fine ? this.near : this.far).add({ colour: person.colour });
+    });
+    this.near.finish(0);
+    this.far.finish(fine);
+    this.pawns.finish();
+    this.figures = [fine, figures.length - fine, this.pawns.count];
+    if (figures.length) this.bones.value.needsUpdate = true;
+    this.renderer.render(this.scene, camera);
+    this.drawn += 1;
+  }
+
+  // For a corner v of the figure: where bone b takes it is turn(v) * scale + place.
+  write(data, row, scale) {
+    const { places, turns } = this.body, rest = this.skeleton.rest, moved = [0, 0, 0];
+    for (let j = 0; j < BONES; j += 1) {
+      const at = 8 * (row * BONES + j);
+      for (let i = 0; i < 4; i += 1) data[at + i] = turns[4 * j + i];
+      turned(turns, 4 * j, rest, 3 * j, ZERO, 0, moved, 0);
+      for (let i = 0; i < 3; i += 1) data[at + 4 + i] = places[3 * j + i] - scale * moved[i];
+      data[at + 7] = scale;
+    }
+  }
+
+  enlarge(rows) {
+    this.rows = rows;
+    if (this.bones.value) this.bones.value.dispose();
+    const data = new Float32Array(rows * BONES * 8);
+    this.bones.value = new THREE.DataTexture(data, 2 * BONES, rows, THREE.RGBAFormat, THREE.FloatType);
+    this.bones.value.needsUpdate = true;
+  }
+
+  mark(x, y) {
+    this.ring.position.set(x, y, 0.02);
+    this.ring.updateMatrixWorld();
+  }
+
+  // Joints of somebody's body: where the head is and where it looks.
+  head(person, frame) {
+    const [x, y, heading] = person.track.at(frame);
+    if (!person.course) return { place: [x, y, 1.6], ahead: [Math.cos(heading), Math.sin(heading), 0] };
+    this.body.pose(person, frame, false);
+    const ahead = [0, 0, 0];
+    turned(this.body.turns, 16, [1, 0, 0], 0, ZERO, 0, ahead, 0);
+    // How heads are bent is not as recorded: eyes look straight on.
+    const long = Math.hypot(ahead[0], ahead[1]) || 1;
+    return { place: [...this.body.places.slice(12, 15)], ahead: [ahead[0] / long, ahead[1] / long, 0] };
+  }
+
+  follow(who, frame) {
+    this.orbit.enabled = this.how === "orbit" || this.how === "follow";
+    if (!who || this.how === "orbit" || this.how === "plan") {
+      if (this.orbit.enabled) this.orbit.update();
+      return;
+    }
+    const { place, ahead } = this.head(who, frame), camera = this.perspective;
+    if (this.how === "follow") {
+      const [x, y] = who.track.at(frame), target = new THREE.Vector3(x, y, 1.1);
+      camera.position.add(target.clone().sub(this.orbit.target));
+      this.orbit.target.copy(target);
+      const away = camera.position.clone().sub(target);
+      if (away.length() > 8) camera.position.copy(target).addScaledVector(away.normalize(), 5);
+      this.orbit.update();
+      return;
+    }
+    camera.position.set(place[0] + 0.12 * ahead[0], place[1] + 0.12 * ahead[1], place[2] + EYES);
+    camera.lookAt(camera.position.x + ahead[0], camera.position.y + ahead[1], camera.position.z + ahead[2]);
+  }
+
+  look(how) {
+    if (this.how === "eyes" && how !== "eyes") this.fit();
+    this.how = how;
+  }
+
+  // The person nearest to a place on the page, within so many pixels; -1 for nobody.
+  personAt(clientX, clientY, people, frame, reach = 30) {
+    const box = this.canvas.getBoundingClientRect(), place = new THREE.Vector3();
+    let best = reach, who = -1;
+    for (const { row, track } of people) {
+      const [x, y] = track.at(frame);
+      place.set(x, y, 1).project(this.camera);
+      if (place.z > 1) continue;
+      const px = box.left + ((place.x + 1) / 2) * box.width, py = box.top + ((1 - place.y) / 2) * box.height;
+      const away = Math.hypot(px - clientX, (py - clientY) / 2);
+      if (away < best) [best, who] = [away, row];
+    }
+    return who;
+  }
+}
+
+function triangles(corners, index, normals) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(corners), 3));
+  if (normals) geometry.setAttribute("normal", new THREE.BufferAttribute(new Float32Array(normals), 3));
+  geometry.setIndex(index);
+  return geometry;
+}
+
+// Walls are lines on the plan, which stand up here.
+function wallGeometry(walls) {
+  const corners = [], normals = [], index = [];
+  walls.forEach(([x0, y0, x1, y1], k) => {
+    const long = Math.hypot(x1 - x0, y1 - y0) || 1, normal = [(y0 - y1) / long, (x1 - x0) / long, 0];
+    corners.push(x0, y0, 0, x1, y1, 0, x1, y1, WALL_HEIGHT, x0, y0, WALL_HEIGHT);
+    for (let i = 0; i < 4; i += 1) normals.push(...normal);
+    index.push(...[0, 1, 2, 0, 2, 3].map((i) => 4 * k + i));
+  });
+  return triangles(corners, index, normals);
+}

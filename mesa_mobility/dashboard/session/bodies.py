@@ -1,0 +1,65 @@
+"""The poses that people of a running model go through, for the three-dimensional view."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility import PedestrianModel
+from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
+from mesa_mobility.bodies import Movements, PoseBank
+from mesa_mobility.bodies.sequence import stretch_of_each
+from mesa_mobility.errors import MapError
+
+NUMBERS = 5
+"""Of each person: bank (-1 where poses are not known), frames since its stretch of a recording
+began, number of the pose then, whether it moves, factor of its strides."""
+
+
+class Bodies:
+    """Poses of the people of one model.
+
+    Args:
+        model: the model.
+    """
+
+    def __init__(self, model: PedestrianModel) -> None:
+        self._model = model
+        self._banks: list[PoseBank] = []
+        self._bank_of: list[int] = []
+        known: dict[str, int] = {}
+        for kind in model.pedestrian_types:
+            digest = kind.mobility_map.digest
+            if digest not in known:
+                try:
+                    self._banks.append(PoseBank.of(digest))
+                    known[digest] = len(self._banks) - 1
+                except MapError:  # drawn without limbs
+                    known[digest] = -1
+            self._bank_of.append(known[digest])
+
+    def bundle(self) -> str:
+        """Figures and poses as ``viewer/bundle.js`` opens them."""
+        header, arrays = figure_parts()
+        header["scales"] = [bank.scale for bank in self._banks]
+        for number, bank in enumerate(self._banks):
+            arrays |= bank_arrays(bank, f"bank{number}")
+        return bundled(header, arrays)
+
+    def now(self) -> NDArray[np.float32]:
+        """(n, NUMBERS) of everybody inside, in the order of the model's rows."""
+        model = self._model
+        doing = model.under_way()
+        found = np.zeros((len(doing["person"]), NUMBERS), dtype=np.float32)
+        of_type = np.array(self._bank_of)[doing["type_index"]]
+        found[:, 0] = of_type
+        for number, bank in enumerate(self._banks):
+            own = of_type == number
+            movements = Movements(
+                doing["frame"][own].astype(np.int64),
+                doing["option"][own].astype(np.int64),
+                doing["share"][own].astype(np.float64),
+            )
+            phases = np.maximum(model.frame - movements.starts, 0)
+            found[own, 1:] = np.column_stack(stretch_of_each(bank, movements, phases))
+        return found

@@ -1,0 +1,43 @@
+"""The crowd in three dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import mesa_mobility.animation
+from mesa_mobility.dashboard.views.canvases import canvas_component
+
+_VIEWER = Path(mesa_mobility.animation.__file__).parent / "viewer"
+
+
+@canvas_component(
+    "body_view.vue",
+    "frames.js",
+    "people.js",
+    *(str(_VIEWER / f"{name}.js") for name in ("three.bundle", "bundle", "bodies", "stage")),
+)
+def BodyCanvas(
+    floor: dict[str, Any],
+    poses: str,
+    frame: dict[str, Any] = {},  # noqa: B006
+    selected: int = -1,
+    height: str = "62vh",
+    event_seen: Callable[[int], None] | None = None,
+    event_pick: Callable[[dict[str, Any]], None] | None = None,
+    event_play: Callable[[Any], None] | None = None,
+) -> None:
+    """The canvas.
+
+    Args:
+        floor: what ``serialization.floor`` makes.
+        poses: what ``Bodies.bundle`` makes.
+        frame: what ``serialization.frame`` makes with bodies; left out where a feed writes it.
+        selected: row of the person to mark and to follow, or -1.
+        height: of the canvas, as CSS says it.
+        event_seen: called with the number of a frame when the page has got it.
+        event_pick: called with ``{"row": row, "run": number}``: the person that was clicked, or -1,
+            and the run that was shown then.
+        event_play: called when the space bar is to start or to pause time.
+    """
