@@ -47,14 +47,14 @@ class Selection:
         Raises:
             ResultsError: a number that the run does not have, or nobody is there.
         """
-        known = np.unique(trajectories.person)
         if self.people is not None:
+            known = np.unique(trajectories.person)
             absent = np.setdiff1d(self.people, known)
             if len(absent):
                 raise ResultsError(f"person {absent[0]}: not among the run's {len(known)} people")
         first, last = self.frames_of(trajectories)
         there = (trajectories.frame >= first) & (trajectories.frame <= last)
-        present = np.unique(trajectories.person[there])
+        present = np.flatnonzero(np.bincount(trajectories.person[there]))
         shown = present if self.people is None else np.intersect1d(present, self.people)
         if not len(shown):
             raise ResultsError(f"nobody is there from frame {first} to {last}")

@@ -99,9 +99,13 @@ class Decisions:
     def _by_person(self) -> NDArray[np.int64]:
         return np.argsort(self.person, kind="stable").astype(np.int64)
 
+    @cached_property
+    def _sorted_people(self) -> NDArray[np.int32]:
+        return self.person[self._by_person]
+
     def rows_of(self, person: int) -> NDArray[np.int64]:
         """(d,) rows of the decisions of one person, in the order of time."""
-        first, last = np.searchsorted(self.person[self._by_person], [person, person + 1])
+        first, last = np.searchsorted(self._sorted_people, [person, person + 1])
         return self._by_person[first:last]
 
     def movements_of(self, person: int) -> Movements:

@@ -234,6 +234,8 @@ class Stage {
     this.follow(who, frame);
     const camera = this.camera, data = this.bones.value && this.bones.value.image.data;
     camera.updateMatrixWorld();
+    const right = camera === this.above ? null : new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
+    const wide = this.perspective.aspect * Math.tan((this.perspective.fov * Math.PI) / 360);
     const { x: cx, y: cy, z: cz } = camera.position, ahead = camera.getWorldDirection(new THREE.Vector3());
     const pixels = camera === this.above ? this.canvas.clientHeight / (this.above.top - this.above.bottom)
       : this.canvas.clientHeight / (2 * Math.tan((this.perspective.fov * Math.PI) / 360));
@@ -244,6 +246,7 @@ class Stage {
       const [x, y, heading] = person.track.at(frame), dx = x - cx, dy = y - cy;
       const depth = dx * ahead.x + dy * ahead.y + (1 - cz) * ahead.z;
       if (depth < -1 || (person === who && this.how === "eyes")) continue;
+      if (right && Math.abs(dx * right.x + dy * right.y) > wide * Math.max(depth, 0) + 1.5) continue; // beside the picture
       const high = camera === this.above ? pixels : (1.75 * pixels) / Math.max(depth, 0.3);
       if (person === who) this.mark(x, y);
       if (person.course && high >= least) figures.push({ person, high });
