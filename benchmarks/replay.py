@@ -72,7 +72,9 @@ def measure(page: Page, path: Path, seconds: float) -> None:
     took = sorted(page.evaluate(SEEK, (7 * k % 20 + 0.5) / 20) for k in range(20))
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB, opened in {opened:.1f} s")
     print(f"any instant: median {took[10]:.3f} s, longest {took[-1]:.3f} s")
-    people = page.evaluate("Math.max(...[1, 5, 10].map((s) => (state.frame = s * 30, present().length)))")
+    people = page.evaluate(
+        "Math.max(...[1, 5, 10].map((s) => (state.frame = s * 30, present().length)))"
+    )
     for view in ("orbit", "plan", "follow", "eyes"):
         page.evaluate("show(30)")
         page.select_option("#camera", view)
@@ -84,8 +86,8 @@ def measure(page: Page, path: Path, seconds: float) -> None:
         share, figures = page.evaluate("[DETAIL[state.stage.detail].share, state.stage.figures]")
         page.click("#play")
         print(
-            f"{view}, {people} people: {drawn / real:.1f} frames/s, {1000 * used / drawn:.0f} ms of "
-            f"processor time each; {100 * share:.0f} % of the pixels' width; near, far, pawns: "
+            f"{view}, {people} people: {drawn / real:.1f} frames/s, {1000 * used / drawn:.0f} ms "
+            f"of processor time each; {100 * share:.0f} % of the pixels' width; near, far, pawns: "
             f"{figures}; load {os.getloadavg()[0]:.1f}",
             flush=True,
         )

@@ -1,4 +1,4 @@
-"""Arrays and texts in one string for the browser, and what its three-dimensional view is made of."""
+"""Arrays and texts in one string for the browser, and the parts of its three-dimensional view."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ def distant_figure() -> Figure:
 
 
 def pawn() -> Figure:
-    """Somebody seen from so far that limbs do not show: shoulders and a head, feet at the origin."""
+    """Somebody without limbs, as seen from far away: shoulders and a head, feet at the origin."""
 
     def rings(*each: tuple[float, float, float]) -> list[Ring]:
         return [((0.0, 0.0, z), deep, wide, {"pelvis": 1}) for z, deep, wide in each]
@@ -176,7 +176,9 @@ def _arm(side: str) -> Tube:
     ], 2
 
 
-def _tube(rings: list[Ring], axis: int, around: int) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
+def _tube(
+    rings: list[Ring], axis: int, around: int
+) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
     """Vertices, normals, triangles, joints and weights of a closed tube along an axis."""
     angle = 2.0 * np.pi * np.arange(around) / around
     across = [each for each in range(3) if each != axis]

@@ -75,7 +75,10 @@ def write_page(
         # Would end the script early.
         three=viewer_part("three.bundle.js").replace("</script", "<\\/script"),
         content=bundled(header, arrays),
-        viewer="\n".join(viewer_part(f"{each}.js") for each in ("bundle", "bodies", "stage", "player")),
+        viewer="\n".join(
+            viewer_part(f"{each}.js")
+            for each in ("bundle", "poses", "bodies", "troop", "stage", "player")
+        ),
     )
     with replacing(path, ResultsError) as target:
         target.write_text(page, encoding="utf-8")
@@ -89,9 +92,7 @@ def run_parts(
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """Header and arrays of a run: people's places, movements and decisions, and the poses."""
     if trajectories.frame_rate != FRAME_RATE:
-        raise ResultsError(
-            f"{trajectories.frame_rate:g} frames a second: expected {FRAME_RATE:g}"
-        )
+        raise ResultsError(f"{trajectories.frame_rate:g} frames a second: expected {FRAME_RATE:g}")
     first, last = selection.frames_of(trajectories)
     people = selection.people_of(trajectories)
     decisions = trajectories.decisions
@@ -104,13 +105,13 @@ def run_parts(
     begins = np.searchsorted(trajectories.person[ordered], np.arange(max(people) + 2))
     for done, person in enumerate(people, start=1):
         track = _track(trajectories, ordered[begins[person] : begins[person + 1]], first, last)
-        course, own, which = _course(decisions, banks, person, int(track[0, 0]), last)
+        course, own, digest = _course(decisions, banks, person, int(track[0, 0]), last)
         tracks.append(track)
         courses.append(course)
         decided.append(own)
         kind = 0 if types is None else names.index(str(types[person]))
-        which = -1 if which is None else digests.index(which)
-        rows.append((person, len(track), len(course), len(own), kind, which))
+        known = -1 if digest is None else digests.index(digest)
+        rows.append((person, len(track), len(course), len(own), kind, known))
         if progress is not None:
             progress(done)
     header, arrays = figure_parts()
@@ -119,7 +120,9 @@ def run_parts(
         "last": last,
         "types": names,
         "scales": [found.scale for found in banks.values()],
-        "clips": [[str(clip["clip"]) for clip in each.metadata["clips"]] for each in banks.values()],
+        "clips": [
+            [str(clip["clip"]) for clip in each.metadata["clips"]] for each in banks.values()
+        ],
         "decided": decisions is not None,
         "steps": {"place": PLACE_STEP, "turn": TURN_STEP, "share": SHARE_STEP},
     }

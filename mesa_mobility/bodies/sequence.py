@@ -127,10 +127,12 @@ def stretch_of_each(
         (n,) factor of its strides.
     """
     standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
-    begins, poses, strides = (each[1:] for each in _stretches(bank, movements, standing))
+    begins, poses, strides = _stretches(bank, movements, standing)
+    begins, poses, strides = begins[1:], poses[1:], strides[1:]
     place = np.maximum((phases[:, None] >= begins).sum(axis=1) - 1, 0)
     row = np.arange(len(phases))
-    return phases - begins[row, place], poses[row, place], _moving(movements)[1:], strides
+    into: NDArray[np.int64] = phases - begins[row, place]
+    return into, poses[row, place], _moving(movements)[1:], strides
 
 
 def _stretches(

@@ -47,7 +47,7 @@ def animate(
         Format,
         typer.Option(
             "--format",
-            help="glb: one file; bvh: a folder, one file a person; html: a page that plays offline.",
+            help="glb: one file; bvh: a folder, one file a person; html: an offline page.",
         ),
     ] = Format.GLB,
     people: People = None,

@@ -191,9 +191,9 @@ def _Crowd(session: Session) -> None:
             poses = session.poses.value
             Fed(session.frame, BodyCanvas, poses=poses, **shared).key("bodies")
         elif view == PLAN:
-            Fed(
-                session.frame, CrowdCanvas, event_toggle=toggle, shortcuts=True, **shared
-            ).key("plan")
+            Fed(session.frame, CrowdCanvas, event_toggle=toggle, shortcuts=True, **shared).key(
+                "plan"
+            )
 
 
 @solara.component

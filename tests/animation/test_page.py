@@ -87,7 +87,7 @@ def test_bodies_in_the_page_are_those_of_the_run(page, run):
         apart = np.linalg.norm(
             np.array(shown).reshape(-1, 22, 3) - run.poses(person, frames).positions, axis=2
         )
-        # Places are stored to 1 mm; who takes a step to get its foot back may take it a frame later.
+        # Places are stored to 1 mm; a step that gets a foot back may come a frame later.
         assert apart[:, JOINT["head"]].max() < 0.002
         assert np.median(apart, axis=0).max() < 0.002
         assert np.quantile(apart, 0.99) < 0.01
@@ -107,7 +107,8 @@ def test_all_views_draw_and_a_click_chooses(page):
     page.wait_for_function("state.stage.how === 'plan'")
     x, y = page.evaluate(
         """() => {
-          const [x, y] = state.people[1].track.at(state.frame), box = state.stage.canvas.getBoundingClientRect();
+          const [x, y] = state.people[1].track.at(state.frame);
+          const box = state.stage.canvas.getBoundingClientRect();
           const at = new THREE.Vector3(x, y, 1).project(state.stage.above);
           return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height];
         }"""

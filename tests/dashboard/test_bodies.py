@@ -64,7 +64,12 @@ def test_people_walk_in_three_dimensions_and_the_plan_comes_back(open_bodies):
 @pytest.mark.slow
 def test_somebody_is_chosen_and_followed(open_bodies):
     tab = open_bodies()
-    for name, how in (("Follow", "follow"), ("Eyes", "eyes"), ("Above", "plan"), ("Orbit", "orbit")):
+    for name, how in (
+        ("Follow", "follow"),
+        ("Eyes", "eyes"),
+        ("Above", "plan"),
+        ("Orbit", "orbit"),
+    ):
         tab.button(name).click()
         tab.wait(f"(how) => {BODIES}.how === how", how)
     # Who is looked after is the person whose decision is shown.

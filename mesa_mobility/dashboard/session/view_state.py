@@ -12,8 +12,8 @@ import solara
 from mesa_mobility import PedestrianModel, PedestrianType
 from mesa_mobility.crowd import Explanation
 from mesa_mobility.dashboard.session import serialization
-from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.behaviours import Behaviours, ChoiceState, TermState
+from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.colouring import COLOURINGS, colourings_of
 from mesa_mobility.dashboard.session.decision import described
 from mesa_mobility.dashboard.session.feed import Feed

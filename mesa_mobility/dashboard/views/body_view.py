@@ -16,7 +16,10 @@ _VIEWER = Path(mesa_mobility.animation.__file__).parent / "viewer"
     "body_view.vue",
     "frames.js",
     "people.js",
-    *(str(_VIEWER / f"{name}.js") for name in ("three.bundle", "bundle", "bodies", "stage")),
+    *(
+        str(_VIEWER / f"{name}.js")
+        for name in ("three.bundle", "bundle", "poses", "bodies", "troop", "stage")
+    ),
 )
 def BodyCanvas(
     floor: dict[str, Any],
