@@ -1,7 +1,9 @@
 import os
-from collections.abc import Iterable
+import shutil
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -22,6 +24,29 @@ def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("slow"):
             item.add_marker(pytest.mark.timeout(0))
+
+
+BROWSER = "MESA_MOBILITY_BROWSER"
+PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+@pytest.fixture(scope="session")
+def playwright() -> Iterator[Any]:
+    """Playwright, of which a process has one; tests are skipped without it."""
+    api = pytest.importorskip(
+        "playwright.sync_api", reason="no playwright: pip install 'mesa-mobility[test]'"
+    )
+    with api.sync_playwright() as driver:
+        yield driver
+
+
+@pytest.fixture(scope="session")
+def browser_program() -> str:
+    """Chromium or Chrome on this machine; tests are skipped where there is none."""
+    program = os.environ.get(BROWSER) or next(filter(None, map(shutil.which, PROGRAMS)), None)
+    if program is None:
+        pytest.skip(f"no browser: none of {', '.join(PROGRAMS)} found ({BROWSER} can name one)")
+    return program
 
 
 def _captures(folder: Path) -> Path:

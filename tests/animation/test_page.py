@@ -1,7 +1,5 @@
 """The page that plays a run, in a browser without a network."""
 
-import os
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -12,41 +10,35 @@ from mesa_mobility.bodies.skeleton import JOINT
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories
 
-PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 DRAWN_BY_THE_PROCESSOR = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
 @pytest.fixture
-def open_page(tmp_path):
+def open_page(playwright, browser_program, tmp_path):
     """Opens the page of a run; it may ask for nothing, and nothing may go wrong in it."""
-    api = pytest.importorskip("playwright.sync_api")
-    program = os.environ.get("MESA_MOBILITY_BROWSER") or next(
-        filter(None, map(shutil.which, PROGRAMS)), None
-    )
-    if program is None:
-        pytest.skip("no Chromium or Chrome on the path (MESA_MOBILITY_BROWSER can name one)")
     path = tmp_path / "replay.html"
     trouble = []
-    with api.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=program, args=DRAWN_BY_THE_PROCESSOR)
-        context = browser.new_context(offline=True, viewport={"width": 480, "height": 320})
+    browser = playwright.chromium.launch(
+        executable_path=browser_program, args=DRAWN_BY_THE_PROCESSOR
+    )
+    context = browser.new_context(offline=True, viewport={"width": 480, "height": 320})
 
-        def opened(*arguments, **keywords):
-            write_page(*arguments, path=path, **keywords)
-            shown = context.new_page()
-            shown.on("pageerror", lambda error: trouble.append(str(error)))
-            shown.on("request", lambda request: asked(request.url))
-            shown.goto(path.as_uri())
-            shown.wait_for_selector("body[data-ready=yes]", timeout=60_000)
-            shown.click("#play")
-            return shown
+    def opened(*arguments, **keywords):
+        write_page(*arguments, path=path, **keywords)
+        shown = context.new_page()
+        shown.on("pageerror", lambda error: trouble.append(str(error)))
+        shown.on("request", lambda request: asked(request.url))
+        shown.goto(path.as_uri())
+        shown.wait_for_selector("body[data-ready=yes]", timeout=60_000)
+        shown.click("#play")
+        return shown
 
-        def asked(address):
-            if address != path.as_uri() and not address.startswith(("data:", "blob:")):
-                trouble.append(f"asks for {address}")
+    def asked(address):
+        if address != path.as_uri() and not address.startswith(("data:", "blob:")):
+            trouble.append(f"asks for {address}")
 
-        yield opened
-        browser.close()
+    yield opened
+    browser.close()
     assert trouble == []
 
 

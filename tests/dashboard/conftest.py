@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import socket
 import subprocess
 import sys
@@ -23,8 +22,6 @@ import pytest
 from tests.dashboard.selectors import CANVAS, DECISION, SHOWN
 from tests.fixtures.waiting import until
 
-VARIABLE = "MESA_MOBILITY_BROWSER"
-PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 # Without these Chromium looks for hosts of its makers, which only costs time.
 ARGUMENTS = (
     "--no-sandbox",
@@ -58,19 +55,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
-    """Chromium, driven by Playwright; tests are skipped where either is missing."""
-    for module in ("solara", "playwright.sync_api"):
-        pytest.importorskip(module, reason=f"no {module}: pip install 'mesa-mobility[viz,test]'")
-    from playwright.sync_api import sync_playwright
-
-    program = os.environ.get(VARIABLE) or next(filter(None, map(shutil.which, PROGRAMS)), None)
-    if program is None:
-        pytest.skip(f"no browser: none of {', '.join(PROGRAMS)} found ({VARIABLE} can name one)")
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=program, args=list(ARGUMENTS))
-        yield chromium
-        chromium.close()
+def browser(playwright: Any, browser_program: str) -> Iterator[Any]:
+    """Chromium, driven by Playwright; tests are skipped where Solara is missing."""
+    pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
+    chromium = playwright.chromium.launch(executable_path=browser_program, args=list(ARGUMENTS))
+    yield chromium
+    chromium.close()
 
 
 class Server:
