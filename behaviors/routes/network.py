@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import networkx as nx
 import numpy as np
+from mesa_mobility.behaviors.exits.quickest_exit import people_a_second
 from numpy.typing import NDArray
 
 from mesa_mobility import FloorPlan
@@ -45,7 +46,7 @@ class Network:
                 openings.setdefault((data["opening"], data["direction"]), []).append(node)
         self.names = list(dict.fromkeys(name for name, _ in openings))
         known = [plan.gate(name) for name in self.names]
-        self.flows = np.maximum(2.23 * np.array([each.length for each in known]) - 0.155, 0.5)
+        self.flows = people_a_second([each.length for each in known])
         self.middles = np.array([np.add(each.a, each.b) / 2.0 for each in known]).reshape(-1, 2)
         self.number = np.array([self.names.index(name) for name, _ in openings], dtype=np.int64)
         exits = {each.name for each in plan.exits}

@@ -56,8 +56,7 @@ def pose_sequence(bank: PoseBank, frames: NDArray[np.int64], movements: Movement
         frames: (n,) successive frames.
         movements: what the person does.
     """
-    standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
-    begins, poses, strides = _stretches(bank, movements, standing)
+    begins, poses, strides = _stretches(bank, movements)
     own = np.searchsorted(movements.starts, frames, side="right") - 1
     row = own + 1  # the first row is that of somebody who has not decided yet
     phase = np.where(own >= 0, frames - movements.starts[np.maximum(own, 0)], 0)
@@ -100,8 +99,7 @@ def stretches(bank: PoseBank, movements: Movements, first: int) -> Stretches:
         movements: what the person does.
         first: frame; it stands until its first movement.
     """
-    standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
-    begins, poses, strides = _stretches(bank, movements, standing)
+    begins, poses, strides = _stretches(bank, movements)
     until = np.append(np.diff(movements.starts), NEVER)
     # The first row stands for the time before the first movement.
     used = begins < np.append(NEVER, until)[:, None]
@@ -126,8 +124,7 @@ def stretch_of_each(
         (n,) frames since the stretch began, (n,) number of the pose then, (n,) whether it moves,
         (n,) factor of its strides.
     """
-    standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
-    begins, poses, strides = _stretches(bank, movements, standing)
+    begins, poses, strides = _stretches(bank, movements)
     begins, poses, strides = begins[1:], poses[1:], strides[1:]
     place = np.maximum((phases[:, None] >= begins).sum(axis=1) - 1, 0)
     row = np.arange(len(phases))
@@ -136,12 +133,13 @@ def stretch_of_each(
 
 
 def _stretches(
-    bank: PoseBank, movements: Movements, standing: int
+    bank: PoseBank, movements: Movements
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Frames and poses at which the stretches of each movement begin, and its strides.
 
     The first row is of somebody who stands.
     """
+    standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
     moving = _moving(movements)
     rows = np.where(moving, np.concatenate([[0], movements.options]), 0)
     counts = np.where(moving, bank.offsets[rows + 1] - bank.offsets[rows], 1)

@@ -32,7 +32,7 @@ def read_polygon(value: Polygon | str, what: str) -> Polygon:
 
     `what` names it in error messages.
     """
-    geometry = _from_wkt(value, what) if isinstance(value, str) else value
+    geometry = read_wkt(value, what, "POLYGON") if isinstance(value, str) else value
     if not isinstance(geometry, BaseGeometry):
         raise FloorPlanError(
             f"{what} must be a shapely Polygon or its WKT, found {type(value).__name__}"
@@ -54,12 +54,13 @@ def read_polygon(value: Polygon | str, what: str) -> Polygon:
     return geometry
 
 
-def _from_wkt(text: str, what: str) -> BaseGeometry:
+def read_wkt(text: str, what: str, expected: str) -> BaseGeometry:
+    """The geometry of a WKT; `what` and `expected` name it, and its types, in error messages."""
     # GEOS reads nested shapes recursively, and ends the process where they nest too deeply.
     word = _WKT_TYPE.match(text)
     if word is None or word[1].upper() not in _WKT_TYPES:
         begin = ascii(text.strip()[:20])
-        raise FloorPlanError(f"{what}: the WKT cannot be read ({begin}, expected POLYGON)")
+        raise FloorPlanError(f"{what}: the WKT cannot be read ({begin}, expected {expected})")
     try:
         # Coordinates that are not finite are an error here, and need no warning of shapely's.
         with np.errstate(invalid="ignore", over="ignore"):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.checks import read_wkt
 from mesa_mobility.floorplan.reachability import with_way_out
 
 if TYPE_CHECKING:
@@ -23,11 +24,7 @@ def read_entrance(value: BaseGeometry | str) -> BaseGeometry:
     """An area or line (shapely or WKT) as a shapely geometry; FloorPlanError otherwise."""
     geometry: Any = value
     if isinstance(value, str):
-        try:
-            geometry = shapely.from_wkt(value)
-        except shapely.errors.GEOSException as error:
-            text = " ".join(str(error).split())
-            raise FloorPlanError(f"entrance: the WKT cannot be read ({text})") from None
+        geometry = read_wkt(value, "entrance", "POLYGON or LINESTRING")
     kind = getattr(geometry, "geom_type", type(geometry).__name__)
     if kind not in ("Polygon", "LineString"):
         raise FloorPlanError(f"entrance: expected a Polygon or a LineString, found a {kind}")

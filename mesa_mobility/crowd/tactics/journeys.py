@@ -195,7 +195,7 @@ class Journeys(Saved):
         """Number of the destination of a stop."""
         if isinstance(stop, str):
             return self._site.crossing(stop, kind)
-        place = Place(self._plan, stop, self._site.core_radius(self._site.body(kind)))
+        place = self._places[self._place(stop, self._site.body(kind))][2]
         return self._site.point(place.way_point(), kind)
 
     def _line(self, stop: str | Visit) -> tuple[float, ...]:

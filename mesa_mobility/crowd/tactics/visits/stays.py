@@ -42,10 +42,10 @@ class Stays(Saved):
 
     def spots(self, rows: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Indices among ``rows`` of those on the way to a spot, and their (k, 2) spots, metres."""
+        if not len(self._place):
+            return np.empty(0, dtype=np.intp), np.empty((0, 2))
         known = rows < len(self._place)
         there = np.where(known, rows, 0)
-        if not known.any():
-            return np.empty(0, dtype=np.intp), np.empty((0, 2))
         walking = known & (self._place[there] >= 0) & (self._until[there] == _WALKING)
         who = np.flatnonzero(walking)
         return who, self._spot[rows[who]]

@@ -8,12 +8,12 @@ from numbers import Real
 from typing import Any, TypeAlias
 
 import numpy as np
-import shapely
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import FloorPlanError, ModelError
+from mesa_mobility.floorplan.checks import read_wkt
 
 
 @dataclass(frozen=True)
@@ -63,11 +63,7 @@ Route: TypeAlias = Sequence[str | Visit]
 def _read(place: Any) -> tuple[float, float] | BaseGeometry:
     given = place
     if isinstance(given, str):
-        try:
-            given = shapely.from_wkt(given)
-        except shapely.errors.GEOSException as error:
-            text = " ".join(str(error).split())
-            raise FloorPlanError(f"visit: the WKT cannot be read ({text})") from None
+        given = read_wkt(given, "visit", "POINT or POLYGON")
     if isinstance(given, BaseGeometry) and given.geom_type == "Polygon":
         if given.is_empty or not given.is_valid:
             raise FloorPlanError("visit: the Polygon is empty or not valid")
