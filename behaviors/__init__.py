@@ -15,6 +15,7 @@ from mesa_mobility.behaviors.room_ahead import RoomAhead
 from mesa_mobility.behaviors.routes.blocked_ways import BlockedWays
 from mesa_mobility.behaviors.routes.congestion_routing import CongestionRouting
 from mesa_mobility.behaviors.routes.familiar_routes import FamiliarRoutes
+from mesa_mobility.behaviors.routes.hazards import Hazard, Hazards
 from mesa_mobility.behaviors.routes.signs import Sign, Signs
 from mesa_mobility.behaviors.sideways import Sideways
 from mesa_mobility.behaviors.stepping import Stepping
@@ -37,6 +38,8 @@ __all__ = [
     "FacingDeviation",
     "FamiliarExit",
     "FamiliarRoutes",
+    "Hazard",
+    "Hazards",
     "Headway",
     "Interference",
     "KeepDistance",

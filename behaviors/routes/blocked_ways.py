@@ -119,14 +119,12 @@ class BlockedWays(TargetChoice):
             self._routers.clear()
         key = believed, core
         if key not in self._routers:
-            open_ = FloorPlan(
-                plan.walkable, exits=plan.exits, gates=plan.gates,
-                obstacles=plan.obstacles.values(),
-            )  # fmt: skip
-            for each in plan.openings():
-                if not plan.is_open(each.name) and each.name not in believed:
-                    open_.close_gate(each.name)
-            self._routers[key] = Router(open_, clearance=core + _BERTH)
+            closed = [
+                each.name
+                for each in plan.openings()
+                if not plan.is_open(each.name) and each.name not in believed
+            ]
+            self._routers[key] = Router(plan.altered(closed=closed), clearance=core + _BERTH)
         return self._routers[key]
 
 

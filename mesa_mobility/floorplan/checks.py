@@ -121,12 +121,13 @@ def free_area(
     obstacles: Sequence[Polygon],
     exits: Sequence[Exit],
     gates: Sequence[Gate],
+    cut_off: bool,
 ) -> BaseGeometry:
     """Walkable area minus obstacles, without pockets that can hold nobody.
 
     Raises:
-        FloorPlanError: nothing is left, or a piece that is left touches no exit; in a plan without
-            exits, no gate.
+        FloorPlanError: nothing is left, or, unless pieces may be `cut_off`, a piece that is left
+            touches no exit; in a plan without exits, no gate.
     """
     free = walkable.difference(shapely.union_all(list(obstacles)))
     pieces = [
@@ -136,7 +137,7 @@ def free_area(
     ]
     if not pieces:
         raise FloorPlanError("the obstacles leave no walkable area")
-    for piece in pieces:
+    for piece in [] if cut_off else pieces:
         if exits:
             connected = any(_touches(piece, opening) for opening in exits)
         else:

@@ -25,13 +25,15 @@ class FreeArea:
         exits: all exits, open at first.
         gates: all gates, open at first.
         obstacles: by id.
+        cut_off: whether obstacles may cut pieces off from every exit.
 
     Raises:
-        FloorPlanError: a piece of the area has no exit.
+        FloorPlanError: a piece of the area has no exit, and may not be cut off.
 
     Attributes:
-        geometry: a Polygon, or a MultiPolygon with an exit at each piece.
+        geometry: a Polygon, or a MultiPolygon with an exit at each piece that is not cut off.
         obstacles: by id.
+        cut_off: whether they may cut pieces off.
         closed: names of the closed gates and exits.
     """
 
@@ -41,14 +43,20 @@ class FreeArea:
         exits: Sequence[Exit],
         gates: Sequence[Gate],
         obstacles: Mapping[int, Polygon],
+        cut_off: bool = False,
     ) -> None:
         self._walkable, self._exits, self._gates = walkable, exits, gates
+        self.cut_off = cut_off
         self.closed: frozenset[str] = frozenset()
         self._subtract(obstacles)
 
-    def with_obstacles(self, obstacles: Mapping[int, Polygon]) -> "FreeArea":
-        """The area with these obstacles instead; FloorPlanError for a piece without an exit."""
+    def with_obstacles(self, obstacles: Mapping[int, Polygon], cut_off: bool = False) -> "FreeArea":
+        """The area with these obstacles instead; FloorPlanError for a piece without an exit.
+
+        `cut_off` allows such pieces from now on.
+        """
         changed = copy(self)
+        changed.cut_off |= cut_off
         changed._subtract(obstacles)
         return changed
 
@@ -76,6 +84,6 @@ class FreeArea:
     def _subtract(self, obstacles: Mapping[int, Polygon]) -> None:
         self.obstacles = dict(obstacles)
         self.geometry: BaseGeometry = checks.free_area(
-            self._walkable, list(self.obstacles.values()), self._exits, self._gates
+            self._walkable, list(self.obstacles.values()), self._exits, self._gates, self.cut_off
         )
         shapely.prepare(self.geometry)

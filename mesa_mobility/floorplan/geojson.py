@@ -35,11 +35,14 @@ class Content:
     obstacles: list[Polygon] = field(default_factory=list)
     zones: list[SpeedZone] = field(default_factory=list)
     closed: list[str] = field(default_factory=list)
+    cut_off: bool = False
 
 
 def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
     """The plan as a FeatureCollection; see `FloorPlan.to_geojson`."""
     features = [_feature("walkable", plan.name, plan.walkable)]
+    if plan.cut_off:
+        features[0]["properties"]["cut_off"] = True
     features += [
         _feature("obstacle", str(i), polygon) for i, polygon in enumerate(plan.obstacles.values())
     ]
@@ -106,15 +109,14 @@ def _content(data: object, where: str) -> Content:
         raise FloorPlanError(f"{where}: expected one feature of kind walkable, found {len(areas)}")
     content = Content(name=areas[0][0], walkable=areas[0][1])
     for kind, name, geometry, properties, at in found:
-        if kind == "obstacle":
+        if kind == "walkable":
+            content.cut_off = _flag(properties, "cut_off", at)
+        elif kind == "obstacle":
             content.obstacles.append(geometry)
         elif kind in ("gate", "exit"):
             opening = _opening(Gate if kind == "gate" else Exit, name, geometry, at)
             (content.gates if kind == "gate" else content.exits).append(opening)
-            closed = properties.get("closed", False)
-            if not isinstance(closed, bool):
-                raise FloorPlanError(f"{at}: closed must be true or false, found {closed!r:.60}")
-            if closed:
+            if _flag(properties, "closed", at):
                 content.closed.append(name)
         elif kind == "zone":
             try:
@@ -122,6 +124,13 @@ def _content(data: object, where: str) -> Content:
             except FloorPlanError as error:
                 raise FloorPlanError(f"{at}: {error}") from None
     return content
+
+
+def _flag(properties: Mapping[str, Any], name: str, at: str) -> bool:
+    value = properties.get(name, False)
+    if not isinstance(value, bool):
+        raise FloorPlanError(f"{at}: {name} must be true or false, found {value!r:.60}")
+    return value
 
 
 def _feature(kind: str, name: str, geometry: BaseGeometry) -> dict[str, Any]:

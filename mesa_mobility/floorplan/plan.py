@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable, Mapping
+from copy import copy
 from typing import Any
 
 import networkx as nx
@@ -40,11 +41,12 @@ class FloorPlan:
         obstacles: polygons (shapely or WKT) to subtract; their ids are 0, 1, 2, ...
         zones: parts of the floor where people walk more slowly.
         name: for titles and files.
+        cut_off: whether obstacles may cut pieces off from every exit.
 
     Raises:
         FloorPlanError: geometry that is empty, not valid, not finite or in several pieces; a
             walkable area of more than 20 km or less than 0.2 m; an exit off the edge; a gate or a
-            zone outside; a name used twice; free area without an exit.
+            zone outside; a name used twice; free area without an exit that may not be cut off.
 
     Attributes:
         version: grows by one with every change of obstacles, gates or exits.
@@ -74,6 +76,7 @@ class FloorPlan:
         obstacles: Iterable[Polygon | str] = (),
         zones: Iterable[SpeedZone] = (),
         name: str = "",
+        cut_off: bool = False,
     ) -> None:
         self.name = name
         self.version = 0
@@ -93,7 +96,7 @@ class FloorPlan:
         checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
         self._router: Router | None = None
-        self._take(FreeArea(self._walkable, self._exits, self._gates, polygons))
+        self._take(FreeArea(self._walkable, self._exits, self._gates, polygons, cut_off))
         extent.warn_of_other_units(self._walkable, self.openings())
 
     @classmethod
@@ -126,6 +129,7 @@ class FloorPlan:
                 obstacles=content.obstacles,
                 zones=content.zones,
                 name=content.name,
+                cut_off=content.cut_off,
             )
         except FloorPlanError as error:
             raise FloorPlanError(f"{geojson.label(source)}: {error}") from None
@@ -239,17 +243,23 @@ class FloorPlan:
         if not self.is_open(name):
             self._change(self._area.with_closed(self._area.closed - {name}))
 
-    def add_obstacle(self, polygon: Polygon | str) -> int:
+    @property
+    def cut_off(self) -> bool:
+        """Whether obstacles may cut pieces off from every exit."""
+        return self._area.cut_off
+
+    def add_obstacle(self, polygon: Polygon | str, *, cut_off: bool = False) -> int:
         """Put an obstacle (shapely or WKT, metres) in the way and return its id.
 
         Raises FloorPlanError, and leaves the plan unchanged, if the polygon is not valid, would
-        cut a piece of the free area off from every exit, or would touch somebody in any model
-        of the plan (`occupants` says why).
+        touch somebody in any model of the plan (`occupants` says why), or would cut a piece of the
+        free area off from every exit. With `cut_off` pieces may be cut off, now and later: people
+        there have no way to go, and stay.
         """
         number = self._next_obstacle
         name = f"obstacle {number}"
         obstacle = checks.read_polygon(polygon, name)
-        area = self._area.with_obstacles({**self._area.obstacles, number: obstacle})
+        area = self._area.with_obstacles({**self._area.obstacles, number: obstacle}, cut_off)
         occupants.check_vacant(self, obstacle, name, area.geometry)
         self._next_obstacle += 1
         self._change(area)
@@ -262,6 +272,30 @@ class FloorPlan:
             raise FloorPlanError(f"there is no obstacle {obstacle}; there are {list(obstacles)}")
         del obstacles[obstacle]
         self._change(self._area.with_obstacles(obstacles))
+
+    def altered(
+        self, *, obstacles: Iterable[Polygon] = (), closed: Iterable[str] | None = None
+    ) -> "FloorPlan":
+        """A plan of its own, without people, that differs from this one as it is now.
+
+        Args:
+            obstacles: further ones, which may cut pieces off from every exit.
+            closed: names of the gates and exits that are closed; by default the same.
+
+        Raises:
+            FloorPlanError: the obstacles leave no walkable area.
+        """
+        more = dict(enumerate(obstacles, self._next_obstacle))
+        area = self._area
+        if more:
+            area = area.with_obstacles({**area.obstacles, **more}, cut_off=True)
+        if closed is not None:
+            area = area.with_closed(self.gate(name).name for name in closed)
+        plan = copy(self)
+        plan.version, plan._router, plan._wall_index = 0, None, WallIndex(())
+        plan._next_obstacle += len(more)
+        plan._take(area)
+        return plan
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """(n,) whether each of the (n, 2) points is in the free area, its edge included."""
@@ -319,6 +353,7 @@ class FloorPlan:
             "obstacles": self.obstacles,
             "next_obstacle": self._next_obstacle,
             "closed": sorted(self._area.closed),
+            "cut_off": self.cut_off,
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
@@ -328,7 +363,8 @@ class FloorPlan:
         """
         if state == self.state():
             return
-        area = self._area.with_obstacles(state["obstacles"]).with_closed(state["closed"])
+        area = self._area.with_obstacles(state["obstacles"], state["cut_off"])
+        area = area.with_closed(state["closed"])
         self._next_obstacle = state["next_obstacle"]
         self._change(area)
 

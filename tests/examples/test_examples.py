@@ -97,6 +97,14 @@ def test_routes_chosen(capsys: pytest.CaptureFixture[str]) -> None:
     assert numbers(r"after (\S+) s", quickest) < numbers(r"after (\S+) s", shortest)
 
 
+def test_smoke_avoided(capsys: pytest.CaptureFixture[str]) -> None:
+    unaware, aware = run("smoke_avoided", capsys).splitlines()
+
+    # The way in which the smoke is, is the shorter one.
+    assert numbers(r"(\d+) of 40 walked through", unaware)[0] > 20
+    assert numbers(r"(\d+) of 40 walked through", aware) == [0]
+
+
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
 

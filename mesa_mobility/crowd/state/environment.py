@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,10 +84,12 @@ class Environment(Saved):
     def __init__(self, plan: FloorPlan, *, reach: float, core_radii: Sequence[float]) -> None:
         self.plan = plan
         self._reach = reach
+        self._of_types = tuple(core_radii)
         self._radii = list(dict.fromkeys(core_radii))
         self._clearances = [clearance_of(radius) for radius in self._radii]
         self._body_of = [self._radii.index(core) for core in core_radii]
         self._make_routers([None])
+        self._elsewhere: WeakKeyDictionary[FloorPlan, Environment] = WeakKeyDictionary()
 
     def _make_routers(self, destinations: list[Destination]) -> None:
         self._routers: list[Router | None] = [None] * len(self._radii)
@@ -194,6 +197,23 @@ class Environment(Saved):
             corners[own] = self.corners.numbers(theirs.corners, number)
         return Targets(points_of, gates, distances, corners)
 
+    def on(self, plan: FloorPlan) -> Environment:
+        """The routes on another plan with the same exits and gates, such as one of
+        ``FloorPlan.altered``; destinations have the same numbers.
+
+        Corners of its targets are not those of this site: ``TargetChoice.targets`` gives -1.
+        """
+        known = self._elsewhere.get(plan)
+        if known is None:
+            known = Environment(plan, reach=self._reach, core_radii=self._of_types)
+            self._elsewhere[plan] = known
+        for names in self._destinations[len(known._destinations) :]:
+            known._destinations.append(names)
+            for router in known._routers:
+                if router is not None:
+                    known._tell(router, names)
+        return known
+
     def abreast(
         self, points: NDArray[np.float64], targets: Targets, areas: NDArray[np.float64]
     ) -> NDArray[np.float64]:
@@ -269,11 +289,7 @@ class Environment(Saved):
 
     def _router_when_open(self, body: int) -> Router:
         """A router with everything open; destinations have the same numbers."""
-        plan = self.plan
-        plan = FloorPlan(
-            plan.walkable, exits=plan.exits, gates=plan.gates, obstacles=plan.obstacles.values()
-        )
-        return self._new_router(plan, self._clearances[body])
+        return self._new_router(self.plan.altered(closed=()), self._clearances[body])
 
     def _text(self, destination: int) -> str:
         names = self._destinations[destination // self.bodies]
