@@ -49,6 +49,10 @@ class Distribution(ABC):
         return self.quantile(strata(n, rng))
 
 
+EXTREMES = (2.0**-54, 1.0 - 2.0**-53)
+"""Least and greatest share of a distribution that is drawn."""
+
+
 def strata(n: int, rng: np.random.Generator) -> NDArray[np.float64]:
     """(n,) shares in (0, 1), one at random in each nth part, in random order.
 
@@ -57,7 +61,7 @@ def strata(n: int, rng: np.random.Generator) -> NDArray[np.float64]:
     """
     share = (rng.permutation(n) + rng.random(n)) / max(n, 1)
     # 0 and 1, which rounding can give, have no quantile.
-    return np.clip(share, 2.0**-54, 1.0 - 2.0**-53)
+    return np.clip(share, *EXTREMES)
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ class Auditorium(PedestrianModel):
             rng=rng,
         )
         kinds = self.draw_types(pedestrians)
-        wide = np.array([too_wide(kind.core_radius) for kind in self.pedestrian_types])[kinds]
+        wide = np.array([too_wide(kind.half_width) for kind in self.pedestrian_types])[kinds]
         if wide.any():
             places = plan.random_points(
                 int(wide.sum()), self.rng, within=BEFORE_THE_FIRST_ROW,
@@ -144,15 +144,15 @@ class Auditorium(PedestrianModel):
                 )
 
 
-def too_wide(core_radius: float) -> bool:
-    """Whether a body of this radius, metres, has no room to walk between two rows of seats."""
-    return 2.0 * core_radius > ROW_PITCH - SEAT_DEPTH - 0.05
+def too_wide(half_width: float) -> bool:
+    """Whether a body of this half width, metres, has no room to walk between two rows of seats."""
+    return 2.0 * half_width > ROW_PITCH - SEAT_DEPTH - 0.05
 
 
 def exit_door_for(population: Population | str | None) -> float:
     """Width of exit doors for these people, metres."""
     types = () if population is None else PedestrianType.all_of(Population.of(population))
-    return WIDE_EXIT_DOOR if any(too_wide(kind.core_radius) for kind in types) else EXIT_DOOR
+    return WIDE_EXIT_DOOR if any(too_wide(kind.half_width) for kind in types) else EXIT_DOOR
 
 
 def seat_places() -> NDArray[np.float64]:

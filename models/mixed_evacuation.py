@@ -113,7 +113,7 @@ class MixedEvacuation(PedestrianModel):
     @property
     def _wide(self) -> NDArray[np.bool_]:
         """(types,) whether people of each type are in wheelchairs, by the width of their body."""
-        return np.array([kind.core_radius > WALKER for kind in self.pedestrian_types])
+        return np.array([kind.half_width > WALKER for kind in self.pedestrian_types])
 
     def _places(
         self, n: int, floor: Polygon, wide: bool, there: NDArray[np.float64]

@@ -71,7 +71,7 @@ class BlockedWays(TargetChoice):
         if found.corners is not None:
             corners = np.array(found.corners)
         names = [each.name for each in closed]
-        cores = np.array([each.core_radius for each in self._model.pedestrian_types])
+        cores = np.array([each.half_width for each in self._model.pedestrian_types])
         keys = np.column_stack([unseen, deciding.destinations, deciding.types])
         for key in np.unique(keys[unseen.any(axis=1)], axis=0):
             own = np.flatnonzero((keys == key).all(axis=1))

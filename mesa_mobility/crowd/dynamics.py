@@ -44,7 +44,7 @@ class Dynamics(Saved):
         self._scheduler = DecisionScheduler(
             scene.repertoire,
             scene.rules,
-            least_core=min(each.core_radius for each in scene.types),
+            least_core=min(each.least_core for each in scene.types),
             types=[each.name for each in scene.types],
         )
         self._desired_motion = DesiredMotion(scene.environment, scene.crowd)

@@ -228,6 +228,12 @@ class PedestrianModel(mesa.Model):
         return self.population.core_radii
 
     @property
+    def discs(self) -> NDArray[np.float64] | None:
+        """(n, 3, 2) offset along the facing and radius in metres of each disc of everybody's body,
+        0 for discs that it does not have; None if all bodies are single discs."""
+        return self.population.discs
+
+    @property
     def capabilities(self) -> tuple[Capability, ...]:
         """The capability of each pedestrian type."""
         return self._scene.repertoire.capabilities
@@ -405,15 +411,19 @@ class PedestrianModel(mesa.Model):
 
         Returns:
             (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.
-            The group is an empty text for people without one.
+            The group is an empty text for people without one. Where a type's core radii are drawn
+            from a distribution, ``core_radius``, metres, as well.
         """
         crowd, count = self.crowd, self.population.count
         types = np.array([kind.name for kind in self.pedestrian_types])
         groups = np.array(["", *map(str, self.population.groups)])
-        return {
+        data: dict[str, ArrayLike] = {
             "type": types[crowd.type_index[:count]],
             "group": groups[crowd.agenda["group"][:count]],
         }
+        if any(isinstance(kind.core_radius, Distribution) for kind in self.pedestrian_types):
+            data["core_radius"] = self.core_radii
+        return data
 
     def summary(self) -> dict[str, Any]:
         """Figures of the run so far, ready for JSON.

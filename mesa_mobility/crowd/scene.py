@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
+from mesa_mobility.crowd.options.shapes import shapes_of
 from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets import Preset
@@ -65,8 +66,11 @@ def make_scene(
         ModelError: a type's map has no option of the preset's durations.
     """
     known = repertoire(tuple(each.mobility_map for each in types), preset.durations, preset.shares)
-    cores = [each.core_radius for each in types]
-    environment = Environment(plan, reach=known.reach + max(cores) + 0.02, core_radii=cores)
+    table = known.table._replace(shapes=shapes_of([each.shape for each in types]))
+    known = replace(known, table=table)
+    widths = [each.half_width for each in types]
+    largest = max(each.bounding_radius for each in types)
+    environment = Environment(plan, reach=known.reach + largest + 0.02, core_radii=widths)
     return Scene(
         plan=plan,
         types=types,
@@ -74,7 +78,7 @@ def make_scene(
         preset=preset,
         repertoire=known,
         rules=Rules(
-            search_radius=known.reach + known.extent + 2.0 * max(cores) + 0.01,
+            search_radius=known.reach + known.extent + 2.0 * largest + 0.01,
             hard_bodies=preset.hard_bodies,
             standing=known.standing,
             first_option=known.first_option,

@@ -29,7 +29,8 @@ CHUNK = 200_000
 
 @dataclass(frozen=True)
 class WallCrossing:
-    """A step of one person, from `frame` to the next, that meets a wall segment."""
+    """A step of one person, from `frame` to the next, on which its position or the centre of a disc
+    of its body meets a wall segment."""
 
     frame: int
     person: int
@@ -70,7 +71,7 @@ def check_safety(
     """Count overlapping bodies, steps through walls and places off the floor.
 
     Args:
-        trajectories: the run; its `core_radius` says how close two people may come.
+        trajectories: the run; its `core_radius`, or its `discs`, say how close two people may come.
         walls: (m, 4) segments x1, y1, x2, y2 in metres (`FloorPlan.walls`), open exits cut out.
         floor: where people may be (`FloorPlan.free`), metres; without it nobody is counted as off
             the floor.
@@ -117,20 +118,16 @@ def _wall_crossings(
     start, end = trajectories.steps()
     if not len(walls) or not len(start):
         return 0, []
-    near = _near_walls(trajectories, start, end, walls)
-    start, end = start[near], end[near]
-    tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
-    hits, hit_walls = list[NDArray[np.int64]](), list[NDArray[np.int64]]()
-    for first in range(0, len(start), CHUNK):
-        ends = np.stack((start[first : first + CHUNK], end[first : first + CHUNK]), axis=1)
-        lines = shapely.linestrings(trajectories.x[ends], trajectories.y[ends])
-        step, wall = tree.query(lines, predicate="intersects")
-        # A step through a corner meets two walls and is one crossing.
-        step, once = np.unique(step, return_index=True)
-        hits.append(step + first)
-        hit_walls.append(wall[once])
-    rows = start[np.concatenate(hits)] if hits else np.empty(0, dtype=np.int64)
-    wall_of = np.concatenate(hit_walls) if hits else rows
+    rows, wall_of = _meet_walls(trajectories.x, trajectories.y, start, end, walls)
+    if trajectories.discs is not None:
+        offsets = trajectories.discs[:, :, 0][trajectories.person]
+        for disc in range(offsets.shape[1]):
+            x = trajectories.x + offsets[:, disc] * np.cos(trajectories.heading)
+            y = trajectories.y + offsets[:, disc] * np.sin(trajectories.heading)
+            more, walls_met = _meet_walls(x, y, start, end, walls)
+            rows, wall_of = np.concatenate([rows, more]), np.concatenate([wall_of, walls_met])
+        rows, once = np.unique(rows, return_index=True)
+        wall_of = wall_of[once]
     in_order = np.argsort(rows, kind="stable")[:NAMED]
     named = [
         WallCrossing(
@@ -141,8 +138,33 @@ def _wall_crossings(
     return len(rows), named
 
 
+def _meet_walls(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    start: NDArray[np.int64],
+    end: NDArray[np.int64],
+    walls: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """(h,) the rows in ``start`` from which a straight step to that in ``end`` meets a wall, and
+    (h,) a wall that it meets; ``x`` and ``y`` (n,) are places by row, metres."""
+    near = _near_walls(x, y, start, end, walls)
+    start, end = start[near], end[near]
+    tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
+    hits, hit_walls = list[NDArray[np.int64]](), list[NDArray[np.int64]]()
+    for first in range(0, len(start), CHUNK):
+        ends = np.stack((start[first : first + CHUNK], end[first : first + CHUNK]), axis=1)
+        step, wall = tree.query(shapely.linestrings(x[ends], y[ends]), predicate="intersects")
+        # A step through a corner meets two walls and is one crossing.
+        step, once = np.unique(step, return_index=True)
+        hits.append(step + first)
+        hit_walls.append(wall[once])
+    rows = start[np.concatenate(hits)] if hits else np.empty(0, dtype=np.int64)
+    return rows, np.concatenate(hit_walls) if hits else rows
+
+
 def _near_walls(
-    trajectories: Trajectories,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
     start: NDArray[np.int64],
     end: NDArray[np.int64],
     walls: NDArray[np.float64],
@@ -151,7 +173,6 @@ def _near_walls(
 
     Squares are as wide as the longest step: no other step can meet a wall.
     """
-    x, y = trajectories.x, trajectories.y
     longest = float(np.hypot(x[end] - x[start], y[end] - y[start]).max())
     ends = walls.reshape(-1, 2)
     low = np.minimum(ends.min(axis=0), (x.min(), y.min()))

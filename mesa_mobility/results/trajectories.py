@@ -14,6 +14,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.columns import (
     COLUMNS,
     checked_person_data,
+    discs_of,
     in_order,
     one_dimensional,
     radii_of,
@@ -52,6 +53,9 @@ class Trajectories:
         frame_rate: frames a second.
         core_radius: (m,) float64, metres: the radius of the hard body core of person p is
             ``core_radius[p]``. A single number applies to everybody.
+        discs: (m, 3, 2) float64, metres: offset along the facing and radius of each of up to three
+            discs of a person's body, radius 0 for those that it does not have; None if all bodies
+            are single discs of the core radius.
         last_frame: last frame that was simulated. Later than the last row when the floor was
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
@@ -75,6 +79,7 @@ class Trajectories:
     heading: FloatArray
     frame_rate: float = 30.0
     core_radius: FloatArray | float = 0.15
+    discs: FloatArray | None = None
     last_frame: int | None = None
     inside_at_end: IntArray | None = None
     person_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
@@ -106,6 +111,8 @@ class Trajectories:
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
             )
         object.__setattr__(self, "core_radius", radii_of(self.core_radius, columns["person"]))
+        if self.discs is not None:
+            object.__setattr__(self, "discs", discs_of(self.discs, columns["person"]))
         object.__setattr__(
             self, "person_data", checked_person_data(self.person_data, columns["person"], own)
         )
@@ -141,8 +148,8 @@ class Trajectories:
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
                 and of fields, if any),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now); ``person_data()``, where it has that. Its
-                decisions are taken too if it records them.
+                ``rows`` (the people inside now); ``discs`` and ``person_data()``, where it has
+                them. Its decisions are taken too if it records them.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -160,6 +167,7 @@ class Trajectories:
             **rows,
             frame_rate=float(model.frame_rate),
             core_radius=np.asarray(model.core_radii, dtype=np.float64),
+            discs=getattr(model, "discs", None),
             last_frame=round(model.elapsed * model.frame_rate),
             inside_at_end=model.rows,
             person_data=model.person_data() if hasattr(model, "person_data") else {},
@@ -200,6 +208,29 @@ class Trajectories:
         """(m,) float64, metres: core radius by person, always an array."""
         assert isinstance(self.core_radius, np.ndarray)
         return self.core_radius
+
+    @cached_property
+    def body_discs(self) -> FloatArray:
+        """(m, k, 2) float64, metres: offset along the facing and radius of the discs of each
+        person's body, always an array; one about the position where ``discs`` is None."""
+        if self.discs is None:
+            return np.stack([np.zeros_like(self.radii), self.radii], axis=1)[:, None]
+        return self.discs
+
+    def placed_discs(self, rows: NDArray[np.int64] | slice) -> tuple[NDArray[np.int64], FloatArray]:
+        """Bodies of some rows as discs on the floor.
+
+        Returns:
+            (d,) index among these rows of the body of each disc, and (d, 3) its x, y and radius,
+            metres.
+        """
+        given = self.body_discs[self.person[rows]]
+        at, k = np.nonzero(given[:, :, 1] > 0.0)
+        offset, radius = given[at, k].T
+        heading = self.heading[rows][at]
+        x = self.x[rows][at] + offset * np.cos(heading)
+        y = self.y[rows][at] + offset * np.sin(heading)
+        return at, np.column_stack([x, y, radius])
 
     @property
     def remaining(self) -> IntArray:

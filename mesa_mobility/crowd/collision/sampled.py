@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.intrinsics import prefetch
 from mesa_mobility.compiled.simd import WIDE, lowest_bit
+from mesa_mobility.crowd.collision.discs import discs_touch, overhang_of
 from mesa_mobility.crowd.collision.simd_tests import near_box
 from mesa_mobility.crowd.collision.simd_transforms import samples_to_ego
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable, in_lines
@@ -27,7 +28,8 @@ SLACK = 1e-5
 
 
 class EgoPose(NamedTuple):
-    """A deciding pedestrian: position (m), cosine and sine of its heading, core radius (m)."""
+    """A deciding pedestrian: position (m), cosine and sine of its heading, core radius (m), and by
+    how much a circle that holds its whole body exceeds the core (m)."""
 
     row: int
     x: float
@@ -35,19 +37,22 @@ class EgoPose(NamedTuple):
     c: float
     s: float
     core: float
+    overhang: float = 0.0
 
 
 NEARBY = np.dtype(
     [
         ("who", "i8"),
         ("apart", "f8"),
+        ("overhang", "f8"),
         ("laid", "?"),
     ],
     align=True,
 )
 """Record of a person who may come in the way, in the deciding pedestrian's coordinates, metres.
 
-Fields: ``who`` row; ``apart`` the distance to keep; ``laid``, whether the path is transformed.
+Fields: ``who`` row; ``apart`` the distance that the cores keep; ``overhang`` that of its body;
+``laid``, whether the path is transformed.
 """
 
 
@@ -89,6 +94,7 @@ def broad_phase_neighbours(
     y0: float,
     x1: float,
     y1: float,
+    table: OptionTable,
     state: CrowdState,
     picked: NDArray[np.int64],
     dropped: NDArray[np.int32],
@@ -104,7 +110,8 @@ def broad_phase_neighbours(
         close already.  For them the exact test has a rule of its own.
     """
     sweep_x, sweep_y, radius = sweeps[0], sweeps[1], sweeps[2]
-    px, py, c, s, own = me.x, me.y, me.c, me.s, me.core + MARGIN + SLACK
+    px, py, c, s = me.x, me.y, me.c, me.s
+    own = me.core + me.overhang + MARGIN + SLACK
     for a in range(len(near)):
         dx, dy = sweep_x[a] - px, sweep_y[a] - py
         x, y = c * dx + s * dy, c * dy - s * dx
@@ -122,7 +129,10 @@ def broad_phase_neighbours(
         j = near[a]
         apart = me.core + state.core[j] + MARGIN
         dx, dy = state.x[j] - px, state.y[j] - py
-        if dx * dx + dy * dy < apart * apart:
+        over = overhang_of(j, table, state)
+        if dx * dx + dy * dy < apart * apart or (
+            me.overhang + over > 0.0 and discs_touch(me.row, j, table, state)
+        ):
             touching -= 1
             to.people[touching].who = j
             continue
@@ -132,6 +142,7 @@ def broad_phase_neighbours(
         to.sweeps[0, count], to.sweeps[1, count] = c * dx + s * dy, c * dy - s * dx
         to.sweeps[2, count] = radius[a] + own + SLACK
         somebody.apart = apart
+        somebody.overhang = over
         somebody.laid = False
         count += 1
     return count, touching
@@ -197,7 +208,7 @@ def sampled_collision(
         Index of a person who is certainly hit, or -1; number of rows in ``unsure``.
     """
     doubtful = 0
-    half = np.float32(0.5 * stride + 3.0 * SLACK)
+    half = np.float32(0.5 * stride + me.overhang + 3.0 * SLACK)
     x0, y0, x1, y1 = box_of(own, SAMPLES - 1)
     own_x, own_y = own[0], own[1]
     for block in range(-WIDE, count, WIDE):
@@ -215,7 +226,7 @@ def sampled_collision(
             x, y = close.ahead[a, 0], close.ahead[a, 1]
             j = close.people[a].who
             least = np.float32(close.people[a].apart - SLACK)
-            far = np.float32(least + half + 0.5 * state.stride[j])
+            far = np.float32(least + half + close.people[a].overhang + 0.5 * state.stride[j])
             least2, far2 = least * least, far * far
             hit, near = False, False
             for k in range(SAMPLES):

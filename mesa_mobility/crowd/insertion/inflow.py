@@ -181,10 +181,11 @@ class Sources(Sequence[Inflow], Saved):
         newcomers = {kind: source.newcomers(kind) for kind in kinds.tolist()}
         entrances: dict[int, Entrance] = {}
         for kind in newcomers:
-            core = scene.types[kind].core_radius
+            of = scene.types[kind]
             entrances[kind] = Entrance(
-                scene.plan, area, clearance=core + 0.01, passing=passing_of(core)
-            )
+                scene.plan, area, clearance=of.bounding_radius + 0.01,
+                passing=passing_of(of.half_width),
+            )  # fmt: skip
             destination, _ = scene.journeys.start(source.exits, source.route, source.loop, kind)
             somewhere = entrances[kind].room.representative_point()
             scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)

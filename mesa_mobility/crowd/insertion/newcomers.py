@@ -94,6 +94,16 @@ class Newcomers:
             )
         return speeds
 
+    def draw_cores(
+        self, kinds: NDArray[np.int64], types: Sequence[PedestrianType], rng: np.random.Generator
+    ) -> NDArray[np.float64]:
+        """(n,) core radii of people of these types, metres."""
+        cores = np.empty(len(kinds))
+        for kind in np.unique(kinds).tolist():
+            own = kinds == kind
+            cores[own] = types[kind].draw_cores(int(own.sum()), rng)
+        return cores
+
     def field_columns(self, n: int, crowd: Crowd) -> dict[str, NDArray[Any]]:
         """(n,) values of the given fields.
 

@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.crowd.insertion.free_space import too_close
 from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_column, distinct
 from mesa_mobility.crowd.insertion.suited_places import suited
+from mesa_mobility.crowd.options.shapes import ONE_DISC
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd
 from mesa_mobility.errors import MobilityError, ModelError
@@ -22,11 +24,10 @@ TOUCHING = 1e-6
 
 @dataclass(frozen=True)
 class Assigned:
-    """Values that newcomers have in common: type index, core radius in metres, standing cluster,
-    destination, and number of the journey, 0 for none."""
+    """Values that newcomers have in common: type index, standing cluster, destination, and number
+    of the journey, 0 for none."""
 
     type_index: int
-    core: float
     standing: int
     destination: int
     journey: int
@@ -72,8 +73,8 @@ def place_newcomers(
         kinds = _suited(scene, points, kinds, ways, present, rng)
     speeds = new.draw_speeds(kinds, scene.types, rng)
     sets_off = frame + new.draw_waits(n, rng)
-    if new.headings is not None:
-        check_column("headings", new.headings, n)
+    headings = None if new.headings is None else check_column("headings", new.headings, n)
+    cores = new.draw_cores(kinds, scene.types, rng)
     fields = new.field_columns(n, scene.crowd)
     rows = np.arange(count, count + n, dtype=np.int64)
     if count + n > len(scene.crowd.x):
@@ -82,19 +83,26 @@ def place_newcomers(
     try:
         for kind, (destination, journey) in ways.items():
             own = np.flatnonzero(kinds == kind)
-            core, there = scene.types[kind].core_radius, points[own]
-            check_beside_walls(there, core, scene.plan, own)
-            _check_room(scene, there, core, frame, own, np.concatenate([present, placed]), count)
+            of, there = scene.types[kind], points[own]
+            _check_walls(scene.plan, of, there, cores[own], headings, own)
+            others = np.concatenate([present, placed])
+            _check_room(scene, there, of.bounding_radius, frame, own, others, count)
             scene.environment.check_way_out(there, destination)
             assigned = Assigned(
                 type_index=kind,
-                core=core,
                 standing=int(scene.rules.standing[kind]),
                 destination=destination,
                 journey=journey,
             )
             write_records(
-                scene.crowd, rows[own], there, speeds[own], frame, sets_off[own], assigned
+                scene.crowd,
+                rows[own],
+                there,
+                cores[own],
+                speeds[own],
+                frame,
+                sets_off[own],
+                assigned,
             )
             placed = np.sort(np.concatenate([placed, rows[own]]))
     except MobilityError:
@@ -114,9 +122,9 @@ def _suited(
     rng: np.random.Generator,
 ) -> NDArray[np.int64]:
     """(n,) the same types, at places with room for their bodies and a way out as wide."""
-    cores = np.array([kind.core_radius for kind in scene.types])
+    cores = np.array([kind.bounding_radius for kind in scene.types])
     crowd = scene.crowd
-    others, radii = np.column_stack([crowd.x[present], crowd.y[present]]), crowd.core[present]
+    others, radii = np.column_stack([crowd.x[present], crowd.y[present]]), circles(scene, present)
 
     def suits(kind: int) -> NDArray[np.bool_]:
         away = distances_to_walls(scene.plan, points, float(cores[kind]))
@@ -140,7 +148,7 @@ def _suited(
 def _check_room(
     scene: Scene,
     points: NDArray[np.float64],
-    core: float,
+    radius: float,
     frame: int,
     numbers: NDArray[np.int64],
     there: NDArray[np.int64],
@@ -148,12 +156,13 @@ def _check_room(
 ) -> None:
     """Refuse places without room beside people ``there``, of whom rows from ``count`` on are new.
 
+    Everybody takes up a circle, in which it can turn; that of the newcomers has this ``radius``.
     The error names people by their (n,) ``numbers``.
     """
     if not scene.rules.hard_bodies:
         return
     where, who = too_close(
-        points, core, frame, there, scene.repertoire.table,
+        points, radius, frame, there, scene.repertoire.table,
         scene.crowd.records, scene.rules.search_radius,
     )  # fmt: skip
     if where >= 0:
@@ -183,6 +192,36 @@ def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
     return points
 
 
+def circles(scene: Scene, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(n,) radius in metres of a circle about each person's position that holds its body."""
+    shapes = scene.repertoire.table.shapes
+    return scene.crowd.core[rows] * (1.0 + shapes.overhang[scene.crowd.type_index[rows]])
+
+
+def _check_walls(
+    plan: FloorPlan,
+    kind: PedestrianType,
+    points: NDArray[np.float64],
+    cores: NDArray[np.float64],
+    headings: NDArray[np.float64] | None,
+    numbers: NDArray[np.int64],
+) -> None:
+    """Refuse places without room between walls for people of a type with (n,) core radii.
+
+    Without (all newcomers,) ``headings`` there must be room to turn on the spot.
+
+    Raises:
+        ModelError: there is none; the error names people by their (n,) ``numbers``.
+    """
+    if headings is None or kind.shape == ONE_DISC:
+        check_beside_walls(points, kind.bounding_radius, plan, numbers)
+        return
+    ahead = np.column_stack([np.cos(headings[numbers]), np.sin(headings[numbers])])
+    for offset, radius in kind.shape:
+        places = points + offset * cores[:, None] * ahead
+        check_beside_walls(places, radius * float(cores.max(initial=0.0)), plan, numbers)
+
+
 def check_beside_walls(
     points: NDArray[np.float64],
     core: float,
@@ -210,6 +249,7 @@ def write_records(
     state: Crowd,
     rows: NDArray[np.int64],
     points: NDArray[np.float64],
+    cores: NDArray[np.float64],
     speeds: NDArray[np.float64],
     frame: int,
     sets_off: NDArray[np.int64],
@@ -221,7 +261,7 @@ def write_records(
     """
     state.x[rows], state.y[rows] = points.T
     state.preferred[rows] = speeds
-    state.core[rows], state.type_index[rows] = new.core, new.type_index
+    state.core[rows], state.type_index[rows] = cores, new.type_index
     state.destination[rows], state.cluster[rows] = new.destination, new.standing
     state.vx[rows] = state.vy[rows] = 0.0
     state.option[rows], state.gone[rows] = NO_OPTION, -1

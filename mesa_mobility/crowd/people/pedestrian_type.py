@@ -1,4 +1,4 @@
-"""Types of pedestrians: a mobility map, a body and preferred speeds."""
+"""Types of pedestrians: a mobility map, bodies and preferred speeds."""
 
 from __future__ import annotations
 
@@ -11,12 +11,15 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.options.shapes import ONE_DISC, Discs, check_discs, core_of
 from mesa_mobility.crowd.people.free_speeds import free_speeds
-from mesa_mobility.distributions import Distribution
+from mesa_mobility.distributions import EXTREMES, Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.map import CORE_RADIUS
 from mesa_mobility.populations import Population
+
+_LEAST, _GREATEST = EXTREMES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,21 +31,31 @@ class PedestrianType:
         name: by default the map's own.
         preferred_speed: distribution of preferred speeds, m/s, or one speed for everybody; by
             default that of the map (see ``free_speeds``).
-        core_radius: radius of the disc that no other body enters, metres; by default the map's.
+        core_radius: radius of the disc that no other body enters, metres, or a distribution of
+            radii; by default the map's.
+        discs: offset along the facing, forwards, and radius in metres of each of one to three discs
+            that the body consists of; by default one about the person's position.  The core is the
+            largest disc about that position within them; with a ``core_radius`` as well, they are
+            scaled to it.
     """
 
     mobility_map: MobilityMap
     name: str = ""
     preferred_speed: Distribution | float | None = None
-    core_radius: float = field(default=0.0)
+    core_radius: Distribution | float = field(default=0.0)
+    discs: Sequence[tuple[float, float]] = ()
 
     def __post_init__(self) -> None:
         if not self.name:
             object.__setattr__(self, "name", self.mobility_map.pedestrian_type)
+        if len(self.discs):
+            object.__setattr__(self, "discs", check_discs(self.discs, self.name))
         if self.core_radius == 0.0:
             body = self.mobility_map.metadata.get("body", {})
-            object.__setattr__(self, "core_radius", float(body.get("core_radius_m", CORE_RADIUS)))
-        if not 0.0 < self.core_radius < 1.0:
+            core = float(body.get("core_radius_m", CORE_RADIUS))
+            core = core_of(tuple(self.discs)) if len(self.discs) else core
+            object.__setattr__(self, "core_radius", core)
+        if not (self._bound(_LEAST) > 0.0 and self._bound(_GREATEST) < 1.0):
             raise ModelError(
                 f"type {self.name!r}: core_radius {self.core_radius}, expected 0 to 1 m"
             )
@@ -75,6 +88,40 @@ class PedestrianType:
         return tuple(
             cls.named(kind) if isinstance(kind, str) else kind for kind in population.shares
         )
+
+    @property
+    def shape(self) -> Discs:
+        """The discs of a body in units of its core radius."""
+        if not len(self.discs):
+            return ONE_DISC
+        core = core_of(tuple(self.discs))
+        return tuple((offset / core, radius / core) for offset, radius in self.discs)
+
+    @property
+    def least_core(self) -> float:
+        """Least core radius, metres."""
+        return self._bound(_LEAST)
+
+    @property
+    def half_width(self) -> float:
+        """Half the width of the widest body across its facing, metres."""
+        return self._bound(_GREATEST) * max(radius for _, radius in self.shape)
+
+    @property
+    def bounding_radius(self) -> float:
+        """Radius in metres of the circle in which the largest body turns on the spot."""
+        return self._bound(_GREATEST) * max(abs(offset) + radius for offset, radius in self.shape)
+
+    def _bound(self, share: float) -> float:
+        if isinstance(self.core_radius, Distribution):
+            return float(self.core_radius.quantile(np.array([share]))[0])
+        return float(self.core_radius)
+
+    def draw_cores(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
+        """(n,) core radii, metres; nothing is drawn from the generator if all have the same."""
+        if isinstance(self.core_radius, Distribution):
+            return self.core_radius.draw(n, rng)
+        return np.full(n, float(self.core_radius))
 
     def draw_speeds(self, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
         """(n,) preferred speeds, m/s."""

@@ -11,6 +11,7 @@ from mesa_mobility.compiled.decorators import entry_point, inlined
 from mesa_mobility.compiled.intrinsics import store_release, take_number
 from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
 from mesa_mobility.crowd.collision.broad_phase import cull_groups
+from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
 from mesa_mobility.crowd.collision.walls import walls_to_ego
@@ -133,7 +134,8 @@ def _decide_one(
     """Decide for pedestrian i and commit it; False if a cost is not a number."""
     cluster, destination = state.cluster[i], state.destination[i]
     x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
-    me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core)
+    overhang = overhang_of(i, table, state)
+    me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core, overhang)
     others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
     count = neighbours_within(
         grid, moving, x, y, place, rules.search_radius, work.near, others, sweeps
@@ -147,7 +149,7 @@ def _decide_one(
             others[row, a] = terms.fields[near[a], row - FIELDS]
     fill_lane(count, others)
     farthest = table.farthest[cluster]
-    reach = wall_reach(farthest, core)
+    reach = wall_reach(farthest, core + overhang)
     walls = work.walls[: near_walls(around, x, y, destination, reach, work.walls)]
     n_clear_walls = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
     exits_from = exit_distance(around, x, y, destination)
@@ -157,8 +159,8 @@ def _decide_one(
     whole = spanned.whole
     found, touching = broad_phase_neighbours(
         me, near if rules.hard_bodies else near[:0], sweeps, min(whole[0], -aside),
-        min(whole[1], -aside), max(whole[2], aside), max(whole[3], aside), state, work.unsure,
-        work.dropped, work.close,
+        min(whole[1], -aside), max(whole[2], aside), max(whole[3], aside), table, state,
+        work.unsure, work.dropped, work.close,
     )  # fmt: skip
     n = cull_groups(
         me, frame, work.close, found, work.barriers, n_clear_walls, exits_from, table, groups,
@@ -243,5 +245,5 @@ def _decide_one(
             i, frame, table, state, walls, around, near[:found], exits_from <= farthest,
             rules.hard_bodies, standing, work.path,
         )  # fmt: skip
-    cover_in(moving, place, i, state)
+    cover_in(moving, place, i, table, state)
     return True

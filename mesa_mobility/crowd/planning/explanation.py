@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.terms import CostTerm
@@ -177,8 +178,9 @@ def _judge(
     blockers: NDArray[np.int64],
 ) -> None:
     x, y, destination = state.x[i], state.y[i], state.destination[i]
-    farthest = table.farthest[state.cluster[i]]
-    count = near_walls(around, x, y, destination, wall_reach(farthest, state.core[i]), walls)
+    core = state.core[i] + overhang_of(i, table, state)
+    reach = wall_reach(table.farthest[state.cluster[i]], core)
+    count = near_walls(around, x, y, destination, reach, walls)
     exits_from = exit_distance(around, x, y, destination)
     spacing = np.int64(SAMPLE_FRAMES)
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])

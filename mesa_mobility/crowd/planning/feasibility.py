@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal
-from mesa_mobility.crowd.collision.exact import crosses_exit, gone_frame, hits_wall, swept_collision
+from mesa_mobility.crowd.collision.discs import body_collides, body_hits_wall, overhang_of
+from mesa_mobility.crowd.collision.exact import crosses_exit, gone_frame
 from mesa_mobility.crowd.collision.sampled import SLACK, EgoPose, sampled_collision
 from mesa_mobility.crowd.collision.walls import path_off2
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
@@ -27,6 +28,7 @@ def path_gone_or_walled(
     spacing: int,
     reach: float,
     frame: int,
+    table: OptionTable,
     state: CrowdState,
     walls: NDArray[np.float64],
     around: Surroundings,
@@ -40,7 +42,8 @@ def path_gone_or_walled(
         if piece >= 0:
             gone = gone_frame(frame, spacing, piece, where)
             walked = piece + 1
-    return -3 if hits_wall(path, walked, walls, state.core[i], reach) else gone
+    hit = body_hits_wall(i, path, walked, spacing, walls, reach, table, state)
+    return -3 if hit else gone
 
 
 @internal()
@@ -57,8 +60,9 @@ def hits_anybody(
 ) -> bool:
     """Whether the path of pedestrian i hits one of those in rows ``near``."""
     x0, y0, x1, y1 = box_of(path, pieces)
+    own = state.core[i] + overhang_of(i, table, state) + 0.001
     for j in near:
-        c = state.core[i] + state.core[j] + 0.001
+        c = own + state.core[j] + overhang_of(j, table, state)
         if (
             x0 > state[j].box[2] + c
             or x1 < state[j].box[0] - c
@@ -66,9 +70,7 @@ def hits_anybody(
             or y1 < state[j].box[1] - c
         ):
             continue
-        if swept_collision(
-            path, pieces, spacing, frame, gone, table, state, j, state.core[i] + state.core[j]
-        ):
+        if body_collides(i, path, pieces, spacing, frame, gone, table, state, j):
             return True
     return False
 
@@ -91,7 +93,7 @@ def path_gone_or_blocked(
 ) -> int:
     """-3 if the path hits a wall, -2 if it hits a person, else the frame of leaving or -1."""
     gone = path_gone_or_walled(
-        i, path, pieces, spacing, reach, frame, state, walls, around, exits_near
+        i, path, pieces, spacing, reach, frame, table, state, walls, around, exits_near
     )
     if gone == -3 or not hard_bodies:
         return gone
@@ -139,7 +141,7 @@ def option_gone_or_blocked(
         least = me.core + MARGIN - SLACK
         if off2 < least * least:
             return -3, met
-        most = me.core + MARGIN + 0.5 * stride + 3.0 * SLACK
+        most = me.core + me.overhang + MARGIN + 0.5 * stride + 3.0 * SLACK
         walled = now.n_clear_walls < len(walls) or off2 < most * most
         if hard_bodies:
             who, doubtful = sampled_collision(
@@ -163,7 +165,7 @@ def option_gone_or_blocked(
     spacing = np.int64(SAMPLE_FRAMES)
     if walled:
         gone = path_gone_or_walled(
-            me.row, work.path, pieces, spacing, reach, now.frame, state, walls, around,
+            me.row, work.path, pieces, spacing, reach, now.frame, table, state, walls, around,
             exits_near,
         )  # fmt: skip
     if gone < -1 or doubtful == 0:

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
-from mesa_mobility.crowd.collision.exact import crosses_exit, hits_wall, near_walls, swept_collision
+from mesa_mobility.crowd.collision.discs import body_collides, body_hits_wall, overhang_of
+from mesa_mobility.crowd.collision.exact import crosses_exit, near_walls
 from mesa_mobility.crowd.options.table import SAMPLES, OptionTable
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.environment import Surroundings
-from mesa_mobility.crowd.state.paths import waypoint
+from mesa_mobility.crowd.state.paths import facing_at_waypoint, waypoint
 from mesa_mobility.crowd.state.records import NO_OPTION, CrowdState
 
 
@@ -31,7 +32,7 @@ def stop_where_blocked(
     stopped = np.zeros(len(rows), np.bool_)
     newly = np.empty(len(rows), np.int64)
     count = 0
-    path = np.empty((2, SAMPLES))
+    path = np.empty((3, SAMPLES))
     found = np.empty((len(around.segments) + len(around.exits), 5))
     for a in range(len(rows)):
         i = rows[a]
@@ -43,10 +44,11 @@ def stop_where_blocked(
             piece, _ = crosses_exit(path, pieces, around, state.destination[i])
             walked = pieces if piece < 0 else piece + 1
         walls = near_walls(
-            around, state.x[i], state.y[i], state.destination[i], reach + state.core[i] + 0.01,
-            found,
+            around, state.x[i], state.y[i], state.destination[i],
+            reach + state.core[i] + overhang_of(i, table, state) + 0.01, found,
         )  # fmt: skip
-        if hits_wall(path, walked, found[:walls], state.core[i], reach):
+        spacing = np.int64(state.spacing[i])
+        if body_hits_wall(i, path, walked, spacing, found[:walls], reach, table, state):
             stopped[a] = True
             newly[count] = i
             count += 1
@@ -57,14 +59,15 @@ def stop_where_blocked(
         # Where they stand they may block others, who stop as well.
         standing = newly[:count].copy()
         count = 0
-        still = np.empty((2, 2))
+        still = np.empty((3, 2))
         for a in range(len(rows)):
             j = rows[a]
             if stopped[a] or state.end[j] <= frame:
                 continue
             for i in standing:
-                still[0], still[1] = state.x[i], state.y[i]
-                if swept_collision(
+                still[0], still[1], still[2] = state.x[i], state.y[i], state.heading[i]
+                if body_collides(
+                    i,
                     still,
                     np.int64(1),
                     np.int64(1),
@@ -73,7 +76,6 @@ def stop_where_blocked(
                     table,
                     state,
                     j,
-                    state.core[i] + state.core[j],
                 ):
                     stopped[a] = True
                     newly[count] = j
@@ -89,12 +91,13 @@ def stop_where_blocked(
 def _remaining(
     i: int, frame: int, table: OptionTable, state: CrowdState, path: NDArray[np.float64]
 ) -> int:
-    """Write the position and remaining waypoints of pedestrian i; return the number of pieces."""
-    path[0, 0], path[1, 0] = state.x[i], state.y[i]
+    """Write the pose and remaining waypoints of pedestrian i; return the number of pieces."""
+    path[0, 0], path[1, 0], path[2, 0] = state.x[i], state.y[i], state.heading[i]
     first = (frame - state.start[i]) // state.spacing[i] + 1
     pieces = state.knots[i] - first
     for k in range(pieces):
         path[0, k + 1], path[1, k + 1] = waypoint(state, table, i, first + k)
+        path[2, k + 1] = facing_at_waypoint(state, table, i, first + k)
     return pieces
 
 

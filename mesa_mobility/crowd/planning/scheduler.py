@@ -103,7 +103,7 @@ class DecisionScheduler:
                 order[:1], table, crowd, grid, around, self._rules, moment.aside()
             )
             check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
-        moving = headways(grid, crowd.records)
+        moving = headways(grid, table, crowd.records)
         threads = 1 if PLAIN else threads_for(len(order))
         fields = compiled.fields.shape[1]
         works = self._works_for(threads, len(rows), around, len(terms), fields)

@@ -59,12 +59,14 @@ class Precedence(Saved):
 
     Args:
         plan: the floor plan; changes to it are followed.
-        widest: greatest core radius of the model's types, metres.
+        widest: greatest half width of the model's types, metres.
+        stretch: (types,) radius of a circle that holds a body, in core radii.
     """
 
     saved = ("_at", "_first", "_nearest", "_since")
 
-    def __init__(self, plan: FloorPlan, widest: float) -> None:
+    def __init__(self, plan: FloorPlan, widest: float, stretch: NDArray[np.float64]) -> None:
+        self._stretch = stretch
         self._plan = plan
         self._widest = widest
         self._version = -1
@@ -127,7 +129,8 @@ class Precedence(Saved):
             self._at = np.append(self._at, more)
         who = rows[mine]
         places = np.column_stack([crowd.x[who], crowd.y[who]])
-        self._at[who] = mouths_ahead(self._mouths, places, points[mine], crowd.core[who])
+        radii = crowd.core[who] * self._stretch[crowd.type_index[who]]
+        self._at[who] = mouths_ahead(self._mouths, places, points[mine], radii)
         heeding = inside[(crowd.core[inside] > WIDE) & (self._at[inside] != NOBODY)]
         for mouth in np.unique(self._at[who]).tolist():
             if mouth != NOBODY:
@@ -139,11 +142,13 @@ class Precedence(Saved):
         if not (waits.any() or stuck.any()):
             return points, speeds
         points, speeds = points.copy(), speeds.copy()
-        points[mine[stuck]] = axis_points(self._mouths[at[stuck]], crowd.core[who[stuck]])
+        points[mine[stuck]] = axis_points(self._mouths[at[stuck]], radii[stuck])
         own = mine[waits]
-        crowd.agenda["since"][who[waits]] = elapsed
+        # Long bodies beside one another may have to back off, those who wait as well.
+        patient = waits & (self._stretch[crowd.type_index[who]] == 1.0)
+        crowd.agenda["since"][who[patient]] = elapsed
         points[own], speeds[own] = wait_clear(
-            self._mouths[at[waits]], places[waits], crowd.core[who[waits]], points[own], speeds[own]
+            self._mouths[at[waits]], places[waits], radii[waits], points[own], speeds[own]
         )
         return points, speeds
 
@@ -178,7 +183,7 @@ def mouths_ahead(
     mouths: NDArray[np.float64],
     places: NDArray[np.float64],
     points: NDArray[np.float64],
-    cores: NDArray[np.float64],
+    radii: NDArray[np.float64],
 ) -> NDArray[np.int64]:
     """(n,) the nearest mouth within reach that each is about to enter, or -1.
 
@@ -189,7 +194,7 @@ def mouths_ahead(
         mouths: (m, 6) as ``narrow_mouths`` gives them.
         places: (n, 2) where they are, metres.
         points: (n, 2) their targets, metres.
-        cores: (n,) their core radii, metres.
+        radii: (n,) of the circles that hold their bodies, metres.
     """
     start, inward = mouths[:, :2], mouths[:, 4:]
     along = mouths[:, 2:4] - start
@@ -208,7 +213,7 @@ def mouths_ahead(
     middle = (start + mouths[:, 2:4]) / 2.0
     before = np.hypot(*(points[:, None] - middle).transpose(2, 0, 1))
     stays = (points == places).all(axis=1)
-    before_it = (before < clear_of(width, cores[:, None])) & outside & ~stays[:, None]
+    before_it = (before < clear_of(width, radii[:, None])) & outside & ~stays[:, None]
     way = np.hypot(*(places[:, None] - middle).transpose(2, 0, 1))
     way = np.where(through | before_it, way, np.inf)
     nearest = way.argmin(axis=1)
@@ -218,9 +223,9 @@ def mouths_ahead(
     return found
 
 
-def clear_of(width: NDArray[np.float64], cores: NDArray[np.float64]) -> NDArray[np.float64]:
+def clear_of(width: NDArray[np.float64], radii: NDArray[np.float64]) -> NDArray[np.float64]:
     """Metres from the middle of a mouth that a body's width beside it reaches to."""
-    return width / 2.0 + 2.0 * cores
+    return width / 2.0 + 2.0 * radii
 
 
 def at_a_jamb(
@@ -236,9 +241,9 @@ def at_a_jamb(
     return against
 
 
-def axis_points(mouths: NDArray[np.float64], cores: NDArray[np.float64]) -> NDArray[np.float64]:
+def axis_points(mouths: NDArray[np.float64], radii: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n, 2) where people may turn into the mouth that each is at: a body before its middle."""
-    points: NDArray[np.float64] = (mouths[:, :2] + mouths[:, 2:4]) / 2.0 - 2.0 * cores[
+    points: NDArray[np.float64] = (mouths[:, :2] + mouths[:, 2:4]) / 2.0 - 2.0 * radii[
         :, None
     ] * mouths[:, 4:]
     return points
@@ -247,7 +252,7 @@ def axis_points(mouths: NDArray[np.float64], cores: NDArray[np.float64]) -> NDAr
 def wait_clear(
     mouths: NDArray[np.float64],
     places: NDArray[np.float64],
-    cores: NDArray[np.float64],
+    radii: NDArray[np.float64],
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -259,9 +264,9 @@ def wait_clear(
     from_mouth = places - (mouths[:, :2] + mouths[:, 2:4]) / 2.0
     way = np.hypot(from_mouth[:, 0], from_mouth[:, 1])
     width = np.hypot(mouths[:, 2] - mouths[:, 0], mouths[:, 3] - mouths[:, 1])
-    free = way - clear_of(width, cores)
+    free = way - clear_of(width, radii)
     away = from_mouth / np.maximum(way, 1e-9)[:, None]
-    left = np.maximum(free - cores, 0.0)
+    left = np.maximum(free - radii, 0.0)
     on = points - places
     on *= np.minimum(1.0, left / np.maximum(np.hypot(on[:, 0], on[:, 1]), 1e-9))[:, None]
     too_near = free < 0.0

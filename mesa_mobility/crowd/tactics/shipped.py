@@ -12,7 +12,7 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
 from mesa_mobility.crowd.tactics.giving_way import WIDE, Precedence
-from mesa_mobility.crowd.tactics.impatience import perturb_targets
+from mesa_mobility.crowd.tactics.impatience import back_off, perturb_targets
 from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_compensation import compensate_speed
 from mesa_mobility.crowd.tactics.speed_rules import apply_speed_rules
@@ -23,6 +23,7 @@ from mesa_mobility.crowd.tactics.visits.stays import Stays
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
+    from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 
 
 class _OfTheCrowd(Tactic):
@@ -135,9 +136,10 @@ class GiveWay(_OfTheCrowd):
     def bind(self, model: PedestrianModel) -> None:
         """Keep the crowd; without wide types there is nothing to do."""
         super().bind(model)
-        widest = max(each.core_radius for each in model.pedestrian_types)
+        widest = max(each.half_width for each in model.pedestrian_types)
         if widest > WIDE:
-            self._precedence = Precedence(model.floor_plan, widest)
+            stretch = np.array([_stretch(each) for each in model.pedestrian_types])
+            self._precedence = Precedence(model.floor_plan, widest, stretch)
 
     def state(self) -> dict[str, Any]:
         """Who goes first where."""
@@ -182,16 +184,33 @@ class CompensateSpeed(_OfTheCrowd):
 
 
 class Impatience(_OfTheCrowd):
-    """People who make no progress look for a way round."""
+    """People who make no progress look for a way round; long bodies back off as well."""
 
     name = "impatience"
+
+    _has_long_body: NDArray[np.bool_]
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the crowd, and which types have bodies of several discs."""
+        super().bind(model)
+        self._has_long_body = np.array([len(each.shape) > 1 for each in model.pedestrian_types])
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Turn the points of some who make no progress."""
         rows, crowd = deciding.pedestrians, self._crowd
         settle(rows, desired.points, desired.speeds, crowd.records)
-        if perturb_targets(rows, crowd, deciding.elapsed, deciding.rng):
+        changed = perturb_targets(rows, crowd, deciding.elapsed, deciding.rng)
+        if self._has_long_body.any() and back_off(
+            rows, crowd, self._has_long_body, deciding.elapsed
+        ):
+            changed, desired.speeds = True, crowd.preferred[rows]
+        if changed:
             desired.points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
+
+
+def _stretch(kind: PedestrianType) -> float:
+    """Radius of a circle that holds a body of a type, in core radii."""
+    return max(abs(offset) + radius for offset, radius in kind.shape)
 
 
 def _frame(deciding: Deciding) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
@@ -48,7 +49,7 @@ def make_candidates(
     neighbour_offsets, neighbours = _all_neighbours(
         rows, grid, state.x, state.y, rules.search_radius
     )
-    wall_offsets, walls = _all_walls(rows, table.farthest, around, state.records)
+    wall_offsets, walls = _all_walls(rows, table, around, state.records)
     durations = table.options.frames[options] * FRAME_SECONDS
     speeds = table.options.speed[options].astype(np.float64)
     return Candidates(
@@ -147,7 +148,7 @@ def _all_neighbours(
 @kept()
 def _all_walls(
     rows: NDArray[np.int64],
-    farthest: NDArray[np.float64],
+    table: OptionTable,
     around: Surroundings,
     state: CrowdState,
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -157,7 +158,8 @@ def _all_walls(
     walls = np.empty((max(len(found), 1), 4))
     for k in range(len(rows)):
         i = rows[k]
-        reach = wall_reach(farthest[state.cluster[i]], state.core[i])
+        core = state.core[i] + overhang_of(i, table, state)
+        reach = wall_reach(table.farthest[state.cluster[i]], core)
         n = near_walls(around, state.x[i], state.y[i], state.destination[i], reach, found)
         offsets[k + 1] = offsets[k] + n
         while offsets[k + 1] > len(walls):
