@@ -1,5 +1,6 @@
 import json
 import math
+import signal
 import subprocess
 import sys
 
@@ -119,8 +120,6 @@ import os, signal, sys
 from pathlib import Path
 from mesa_mobility.results import files
 
-folder, steps = Path(sys.argv[1]), int(sys.argv[2])
-
 def counted(do):
     def step(*arguments, **keywords):
         global steps
@@ -130,7 +129,14 @@ def counted(do):
         return do(*arguments, **keywords)
     return step
 
-with files.all_or_none(folder, ["a", "b", "sealing"]) as temporary:
+for steps in range(len(sys.argv) - 1):
+    if os.fork() == 0:
+        break
+    _, status = os.wait()
+    print(status, flush=True)
+else:
+    sys.exit()
+with files.all_or_none(Path(sys.argv[1 + steps]), ["a", "b", "sealing"]) as temporary:
     for name in ("a", "b", "sealing"):
         (temporary / name).write_text("new")
     os.replace = counted(os.replace)
@@ -141,14 +147,17 @@ with files.all_or_none(folder, ["a", "b", "sealing"]) as temporary:
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 @pytest.mark.parametrize("before", [False, True])
 def test_a_folder_that_has_the_last_file_is_whole_whenever_the_writer_is_killed(tmp_path, before):
-    whole = []
-    for steps in range(6):
-        folder = tmp_path / str(steps)
+    folders = [tmp_path / str(steps) for steps in range(5)]
+    for folder in folders:
         folder.mkdir()
         if before:
             for name in ("a", "b", "sealing"):
                 (folder / name).write_text("old")
-        ended = subprocess.run([sys.executable, "-c", KILLED, folder, str(steps)])
+    done = subprocess.run([sys.executable, "-c", KILLED, *folders], capture_output=True, text=True)
+    # Killed before each of four steps, and not at all.
+    assert done.stdout.split() == [*[str(int(signal.SIGKILL))] * 4, "0"], done.stderr
+    whole = []
+    for folder in folders:
         found = {path.name: path.read_text() for path in folder.iterdir() if path.is_file()}
         whole.append("sealing" in found)
         if whole[-1]:
@@ -156,9 +165,6 @@ def test_a_folder_that_has_the_last_file_is_whole_whenever_the_writer_is_killed(
                 dict.fromkeys(("a", "b", "sealing"), "old"),
                 dict.fromkeys(("a", "b", "sealing"), "new"),
             )
-        if ended.returncode == 0:
-            break
-    # Killed before each of four steps, and not at all.
     assert whole == [before, False, False, False, True]
 
 

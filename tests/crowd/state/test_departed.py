@@ -111,10 +111,10 @@ def test_seven_of_eight_lone_walkers_leave_without_delay():
     # From a grid of starts all over the room: the straight way to the middle of the door at the
     # speed of one's own, and two seconds for setting off and turning. The others come along the
     # wall, step past the door and turn back.
-    late = []
+    late, plan = [], two_doors()
     for x in np.arange(0.5, 8.0, 1.0):
         for y in np.arange(0.5, 8.0, 1.0):
-            model = model_of(two_doors(), shipped_map(), rng=1, frames_per_step=3, record=False)
+            model = model_of(plan, shipped_map(), rng=1, frames_per_step=3, record=False)
             person = model.add_pedestrians([(x, y)], exits=["right"])[0]
             speed = float(model.crowd.preferred[person.row])
             model.run(max_seconds=30)

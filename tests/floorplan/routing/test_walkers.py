@@ -118,7 +118,7 @@ def check_random_plans(places_in, walkers, seeds: range) -> None:
 
 
 def test_everybody_gets_out_of_random_plans(places_in, walkers) -> None:
-    check_random_plans(places_in, walkers, range(25))
+    check_random_plans(places_in, walkers, range(12))
 
 
 @pytest.mark.slow

@@ -1,5 +1,7 @@
 """Types derived by scaling: their speeds, bodies and what their maps say of themselves."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -43,13 +45,20 @@ def test_an_unknown_type_is_refused():
         derived_type("giant")
 
 
+@cache
+def recorded(folder, pedestrian_type):
+    """The recordings of a type, without mirror images."""
+    clips = load_clips(find_clips(folder), pedestrian_type=pedestrian_type, mirrored=False)
+    return clips.recordings
+
+
 @pytest.mark.captures
 @pytest.mark.parametrize("name", ["frail_older_adult", "cane", "crutches", "walking_frame"])
 def test_steady_walks_have_the_speed_of_the_source(captures_dir, name):
     kind = derived_type(name)
-    clips = load_clips(find_clips(captures_dir), pedestrian_type=kind.source, mirrored=False)
-    factor = kind.time_factor(clips.recordings)
-    scaled, metadata = kind.derive(clips.recordings, factor)
+    recordings = recorded(captures_dir, kind.source)
+    factor = kind.time_factor(recordings)
+    scaled, metadata = kind.derive(recordings, factor)
     poses = pose_table(scaled)
     steady = np.percentile(poses.speed[~poses.is_standing()], 75)
     # People who stand in the recordings may creep in quicker ones.
@@ -59,9 +68,7 @@ def test_steady_walks_have_the_speed_of_the_source(captures_dir, name):
 
 @pytest.mark.captures
 def test_lengths_and_times_are_scaled(captures_dir):
-    clip = load_clips(find_clips(captures_dir), pedestrian_type="slow", mirrored=False).recordings[
-        0
-    ]
+    clip = recorded(captures_dir, "slow")[0]
     small = scale(clip, 0.5, 0.8)
     assert small.frame_rate == clip.frame_rate
     assert small.duration == pytest.approx(0.8 * clip.duration, abs=1 / 30)
