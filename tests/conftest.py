@@ -1,5 +1,8 @@
 import os
 import shutil
+import subprocess
+import sys
+import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -8,7 +11,9 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from mesa_mobility.compiled import cache
 from mesa_mobility.crowd import PRESETS
+from tests.fixtures.walker import walker_bvh
 
 VARIABLE = "MESA_MOBILITY_CAPTURES"
 SHARED = Path(__file__).resolve().parents[2] / "shared"
@@ -17,6 +22,43 @@ SHARED = Path(__file__).resolve().parents[2] / "shared"
 # How long an example takes depends on what else the machine does.
 settings.register_profile("mesa-mobility", deadline=None)
 settings.load_profile("mesa-mobility")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Before several processes run all tests, functions are compiled once.
+
+    Otherwise each of them, and each command that they start, compiles most functions itself.
+    """
+    config = session.config
+    several = len(getattr(config.option, "tx", None) or []) > 1
+    everything = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    kept = cache.folder()
+    if not (several and everything) or kept is None or any(kept.glob("*/*.nbi")):
+        return
+    with tempfile.TemporaryDirectory() as temporary:
+        recordings = Path(temporary) / "recordings"
+        recordings.mkdir()
+        (recordings / "walk.bvh").write_text(walker_bvh(150, 1.0))
+        # The first compiles in two processes what the others need as well.
+        _wait_for(["run", "doorway", "--seconds", "1"])
+        _wait_for(
+            ["run", "mixed_evacuation", "--seconds", "1"],
+            ["map", "build", str(recordings), "-o", f"{temporary}/map.npz", "--clusters", "6"],
+        )
+
+
+def _wait_for(*commands: list[str]) -> None:
+    """Run commands at the same time. Tests tell what is wrong with one that fails."""
+    started = [
+        subprocess.Popen(
+            [sys.executable, "-m", "mesa_mobility", *each],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        for each in commands
+    ]
+    for each in started:
+        each.wait()
 
 
 def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
