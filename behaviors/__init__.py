@@ -1,6 +1,5 @@
 """The shipped behaviours, each a plug-in like any other."""
 
-from mesa_mobility.behaviors.anticipation import Anticipation
 from mesa_mobility.behaviors.exits.exit_choice import Choosing, ExitChoice
 from mesa_mobility.behaviors.exits.familiar_exit import FamiliarExit
 from mesa_mobility.behaviors.exits.nearest_exit import NearestExit
@@ -29,7 +28,6 @@ from mesa_mobility.behaviors.velocity import (
 from mesa_mobility.behaviors.walk_together import WalkTogether
 
 __all__ = [
-    "Anticipation",
     "BlockedWays",
     "Choosing",
     "CongestionRouting",

@@ -53,7 +53,7 @@ def run(
             help="An installed behaviour to use besides the model's own; repeatable.",
         ),
     ] = None,
-    preset: Annotated[str, typer.Option(help="default, steady or paper.")] = "default",
+    preset: Annotated[str, typer.Option(help="default or paper.")] = "default",
     population: Annotated[
         str | None,
         typer.Option(

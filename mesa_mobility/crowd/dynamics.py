@@ -17,11 +17,11 @@ from mesa_mobility.crowd.people.pedestrian import Pedestrian
 from mesa_mobility.crowd.planning.decision_order import decision_order, due
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.explanation import Explanation, judge, weigh
-from mesa_mobility.crowd.planning.grid import Grid, build_grid
 from mesa_mobility.crowd.planning.replanning import stop_where_blocked
 from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
+from mesa_mobility.crowd.state.people_grid import Grid, build_grid
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets

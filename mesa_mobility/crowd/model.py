@@ -60,7 +60,7 @@ class PedestrianModel(mesa.Model):
 
     Args:
         floor_plan: where people walk.
-        preset: "default", "steady", "paper", or rules of one's own.
+        preset: "default", "paper", or rules of one's own.
         mobility_map: a map, its file, or None for the able-bodied one that ships; stands
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.

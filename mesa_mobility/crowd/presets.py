@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from numbers import Real
@@ -9,6 +10,7 @@ from typing import Any
 
 from mesa_mobility.crowd.costs.terms import EXPECTED_WEIGHT, CostTerm, is_weight
 from mesa_mobility.crowd.tactics.shipped import (
+    Anticipation,
     CompensateSpeed,
     FollowSpeedRules,
     GiveWay,
@@ -41,10 +43,12 @@ class Preset:
         durations: option durations in frames.
         shares: shortened copies of the options of each cluster, as shares of the ground covered:
             first of the shortest ones, then of the next longer, and so on.
+        most_acceleration: of an option, m/s2; those that exceed it are left out. None for all.
         hard_bodies: whether no two cores may overlap.
         abreast: whether a crowd spreads out to pass a corner.
         turns: whether people take turns at passages too narrow for two, and wide ones give way to
             each other at openings too narrow for two of them.
+        anticipation: whether people who walk turn aside early for others.
         impatience: whether people who make no progress look for a way round.
         even_pace: whether free walkers correct their accumulated distance error.
 
@@ -58,9 +62,11 @@ class Preset:
     group_pace: str | None
     durations: tuple[int, ...]
     shares: tuple[tuple[float, ...], ...]
+    most_acceleration: float | None
     hard_bodies: bool
     abreast: bool
     turns: bool
+    anticipation: bool
     impatience: bool
     even_pace: bool
 
@@ -81,6 +87,9 @@ class Preset:
             isinstance(each, int) and each > 0 for each in self.durations
         ):
             refuse("durations", self.durations, "frames, 1 or more each")
+        most = self.most_acceleration
+        if most is not None and not (isinstance(most, Real) and 0.0 < most < math.inf):
+            refuse("most_acceleration", most, "None, or m/s2, more than 0")
         for share in (each for some in self.shares for each in some):
             if not (isinstance(share, Real) and 0.0 <= share < 1.0):
                 refuse("share", share, "0 or more and less than 1")
@@ -105,6 +114,7 @@ class Preset:
             (self.turns, GiveWay),
             (True, Wait),
             (self.even_pace, CompensateSpeed),
+            (self.anticipation, Anticipation),
             (self.impatience, Impatience),
         ]
         return [kind() for taken, kind in tactics if taken]
@@ -137,48 +147,27 @@ PRESETS = {
         group_pace=None,
         durations=(45,),
         shares=(),
+        most_acceleration=None,
         hard_bodies=False,
         abreast=False,
         turns=False,
+        anticipation=False,
         impatience=False,
         even_pace=False,
     ),
     # The same terms and constants, but a preferred velocity in place of unlimited reward, bodies
-    # that do not overlap and make way, and options short enough for a queue to move.
+    # that do not overlap and make way, options short and slow enough for a queue to move and none
+    # that starts abruptly, and people who look ahead and walk steadily.
     "default": Preset(
         name="default",
         terms={
-            "target_distance": 1.0,
-            "facing_deviation": 1.2,
-            "preferred_velocity": 2.0,
-            "interference": 1.0,
-            "headway": 1.5,
-            "right_of_way": 3.0,
-            "stepping": 1.0,
-        },
-        target_choice="nearest_exit",
-        group_pace="walk_together",
-        durations=(12, 24, 45),
-        shares=((0.5, 0.25, 0.0),),
-        hard_bodies=True,
-        abreast=True,
-        turns=True,
-        impatience=True,
-        even_pace=True,
-    ),
-    # The default, and in addition people who look ahead and walk steadily, and slow steps of 0.8 s.
-    # Single people move more as measured, whole crowds fit the standard tests less well.
-    "steady": Preset(
-        name="steady",
-        terms={
-            "target_distance": 0.5,
+            "target_distance": 0.6,
             "facing_deviation": 1.25,
             "preferred_velocity": 2.75,
-            "velocity_change": 1.25,
+            "velocity_change": 1.0,
             "sideways": 2.0,
             "room_ahead": 2.0,
             "interference": 1.0,
-            "anticipation": 5.0,
             "headway": 2.25,
             "right_of_way": 3.0,
             "stepping": 1.0,
@@ -187,9 +176,11 @@ PRESETS = {
         group_pace="walk_together",
         durations=(12, 24, 45),
         shares=((0.75, 0.5, 0.25, 0.0), (0.75, 0.5, 0.25)),
+        most_acceleration=0.95,
         hard_bodies=True,
         abreast=True,
         turns=True,
+        anticipation=True,
         impatience=True,
         even_pace=True,
     ),

@@ -65,7 +65,12 @@ def make_scene(
     Raises:
         ModelError: a type's map has no option of the preset's durations.
     """
-    known = repertoire(tuple(each.mobility_map for each in types), preset.durations, preset.shares)
+    known = repertoire(
+        tuple(each.mobility_map for each in types),
+        preset.durations,
+        preset.shares,
+        preset.most_acceleration,
+    )
     table = known.table._replace(shapes=shapes_of([each.shape for each in types]))
     known = replace(known, table=table)
     widths = [each.half_width for each in types]

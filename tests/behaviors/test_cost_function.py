@@ -12,7 +12,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesa_mobility.behaviors import (
-    Anticipation,
     Displacement,
     FacingDeviation,
     Headway,
@@ -34,7 +33,7 @@ from tests.fixtures.options import Ending, crowded, one_option
 
 TERMS = [
     TargetDistance, FacingDeviation, Displacement, Interference, PreferredSpeed, PreferredVelocity,
-    Headway, RightOfWay, Anticipation, RoomAhead, Stepping, VelocityChange,
+    Headway, RightOfWay, RoomAhead, Stepping, VelocityChange,
     Sideways,
 ]  # fmt: skip
 

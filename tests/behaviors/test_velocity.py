@@ -174,8 +174,11 @@ def test_bounds_hold_for_the_groups_of_the_map_that_ships(preferred):
         ((0.0, 0.0), (0.0, 0.0), (-0.36, 0.48), 0.8, 0.6),
         ((0.0, 0.0), (0.0, 0.0), (0.18, -0.24), 0.8, 0.15),  # halting after 0.3: half of it
         ((-1.5, 0.0), (0.0, 0.0), (1.0, 0.0), 1.5, 2.0),  # back
-        ((0.0, 1.5), (0.0, 0.0), (1.0, 0.0), 1.5, math.sqrt(2.0)),  # round a corner
-        ((2.9, 1.0), (2.5, 1.0), (0.7, 0.4), 0.4, 0.5),  # 1 m/s after 0.7 and 0.4 aside
+        # Round a corner: 1 m/s less ahead, and 1.5 times 1 m/s to the side.
+        ((0.0, 1.5), (0.0, 0.0), (1.0, 0.0), 1.5, math.sqrt(3.25)),
+        # 1 m/s after 0.7 and 0.4 aside: 0.3 and -0.4 m/s more, 0.05 / w along the way and 0.4 / w
+        # across it, where w is the speed of 0.65 ** 0.5 m/s.
+        ((2.9, 1.0), (2.5, 1.0), (0.7, 0.4), 0.4, math.sqrt((0.05**2 + 0.6**2) / 0.65)),
     ],
 )
 def test_changes_worked_out_by_hand(point, start, velocity, duration, expected):
@@ -183,7 +186,9 @@ def test_changes_worked_out_by_hand(point, start, velocity, duration, expected):
         [Ending(point, displacement=math.dist(point, start), duration=duration)],
         position=start, velocity=velocity,
     )  # fmt: skip
-    assert VelocityChange().cost(candidates(shown)) == pytest.approx([expected], abs=1e-12)
+    assert VelocityChange(turning=1.5).cost(candidates(shown)) == pytest.approx(
+        [expected], abs=1e-12
+    )
 
 
 def test_each_ones_own_velocity_counts():
@@ -209,6 +214,21 @@ def test_a_walking_speed_out_of_range_is_refused_in_one_line(walking):
     assert "\n" not in str(caught.value)
 
 
+def test_a_turning_factor_of_one_counts_all_directions_alike():
+    round_a_corner = one_option(
+        Ending((0.0, 1.5), displacement=1.5, duration=1.5), velocity=(1.0, 0.0)
+    )
+    for turning, expected in ((1.0, math.sqrt(2.0)), (3.0, math.sqrt(10.0))):
+        cost = VelocityChange(turning=turning).cost(round_a_corner)
+        assert cost == pytest.approx([expected], abs=1e-12)
+
+
+@pytest.mark.parametrize("turning", [0.0, 0.99, -2.0, math.nan, math.inf])
+def test_a_turning_factor_out_of_range_is_refused_in_one_line(turning):
+    with pytest.raises(ModelError, match=r"^velocity_change: turning is .*expected 1 or more$"):
+        VelocityChange(turning=turning)
+
+
 @given(crowded)
 @settings(deadline=None)
 def test_change_of_any_batch(options):
@@ -216,8 +236,13 @@ def test_change_of_any_batch(options):
     velocity = moved / options.durations[:, None]
     before = options.velocities[options.owner]
     share = np.minimum(np.linalg.norm(before, axis=1) / 0.6, 1.0)
-    expected = share * np.linalg.norm(velocity - before, axis=1)
-    np.testing.assert_allclose(VelocityChange().cost(options), expected, rtol=1e-9, atol=1e-9)
+    ways = before @ [1.0, 1.0j]
+    ways = np.where(ways == 0.0, 1.0, ways)
+    # As seen by somebody who walks along the real axis.
+    seen = ((velocity - before) @ [1.0, 1.0j]) / (ways / abs(ways))
+    expected = share * abs(seen.real + 2.5j * seen.imag)
+    costs = VelocityChange(turning=2.5).cost(options)
+    np.testing.assert_allclose(costs, expected, rtol=1e-9, atol=1e-9)
 
 
 @given(crowded, turns, shifts)
@@ -229,14 +254,29 @@ def test_a_change_does_not_depend_on_where_north_is(options, angle, by):
 
 def change_at_least(x, y, radius, duration, velocity):
     return VelocityChange.bound.function(
-        x, y, radius, 1.0, 0.0, 0.3, duration, 0.0, 2.0, 0.0, 0.0, 9.0, 0.0, 1.0, *velocity, (0.6,)
+        x,
+        y,
+        radius,
+        1.0,
+        0.0,
+        0.3,
+        duration,
+        0.0,
+        2.0,
+        0.0,
+        0.0,
+        9.0,
+        0.0,
+        1.0,
+        *velocity,
+        (0.6, 1.25),
     )
 
 
 def test_the_bound_of_a_change_is_worth_something():
     # 1.5 m in 1.5 s after 2 m/s; somewhere within 0.3 m of there, which is 0.2 m/s.
     assert change_at_least(1.5, 0.0, 0.3, 1.5, (2.0, 0.0)) == pytest.approx(0.8)
-    assert change_at_least(1.5, 0.0, 0.0, 1.5, (0.0, -1.0)) == pytest.approx(math.sqrt(2.0))
+    assert change_at_least(1.5, 0.0, 0.0, 1.5, (0.0, -1.0)) == pytest.approx(math.sqrt(3.25))
     # 0.7 and 0.5 m/s more than the 0.3 m/s before, of which half counts.
     assert change_at_least(1.5, 0.0, 0.0, 1.5, (0.3, 0.0)) == pytest.approx(0.35)
     assert change_at_least(1.5, 0.0, 0.3, 1.5, (0.3, 0.0)) == pytest.approx(0.25)

@@ -6,7 +6,7 @@ from mesa_mobility.plugins import registry
 SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium", "mixed_evacuation"}
 SHIPPED_BEHAVIORS = {
     "target_distance", "facing_deviation", "displacement", "interference", "preferred_speed",
-    "preferred_velocity", "headway", "right_of_way", "stepping", "anticipation", "room_ahead",
+    "preferred_velocity", "headway", "right_of_way", "stepping", "room_ahead",
     "velocity_change", "sideways",
 }  # fmt: skip
 

@@ -5,7 +5,7 @@ import pytest
 from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd.planning.decision import decide
-from mesa_mobility.crowd.planning.grid import build_grid
+from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.floorplan.routing import target_search
 
 MAKERS = ("arange", "array", "cumsum", "full", "ones", "zeros")

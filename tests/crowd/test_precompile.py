@@ -5,14 +5,14 @@ from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd import precompile
 from mesa_mobility.crowd.planning import decision, decision_order, grid
-from mesa_mobility.crowd.state import advance, aggregates, departed
+from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
 from mesa_mobility.crowd.tactics import impatience, turns
 
 FUNCTIONS = [
     decision.decide,
     decision_order.select_due,
     advance._move,
-    grid.build_grid,
+    people_grid.build_grid,
     grid._write_headways,
     departed.walk_on,
     departed.move_on,

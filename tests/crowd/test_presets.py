@@ -21,8 +21,8 @@ def weights(model):
     return {type(term): term.weight for term in model.terms}
 
 
-def test_there_are_three():
-    assert set(PRESETS) == {"default", "paper", "steady"}
+def test_there_are_two():
+    assert set(PRESETS) == {"default", "paper"}
 
 
 def test_the_papers_terms_and_its_options_of_45_frames():
@@ -107,7 +107,7 @@ def test_decisions_of_the_paper_last_45_frames_or_4():
 def test_each_model_has_terms_of_its_own():
     one, other = model_of(corridor(), strider()), model_of(corridor(), strider())
     one.terms[0].weight = 99.0
-    assert other.terms[0].weight == 1.0
+    assert other.terms[0].weight == PRESETS["default"].terms[other.terms[0].name]
 
 
 def test_terms_of_ones_own_replace_the_presets():

@@ -8,8 +8,9 @@ from numba import njit
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel, Trajectories
-from mesa_mobility.crowd.planning import grid as neighbours
-from mesa_mobility.crowd.planning.grid import build_grid, people_within
+from mesa_mobility.crowd.planning.grid import people_within
+from mesa_mobility.crowd.state import people_grid as neighbours
+from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.floorplan import WallIndex
 from mesa_mobility.floorplan.walls import wall_index as walls
 from mesa_mobility.results import check_safety

@@ -9,7 +9,8 @@ from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import swept_collision
 from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.planning.grid import Grid, build_grid, people_within
+from mesa_mobility.crowd.planning.grid import people_within
+from mesa_mobility.crowd.state.people_grid import Grid, build_grid
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.floorplan.poisson_disk import have_room
 

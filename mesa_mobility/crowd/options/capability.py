@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.options.accelerations import without_abrupt
 from mesa_mobility.crowd.options.option_groups import alike, group
 from mesa_mobility.crowd.options.shortened import with_shortened
 from mesa_mobility.crowd.options.table import option_table, padded_paths
@@ -26,6 +27,7 @@ class Capability:
         durations: option durations in frames to use; None for all that the map has.
         shares: shortened copies to add, as shares of the ground covered: those of the shortest
             options of each cluster, then of the next longer ones, and so on.
+        most_acceleration: m/s2; options that exceed it are left out. None for all.
 
     Attributes:
         table: the options.
@@ -40,6 +42,7 @@ class Capability:
         mobility_map: MobilityMap,
         durations: Sequence[int] | None = None,
         shares: Sequence[Sequence[float]] = (),
+        most_acceleration: float | None = None,
     ) -> None:
         self.map = mobility_map
         used = np.ones(mobility_map.n_options, dtype=bool)
@@ -52,6 +55,8 @@ class Capability:
                 f"{int(np.argmin(counts))} has no option of {list(durations or ())} frames"
             )
         parts = with_shortened(mobility_map, np.flatnonzero(used), shares)
+        if most_acceleration is not None:
+            parts = without_abrupt(mobility_map, parts, most_acceleration)
         cluster = np.searchsorted(mobility_map.offsets, parts.rows, side="right") - 1
         counts = np.bincount(cluster, minlength=mobility_map.n_clusters)
         offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)

@@ -49,6 +49,7 @@ def repertoire(
     maps: tuple[MobilityMap, ...],
     durations: tuple[int, ...],
     shares: tuple[tuple[float, ...], ...] = (),
+    most_acceleration: float | None = None,
 ) -> Repertoire:
     """The repertoire of these maps; models with the same maps share it.
 
@@ -56,11 +57,14 @@ def repertoire(
         maps: one for each type.
         durations: option durations in frames.
         shares: shortened copies, as for ``Capability``.
+        most_acceleration: of an option, m/s2, as for ``Capability``.
 
     Raises:
         ModelError: a cluster has no option of these durations.
     """
-    own = {map_: Capability(map_, durations, shares) for map_ in dict.fromkeys(maps)}
+    own = {
+        map_: Capability(map_, durations, shares, most_acceleration) for map_ in dict.fromkeys(maps)
+    }
     capabilities = tuple(own[map_] for map_ in maps)
     table = stack_tables([each.table for each in capabilities])
     spanned = boxes(table.path)

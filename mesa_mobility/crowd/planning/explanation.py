@@ -22,10 +22,10 @@ from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
-from mesa_mobility.crowd.planning.grid import Grid
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.paths import to_world
+from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 
 FREE, WALL, PERSON = 0, 1, 2

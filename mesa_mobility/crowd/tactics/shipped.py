@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.anticipation import turn_aside
 from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
 from mesa_mobility.crowd.tactics.giving_way import WIDE, Precedence
 from mesa_mobility.crowd.tactics.impatience import back_off, perturb_targets
@@ -181,6 +182,20 @@ class CompensateSpeed(_OfTheCrowd):
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Change the speeds of free walkers by little."""
         desired.speeds = compensate_speed(deciding.pedestrians, self._crowd, desired.speeds)
+
+
+class Anticipation(_OfTheCrowd):
+    """People who walk turn aside early for those whom they would come too near."""
+
+    name = "anticipation"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Turn the points of those for whom another course is better, or slow them down."""
+        if not desired.newcomers:
+            desired.points, desired.speeds = turn_aside(
+                deciding.pedestrians, deciding.inside.pedestrians, _frame(deciding), self._crowd,
+                deciding.site.plan, desired.points, desired.speeds,
+            )  # fmt: skip
 
 
 class Impatience(_OfTheCrowd):

@@ -190,8 +190,8 @@ def test_weights_by_type(term):
 
     paths = {}
     for name, weights in (
-        ("none", {}), ("all", {"weight": 5.0}), ("child", {"child": 5.0}),
-        ("adult", {"weight": 5.0, "child": 0.0}),
+        ("none", {}), ("all", {"weight": 20.0}), ("child", {"child": 20.0}),
+        ("adult", {"weight": 20.0, "child": 0.0}),
     ):  # fmt: skip
         model = model_with(**weights)
         model.run(max_seconds=2.0)

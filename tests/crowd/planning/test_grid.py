@@ -7,12 +7,12 @@ from numba import njit
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.planning.grid import (
     COVERED,
-    build_grid,
     cover_in,
     headways,
     neighbours_within,
     place_in,
 )
+from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.crowd.state.records import Crowd
 from tests.fixtures.maps import strider
 

@@ -6,8 +6,9 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.compiled import threads
-from mesa_mobility.crowd.planning.grid import build_grid, headways
+from mesa_mobility.crowd.planning.grid import headways
 from mesa_mobility.crowd.state import aggregates
+from mesa_mobility.crowd.state.people_grid import build_grid
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.scenes import model_of
 

@@ -153,7 +153,7 @@ def test_round_a_closed_track_nobody_leaves_turns_or_hits_anybody():
         turned = np.unwrap(np.arctan2(path[:, 2], path[:, 1]))[-1] - np.arctan2(*path[0, 2:0:-1])
         # Four gates a lap.
         assert person.gates_crossed / 4 == pytest.approx(turned / math.tau, abs=0.5)
-        assert 60 * 0.8 / lap < turned / math.tau < 60 * 1.3 / lap
+        assert 60 * 0.75 / lap < turned / math.tau < 60 * 1.3 / lap
 
 
 def test_people_who_stand_still_on_a_closed_track_have_stalled():
