@@ -156,6 +156,7 @@ def test_texts_that_are_none(text):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.thorough
 @given(st.text(max_size=30).filter(lambda text: not any(c.isdigit() for c in text)))
 def test_texts_without_numbers_are_refused_in_one_line(text):
     with pytest.raises(ModelError) as refused:

@@ -156,6 +156,7 @@ def test_only_whom_and_when_one_asks_for(run):
             list(walkers(run, wrong))
 
 
+@pytest.mark.thorough
 def test_a_film_has_a_picture_for_each_fifteenth_of_a_second(run, plan, tmp_path):
     from PIL import Image
 

@@ -158,6 +158,7 @@ def test_a_pose_table_takes_no_clip_that_jumps(write, walker_bvh):
         pose_table([recording])
 
 
+@pytest.mark.thorough
 @pytest.mark.captures
 def test_no_real_recording_jumps(captures_dir):
     from mesa_mobility.capture import read_manifest

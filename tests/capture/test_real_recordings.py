@@ -155,6 +155,7 @@ def test_mirrored_legs_are_exact_reflections(able_bodied):
         np.testing.assert_allclose(exchanged, legs_of(original) * [1, -1, 1], atol=1e-12)
 
 
+@pytest.mark.thorough
 def test_the_recordings_for_research_use_load_too(captures_noncommercial_dir):
     manifest = read_manifest(captures_noncommercial_dir / "manifest.tsv")
     loaded = load_clips(manifest, mirrored=False)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -204,6 +205,7 @@ def sequence(order: str, values: Sequence[float]) -> Matrix:
     return rotation
 
 
+@pytest.mark.thorough
 @settings(deadline=None, max_examples=100)
 @given(rigs(), st.booleans())
 def test_amc_text_gives_back_every_bone_where_matrices_put_it(tmp_path_factory, rig, radians):

@@ -19,6 +19,7 @@ def run_dir(tmp_path_factory):
     return folder
 
 
+@pytest.mark.thorough
 def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
     outcome = command("animate", run_dir, "-o", tmp_path / "crowd.glb")
     assert (outcome.status, outcome.out) == (0, "")

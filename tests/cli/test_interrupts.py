@@ -31,6 +31,7 @@ def two_at_a_time(press, times):
             pass
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("after", some_times(1, 3, 0.0, 2.5))
 def test_at_some_time(after, tmp_path):
     arguments = ["run", "straight_walk", "--seconds", 2, "--out", tmp_path / "out"]
@@ -103,6 +104,7 @@ def test_building_a_map(recordings, tmp_path):
 PRESS = "import signal; press = lambda *_: os.kill(os.getpid(), signal.SIGINT)\n"
 
 
+@pytest.mark.thorough
 def test_a_second_one_stops_at_once_and_writes_nothing(tmp_path):
     prepare = PRESS + (
         "from mesa_mobility import results\nresults.check_safety = lambda *_: (press(), press())"
@@ -134,6 +136,7 @@ def test_while_a_model_is_looked_for(tmp_path):
     assert (ended.status, ended.err) == (130, "interrupted: nothing written\n")
 
 
+@pytest.mark.thorough
 def test_while_files_are_put_in_place_all_of_them_are(tmp_path):
     prepare = PRESS + (
         "from mesa_mobility.results import files\n"

@@ -77,6 +77,7 @@ def test_the_map_says_how_it_was_made(command, recordings, map_file):
     assert {clip["clip"] for clip in answer["provenance"]} == {"slow", "brisk"}
 
 
+@pytest.mark.thorough
 def test_a_derived_type_says_what_it_is_derived_from(command, recordings, tmp_path):
     path = tmp_path / "child.npz"
     outcome = command("map", "build", recordings, "-o", path, "--derive", "child")
@@ -100,6 +101,7 @@ def test_a_derived_type_says_what_it_is_derived_from(command, recordings, tmp_pa
     )
 
 
+@pytest.mark.thorough
 def test_a_distribution_of_options_is_the_same_map_from_a_smaller_file(
     command, recordings, map_file, tmp_path
 ):
@@ -216,6 +218,7 @@ def test_bad_input_is_one_line_and_status_two(command, recordings, map_file, tmp
     assert sorted(path.name for path in tmp_path.iterdir()) == ["none.bvh", "taken", "text.npz"]
 
 
+@pytest.mark.thorough
 def test_a_recording_that_jumps_is_split_and_said(command, recordings, tmp_path):
     folder = tmp_path / "recordings"
     shutil.copytree(recordings, folder)
@@ -296,6 +299,7 @@ def test_wrong_usage_has_status_two(command, arguments):
     assert command("map", *arguments).status == 2
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("kept", "side"), [("stored", "--no-mirror"), ("distribution", "--other-side")]
 )

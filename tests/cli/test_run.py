@@ -222,6 +222,7 @@ def test_the_module_is_the_command(tmp_path):
     assert json.loads(done.stdout.splitlines()[-1])["egress_s"] == 2.1
 
 
+@pytest.mark.thorough
 def test_the_same_seed_gives_the_same_bytes_in_another_process(map_file, tmp_path):
     for name in ("first", "second"):
         done = subprocess.run(

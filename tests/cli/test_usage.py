@@ -68,6 +68,7 @@ def test_surroundings_that_will_not_do(name, value):
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.thorough
 def test_pictures_need_no_backend_and_the_summary_tells_where_all_comes_from(tmp_path):
     done = cli(
         "run", "straight_walk", "--seconds", 0.2, "--set", "pedestrians=3", "--seed", 4,
@@ -113,6 +114,7 @@ def test_before_the_first_step_there_are_no_trajectories():
         Trajectories.of(StraightWalk(pedestrians=2, record=True, rng=1))
 
 
+@pytest.mark.thorough
 def test_a_checkout_that_is_not_the_one_installed_has_its_models(tmp_path):
     """In the current folder Python finds its package first, without what an install brings."""
     for folder in ("mesa_mobility", "behaviors", "models"):
@@ -142,6 +144,7 @@ def test_the_version():
     assert mesa_mobility.__version__ == importlib.metadata.version("mesa-mobility")
 
 
+@pytest.mark.thorough
 def test_no_worker_more_than_threads_are_allowed(recordings, tmp_path):
     source = (
         "import sys, threading\n"

@@ -4,6 +4,7 @@ import re
 import pytest
 
 
+@pytest.mark.thorough
 def test_json_names_what_was_measured_and_wanted(command):
     outcome = command("verify", "rimea-01", "imo-01", "--jobs", 1, "--json")
     assert outcome.status == 0
@@ -44,6 +45,7 @@ def test_numbers_out_of_range_are_bad_input(command, option):
     assert command("validate", "walking", *option).status == 2
 
 
+@pytest.mark.thorough
 def test_a_test_that_fails_ends_with_status_1(command, monkeypatch):
     from mesa_mobility.verification import Verdict, VerificationTest, rimea
     from mesa_mobility.verification.checks import at_most
@@ -67,6 +69,7 @@ def text_of(page):
     return text
 
 
+@pytest.mark.thorough
 def test_the_report_of_a_test_has_all_that_authorities_ask_for(command, tmp_path):
     page = tmp_path / "report.html"
     outcome = command("verify", "rimea-01", "--jobs", 1, "--report", page, "--json")

@@ -122,6 +122,7 @@ def script(tmp_path, *, source, as_file):
     return subprocess.run([sys.executable, *given], capture_output=True, text=True, timeout=300)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("source", "as_file", "reason"),
     [
@@ -142,12 +143,14 @@ def test_what_other_processes_cannot_import_is_refused_at_once(tmp_path, source,
     assert done.stderr.count("Traceback") == 1
 
 
+@pytest.mark.thorough
 def test_a_script_as_it_should_be(tmp_path):
     source = NOTEBOOK + "if __name__ == '__main__':" + CALL.replace("\n", "\n    ")
     done = script(tmp_path, source=source, as_file=True)
     assert done.stdout == "2\n", done.stderr
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("processes", [1, 2])
 def test_a_run_that_fails_does_not_lose_the_others(processes, in_one_process):
     walks = {"pedestrians": [2, -1, 3], "length": 6.0}

@@ -122,6 +122,7 @@ class Costs(CostTerm):
         return self._value
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("costs", "message"),
     [

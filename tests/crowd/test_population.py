@@ -140,6 +140,7 @@ def test_positions_handed_out_are_copies():
     assert model.core_radii.tolist() == [0.15]
 
 
+@pytest.mark.thorough
 @given(st.lists(st.sampled_from(["add", "remove", "step"]), max_size=12), st.integers(0, 2**31))
 @settings(max_examples=25, deadline=None)
 def test_rows_agents_and_space_agree_whatever_happens(actions, seed):
@@ -164,6 +165,7 @@ def test_rows_agents_and_space_agree_whatever_happens(actions, seed):
         assert all(known[person.row] is person for person in model.agents)
 
 
+@pytest.mark.thorough
 def test_evacuation_keeps_rows_agents_and_space_together():
     model = model_of(two_doors(), shipped_map(), rng=5, frames_per_step=3)
     places_ = model.floor_plan.random_points(60, model.rng, spacing=0.5, clearance=0.3)

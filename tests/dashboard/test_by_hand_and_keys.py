@@ -29,6 +29,7 @@ def opened(tab, name):
     )
 
 
+@pytest.mark.thorough
 def test_a_door_is_closed_by_its_name_although_people_stand_there(tab):
     plate = next(each for each in tab.shown()["plates"] if each["name"] == "first door")
     where = box(tab)
@@ -50,6 +51,7 @@ def test_a_door_is_closed_by_its_name_although_people_stand_there(tab):
     assert opened(tab, "first door")
 
 
+@pytest.mark.thorough
 def test_only_the_wheel_with_ctrl_zooms_and_the_page_scrolls_without(tab):
     tab.page.set_viewport_size({"width": 1100, "height": 600})
     tab.wait(f"() => !{SHOWN}.moving")
@@ -66,6 +68,7 @@ def test_only_the_wheel_with_ctrl_zooms_and_the_page_scrolls_without(tab):
     assert view(tab)["scale"] == pytest.approx(before["scale"] * np.exp(0.5))
 
 
+@pytest.mark.thorough
 def test_the_view_outlasts_another_size_and_another_tab(tab):
     tab.button("zoom in").click()
     tab.button("zoom in").click()
@@ -110,6 +113,7 @@ def test_keys_play_move_zoom_and_deselect(tab):
     assert view(tab) == before
 
 
+@pytest.mark.thorough
 def test_every_control_has_a_name_and_the_page_a_language(tab):
     assert tab.page.evaluate("() => document.documentElement.lang") == "en"
     nameless = tab.page.evaluate(
@@ -121,6 +125,7 @@ def test_every_control_has_a_name_and_the_page_a_language(tab):
     assert nameless == []
 
 
+@pytest.mark.thorough
 def test_a_phone_shows_the_crowd_and_two_fingers_zoom(open_tab):
     tab = open_tab(width=420, height=800, has_touch=True, is_mobile=True)
     # It is drawn open until the page knows how narrow it is.
@@ -153,6 +158,7 @@ def test_a_phone_shows_the_crowd_and_two_fingers_zoom(open_tab):
     assert view(tab) == before
 
 
+@pytest.mark.thorough
 def test_a_dark_page_has_a_dark_floor(open_tab):
     tab = open_tab(color_scheme="dark")
     tab.wait("() => document.querySelector('.mm-crowd').classList.contains('mm-dark')")
@@ -171,6 +177,7 @@ DARK_GROUND = """(canvas) => {
 }"""
 
 
+@pytest.mark.thorough
 def test_a_dark_page_has_a_dark_decision_and_a_dark_cluster(open_tab):
     tab = open_tab(color_scheme="dark")
     tab.step(2)
@@ -182,6 +189,7 @@ def test_a_dark_page_has_a_dark_decision_and_a_dark_cluster(open_tab):
     assert spine.get_attribute("stroke") == "#eeeeee"
 
 
+@pytest.mark.thorough
 def test_a_page_that_turns_dark_draws_the_decision_anew(tab):
     tab.step(2)
     tab.click_person(int(tab.people()[0, 0]))

@@ -109,6 +109,7 @@ def test_no_page_may_frame_it_and_it_asks_no_other_host(local, path):
     assert "http" not in policy
 
 
+@pytest.mark.thorough
 def test_on_a_network_it_warns_and_tells_a_token(network):
     said = "".join(network.lines)
     assert "warning: 0.0.0.0 is reached from the network" in said
@@ -159,6 +160,7 @@ def test_which_addresses_only_this_machine_reaches(host, expected):
     assert is_loopback(host) is expected
 
 
+@pytest.mark.thorough
 @given(st.text(max_size=40), st.text(max_size=40))
 def test_whatever_host_and_origin_are_only_this_machine_is_answered(host, origin):
     """No text leads to an error, and none but the machine's own names is let through."""

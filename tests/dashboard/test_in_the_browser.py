@@ -41,6 +41,7 @@ def test_it_plays_and_people_move(tab):
     assert (moved > 0.3).mean() > 0.5
 
 
+@pytest.mark.thorough
 def test_the_canvas_shows_the_model_step_by_step(tab):
     model = Doorway(rng=SEED)
     assert same_people(tab.people(), model)
@@ -50,6 +51,7 @@ def test_the_canvas_shows_the_model_step_by_step(tab):
         assert same_people(tab.people(), model)
 
 
+@pytest.mark.thorough
 def test_reset_and_seed_bring_the_same_first_frames(tab):
     tab.step(4)
     first = tab.people()
@@ -68,12 +70,14 @@ def test_reset_and_seed_bring_the_same_first_frames(tab):
     assert np.array_equal(tab.people(), first)
 
 
+@pytest.mark.thorough
 def test_a_parameter_takes_effect(tab):
     tab.set("pedestrians", "17")
     tab.wait(f"() => {SHOWN}.inside === 17")
     assert same_people(tab.people(), Doorway(pedestrians=17, rng=SEED))
 
 
+@pytest.mark.thorough
 def test_another_model_and_another_preset(tab):
     tab.choose("model", "auditorium")
     tab.wait(f"() => {SHOWN}.inside === 750")
@@ -135,6 +139,7 @@ def test_a_click_opens_the_decision_with_its_numbers(tab):
     assert total == f"{explained.totals[pointed]:.3f}"
 
 
+@pytest.mark.thorough
 def test_one_pedestrian_is_clicked_after_another(tab):
     tab.step(1)
     for row in (23, 11, 23, 7):
@@ -161,6 +166,7 @@ def test_one_pedestrian_is_clicked_after_another(tab):
     tab.click_person(4)
 
 
+@pytest.mark.thorough
 def test_the_decision_shown_is_the_one_the_engine_takes(tab):
     tab.step(2)
     tab.click_person(11)
@@ -182,6 +188,7 @@ def test_the_decision_shown_is_the_one_the_engine_takes(tab):
     assert (model.crowd.to_x[11], model.crowd.to_y[11]) == pytest.approx((x, y))
 
 
+@pytest.mark.thorough
 def test_weights_and_behaviours_change_while_it_runs(tab):
     tab.step(2)
     tab.page.get_by_label("weight of target distance", exact=True).fill("0")
@@ -196,6 +203,7 @@ def test_weights_and_behaviours_change_while_it_runs(tab):
     assert not same_people(tab.people(), ahead(Doorway(rng=SEED), 17))
 
 
+@pytest.mark.thorough
 def test_a_door_closes_and_opens_by_a_click(tab):
     tab.click_at(10.1, 5.0)
     closed = "() => document.querySelector('.mm-crowd').__vue__.floor.openings[0].open"
@@ -208,6 +216,7 @@ def test_a_door_closes_and_opens_by_a_click(tab):
     tab.wait(closed)
 
 
+@pytest.mark.thorough
 def test_two_tabs_do_not_disturb_each_other(open_tab):
     one, other = open_tab(), open_tab()
     one.set("pedestrians", "25")
@@ -224,6 +233,7 @@ def test_two_tabs_do_not_disturb_each_other(open_tab):
     )
 
 
+@pytest.mark.thorough
 def test_charts_and_pictures_are_saved(tab, tmp_path):
     tab.step(12)
     with tab.page.expect_download() as download:
@@ -239,6 +249,7 @@ def test_charts_and_pictures_are_saved(tab, tmp_path):
     assert (tmp_path / "crowd.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
+@pytest.mark.thorough
 def test_the_map_view_shows_clusters_and_their_sources(tab):
     tab.page.get_by_role("tab", name="Mobility map").click()
     map_ = Doorway(pedestrians=1).pedestrian_types[0].mobility_map
@@ -256,6 +267,7 @@ def test_the_map_view_shows_clusters_and_their_sources(tab):
     assert "23700, 1, 1, 1, 1" in text or str(map_.metadata["build"]["poses_in_component"]) in text
 
 
+@pytest.mark.thorough
 def test_options_that_cost_infinitely_much_are_drawn(tab):
     # Costs go to the page in single precision, in which 1e300 is infinite.
     tab.page.get_by_label("weight of target distance", exact=True).fill("1e300")

@@ -46,6 +46,7 @@ assert making.done.wait(5.0) and making.model() == "a model"
 """
 
 
+@pytest.mark.thorough
 def test_a_page_that_closes_does_not_hold_up_the_others():
     # Solara starts no thread in the context of a closed page, and waits for it for ever.
     done = subprocess.run(

@@ -114,6 +114,7 @@ def test_a_plan_opens_without_a_model(start_dashboard, open_tab, tmp_path):
     assert tab.page.get_by_label("plan", exact=True).count() == 0
 
 
+@pytest.mark.thorough
 def test_a_refresh_comes_back_to_the_same_run(tab):
     tab.set("pedestrians", "17")
     inside(tab, 17)
@@ -145,6 +146,7 @@ def test_an_address_alone_sets_up_the_same_model_in_another_tab(tab, open_tab):
     tab.step(1)
 
 
+@pytest.mark.thorough
 def test_both_fields_that_are_wrong_are_marked(tab):
     tab.set("pedestrians", "")
     tab.set("door width", "wide")
@@ -184,6 +186,7 @@ def test_a_model_that_takes_long_can_be_cancelled_and_other_tabs_go_on(tab, open
     tab.step(2)
 
 
+@pytest.mark.thorough
 def test_a_closed_exit_is_the_reason_why_nobody_leaves(tab):
     x, y = 18.2, 7.0
     tab.click_at(x, y)

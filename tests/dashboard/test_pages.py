@@ -37,6 +37,7 @@ MESA = (
 ELAPSED = f"{SHOWN}.elapsed"
 
 
+@pytest.mark.thorough
 def test_a_model_of_somebodys_own_has_a_page(start_server, open_tab):
     tab = open_tab(start_server(OWN).address)
     assert tab.shown()["inside"] == 9
@@ -48,6 +49,7 @@ def test_a_model_of_somebodys_own_has_a_page(start_server, open_tab):
     tab.wait(f"() => {SHOWN}.inside === 50")
 
 
+@pytest.mark.thorough
 def test_the_crowd_view_is_a_component_for_mesas_own_page(start_server, open_tab):
     tab = open_tab(start_server(MESA).address)
     before = tab.people()

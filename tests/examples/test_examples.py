@@ -105,6 +105,7 @@ def test_smoke_avoided(capsys: pytest.CaptureFixture[str]) -> None:
     assert numbers(r"(\d+) of 40 walked through", aware) == [0]
 
 
+@pytest.mark.thorough
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
 

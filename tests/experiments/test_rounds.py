@@ -46,6 +46,7 @@ def run_in_pieces(experiment, path, ended):
     raise AssertionError("does not come to an end")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("ended", [1, 7])
 def test_interruptions_do_not_change_how_many_runs_are_enough(ended, rows, tmp_path):
     whole = run_experiment(auto(), tmp_path / "whole", executor="serial")

@@ -47,6 +47,7 @@ def test_parameters_are_keywords_with_defaults_and_say_their_types(model):
     assert "scenario" not in defaults
 
 
+@pytest.mark.thorough
 @models
 @pytest.mark.parametrize("preset", ["default", "paper"])
 def test_starts_with_everybody_standing_clear_of_walls_and_each_other(model, preset):
@@ -87,6 +88,7 @@ def test_the_map_may_be_a_file(model, tmp_path):
     assert made.capabilities[0].map.n_options == 8
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("model", [each for each in MODELS.values() if each is not MixedEvacuation])
 def test_the_map_that_ships_is_the_default(model):
     made = model(pedestrians=1, rng=1)

@@ -62,6 +62,7 @@ def test_more_people_than_it_holds():
         MixedEvacuation(pedestrians=101, population=people())
 
 
+@pytest.mark.thorough
 def test_in_the_auditorium_wide_people_are_before_the_seats_and_exit_doors_wider():
     model = Auditorium(pedestrians=100, population=people(0.05), rng=1)
     places = np.array([person.position for person in model.agents])
@@ -76,6 +77,7 @@ def test_in_the_auditorium_wide_people_are_before_the_seats_and_exit_doors_wider
     assert {gate.name: gate.length for gate in narrow.gates}["left exit door"] == pytest.approx(0.7)
 
 
+@pytest.mark.thorough
 def test_in_the_auditorium_wheelchairs_are_clear_of_the_first_row():
     """Half a wheelchair, 0.35 m, and the widest person on foot, 0.25 m, from where people stand."""
     for seed in range(1, 6):

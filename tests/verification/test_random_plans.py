@@ -36,6 +36,7 @@ def walked(seed: int, people: int) -> None:
     assert (shapely.distance(places, lines) < 0.15).all(), "lost"
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(20))
 def test_everybody_gets_out_of_a_random_plan(seed):
     walked(seed, 12)

@@ -54,6 +54,7 @@ def test_as_many_take_either_of_two_equal_corridors():
     assert {person.route for person in people} == {("low",), ("high",)}
 
 
+@pytest.mark.thorough
 def test_people_think_again_and_go_through_without_turning_back():
     choice = CongestionRouting(interval=0.2)
     model = model_of(
@@ -164,6 +165,7 @@ def test_some_know_another_way():
         choice.know([one], "high")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("choice", "start", "goes_up"),
     [

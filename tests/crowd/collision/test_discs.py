@@ -117,6 +117,7 @@ def test_a_single_disc_given_is_the_body_of_before():
     assert tracks[0].discs is tracks[1].discs is None
 
 
+@pytest.mark.thorough
 def test_verdicts_are_those_of_sampled_poses():
     model = mixed(two_rooms(1.0))
     model.run(max_seconds=2.5)
@@ -245,6 +246,7 @@ def test_nobody_is_put_where_a_chair_turns(fits):
         model.add_pedestrians([(3.0, 3.0 + apart)], type_index=1)
 
 
+@pytest.mark.thorough
 def test_a_saved_run_goes_on_with_the_same_bodies(tmp_path):
     model = mixed(two_rooms(1.0))
     model.run(max_seconds=2.0)

@@ -70,6 +70,7 @@ def crowd_with(*terms):
 GOOD = [(_away, _nearest), (_near, _near_at_least), (_near, None), (_beside, None)]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("kernel", "bound"), GOOD)
 def test_good_ones_pass(kernel, bound):
     model = crowd_with(term(kernel, bound))

@@ -153,6 +153,7 @@ def test_a_term_of_weight_nought_counts_for_nothing():
     assert walk(two_doors(), shipped_map(), terms) == our_walk()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("near", [Interference, Near])
 @pytest.mark.parametrize("weight", [-0.5, 3.0])
 def test_interference_of_any_weight_is_chosen_by_the_whole_sum(near, weight):
@@ -167,6 +168,7 @@ def test_interference_of_any_weight_is_chosen_by_the_whole_sum(near, weight):
             assert decision.fault() is None, (decision.frame, decision.person.row)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("walls", [KeepOff, Clearance])
 @pytest.mark.parametrize("weight", [-0.5, 3.0])
 def test_wall_terms_of_any_weight_are_chosen_by_the_whole_sum(walls, weight):

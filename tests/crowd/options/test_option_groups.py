@@ -67,6 +67,7 @@ def two_small():
     return (strider(), make_map([[stand(), straight(0.75, 12, to=0)]]))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("maps", [shipped, two_small])
 @pytest.mark.parametrize("shares", [(), PRESETS["default"].shares])
 def test_groups_span_their_options(maps, shares):

@@ -194,6 +194,7 @@ def test_any_map(seed, shares):
     check(Capability(replace(map_, costs=costs), shares=shares), shares)
 
 
+@pytest.mark.thorough
 def test_the_map_that_ships_with_the_shares_of_the_default_preset():
     rules = preset_named("default")
     known = repertoire((shipped_map(),), rules.durations, rules.shares)

@@ -98,6 +98,7 @@ def test_a_run_is_the_same_without_the_bound_of_the_change_of_velocity():
     assert changes != run(*usual)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("compiled", "plain", "weight"),
     [(RoomAhead, StraightOn, 3.0), (KeepOff, Clearance, 1.0), (KeepOff, Clearance, -0.25)],

@@ -94,6 +94,7 @@ def test_with_every_exit_closed_people_stay_and_leave_once_one_opens():
     assert np.isfinite(track(rows, 0)).all()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(3))
 def test_whatever_comes_and_goes_nobody_is_run_into_or_walked_through(seed):
     rng = np.random.default_rng(seed)

@@ -233,6 +233,7 @@ def test_brute_force_would_tell_another_choice():
     assert min(faults) > 0
 
 
+@pytest.mark.thorough
 def test_the_cheapest_option_is_taken_with_all_terms_that_look_ahead():
     plan = FloorPlan(ROOM, exits=[Exit("east", (6, 1), (6, 1.8))], obstacles=[PILLAR])
     for seed in (8, 9, 10):
@@ -244,6 +245,7 @@ def test_the_cheapest_option_is_taken_with_all_terms_that_look_ahead():
                 assert decision.fault() is None, (seed, decision.frame, decision.person.row)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["velocity_change", "room_ahead"])
 def test_brute_force_would_tell_that_a_term_is_missing(name):
     plan = FloorPlan(ROOM, exits=[Exit("east", (6, 1), (6, 1.8))], obstacles=[PILLAR])

@@ -57,6 +57,7 @@ def decisions_of(model, row, frames):
     return explained
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("preset", ["default", "paper"])
 @pytest.mark.parametrize("seed", [0, 1, 2])
 @pytest.mark.parametrize("plug_in", [False, True])

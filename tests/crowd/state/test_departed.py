@@ -107,6 +107,7 @@ def test_gates_are_crossed_on_the_way_out():
     assert wall_crossings(rows, plan.walls) == 0
 
 
+@pytest.mark.thorough
 def test_seven_of_eight_lone_walkers_leave_without_delay():
     # From a grid of starts all over the room: the straight way to the middle of the door at the
     # speed of one's own, and two seconds for setting off and turning. The others come along the

@@ -87,6 +87,7 @@ def test_bodies_that_fit_side_by_side_do_not_wait():
     assert beside(1.3) < 10.0 - 1.3 / 2 - 0.7 < 10.0 < beside(2.4)
 
 
+@pytest.mark.thorough
 def test_people_on_foot_move_as_without_it():
     def places(taken_out: bool) -> bytes:
         model = PedestrianModel(

@@ -117,6 +117,7 @@ def check_random_plans(places_in, walkers, seeds: range) -> None:
     assert walked > 50 * len(seeds)
 
 
+@pytest.mark.thorough
 def test_everybody_gets_out_of_random_plans(places_in, walkers) -> None:
     check_random_plans(places_in, walkers, range(12))
 

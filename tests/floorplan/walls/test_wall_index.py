@@ -121,6 +121,7 @@ def test_removed_walls_are_in_no_cell() -> None:
     assert table.y0 == pytest.approx(1.9)
 
 
+@pytest.mark.thorough
 @settings(deadline=None, max_examples=150)
 @given(walls=segments, size=st.floats(0.4, 5), reach=st.floats(0, 3))
 def test_cells_hold_exactly_the_walls_within_reach(walls: list, size: float, reach: float) -> None:

@@ -41,6 +41,7 @@ def test_the_readme_has_their_sums():
     }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", [each for each in NAMES if each != "able_bodied"])
 def test_each_says_what_it_is_and_traps_nobody(name):
     map_ = MobilityMap.load(shipped_map_path(name))
@@ -66,6 +67,7 @@ def test_the_limps_are_mirror_images():
     assert abs(one.n_options / other.n_options - 1.0) < 0.05
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", WHEELCHAIRS)
 def test_maps_of_wheelchairs_are_built_again_to_the_same_bytes(name, tmp_path):
     shipped = MobilityMap.load(shipped_map_path(name))

@@ -52,6 +52,7 @@ def recorded(folder, pedestrian_type):
     return clips.recordings
 
 
+@pytest.mark.thorough
 @pytest.mark.captures
 @pytest.mark.parametrize("name", ["frail_older_adult", "cane", "crutches", "walking_frame"])
 def test_steady_walks_have_the_speed_of_the_source(captures_dir, name):

@@ -21,6 +21,7 @@ def prepared(captures_dir, name, **options):
     return prepare_recordings(find_clips(captures_dir), name, **options)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("name", "mirrored"), [("limping", False), ("slow", True)])
 def test_gaits_that_differ_from_side_to_side_are_not_mirrored(captures_dir, name, mirrored):
     found = prepared(captures_dir, name)
@@ -31,6 +32,7 @@ def test_gaits_that_differ_from_side_to_side_are_not_mirrored(captures_dir, name
     assert any("not mirrored" in remark for remark in found.remarks) == (not mirrored)
 
 
+@pytest.mark.thorough
 def test_the_other_side_is_the_mirror_image(captures_dir):
     one = prepared(captures_dir, "limping").recordings
     other = prepared(captures_dir, "limping", other_side=True).recordings
@@ -40,6 +42,7 @@ def test_the_other_side_is_the_mirror_image(captures_dir):
         np.testing.assert_allclose(b.root_position, a.root_position * [1, -1, 1], atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_a_minute_of_limping_gives_a_map_without_traps(captures_dir):
     built = build_map(prepared(captures_dir, "limping").recordings, type_name="limping")
     info = built.info()

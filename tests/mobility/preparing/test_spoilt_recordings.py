@@ -36,6 +36,7 @@ def check(outcome):
     assert outcome["megabytes"] <= MEGABYTES, outcome
 
 
+@pytest.mark.thorough
 def test_spoilt_recordings(tmp_path):
     for outcome in outcomes(tmp_path / "made" / "for it", 0, 6):
         check(outcome)

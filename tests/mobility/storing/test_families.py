@@ -120,6 +120,7 @@ def test_what_does_not_fit_together_is_one_line(built, tmp_path, name, change, s
     assert len(str(error.value).splitlines()) == 1
 
 
+@pytest.mark.thorough
 def test_spoilt_numbers_are_an_error_or_a_sound_map(built, tmp_path):
     """A random number changed in each array: a map that can be used, or one line."""
     built[2].save(tmp_path / "sound.npz")

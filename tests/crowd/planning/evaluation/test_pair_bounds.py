@@ -54,6 +54,7 @@ def walk(*terms: CostTerm) -> bytes:
     return b"".join(rows[name].tobytes() for name in ("frame", "person", "x", "y"))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("weight", [-1.0, 0.0, 3.0])
 def test_a_run_is_the_same_as_without_and_as_if_every_option_is_costed(weight):
     runs = {walk(ArmsLength(weight)), walk(Unbounded(weight)), walk(ArmsLength(weight), Nothing())}
@@ -61,6 +62,7 @@ def test_a_run_is_the_same_as_without_and_as_if_every_option_is_costed(weight):
     assert (runs == {walk()}) == (weight == 0.0)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("term", [ArmsLength(3.0), ArmsLength(-0.5)])
 def test_the_choice_is_the_cheapest_of_all_options(term):
     others = equation_one(w_d=1.0, w_theta=0.5, w_u=2.0)
