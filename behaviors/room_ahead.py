@@ -2,6 +2,8 @@
 
 import math
 
+from mesa_mobility.behaviors.stepping import STANDS
+
 from mesa_mobility import CompiledTerm, wall_kernel
 from mesa_mobility.errors import ModelError
 
@@ -10,6 +12,13 @@ from mesa_mobility.errors import ModelError
 def _room_ahead(  # type: ignore[no-untyped-def]
     x, y, ux, uy, duration, speed, sx, sy, tx, ty, x1, y1, x2, y2, core, p
 ):
+    if speed * duration <= STANDS:
+        dx = tx - sx
+        dy = ty - sy
+        way = math.sqrt(dx * dx + dy * dy)
+        if way > 0.0:
+            ux = dx / way
+            uy = dy / way
     wx = x2 - x1
     wy = y2 - y1
     length = math.sqrt(wx * wx + wy * wy)
@@ -35,7 +44,9 @@ class RoomAhead(CompiledTerm):
     its core, of radius c, touches the line of the wall, and l what it covers in ``time`` at the
     speed of the option, at least ``least``.  b is how far beside the end of the wall that way
     passes, 0 if it crosses the wall: the more of the core misses the wall, the less the wall
-    counts, or people would not find into gaps little wider than they are.  ``wall_kernel`` says
+    counts, or people would not find into gaps little wider than they are.  An option that covers no
+    ground is judged by the way to the target, wherever one faces: people who turn on the spot in a
+    narrow door would else stay as they are, since halfway they face its jamb.  ``wall_kernel`` says
     which walls are looked at.
 
     Without this term people end movements beside a wall and facing it, in states from which every

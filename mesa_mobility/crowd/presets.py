@@ -10,6 +10,7 @@ from typing import Any
 
 from mesa_mobility.crowd.costs.terms import EXPECTED_WEIGHT, CostTerm, is_weight
 from mesa_mobility.crowd.tactics.shipped import (
+    AdaptSpeed,
     Anticipation,
     CompensateSpeed,
     FollowSpeedRules,
@@ -49,6 +50,7 @@ class Preset:
         turns: whether people take turns at passages too narrow for two, and wide ones give way to
             each other at openings too narrow for two of them.
         anticipation: whether people who walk turn aside early for others.
+        speed_adaptation: whether people walk as fast as those ahead of them let them.
         impatience: whether people who make no progress look for a way round.
         even_pace: whether free walkers correct their accumulated distance error.
 
@@ -67,6 +69,7 @@ class Preset:
     abreast: bool
     turns: bool
     anticipation: bool
+    speed_adaptation: bool
     impatience: bool
     even_pace: bool
 
@@ -115,6 +118,7 @@ class Preset:
             (True, Wait),
             (self.even_pace, CompensateSpeed),
             (self.anticipation, Anticipation),
+            (self.speed_adaptation, AdaptSpeed),
             (self.impatience, Impatience),
         ]
         return [kind() for taken, kind in tactics if taken]
@@ -152,6 +156,7 @@ PRESETS = {
         abreast=False,
         turns=False,
         anticipation=False,
+        speed_adaptation=False,
         impatience=False,
         even_pace=False,
     ),
@@ -168,8 +173,8 @@ PRESETS = {
             "sideways": 2.0,
             "room_ahead": 2.0,
             "interference": 1.0,
-            "headway": 2.25,
-            "right_of_way": 3.0,
+            "headway": 2.1,
+            "right_of_way": 2.0,
             "stepping": 1.0,
         },
         target_choice="nearest_exit",
@@ -181,6 +186,7 @@ PRESETS = {
         abreast=True,
         turns=True,
         anticipation=True,
+        speed_adaptation=True,
         impatience=True,
         even_pace=True,
     ),

@@ -106,6 +106,16 @@ def test_ahead_is_where_one_faces_at_the_mobility_point():
     assert cost(up, (0.0, 2.8, 5.0, 2.8)) == 0.0
 
 
+@pytest.mark.parametrize("facing", [0.0, 1.0, math.pi / 2, -2.0])
+def test_whoever_turns_on_the_spot_is_judged_by_the_way_to_the_target(facing):
+    # Its jamb stops nobody from turning towards a door.
+    turning = Ending(heading=facing, displacement=0.0, duration=0.4)
+    term = RoomAhead(**ROUND)
+    for target, expected in (((3.0, 0.0), 0.5), ((0.0, 3.0), 0.0)):
+        options = one_option(turning, core=CORE, walls=[across(0.45)], target=target)
+        assert term.cost(options) == pytest.approx([expected])
+
+
 def test_the_worst_wall_counts_and_those_of_others_do_not():
     near, nearer = across(1.0), across(0.45)
     assert cost(A_METRE_A_SECOND, near, nearer) == pytest.approx(0.75)
@@ -142,11 +152,20 @@ def walls_of(options, b):
     return tuple(LineString(wall.reshape(2, 2)) for wall in own)
 
 
+def way_to_target(options, b):
+    return np.asarray(options.targets[b]) - options.positions[b]
+
+
 def decided(options):
     """(n,) where rounding does not decide on which side of a wall's line one is, or edge on."""
     sure = np.ones(len(options), dtype=bool)
     for k, b in enumerate(options.owner):
         way = np.array([math.cos(options.headings[k]), math.sin(options.headings[k])])
+        length = np.hypot(*way_to_target(options, b))
+        # Rounding decides, too, who stands, and where a target is that is all but here.
+        sure[k] = abs(options.displacements[k] - 0.01) > 1e-6 and not 0.0 < length < 1e-6
+        if options.displacements[k] <= 0.01 and length > 0.0:
+            way = way_to_target(options, b) / length
         for wall in options.walls[options.wall_offsets[b] : options.wall_offsets[b + 1]]:
             ends = wall.reshape(2, 2) - options.points[k]
             along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
@@ -165,7 +184,10 @@ def test_the_worst_wall_of_any_batch(options):
     for k, b in enumerate(options.owner):
         # The oracle measures speeds by the ground between start and end.
         start = options.points[k] - (options.displacements[k], 0.0)
-        body = Body(None, *start, 0.0, 0.0, 0.0, 0, options.cores[b], walls=walls_of(options, b))
+        body = Body(
+            None, *start, 0.0, 0.0, 0.0, 0, options.cores[b],
+            target=tuple(start + way_to_target(options, b)), walls=walls_of(options, b),
+        )  # fmt: skip
         end = (*options.points[k], options.headings[k])
         if sure[k]:
             assert costs[k] == pytest.approx(of(body, end, options.durations[k], [], 1.0), abs=1e-6)

@@ -27,7 +27,7 @@ from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.walls.line_of_sight import unwalled
 from mesa_mobility.floorplan.walls.sight import Sight, sight_on
 
-ROOM = 0.8
+ROOM = 0.65
 """Metres between the middles of two people who pass each other freely."""
 
 SHARE = 0.6

@@ -15,6 +15,7 @@ from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
 from mesa_mobility.crowd.tactics.giving_way import WIDE, Precedence
 from mesa_mobility.crowd.tactics.impatience import back_off, perturb_targets
 from mesa_mobility.crowd.tactics.settling import settle
+from mesa_mobility.crowd.tactics.speed_adaptation import adapt_speeds
 from mesa_mobility.crowd.tactics.speed_compensation import compensate_speed
 from mesa_mobility.crowd.tactics.speed_rules import apply_speed_rules
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
@@ -195,6 +196,20 @@ class Anticipation(_OfTheCrowd):
             desired.points, desired.speeds = turn_aside(
                 deciding.pedestrians, deciding.inside.pedestrians, _frame(deciding), self._crowd,
                 deciding.site.plan, desired.points, desired.speeds,
+            )  # fmt: skip
+
+
+class AdaptSpeed(_OfTheCrowd):
+    """People walk as fast as those ahead of them let them."""
+
+    name = "speed_adaptation"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Slow down those who have people ahead."""
+        if not desired.newcomers:
+            desired.speeds = adapt_speeds(
+                deciding.pedestrians, deciding.inside.pedestrians, self._crowd, desired.points,
+                desired.speeds,
             )  # fmt: skip
 
 

@@ -125,7 +125,7 @@ def best_course(others, speed):
             times = np.linspace(0.0, 3.0, 3001)
             gaps = abs(place + (velocity - course) * times)
             if gaps.argmin() > 0:
-                room = min(0.8, 0.6 * abs(place))
+                room = min(0.65, 0.6 * abs(place))
                 total += weight * max(1.0 - (gaps.min() / room) ** 2, 0.0)
         return total
 
