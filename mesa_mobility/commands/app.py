@@ -13,6 +13,7 @@ from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.maps.app import app as maps
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
+from mesa_mobility.commands.serve import serve
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
 
@@ -31,6 +32,7 @@ app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("dashboard")(dashboard)
+app.command("serve")(serve)
 app.command("animate")(animate)
 app.command("render")(render)
 app.command("replay")(replay)
