@@ -99,7 +99,8 @@ def _of_bytes(message: bytes) -> Frame:
     expected = HEADER.size + n * BYTES_A_PERSON
     if len(message) != expected:
         raise LiveError(f"frame: {len(message)} bytes for {n} people, expected {expected}")
-    columns = np.frombuffer(message, "<f8", len(COLUMNS) * n, HEADER.size).reshape(-1, n)
+    columns = np.frombuffer(message, "<f8", len(COLUMNS) * n, HEADER.size)
+    columns = columns.reshape(len(COLUMNS), n)
     person = np.frombuffer(message, "<i4", n, HEADER.size + columns.nbytes)
     return Frame(number, frame, sent, bool(flags & PAUSED), person, *columns)
 

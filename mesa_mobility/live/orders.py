@@ -27,8 +27,9 @@ FREE, WALKS, STANDS, STEERED = range(4)
 
 FOREVER = np.iinfo(np.int64).max
 
-AHEAD = 5.0
-"""Metres ahead at which somebody who is steered aims."""
+AHEAD = 1.0
+"""Seconds ahead of its velocity at which somebody who is steered aims: near, so that movements are
+short and another velocity soon counts."""
 
 FASTEST = 10.0
 """Highest speed by hand, m/s; people walk as fast as their options let them."""
@@ -133,10 +134,8 @@ class Orders(Tactic):
         self._go_to_places(deciding, does, points, speeds)
         by_hand = np.flatnonzero(does == STEERED)
         velocity = self._velocity[rows[by_hand]]
-        speed = np.hypot(velocity[:, 0], velocity[:, 1])
-        on = velocity * (AHEAD / np.maximum(speed, 1e-9))[:, None]
-        points[by_hand] = deciding.positions[by_hand] + on
-        speeds[by_hand] = speed
+        points[by_hand] = deciding.positions[by_hand] + AHEAD * velocity
+        speeds[by_hand] = np.hypot(velocity[:, 0], velocity[:, 1])
         steered = self.steered()
         others = np.flatnonzero(does != STEERED)
         if len(steered) and len(others):

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import dijkstra
 from mesa_mobility.floorplan import FloorPlan, Router, lines_of_sight
 from mesa_mobility.floorplan.routing.route_nodes import VIEW_SHARE
 
-_PAST = (1.0, 0.5, 0.25)
+_PAST = (0.4, 0.2)
 """Metres past a corner or gate at which people aim: the first that is in view from it."""
 
 
@@ -27,12 +27,11 @@ KEPT = 1000
 class _Nodes(NamedTuple):
     """Places where routes bend.
 
-    Fields: ``xy`` (n, 2) metres; ``ways`` (n, 2) unit vector in which a gate is crossed, 0 for
-    corners; ``start``, ``end`` (m,) nodes of each edge and ``length`` (m,), metres.
+    Fields: ``xy`` (n, 2) metres; ``start``, ``end`` (m,) nodes of each line between two in view of
+    each other, and ``length`` (m,), metres.
     """
 
     xy: NDArray[np.float64]
-    ways: NDArray[np.float64]
     start: NDArray[np.int64]
     end: NDArray[np.int64]
     length: NDArray[np.float64]
@@ -79,9 +78,8 @@ class PointRoutes:
         self, position: NDArray[np.float64], to_go: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], float]:
         """Target and length of a route that bends."""
-        xy, ways = self._nodes.xy, self._nodes.ways
-        before = ((xy - position) * ways).sum(axis=1) >= 0.0
-        usable = np.flatnonzero(np.isfinite(to_go) & before)
+        xy = self._nodes.xy
+        usable = np.flatnonzero(np.isfinite(to_go))
         through = _away(xy[usable], position) + to_go[usable]
         order = usable[np.argsort(through, kind="stable")]
         start = np.broadcast_to(position, (len(order), 2))
@@ -94,8 +92,8 @@ class PointRoutes:
 
     def _past(self, position: NDArray[np.float64], node: int) -> NDArray[np.float64]:
         """A target past a corner or gate; at the corner itself people would slow down."""
-        xy, ways = self._nodes.xy[node], self._nodes.ways[node]
-        on = ways if ways.any() else (xy - position) / max(float(_away(xy, position)), 1e-9)
+        xy = self._nodes.xy[node]
+        on = (xy - position) / max(float(_away(xy, position)), 1e-9)
         beyond = xy + np.array(_PAST)[:, None] * on
         clear = self._sees(np.broadcast_to(xy, beyond.shape), beyond)
         target: NDArray[np.float64] = beyond[np.argmax(clear)] if clear.any() else xy
@@ -114,17 +112,16 @@ class PointRoutes:
         return self._lengths[place]
 
     def _search(self, place: tuple[float, float]) -> NDArray[np.float64]:
-        xy, ways, start, end, length = self._nodes
+        xy, start, end, length = self._nodes
         if len(xy) == 0:
             return np.empty(0)
-        behind = ((np.array(place) - xy) * ways).sum(axis=1) >= 0.0
-        last = np.flatnonzero(behind & self._sees(xy, np.broadcast_to(place, xy.shape)))
+        last = np.flatnonzero(self._sees(xy, np.broadcast_to(place, xy.shape)))
         lines = np.maximum(_away(xy[last], np.array(place)), 1e-9)
-        # The place is one more node, from which all routes are followed backwards.
+        # The place is one more node, from which all routes are followed.
         n = len(xy)
-        begin, to = np.concatenate([end, np.full(len(last), n)]), np.concatenate([start, last])
+        begin, to = np.concatenate([start, np.full(len(last), n)]), np.concatenate([end, last])
         joined = csr_matrix((np.concatenate([length, lines]), (begin, to)), shape=(n + 1, n + 1))
-        found: NDArray[np.float64] = dijkstra(joined, indices=n)[:n]
+        found: NDArray[np.float64] = dijkstra(joined, directed=False, indices=n)[:n]
         return found
 
     def _look_up(self) -> _Nodes:
@@ -133,11 +130,14 @@ class PointRoutes:
         kept = [node for node, kind in graph.nodes(data="kind") if kind != "exit"]
         at = {node: k for k, node in enumerate(kept)}
         xy = np.array([graph.nodes[n]["position"] for n in kept]).reshape(-1, 2)
-        ways = [graph.nodes[n]["direction"] or (0.0, 0.0) for n in kept]
-        edges = [(at[a], at[b]) for a, b in graph.edges if a in at and b in at]
-        start, end = np.array(edges, dtype=np.int64).reshape(-1, 2).T
+        # A gate's nodes lead one way each; together they are crossed both ways. Lines in both
+        # directions are one.
+        edges = {
+            (min(at[a], at[b]), max(at[a], at[b])) for a, b in graph.edges if a in at and b in at
+        }
+        start, end = np.array(sorted(edges), dtype=np.int64).reshape(-1, 2).T
         length = np.hypot(*(xy[end] - xy[start]).T)
-        return _Nodes(xy, np.array(ways).reshape(-1, 2), start, end, length)
+        return _Nodes(xy, start, end, np.maximum(length, 1e-9))
 
     def _sees(self, one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
         return lines_of_sight(self._plan, one, other, VIEW_SHARE * self._clearance)
