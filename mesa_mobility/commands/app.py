@@ -10,6 +10,7 @@ import typer
 from mesa_mobility.commands import experiment, new, plugins
 from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
+from mesa_mobility.commands.explain import explain
 from mesa_mobility.commands.maps.app import app as maps
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
@@ -36,6 +37,7 @@ app.command("serve")(serve)
 app.command("animate")(animate)
 app.command("render")(render)
 app.command("replay")(replay)
+app.command("explain")(explain)
 app.add_typer(maps, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")
