@@ -106,9 +106,9 @@ class Engine:
         self._closed = True
         self._jobs.put(None)
 
-    def join(self) -> None:
-        """Wait until the thread has ended."""
-        self._thread.join()
+    def join(self, seconds: float | None = None) -> None:
+        """Wait until the thread has ended, for so long at most."""
+        self._thread.join(seconds)
 
     def post(self, command: Command) -> Future[dict[str, Any]]:
         """Execute a command between two steps; its answer or what it has raised follows."""

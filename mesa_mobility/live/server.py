@@ -10,6 +10,7 @@ import socket
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from http import HTTPStatus
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
@@ -28,6 +29,9 @@ BINARY, JSON = "binary", "json"
 """Forms of frames."""
 
 MOST_CLIENTS = 32
+
+LONGEST_STEP = 10.0
+"""Seconds for which the end waits for the step under way."""
 
 MOST_BYTES = 2**16
 """Of a command."""
@@ -52,10 +56,15 @@ class Access:
     token: str
     origins: frozenset[str] = frozenset()
 
+    @cached_property
+    def _names(self) -> Names:
+        # Looking up the machine's own names may take long.
+        return Names(self.host)
+
     def refusal(self, request: Request) -> str:
         """Why a request is not let through, or ""."""
         hosts = request.headers.get_all("Host")
-        if len(hosts) != 1 or not Names(self.host).are(hosts[0]):
+        if len(hosts) != 1 or not self._names.are(hosts[0]):
             return "this server is not known by that name"
         for origin in request.headers.get_all("Origin"):
             if not (is_own_origin(origin, hosts[0]) or origin.lower() in self.origins):
@@ -112,6 +121,8 @@ class LiveServer:
                 await self._ended
             finally:
                 self._engine.close()
+        # Python must not end while the thread is in compiled code.
+        self._engine.join(LONGEST_STEP)
 
     def _listen(self, listening: socket.socket) -> Any:
         return serve(
