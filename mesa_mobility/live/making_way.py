@@ -46,6 +46,8 @@ def step_aside(
     """
     speed = np.hypot(velocities[:, 0], velocities[:, 1])
     moving = speed >= _SLOWEST
+    if not moving.any():
+        return np.empty(0, dtype=np.intp), np.empty((0, 2))
     steered, speed = steered[moving], speed[moving]
     along = velocities[moving] / speed[:, None]
     dx = crowd.x[rows][:, None] - crowd.x[steered]

@@ -8,9 +8,12 @@ from collections.abc import Callable, Hashable
 from concurrent.futures import Future
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from mesa_mobility.crowd import PedestrianModel
 from mesa_mobility.errors import LiveError
 from mesa_mobility.live.clock import Clock
+from mesa_mobility.live.order_tactics import follow_orders
 from mesa_mobility.live.orders import Orders
 from mesa_mobility.live.snapshot import Camera, Snapshot
 
@@ -21,7 +24,7 @@ class Run:
     """A model under command.
 
     Args:
-        model: the model; its people get the tactic ``Orders``.
+        model: the model; it gets the tactics by which people follow orders.
         rate: steps, and frames published, in a simulated second.
 
     Attributes:
@@ -37,13 +40,11 @@ class Run:
         if rate < 1 or FRAMES_A_SECOND % rate:
             raise LiveError(f"rate: got {rate}, expected 1, 2, 3, 5, 6, 10, 15 or 30 frames/s")
         self.model = model
-        self.orders = Orders()
+        self.orders = Orders(model)
         self.clock = Clock()
         self._steered_by: dict[int, Hashable] = {}
         model.frames_per_step = FRAMES_A_SECOND // rate
-        model.tactics.append(self.orders)
-        # It is bound with the others before the next decision; commands may come before that.
-        self.orders.bind(model)
+        follow_orders(model, self.orders)
 
     def set_playing(self, playing: bool) -> None:
         """Let time go by, or not."""
@@ -62,8 +63,9 @@ class Run:
 
     def drop(self, client: Hashable) -> None:
         """Let those whom a client steers go on as before: it is gone."""
-        own = {row for row, whose in self._steered_by.items() if whose == client}
-        self.orders.release(own & set(self.orders.steered().tolist()))
+        own = [row for row, whose in self._steered_by.items() if whose == client]
+        steered = self.orders.steered()
+        self.orders.release(steered[np.isin(steered, own)])
         for row in own:
             del self._steered_by[row]
 

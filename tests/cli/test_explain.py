@@ -11,6 +11,8 @@ from mesa_mobility.crowd import FREE, WALL, Watch
 
 PERSON, SECONDS = 7, 2.5
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):

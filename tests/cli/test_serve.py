@@ -34,6 +34,7 @@ def serving():
         each.communicate()
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_it_prints_the_address_with_the_token_and_ends_at_ctrl_c(serving):
     process = serving("doorway", "--seed", 1, "--set", "pedestrians=5", "--rate", 10)
@@ -49,7 +50,7 @@ def test_it_prints_the_address_with_the_token_and_ends_at_ctrl_c(serving):
     assert said == "doorway, seed 1: connect to the address below (Ctrl-C ends)\n"
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_model_in_a_file_is_served(serving, tmp_path):
     (tmp_path / "room.py").write_text(
         "from mesa_mobility import Exit, FloorPlan, PedestrianModel\n"

@@ -120,7 +120,7 @@ def test_analysis_with_pedpy(capsys: pytest.CaptureFixture[str]) -> None:
     assert 1.378 < flow < 2.778
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_live_client(capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("websockets")
     first, moved, error = run("live_client", capsys).splitlines()

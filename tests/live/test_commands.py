@@ -159,6 +159,19 @@ def test_people_wait(room):
     assert not room.model.crowd.active[row]
 
 
+def test_people_wait_on_their_way_to_a_place(room):
+    row = put(room.model, 1.0, 1.0).row
+    do(room, "walk", person=row, to=[1.0, 6.0])
+    do(room, "wait", person=row, seconds=3)
+    steps(room, 3.0)
+    assert math.dist(place_of(room, row), (1.0, 1.0)) < 0.3
+    steps(room, 9.0)
+    assert math.dist(place_of(room, row), (1.0, 6.0)) < 0.5
+    do(room, "release", person=row)
+    steps(room, 9.0)
+    assert not room.model.crowd.active[row]
+
+
 def test_doors_close_and_open(room):
     do(room, "close", opening="back")
     assert not room.model.floor_plan.is_open("back")
