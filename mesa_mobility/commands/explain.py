@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 
 from mesa_mobility.commands.animate import RunDir
@@ -72,6 +71,8 @@ def explain(
 
 def answer_of(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     """A decision, ready for JSON; options by rising cost."""
+    import numpy as np
+
     from mesa_mobility.crowd import FREE, WALL
 
     candidates, chosen = explained.candidates, explained.chosen
