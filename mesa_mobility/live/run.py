@@ -6,6 +6,7 @@ import queue
 import threading
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -96,7 +97,7 @@ class Engine:
         self._jobs: queue.SimpleQueue[tuple[Command, Future[dict[str, Any]]] | None] = (
             queue.SimpleQueue()
         )
-        self._closed = False
+        self._closed = self._ended = False
         self._thread = threading.Thread(target=self._work, name="mesa-mobility live", daemon=True)
 
     def start(self) -> None:
@@ -113,10 +114,22 @@ class Engine:
         self._thread.join(seconds)
 
     def post(self, command: Command) -> Future[dict[str, Any]]:
-        """Execute a command between two steps; its answer or what it has raised follows."""
+        """Execute a command between two steps; its answer or what it has raised follows.
+
+        After the thread has ended the answer is cancelled.
+        """
         answer: Future[dict[str, Any]] = Future()
         self._jobs.put((command, answer))
+        if self._ended:
+            self._cancel_jobs()
         return answer
+
+    def _cancel_jobs(self) -> None:
+        with suppress(queue.Empty):
+            while True:
+                job = self._jobs.get_nowait()
+                if job is not None:
+                    job[1].cancel()
 
     def _work(self) -> None:
         clock = self._run.clock
@@ -137,6 +150,9 @@ class Engine:
         # A plug-in may fail in any way.
         except Exception as error:
             self._failed(error)
+        finally:
+            self._ended = True
+            self._cancel_jobs()
 
     def _execute(self, job: tuple[Command, Future[dict[str, Any]]] | None) -> None:
         if job is None:
