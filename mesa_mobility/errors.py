@@ -27,3 +27,7 @@ class ModelError(MobilityError):
 
 class ResultsError(MobilityError):
     """Results cannot be written, read or exported."""
+
+
+class LiveError(MobilityError):
+    """A message between a running model and a program that watches it cannot be used."""

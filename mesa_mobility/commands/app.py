@@ -10,9 +10,11 @@ import typer
 from mesa_mobility.commands import experiment, new, plugins
 from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
+from mesa_mobility.commands.explain import explain
 from mesa_mobility.commands.maps.app import app as maps
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
+from mesa_mobility.commands.serve import serve
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
 
@@ -31,9 +33,11 @@ app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("dashboard")(dashboard)
+app.command("serve")(serve)
 app.command("animate")(animate)
 app.command("render")(render)
 app.command("replay")(replay)
+app.command("explain")(explain)
 app.add_typer(maps, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Protocol
@@ -58,6 +58,16 @@ def answer_table(rows: Mapping[str, str]) -> None:
     table.add_column(overflow="fold")
     for name, value in rows.items():
         table.add_row(name, value)
+    Console(highlight=False, markup=False).print(table)
+
+
+def answer_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a table with a heading for each column; long texts take several lines."""
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for name in columns:
+        table.add_column(name)
+    for row in rows:
+        table.add_row(*row)
     Console(highlight=False, markup=False).print(table)
 
 

@@ -39,8 +39,8 @@ def dashboard(
         )
     if plan is not None and model is not None:
         raise ModelError(f"--plan {plan}: got model {model!r} as well, expected one of the two")
-    from mesa_mobility.dashboard.guard import is_loopback
     from mesa_mobility.dashboard.server import serve
+    from mesa_mobility.live.access import is_loopback
 
     given = {}
     if plan is not None:

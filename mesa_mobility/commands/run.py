@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-import platform
 import secrets
 import time
 from collections.abc import Callable
@@ -22,6 +20,7 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.making import create_model, origin_of
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
@@ -100,12 +99,21 @@ def run(
     seed = secrets.randbelow(2**31) if seed is None else seed
     with nothing_collected():
         from mesa_mobility.crowd.precompile import compiling_ahead
+        from mesa_mobility.plugins.registry import load_model
 
         with compiling_ahead():
             settings = list(settings or [])
             if population is not None:
                 settings.append(f"population={population}")
-            simulation, given = _create(model, settings, preset, map_file, seed, record or True)
+            simulation, given = create_model(
+                load_model(model),
+                model,
+                settings,
+                preset=preset,
+                map_file=map_file,
+                rng=seed,
+                record=record or True,
+            )
             use_behaviors(simulation, behaviors or [])
 
     import pandas as pd
@@ -136,7 +144,7 @@ def run(
                 "preset": preset,
                 "seed": seed,
                 "by_type": table.reset_index().to_dict("records"),
-                **_origin(given, simulation),
+                **origin_of(given, simulation),
                 "behaviors": behaviors or [],
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
@@ -172,63 +180,6 @@ def run(
             + (f": {reason}" if reason else "")
         )
         raise typer.Exit(STALLED)
-
-
-def _create(
-    name: str,
-    settings: list[str],
-    preset: str,
-    map_file: Path | None,
-    seed: int,
-    record: str | bool,
-) -> tuple[Any, dict[str, Any]]:
-    """The model, and its own parameters with the values that they have."""
-    from mesa_mobility.plugins.parameters import NOT_SETTABLE, chosen, parameters
-    from mesa_mobility.plugins.registry import load_model
-
-    kind = load_model(name)
-    keywords = chosen(kind, name, settings)
-    keywords |= {"preset": preset, "rng": seed, "record": record}
-    if map_file is not None:
-        keywords["mobility_map"] = str(map_file)
-    taken = parameters(kind)
-    missing = [key for key in keywords if key not in taken]
-    if missing:
-        raise ModelError(f"model {name}: its constructor does not take {', '.join(missing)}")
-    given = {
-        key: keywords.get(key, each.default)
-        for key, each in taken.items()
-        if key not in NOT_SETTABLE
-    }
-    return kind(**keywords), given
-
-
-def _origin(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
-    """All that repeating the run needs besides model, preset and seed."""
-    from importlib.metadata import version
-
-    from mesa_mobility._version import __version__
-
-    plain = (bool, int, float, str, type(None))
-    maps = {}
-    # Another package's model need not know types.
-    for kind in getattr(simulation, "pedestrian_types", ()):
-        path, digest = kind.mobility_map.file, None
-        if path is not None:
-            with path.open("rb") as file:
-                digest = hashlib.file_digest(file, "sha256").hexdigest()
-        maps[kind.name] = {"file": None if path is None else path.name, "sha256": digest}
-    return {
-        "parameters": {
-            key: value if isinstance(value, plain) else str(value) for key, value in given.items()
-        },
-        "maps": maps,
-        "mesa_mobility": __version__,
-        "versions": {
-            "python": platform.python_version(),
-            **{name: version(name) for name in ("mesa", "numpy", "numba", "scipy", "shapely")},
-        },
-    }
 
 
 def _simulate(

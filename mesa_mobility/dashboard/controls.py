@@ -6,9 +6,9 @@ import solara
 
 from mesa_mobility.dashboard.forms import TextField
 from mesa_mobility.dashboard.session.behaviours import TermState
-from mesa_mobility.dashboard.session.clock import FULL_SPEED
 from mesa_mobility.dashboard.session.session import Session
 from mesa_mobility.errors import ModelError
+from mesa_mobility.live.clock import FULL_SPEED
 from mesa_mobility.plugins.parameters import Parameter
 
 SPEEDS = {"0.25 x": 0.25, "1 x": 1.0, "2 x": 2.0, "5 x": 5.0, "20 x": 20.0, "full": FULL_SPEED}

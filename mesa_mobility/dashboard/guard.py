@@ -3,13 +3,12 @@ only with the token."""
 
 from __future__ import annotations
 
-import ipaddress
-import secrets
-import socket
 from collections.abc import Mapping
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
-from urllib.parse import parse_qsl, quote, urlencode, urlsplit
+from urllib.parse import parse_qsl, quote, urlencode
+
+from mesa_mobility.live.access import Names, is_own_origin, same_token
 
 HEADERS = (
     (b"content-security-policy",
@@ -41,8 +40,7 @@ class Guard:
 
     def __init__(self, app: Any, host: str, port: int, token: str = "") -> None:
         self._app = app
-        self._names = names_of(host)
-        self._any_address = not is_loopback(host)
+        self._names = Names(host)
         self._token = token
         # A cookie is valid for all ports of a host, so its name has the port.
         self._cookie = f"mesa-mobility-{port}"
@@ -67,33 +65,26 @@ class Guard:
     def _refusal(self, scope: Any, headers: Mapping[str, str]) -> str:
         """Why a request is not let through, or ""."""
         host = headers.get("host", "")
-        if not self._is_here(_name(host)):
+        if not self._names.are(host):
             return "this server is not known by that name"
         origin = headers.get("origin")
         if origin is None:
             reads = scope["type"] == "http" and scope["method"] in ("GET", "HEAD")
             return "" if reads else "expected an Origin"
-        here = {f"http://{host}".lower(), f"https://{host}".lower()}
-        return "" if origin.lower() in here else "pages of other sites have no access"
-
-    def _is_here(self, name: str) -> bool:
-        if name in self._names:
-            return True
-        # A name pointed at this machine would be in the Host, so a bare address is safe.
-        return self._any_address and _is_address(name)
+        return "" if is_own_origin(origin, host) else "pages of other sites have no access"
 
     def _has_cookie(self, headers: Mapping[str, str]) -> bool:
         try:
             found = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
         except CookieError:
             return False
-        return found is not None and _same(found.value, self._token)
+        return found is not None and same_token(found.value, self._token)
 
     def _has_token(self, scope: Any) -> bool:
         if scope["type"] != "http":
             return False
         given = dict(parse_qsl(scope["query_string"].decode("latin-1"))).get(TOKEN, "")
-        return _same(given, self._token)
+        return same_token(given, self._token)
 
     def _exchange(self, scope: Any) -> list[tuple[bytes, bytes]]:
         """Headers that set the cookie and lead to the same address without the token."""
@@ -108,43 +99,6 @@ class Guard:
             (b"set-cookie", cookie.encode("latin-1")),
             (b"cache-control", b"no-store"),
         ]
-
-
-def is_loopback(host: str) -> bool:
-    """Whether only this machine reaches a server that listens on ``host``."""
-    try:
-        return ipaddress.ip_address(host.partition("%")[0]).is_loopback
-    except ValueError:
-        return host.lower() == "localhost"
-
-
-def names_of(host: str) -> frozenset[str]:
-    """Names by which a server that listens on ``host`` may be called, in small letters."""
-    names = {"localhost", "127.0.0.1", "::1", host.lower()}
-    if not is_loopback(host):
-        own = socket.gethostname().lower()
-        names |= {own, f"{own}.local", socket.getfqdn().lower()}
-    return frozenset(names - {"", "0.0.0.0", "::"})
-
-
-def _name(host: str) -> str:
-    """The name in a ``Host``, without its port."""
-    try:
-        return (urlsplit(f"//{host}").hostname or "").rstrip(".")
-    except ValueError:
-        return ""
-
-
-def _is_address(name: str) -> bool:
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True
-
-
-def _same(given: str, expected: str) -> bool:
-    return secrets.compare_digest(given.encode(), expected.encode())
 
 
 def _with_headers(send: Any) -> Any:

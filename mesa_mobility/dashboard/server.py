@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 import socket
 import threading
 import warnings
@@ -13,8 +12,9 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility._startup import nothing_collected
-from mesa_mobility.dashboard.guard import Guard, is_loopback
+from mesa_mobility.dashboard.guard import Guard
 from mesa_mobility.errors import MobilityError
+from mesa_mobility.live.access import address_of, is_loopback, listen, new_token
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.plugins.model_files import is_model_file, load_model_file
 from mesa_mobility.plugins.registry import load_model
@@ -59,7 +59,7 @@ def serve(
     Raises:
         MobilityError: the address cannot be listened on, or there is no such model.
     """
-    listening = _listen(host, port)
+    listening = listen(host, port)
     os.environ.update(SETTINGS)
     loaded: Future[type[PedestrianModel]] = Future()
     serving = threading.Event()
@@ -72,14 +72,11 @@ def serve(
     own = is_model_file(model)
     kind = load_model_file(model) if own else load_model(model)
     loaded.set_result(kind)
-    # A server on all addresses is reached by the machine's name, not by that address.
-    named = socket.gethostname() if host in ("0.0.0.0", "::") else host
-    name = f"[{named}]" if ":" in named else named
-    token = "" if is_loopback(host) else secrets.token_urlsafe(24)
+    token = "" if is_loopback(host) else new_token()
     # A browser takes a while to start, which it can do while Solara is imported.
     listening.listen()
     port = listening.getsockname()[1]
-    ready(f"http://{name}:{port}/{f'?token={token}' if token else ''}")
+    ready(f"http://{address_of(host, port)}/{f'?token={token}' if token else ''}")
 
     # It concerns pages in frames, which this one is not.
     warnings.filterwarnings("ignore", "Cookies with samesite=none", UserWarning)
@@ -99,22 +96,6 @@ def serve(
     guarded = Guard(app, host, port, token)
     config = uvicorn.Config(guarded, log_level="warning", ws_per_message_deflate=False)
     Server(config).run(sockets=[listening])
-
-
-def _listen(host: str, port: int) -> socket.socket:
-    try:
-        family, kind, protocol, _, address = socket.getaddrinfo(
-            host, port, type=socket.SOCK_STREAM
-        )[0]
-        listening = socket.socket(family, kind, protocol)
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listening.bind(address)
-    except OSError as error:
-        raise MobilityError(
-            f"{host}:{port} cannot be listened on: {error.strerror or error}; "
-            "--host and --port choose another address"
-        ) from error
-    return listening
 
 
 def _prepare(

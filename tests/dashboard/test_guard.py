@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
 
-from mesa_mobility.dashboard.guard import Guard, is_loopback
+from mesa_mobility.dashboard.guard import Guard
+from mesa_mobility.live.access import is_loopback
 
 
 def ask(port, path="/", *, method="GET", **headers):

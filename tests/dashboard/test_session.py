@@ -11,10 +11,10 @@ pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]
 from mesa_mobility.models import Doorway, OpenSpace
 
 from mesa_mobility import CostTerm
-from mesa_mobility.dashboard.session.clock import FULL_SPEED
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.session import IF_NOW, Session
 from mesa_mobility.dashboard.views.charts import charts, csv_text
+from mesa_mobility.live.clock import FULL_SPEED
 from tests.fixtures.waiting import until
 
 

@@ -118,3 +118,17 @@ def test_analysis_with_pedpy(capsys: pytest.CaptureFixture[str]) -> None:
 
     # Published bottleneck experiments of 1 m: 2.233 b - 0.155 +- 0.7 persons/s.
     assert 1.378 < flow < 2.778
+
+
+@pytest.mark.thorough
+def test_live_client(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("websockets")
+    first, moved, error = run("live_client", capsys).splitlines()
+
+    assert first == "Doorway: 60 people"
+    x, y, later_x, later_y = numbers(r"(\d+\.\d)", moved)
+    # 1.2 m/s for 3 s less the first steps, straight up the hall.
+    assert (x, y) == (12.0, 1.0)
+    assert abs(later_x - 12.0) < 1.0
+    assert 2.2 < later_y - y < 3.9
+    assert error == "there is no gate or exit 'no such door'; there are 'first door', 'second door'"

@@ -15,12 +15,12 @@ from solara.server import kernel_context
 from mesa_mobility import MobilityError, PedestrianModel
 from mesa_mobility.dashboard.session import kept
 from mesa_mobility.dashboard.session.behaviours import Behaviours
-from mesa_mobility.dashboard.session.clock import Clock
 from mesa_mobility.dashboard.session.observer import Observer
 from mesa_mobility.dashboard.session.plan_changes import PlanChanges
 from mesa_mobility.dashboard.session.run import Run
 from mesa_mobility.dashboard.session.run_config import Making, Recipe
 from mesa_mobility.dashboard.session.view_state import Shown, Status
+from mesa_mobility.live.clock import Clock
 
 Command = Callable[[], None]
 Answer = Callable[[str], None]

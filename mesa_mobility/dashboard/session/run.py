@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 from mesa_mobility import PedestrianModel
 from mesa_mobility.dashboard.session.behaviours import Behaviours
-from mesa_mobility.dashboard.session.clock import Clock
 from mesa_mobility.dashboard.session.observer import Observer
 from mesa_mobility.dashboard.session.plan_changes import PlanChanges
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.view_state import Status
+from mesa_mobility.live.clock import Clock
 
 ALL_CLOSED = "every exit is closed"
 NO_WAY = "for a minute nobody has left or come nearer to an exit"

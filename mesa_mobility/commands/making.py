@@ -1,0 +1,88 @@
+"""Making the model that a command names, and what making it again needs."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from mesa_mobility.errors import ModelError
+
+
+def find_model(name: str) -> type:
+    """The class of an installed model, or of the one in a Python file.
+
+    Raises:
+        ModelError: there is none, or it is broken.
+    """
+    from mesa_mobility.plugins.model_files import is_model_file, load_model_file
+    from mesa_mobility.plugins.registry import load_model
+
+    return load_model_file(name) if is_model_file(name) else load_model(name)
+
+
+def create_model(
+    kind: type,
+    name: str,
+    settings: Iterable[str],
+    *,
+    map_file: Path | None,
+    **keywords: Any,
+) -> tuple[Any, dict[str, Any]]:
+    """The model, and its own parameters with the values that they have.
+
+    Args:
+        kind: its class.
+        name: what the user calls it.
+        settings: texts NAME=VALUE.
+        map_file: a mobility map, or None for the model's own.
+        keywords: further arguments of the constructor.
+
+    Raises:
+        ModelError: a parameter that the constructor does not take, or a value that it refuses.
+    """
+    from mesa_mobility.plugins.parameters import NOT_SETTABLE, chosen, parameters
+
+    keywords = {**chosen(kind, name, settings), **keywords}
+    if map_file is not None:
+        keywords["mobility_map"] = str(map_file)
+    taken = parameters(kind)
+    missing = [key for key in keywords if key not in taken]
+    if missing:
+        raise ModelError(f"model {name}: its constructor does not take {', '.join(missing)}")
+    given = {
+        key: keywords.get(key, each.default)
+        for key, each in taken.items()
+        if key not in NOT_SETTABLE
+    }
+    return kind(**keywords), given
+
+
+def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
+    """All that repeating the run needs besides model, preset and seed."""
+    from importlib.metadata import version
+
+    from mesa_mobility._version import __version__
+
+    plain = (bool, int, float, str, type(None))
+    maps = {}
+    # Another package's model need not know types.
+    for kind in getattr(simulation, "pedestrian_types", ()):
+        path, digest = kind.mobility_map.file, None
+        if path is not None:
+            with path.open("rb") as file:
+                digest = hashlib.file_digest(file, "sha256").hexdigest()
+        maps[kind.name] = {"file": None if path is None else path.name, "sha256": digest}
+    return {
+        "parameters": {
+            key: value if isinstance(value, plain) else str(value) for key, value in given.items()
+        },
+        "maps": maps,
+        "mesa_mobility": __version__,
+        "versions": {
+            "python": platform.python_version(),
+            **{name: version(name) for name in ("mesa", "numpy", "numba", "scipy", "shapely")},
+        },
+    }

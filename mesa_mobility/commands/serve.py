@@ -1,0 +1,116 @@
+"""`mesa-mobility serve`: a running model for other programs."""
+
+from __future__ import annotations
+
+import secrets
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mesa_mobility._startup import nothing_collected
+from mesa_mobility.commands.behaviors import use_behaviors
+from mesa_mobility.commands.console import say, some_path
+from mesa_mobility.commands.making import create_model, find_model
+from mesa_mobility.errors import MobilityError, ModelError
+from mesa_mobility.interrupts import INTERRUPTED
+
+
+def serve(
+    model: Annotated[
+        str,
+        typer.Argument(
+            metavar="MODEL",
+            help="Name of a model; `mesa-mobility models` has them. Or FILE.py, or FILE.py:NAME.",
+        ),
+    ],
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
+    ] = None,
+    behaviors: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--behavior",
+            metavar="NAME[=WEIGHT]",
+            help="An installed behaviour to use besides the model's own; repeatable.",
+        ),
+    ] = None,
+    preset: Annotated[str | None, typer.Option(help="default or paper.")] = None,
+    map_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--map",
+            help="Mobility map instead of the shipped one.",
+            parser=some_path,
+            metavar="PATH",
+        ),
+    ] = None,
+    rate: Annotated[int, typer.Option(help="Frames a second; a divisor of 30.")] = 30,
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port to listen on; 0 for any free one.")
+    ] = 8766,
+    origins: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--origin",
+            metavar="ORIGIN",
+            help="Pages of this origin may connect, such as http://localhost:8000; repeatable.",
+        ),
+    ] = None,
+) -> None:
+    """Run a model in real time for other programs: frames and commands over a WebSocket.
+
+    Prints the address to connect to; time begins with the first client. Ctrl-C ends it. Needs the
+    extra `live`.
+    """
+    if find_spec("websockets") is None:
+        raise MobilityError(
+            "serve needs websockets: pip install 'mesa-mobility[live]' brings what it needs"
+        )
+    import asyncio
+
+    from mesa_mobility.live.access import address_of, is_loopback, listen, new_token
+    from mesa_mobility.live.run import Run
+    from mesa_mobility.live.server import Access, LiveServer, origins_of
+
+    token = new_token()
+    access = Access(host, token, origins_of(origins or []))
+    listening = listen(host, port)
+    seed = secrets.randbelow(2**31) if seed is None else seed
+    with nothing_collected():
+        from mesa_mobility.crowd import PedestrianModel
+        from mesa_mobility.crowd.precompile import compiling_ahead
+
+        with compiling_ahead():
+            simulation, _ = create_model(
+                find_model(model),
+                model,
+                settings or [],
+                map_file=map_file,
+                rng=seed,
+                **({} if preset is None else {"preset": preset}),
+            )
+            if not isinstance(simulation, PedestrianModel):
+                raise ModelError(f"model {model}: expected a subclass of PedestrianModel")
+            use_behaviors(simulation, behaviors or [])
+            run = Run(simulation, rate)
+
+    def ready() -> None:
+        if not is_loopback(host):
+            say(
+                f"warning: {host} is reached from the network: who has the address below can "
+                "command the model, and nothing is encrypted"
+            )
+        say(f"{model}, seed {seed}: connect to the address below (Ctrl-C ends)")
+        where = address_of(host, listening.getsockname()[1])
+        print(f"ws://{where}/?token={token}", flush=True)
+
+    asyncio.run(LiveServer(run, rate, access, say).serve(listening, ready))
+    raise typer.Exit(INTERRUPTED)

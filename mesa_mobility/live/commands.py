@@ -1,0 +1,203 @@
+"""Commands to a running model, as JSON texts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.errors import LiveError
+from mesa_mobility.live.fields import Fields, shown, text_of
+from mesa_mobility.live.run import Command, Run
+
+
+def read_command(text: str, client: Hashable = None) -> tuple[Any, Command]:
+    """The command that a text stands for.
+
+    Args:
+        text: a JSON object.
+        client: who gives the command.
+
+    Returns:
+        The command's ``id``, None if it has none, and a function that executes it.
+
+    Raises:
+        Refused: the text is no command.
+    """
+    number = None
+    try:
+        fields = Fields(text)
+        given = fields.take("id", None)
+        if not (given is None or (isinstance(given, int | str) and len(shown(given)) <= 60)):
+            raise LiveError("id: expected a short text or a whole number")
+        number = given
+        name = fields.text("do")
+        if name not in _COMMANDS:
+            raise LiveError(f"do: got {shown(name)}, expected one of {', '.join(_COMMANDS)}")
+        command = _COMMANDS[name](fields, client)
+        fields.none_left()
+    except LiveError as error:
+        raise Refused(str(error), number) from None
+    return number, command
+
+
+class Refused(LiveError):
+    """A command that cannot be executed.
+
+    Attributes:
+        id: the command's, or None.
+    """
+
+    def __init__(self, message: str, number: Any = None) -> None:
+        super().__init__(message)
+        self.id = number
+
+
+def _walk(fields: Fields, client: Hashable) -> Command:
+    people, place = fields.people(), fields.pair("to")
+    stay = fields.number("stay", None)
+
+    def command(run: Run) -> dict[str, Any]:
+        run.orders.walk(_inside(run, people), place, stay)
+        return {}
+
+    return command
+
+
+def _steer(fields: Fields, client: Hashable) -> Command:
+    people, velocity = fields.people(), fields.pair("velocity")
+
+    def command(run: Run) -> dict[str, Any]:
+        run.orders.steer(_inside(run, people), velocity)
+        run.hold(client, people)
+        return {}
+
+    return command
+
+
+def _release(fields: Fields, client: Hashable) -> Command:
+    people = fields.people()
+
+    def command(run: Run) -> dict[str, Any]:
+        run.orders.release(_inside(run, people))
+        return {}
+
+    return command
+
+
+def _leave(fields: Fields, client: Hashable) -> Command:
+    people, exits = fields.people(), _exits(fields)
+
+    def command(run: Run) -> dict[str, Any]:
+        rows = _inside(run, people)
+        for row in rows.tolist():
+            run.model.population.send(row, exits, (), run.model.frame)
+        run.orders.release(rows)
+        return {}
+
+    return command
+
+
+def _wait(fields: Fields, client: Hashable) -> Command:
+    people, seconds = fields.people(), fields.number("seconds")
+
+    def command(run: Run) -> dict[str, Any]:
+        model = run.model
+        for row in _inside(run, people).tolist():
+            model.waits.tell(row, seconds, None, model.frame, model.crowd)
+        return {}
+
+    return command
+
+
+def _open(fields: Fields, client: Hashable) -> Command:
+    name = fields.text("opening")
+
+    def command(run: Run) -> dict[str, Any]:
+        run.model.floor_plan.open_gate(name)
+        return {}
+
+    return command
+
+
+def _close(fields: Fields, client: Hashable) -> Command:
+    name = fields.text("opening")
+
+    def command(run: Run) -> dict[str, Any]:
+        run.model.floor_plan.close_gate(name)
+        return {}
+
+    return command
+
+
+def _add(fields: Fields, client: Hashable) -> Command:
+    positions, exits = fields.pairs("positions"), _exits(fields)
+    speed, kind = fields.number("speed", None), fields.text("type", None)
+    heading = fields.number("heading", None)
+
+    def command(run: Run) -> dict[str, Any]:
+        types = [each.name for each in run.model.pedestrian_types]
+        if kind is not None and kind not in types:
+            raise LiveError(f"type: got {shown(kind)}, expected one of {', '.join(types)}")
+        people = run.model.add_pedestrians(
+            positions,
+            headings=None if heading is None else [heading] * len(positions),
+            preferred_speeds=None if speed is None else [speed] * len(positions),
+            exits=exits,
+            type_index=None if kind is None else types.index(kind),
+        )
+        return {"people": [person.row for person in people]}
+
+    return command
+
+
+def _pause(fields: Fields, client: Hashable) -> Command:
+    def command(run: Run) -> dict[str, Any]:
+        run.set_playing(False)
+        return {}
+
+    return command
+
+
+def _resume(fields: Fields, client: Hashable) -> Command:
+    def command(run: Run) -> dict[str, Any]:
+        run.set_playing(True)
+        return {}
+
+    return command
+
+
+_COMMANDS: dict[str, Callable[[Fields, Hashable], Command]] = {
+    "walk": _walk,
+    "steer": _steer,
+    "release": _release,
+    "leave": _leave,
+    "wait": _wait,
+    "open": _open,
+    "close": _close,
+    "add": _add,
+    "pause": _pause,
+    "resume": _resume,
+}
+
+
+def _exits(fields: Fields) -> list[str] | None:
+    """Names of exits; None, or no field, stands for all."""
+    if fields.peek("exits") is None:
+        fields.take("exits", None)
+        return None
+    return fields.each("exits", text_of)
+
+
+def _inside(run: Run, people: list[int]) -> NDArray[np.int64]:
+    """(n,) rows of people who are all inside; nobody gets an order if one of them is not.
+
+    Raises:
+        LiveError: somebody who has left, or has never been there.
+    """
+    for row in people:
+        if not (row < run.model.population.count and run.model.crowd.active[row]):
+            raise LiveError(f"person {row}: expected somebody inside")
+    return np.array(people, dtype=np.int64)

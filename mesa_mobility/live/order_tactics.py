@@ -1,0 +1,124 @@
+"""The tactics by which people follow orders."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.state.environment import clearance_of
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.shipped import StayAtPlaces
+from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
+from mesa_mobility.crowd.tactics.target_choice import Deciding
+from mesa_mobility.live.making_way import BRISK, step_aside
+from mesa_mobility.live.orders import FREE, STANDS, STEERED, WALKS, Orders
+from mesa_mobility.live.point_routes import PointRoutes
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.model import PedestrianModel
+
+AHEAD = 1.0
+"""Seconds ahead of its velocity at which somebody who is steered aims: near, so that movements are
+short and another velocity soon counts."""
+
+ARRIVED, AROUND = 0.3, 0.35
+"""Metres from a place at which the first has arrived, and more for those who stand there."""
+
+
+def follow_orders(model: PedestrianModel, orders: Orders) -> None:
+    """Add the tactics to a model's own."""
+    names = [each.name for each in model.tactics]
+    first = names.index(StayAtPlaces.name) + 1 if StayAtPlaces.name in names else 0
+    # All that people heed on their way, they heed on the way to a place.
+    model.tactics.insert(first, WalkToPlaces(orders))
+    model.tactics.append(Steering(orders))
+
+
+class _OfOrders(Tactic):
+    """A tactic that follows orders.
+
+    Args:
+        orders: to the model's people.
+    """
+
+    _crowd: Crowd
+
+    def __init__(self, orders: Orders) -> None:
+        self._orders = orders
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the model's crowd."""
+        self._crowd = model.crowd
+
+
+class WalkToPlaces(_OfOrders):
+    """People walk to places to which they were sent, and wait there."""
+
+    name = "walking_orders"
+
+    def __init__(self, orders: Orders) -> None:
+        super().__init__(orders)
+        self._routes: dict[int, PointRoutes] = {}
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Set the points of those who are on the way."""
+        orders, rows, site = self._orders, deciding.pedestrians, deciding.site
+        does = orders.of(rows)
+        if desired.newcomers or not does.any():
+            return
+        # Their wait is over.
+        waits = self._crowd.agenda["waits_until"][rows]
+        over = rows[(does == STANDS) & (waits <= round(deciding.elapsed / FRAME_SECONDS))]
+        orders.does[over] = FREE
+        going = np.flatnonzero(does == WALKS)
+        points, speeds = desired.points.copy(), desired.speeds.copy()
+        bodies = np.array([site.body(int(kind)) for kind in deciding.types[going]])
+        for at in _by_destination(orders.place[rows[going]], bodies):
+            own, body = going[at], int(bodies[at[0]])
+            if body not in self._routes:
+                clearance = clearance_of(site.core_radius(body))
+                self._routes[body] = PointRoutes(site.plan, clearance)
+            x, y = orders.place[rows[own[0]]].tolist()
+            points[own], lengths = self._routes[body].targets(deciding.positions[own], (x, y))
+            self._crowd.route[rows[own]] = lengths
+            speeds[own[~np.isfinite(lengths)]] = 0.0
+            near = ARRIVED + AROUND * np.sqrt(orders.standing_at((x, y)))
+            orders.arrive(rows[own[lengths <= near]])
+        desired.points, desired.speeds = points, speeds
+
+
+class Steering(_OfOrders):
+    """People go as somebody steers them, whatever else they would heed, and others make way."""
+
+    name = "steering"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Set points and speeds of those who are steered, and of those in their way."""
+        orders, rows = self._orders, deciding.pedestrians
+        steered = orders.steered()
+        if desired.newcomers or not len(steered):
+            return
+        points, speeds = desired.points.copy(), desired.speeds.copy()
+        by_hand = orders.of(rows) == STEERED
+        velocity = orders.velocity[rows[by_hand]]
+        points[by_hand] = deciding.positions[by_hand] + AHEAD * velocity
+        speeds[by_hand] = np.hypot(velocity[:, 0], velocity[:, 1])
+        others = np.flatnonzero(~by_hand)
+        who, places = step_aside(rows[others], steered, orders.velocity[steered], self._crowd)
+        points[others[who]] = places
+        speeds[others[who]] = np.maximum(speeds[others[who]], BRISK)
+        desired.points, desired.speeds = points, speeds
+
+
+def _by_destination(
+    places: NDArray[np.float64], bodies: NDArray[np.int64]
+) -> list[NDArray[np.intp]]:
+    """Indices of those with the same place and size, for each such pair."""
+    if not len(places):
+        return []
+    _, which = np.unique(np.column_stack([places, bodies]), axis=0, return_inverse=True)
+    which = which.reshape(-1)
+    return [np.flatnonzero(which == k) for k in range(int(which.max()) + 1)]

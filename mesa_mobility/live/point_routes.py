@@ -1,0 +1,148 @@
+"""Routes to places that somebody names while a model runs.
+
+The routes between the corners, gates and exits of a plan are searched for once. A place is joined
+to them by the views that it has of them, so another one costs little, however many there are.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from mesa_mobility.floorplan import FloorPlan, Router, lines_of_sight
+from mesa_mobility.floorplan.routing.route_nodes import VIEW_SHARE
+
+_PAST = (0.4, 0.2)
+"""Metres past a corner or gate at which people aim: the first that is in view from it."""
+
+
+KEPT = 1000
+"""Places whose routes are kept; they are searched for again after more of them."""
+
+
+class _Nodes(NamedTuple):
+    """Places where routes bend.
+
+    Fields: ``xy`` (n, 2) metres; ``start``, ``end`` (m,) nodes of each line between two in view of
+    each other, and ``length`` (m,), metres.
+    """
+
+    xy: NDArray[np.float64]
+    start: NDArray[np.int64]
+    end: NDArray[np.int64]
+    length: NDArray[np.float64]
+
+
+class PointRoutes:
+    """Shortest routes to places on a floor plan, up to date with its doors and obstacles.
+
+    Args:
+        plan: the floor plan.
+        clearance: distance that routes keep from walls, metres.
+    """
+
+    def __init__(self, plan: FloorPlan, clearance: float) -> None:
+        self._plan = plan
+        self._clearance = clearance
+        self._version = -1
+        self._nodes: _Nodes
+        self._lengths: dict[tuple[float, float], NDArray[np.float64]] = {}
+
+    def targets(
+        self, positions: NDArray[np.float64], place: tuple[float, float]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where people aim who go to a place.
+
+        Args:
+            positions: (n, 2) metres.
+            place: metres.
+
+        Returns:
+            (n, 2) targets, metres, and (n,) lengths of the routes, metres. Somebody without a way
+            gets its own position, and inf.
+        """
+        to_go = self._lengths_to(place)
+        points, lengths = positions.copy(), np.full(len(positions), np.inf)
+        direct = self._sees(positions, np.broadcast_to(place, positions.shape))
+        points[direct] = place
+        lengths[direct] = _away(positions[direct], np.array(place))
+        for k in np.flatnonzero(~direct).tolist():
+            points[k], lengths[k] = self._by_node(positions[k], to_go)
+        return points, lengths
+
+    def _by_node(
+        self, position: NDArray[np.float64], to_go: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], float]:
+        """Target and length of a route that bends."""
+        xy = self._nodes.xy
+        usable = np.flatnonzero(np.isfinite(to_go))
+        through = _away(xy[usable], position) + to_go[usable]
+        order = usable[np.argsort(through, kind="stable")]
+        start = np.broadcast_to(position, (len(order), 2))
+        for clearance in (VIEW_SHARE * self._clearance, 0.0):
+            seen = lines_of_sight(self._plan, start, xy[order], clearance)
+            if seen.any():
+                node = int(order[np.argmax(seen)])
+                return self._past(position, node), float(through[usable == node][0])
+        return position, np.inf
+
+    def _past(self, position: NDArray[np.float64], node: int) -> NDArray[np.float64]:
+        """A target past a corner or gate; at the corner itself people would slow down."""
+        xy = self._nodes.xy[node]
+        on = (xy - position) / max(float(_away(xy, position)), 1e-9)
+        beyond = xy + np.array(_PAST)[:, None] * on
+        clear = self._sees(np.broadcast_to(xy, beyond.shape), beyond)
+        target: NDArray[np.float64] = beyond[np.argmax(clear)] if clear.any() else xy
+        return target
+
+    def _lengths_to(self, place: tuple[float, float]) -> NDArray[np.float64]:
+        """(nodes,) length of the route from each node to a place, metres."""
+        if self._version != self._plan.version:
+            self._version = self._plan.version
+            self._nodes = self._look_up()
+            self._lengths.clear()
+        if place not in self._lengths:
+            if len(self._lengths) >= KEPT:
+                self._lengths.clear()
+            self._lengths[place] = self._search(place)
+        return self._lengths[place]
+
+    def _search(self, place: tuple[float, float]) -> NDArray[np.float64]:
+        xy, start, end, length = self._nodes
+        if len(xy) == 0:
+            return np.empty(0)
+        last = np.flatnonzero(self._sees(xy, np.broadcast_to(place, xy.shape)))
+        lines = np.maximum(_away(xy[last], np.array(place)), 1e-9)
+        # The place is one more node, from which all routes are followed.
+        n = len(xy)
+        begin, to = np.concatenate([start, np.full(len(last), n)]), np.concatenate([end, last])
+        joined = csr_matrix((np.concatenate([length, lines]), (begin, to)), shape=(n + 1, n + 1))
+        found: NDArray[np.float64] = dijkstra(joined, directed=False, indices=n)[:n]
+        return found
+
+    def _look_up(self) -> _Nodes:
+        """The nodes but exits, by which nobody is to leave on the way."""
+        graph = Router(self._plan, clearance=self._clearance).graph
+        kept = [node for node, kind in graph.nodes(data="kind") if kind != "exit"]
+        at = {node: k for k, node in enumerate(kept)}
+        xy = np.array([graph.nodes[n]["position"] for n in kept]).reshape(-1, 2)
+        # A gate's nodes lead one way each; together they are crossed both ways. Lines in both
+        # directions are one.
+        edges = {
+            (min(at[a], at[b]), max(at[a], at[b])) for a, b in graph.edges if a in at and b in at
+        }
+        start, end = np.array(sorted(edges), dtype=np.int64).reshape(-1, 2).T
+        length = np.hypot(*(xy[end] - xy[start]).T)
+        return _Nodes(xy, start, end, np.maximum(length, 1e-9))
+
+    def _sees(self, one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
+        return lines_of_sight(self._plan, one, other, VIEW_SHARE * self._clearance)
+
+
+def _away(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    distances: NDArray[np.float64] = np.hypot(one[..., 0] - other[0], one[..., 1] - other[1])
+    return distances
