@@ -6,6 +6,8 @@ from mesa_mobility.behaviors.exits.nearest_exit import NearestExit
 from mesa_mobility.behaviors.exits.quickest_exit import QuickestExit
 from mesa_mobility.behaviors.exits.random_utility import RandomUtility
 from mesa_mobility.behaviors.exits.social_influence import SocialInfluence
+from mesa_mobility.behaviors.groups.walk_together import WalkTogether
+from mesa_mobility.behaviors.groups.walking_abreast import WalkingAbreast
 from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
@@ -25,7 +27,6 @@ from mesa_mobility.behaviors.velocity import (
     PreferredVelocity,
     VelocityChange,
 )
-from mesa_mobility.behaviors.walk_together import WalkTogether
 
 __all__ = [
     "BlockedWays",
@@ -56,4 +57,5 @@ __all__ = [
     "TargetDistance",
     "VelocityChange",
     "WalkTogether",
+    "WalkingAbreast",
 ]

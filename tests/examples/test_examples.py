@@ -105,6 +105,14 @@ def test_smoke_avoided(capsys: pytest.CaptureFixture[str]) -> None:
     assert numbers(r"(\d+) of 40 walked through", aware) == [0]
 
 
+def test_walking_abreast(capsys: pytest.CaptureFixture[str]) -> None:
+    text = run("walking_abreast", capsys)
+
+    # Moussaid et al. (2010): 1.26 - 0.04 N m/s, and about 0.75 m apart.
+    assert numbers(r": (\S+) m/s", text) == pytest.approx([1.22, 1.18, 1.14], abs=0.04)
+    assert numbers(r"(\S+) m apart", text) == pytest.approx([0.75, 0.75], abs=0.1)
+
+
 @pytest.mark.thorough
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
