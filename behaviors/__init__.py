@@ -6,6 +6,7 @@ from mesa_mobility.behaviors.exits.nearest_exit import NearestExit
 from mesa_mobility.behaviors.exits.quickest_exit import QuickestExit
 from mesa_mobility.behaviors.exits.random_utility import RandomUtility
 from mesa_mobility.behaviors.exits.social_influence import SocialInfluence
+from mesa_mobility.behaviors.groups.following import Following
 from mesa_mobility.behaviors.groups.walk_together import WalkTogether
 from mesa_mobility.behaviors.groups.walking_abreast import WalkingAbreast
 from mesa_mobility.behaviors.headway import Headway
@@ -37,6 +38,7 @@ __all__ = [
     "FacingDeviation",
     "FamiliarExit",
     "FamiliarRoutes",
+    "Following",
     "Hazard",
     "Hazards",
     "Headway",

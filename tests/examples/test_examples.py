@@ -113,6 +113,14 @@ def test_walking_abreast(capsys: pytest.CaptureFixture[str]) -> None:
     assert numbers(r"(\S+) m apart", text) == pytest.approx([0.75, 0.75], abs=0.1)
 
 
+def test_guided_tour(capsys: pytest.CaptureFixture[str]) -> None:
+    alone, guided = run("guided_tour", capsys).splitlines()
+
+    # The door by which they came is the nearer one.
+    assert numbers(r"(\d+) by the far", alone) == [1]
+    assert numbers(r"(\d+) by the far", guided) == [11]
+
+
 @pytest.mark.thorough
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
