@@ -12,6 +12,7 @@ from mesa_mobility.behaviors.groups.walking_abreast import WalkingAbreast
 from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
+from mesa_mobility.behaviors.places.queueing import Counter, Queueing
 from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.room_ahead import RoomAhead
 from mesa_mobility.behaviors.routes.blocked_ways import BlockedWays
@@ -33,6 +34,7 @@ __all__ = [
     "BlockedWays",
     "Choosing",
     "CongestionRouting",
+    "Counter",
     "Displacement",
     "ExitChoice",
     "FacingDeviation",
@@ -47,6 +49,7 @@ __all__ = [
     "NearestExit",
     "PreferredSpeed",
     "PreferredVelocity",
+    "Queueing",
     "QuickestExit",
     "RandomUtility",
     "RightOfWay",

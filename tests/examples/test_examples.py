@@ -121,6 +121,15 @@ def test_guided_tour(capsys: pytest.CaptureFixture[str]) -> None:
     assert numbers(r"(\d+) by the far", guided) == [11]
 
 
+def test_queue_at_counters(capsys: pytest.CaptureFixture[str]) -> None:
+    text = run("queue_at_counters", capsys)
+
+    assert numbers(r"line: (\d+) people", text) == [4]
+    # Four times 3 to 5 s and some 2 s between two of them, 7 m to the first and 10 m from the last.
+    [seconds] = numbers(r"after (\S+) s", text)
+    assert 25.0 < seconds < 50.0
+
+
 @pytest.mark.thorough
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
