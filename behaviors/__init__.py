@@ -12,6 +12,7 @@ from mesa_mobility.behaviors.groups.walking_abreast import WalkingAbreast
 from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
+from mesa_mobility.behaviors.places.attraction import Attraction, Attractions
 from mesa_mobility.behaviors.places.queueing import Counter, Queueing
 from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.room_ahead import RoomAhead
@@ -31,6 +32,8 @@ from mesa_mobility.behaviors.velocity import (
 )
 
 __all__ = [
+    "Attraction",
+    "Attractions",
     "BlockedWays",
     "Choosing",
     "CongestionRouting",

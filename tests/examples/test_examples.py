@@ -130,6 +130,15 @@ def test_queue_at_counters(capsys: pytest.CaptureFixture[str]) -> None:
     assert 25.0 < seconds < 50.0
 
 
+def test_shop_window(capsys: pytest.CaptureFixture[str]) -> None:
+    shares = numbers(r"(\d+) of 24 stop", run("shop_window", capsys))
+
+    # 0 and 100 %, and 12 +- 7.3, three deviations, for a half.
+    assert shares[0] == 0
+    assert 4 < shares[1] < 20
+    assert shares[2] == 24
+
+
 @pytest.mark.thorough
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
