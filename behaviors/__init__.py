@@ -6,9 +6,14 @@ from mesa_mobility.behaviors.exits.nearest_exit import NearestExit
 from mesa_mobility.behaviors.exits.quickest_exit import QuickestExit
 from mesa_mobility.behaviors.exits.random_utility import RandomUtility
 from mesa_mobility.behaviors.exits.social_influence import SocialInfluence
+from mesa_mobility.behaviors.groups.following import Following
+from mesa_mobility.behaviors.groups.walk_together import WalkTogether
+from mesa_mobility.behaviors.groups.walking_abreast import WalkingAbreast
 from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
+from mesa_mobility.behaviors.places.attraction import Attraction, Attractions
+from mesa_mobility.behaviors.places.queueing import Counter, Queueing
 from mesa_mobility.behaviors.right_of_way import RightOfWay
 from mesa_mobility.behaviors.room_ahead import RoomAhead
 from mesa_mobility.behaviors.routes.blocked_ways import BlockedWays
@@ -25,17 +30,20 @@ from mesa_mobility.behaviors.velocity import (
     PreferredVelocity,
     VelocityChange,
 )
-from mesa_mobility.behaviors.walk_together import WalkTogether
 
 __all__ = [
+    "Attraction",
+    "Attractions",
     "BlockedWays",
     "Choosing",
     "CongestionRouting",
+    "Counter",
     "Displacement",
     "ExitChoice",
     "FacingDeviation",
     "FamiliarExit",
     "FamiliarRoutes",
+    "Following",
     "Hazard",
     "Hazards",
     "Headway",
@@ -44,6 +52,7 @@ __all__ = [
     "NearestExit",
     "PreferredSpeed",
     "PreferredVelocity",
+    "Queueing",
     "QuickestExit",
     "RandomUtility",
     "RightOfWay",
@@ -56,4 +65,5 @@ __all__ = [
     "TargetDistance",
     "VelocityChange",
     "WalkTogether",
+    "WalkingAbreast",
 ]

@@ -51,7 +51,7 @@ def use_behaviors(model: PedestrianModel, texts: Iterable[str]) -> None:
                 model.speed_rules.append(made)
         elif isinstance(made, Tactic):
             if made.name not in [tactic.name for tactic in model.tactics]:
-                model.tactics.append(made)
+                model.add_tactic(made)
         elif isinstance(made, TargetChoice):
             model.target_choice = made
         else:

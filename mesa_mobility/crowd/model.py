@@ -344,6 +344,12 @@ class PedestrianModel(mesa.Model):
         self.running = True
         return inflow
 
+    def add_tactic(self, tactic: Tactic) -> None:
+        """Add a tactic behind the one that it names in ``after``, or else at the end."""
+        names = [each.name for each in self.tactics]
+        at = names.index(tactic.after) + 1 if tactic.after in names else len(names)
+        self.tactics.insert(at, tactic)
+
     def step(self) -> None:
         """Advance ``frames_per_step`` frames."""
         if self._agents_step:

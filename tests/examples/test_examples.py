@@ -105,6 +105,40 @@ def test_smoke_avoided(capsys: pytest.CaptureFixture[str]) -> None:
     assert numbers(r"(\d+) of 40 walked through", aware) == [0]
 
 
+def test_walking_abreast(capsys: pytest.CaptureFixture[str]) -> None:
+    text = run("walking_abreast", capsys)
+
+    # Moussaid et al. (2010): 1.26 - 0.04 N m/s, and about 0.75 m apart.
+    assert numbers(r": (\S+) m/s", text) == pytest.approx([1.22, 1.18, 1.14], abs=0.04)
+    assert numbers(r"(\S+) m apart", text) == pytest.approx([0.75, 0.75], abs=0.1)
+
+
+def test_guided_tour(capsys: pytest.CaptureFixture[str]) -> None:
+    alone, guided = run("guided_tour", capsys).splitlines()
+
+    # The door by which they came is the nearer one.
+    assert numbers(r"(\d+) by the far", alone) == [1]
+    assert numbers(r"(\d+) by the far", guided) == [11]
+
+
+def test_queue_at_counters(capsys: pytest.CaptureFixture[str]) -> None:
+    text = run("queue_at_counters", capsys)
+
+    assert numbers(r"line: (\d+) people", text) == [4]
+    # Four times 3 to 5 s and some 2 s between two of them, 7 m to the first and 10 m from the last.
+    [seconds] = numbers(r"after (\S+) s", text)
+    assert 25.0 < seconds < 50.0
+
+
+def test_shop_window(capsys: pytest.CaptureFixture[str]) -> None:
+    shares = numbers(r"(\d+) of 24 stop", run("shop_window", capsys))
+
+    # 0 and 100 %, and 12 +- 7.3, three deviations, for a half.
+    assert shares[0] == 0
+    assert 4 < shares[1] < 20
+    assert shares[2] == 24
+
+
 @pytest.mark.thorough
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))

@@ -48,8 +48,8 @@ ONCOMING = 0.3
 """Speed of people towards somebody from which on they do not count, m/s."""
 
 LEAST = 0.75
-"""Share of its own speed that somebody wants at least: in dense crowds, where people are slower, the
-cost terms decide alone.  With less, waves of standing people last there."""
+"""Share of its own speed that somebody wants at least: in dense crowds, where people are slower,
+the cost terms decide alone.  With less, waves of standing people last there."""
 
 
 def adapt_speeds(

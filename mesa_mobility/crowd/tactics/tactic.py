@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,13 @@ class Tactic(Plugin):
 
     Subclasses set ``name`` and define ``apply``. A model applies those in ``model.tactics`` in
     order.
+
+    Attributes:
+        after: name of the tactic behind which ``PedestrianModel.add_tactic`` puts this one; by
+            default it goes to the end.
     """
+
+    after: ClassVar[str | None] = None
 
     @abstractmethod
     def apply(self, deciding: Deciding, desired: Desired) -> None:

@@ -64,6 +64,17 @@ def test_they_apply_in_order_and_may_be_taken_out():
     assert person.position[0] > 3.0
 
 
+def test_one_that_is_added_goes_behind_the_one_that_it_names():
+    model = model_of(corridor(), strider())
+    before = names(model)
+    model.add_tactic(Halve())
+    assert names(model) == [*before, "halve"]
+    behind = GoUp()
+    behind.after = "speed_zones"
+    model.add_tactic(behind)
+    assert names(model)[3:5] == ["go_up", "speed_rules"]
+
+
 def test_what_a_tactic_gives_is_checked():
     n = 1
     for given, text in (

@@ -119,7 +119,8 @@ class Place:
         else:
             px, py = x, y
             x0, y0, x1, y1 = room.bounds
-            if not x1 > x0:  # an obstacle has come to stand there
+            # Where an obstacle has come to stand, or only one person has room.
+            if not x1 > x0 or max(x1 - x0, y1 - y0) <= APART:
                 return x, y
             thrown = rng.uniform((x0, y0), (x1, y1), (_THROWS, 2))
         thrown = thrown[shapely.contains_xy(room, thrown[:, 0], thrown[:, 1])]

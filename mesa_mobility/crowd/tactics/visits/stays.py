@@ -77,7 +77,9 @@ class Stays(Saved):
         """
         x, y = float(crowd.x[row]), float(crowd.y[row])
         if row >= len(self._place) or self._place[row] < 0:
-            others = np.flatnonzero((self._place >= 0) & crowd.active[: len(self._place)])
+            # There may be more rows here than in the crowd, none of them in use.
+            known = self._place[: len(crowd.active)]
+            others = np.flatnonzero((known >= 0) & crowd.active[: len(known)])
             staying = int((self._place[others] == number).sum())
             if not place.reached(x, y, staying):
                 return False

@@ -1,0 +1,1 @@
+"""Behaviours at places: counters, shop windows."""

@@ -1,0 +1,186 @@
+"""Lining up before counters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from mesa_mobility import Deciding, Desired, PedestrianModel, Tactic, Visit
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import lines_of_sight
+
+# Radius of the place where people are served, metres, and the least distance in the line: only
+# one person is there at a time.
+_SERVED, _CLOSEST = 0.25, 0.5
+
+# Seconds in which somebody gets to its place, and its least speed on the last steps, m/s.
+_GETS_THERE, _LEAST = 1.0, 0.4
+
+# Metres from the end of the line at which somebody joins it, from its own place in it at which it
+# stands, and from which it moves up again.
+_JOINS, _STANDS, _MOVES_UP = 1.0, 0.15, 0.3
+
+
+@dataclass(frozen=True)
+class Counter:
+    """A counter, and the line that people form before it.
+
+    ``visit`` stands in a route, like any place to visit.
+
+    Attributes:
+        line: (x, y) points in metres, from where people are served to the end of the line, beyond
+            which it goes on straight.
+        service: seconds that it takes to serve somebody, or a distribution of them.
+        spacing: metres between two people in the line.
+
+    Raises:
+        ModelError: fewer than two points, one of them twice in a row, or numbers out of range.
+    """
+
+    line: Sequence[tuple[float, float]]
+    service: float | Distribution
+    spacing: float = 0.6
+
+    def __post_init__(self) -> None:
+        try:
+            points = np.asarray(self.line, dtype=np.float64)
+        except (TypeError, ValueError):
+            points = np.empty(0)
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
+            raise ModelError(f"counter: line {self.line!r:.80}, expected two points (x, y) or more")
+        if not np.isfinite(points).all() or not np.diff(points, axis=0).any(axis=1).all():
+            raise ModelError(f"counter: line {self.line!r:.80}, expected finite, different points")
+        if not _CLOSEST <= self.spacing < math.inf:
+            raise ModelError(f"counter: spacing {self.spacing}, expected {_CLOSEST} m or more")
+        object.__setattr__(self, "line", tuple(map(tuple, points.tolist())))
+        Visit(self.line[0], stay=self.service)  # refuses what is no time
+
+    @cached_property
+    def visit(self) -> Visit:
+        """The place where people are served, for a route."""
+        return Visit(shapely.Point(self.line[0]).buffer(_SERVED), stay=self.service)
+
+    def places(self, count: int) -> NDArray[np.float64]:
+        """(count, 2) places in the line, metres; the first is where people are served."""
+        points = np.array(self.line)
+        steps = np.diff(points, axis=0)
+        lengths = np.hypot(*steps.T)
+        ends = np.cumsum(lengths)
+        along = self.spacing * np.arange(count)
+        on = np.minimum(np.searchsorted(ends, along, side="left"), len(steps) - 1)
+        beyond = along - (ends[on] - lengths[on])
+        found: NDArray[np.float64] = points[on] + steps[on] * (beyond / lengths[on])[:, None]
+        return found
+
+
+class Queueing(Tactic):
+    """People who are to be served line up before their counter, in the order in which they come.
+
+    Who comes within a metre of the end of the line joins it, and moves up as those before it do.
+    The first steps up to the counter, is served and goes on with its route. In the line people
+    are patient.
+
+    Args:
+        counters: the counters; ``counters`` may be added to while the model runs.
+    """
+
+    name = "queueing"
+    after = "speed_rules"
+
+    _model: PedestrianModel
+
+    def __init__(self, counters: Iterable[Counter] = ()) -> None:
+        self.counters = list(counters)
+        self._lines: list[list[int]] = []
+        self._standing: set[int] = set()
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the model, whose people line up."""
+        self._model = model
+
+    def state(self) -> dict[str, Any]:
+        """Who stands where; counters are given again."""
+        return {"_lines": self._lines, "_standing": self._standing}
+
+    def line(self, counter: Counter) -> list[int]:
+        """Rows of those who are served or stand in line before a counter, the first one first."""
+        number = self.counters.index(counter)
+        return list(self._lines[number]) if number < len(self._lines) else []
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Send those who are to be served to the end of the line, or to their place in it."""
+        if desired.newcomers:
+            return
+        self._lines += [[] for _ in self.counters[len(self._lines) :]]
+        crowd, rows = self._model.crowd, deciding.pedestrians
+        desired.points, desired.speeds = desired.points.copy(), desired.speeds.copy()
+        bound = [self._counter_of(row) for row in rows.tolist()]
+        for number, counter in enumerate(self.counters):
+            self._lines[number] = [
+                row for row in self._lines[number]
+                if crowd.active[row] and self._counter_of(row) == number
+            ]  # fmt: skip
+            who = np.flatnonzero([each == number for each in bound])
+            if len(who):
+                self._line_up(counter, self._lines[number], who, deciding, desired)
+        self._standing.intersection_update(row for line in self._lines for row in line)
+
+    def _counter_of(self, row: int) -> int:
+        """Number of the counter to which somebody goes, or -1."""
+        crowd, journeys = self._model.crowd, self._model.journeys
+        if not crowd.agenda["journey"][row]:
+            return -1
+        stop = journeys.next_stop(row, crowd)
+        return next((n for n, each in enumerate(self.counters) if each.visit == stop), -1)
+
+    def _line_up(
+        self,
+        counter: Counter,
+        line: list[int],
+        who: NDArray[np.intp],
+        deciding: Deciding,
+        desired: Desired,
+    ) -> None:
+        """Set points and speeds of those ``who`` decide and go to a counter."""
+        crowd, rows = self._model.crowd, deciding.pedestrians
+        places = counter.places(len(line) + len(who) + 1)
+        seen = lines_of_sight(
+            deciding.site.plan, deciding.positions[who], np.tile(places[len(line)], (len(who), 1))
+        )
+        away = np.hypot(*(deciding.positions[who] - places[len(line)]).T)
+        # The nearest to the end of the line joins it first.
+        for k in np.lexsort((rows[who], away)).tolist():
+            row, here = int(rows[who[k]]), deciding.positions[who[k]]
+            if row not in line:
+                if np.hypot(*(places[: len(line) + 1] - here).T).min() <= _JOINS:
+                    line.append(row)
+                elif seen[k]:
+                    desired.points[who[k]] = places[len(line)]
+                    continue
+                else:
+                    continue
+            place = line.index(row)
+            off = float(np.hypot(*(places[place] - here)))
+            stands = off <= (_MOVES_UP if row in self._standing else _STANDS) and place > 0
+            if stands:
+                self._standing.add(row)
+                desired.points[who[k]], desired.speeds[who[k]] = here, 0.0
+                waits = crowd.agenda["waits_until"]
+                waits[row] = max(waits[row], self._model.frame + 1)
+            else:
+                self._standing.discard(row)
+                if place > 0 or not self._is_served(row):
+                    desired.points[who[k]] = places[place]
+                    slowly = max(off / _GETS_THERE, _LEAST)
+                    desired.speeds[who[k]] = min(desired.speeds[who[k]], slowly)
+
+    def _is_served(self, row: int) -> bool:
+        return self._model.journeys.stays.stands(row)
