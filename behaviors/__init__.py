@@ -26,6 +26,7 @@ from mesa_mobility.behaviors.velocity import (
     VelocityChange,
 )
 from mesa_mobility.behaviors.walk_together import WalkTogether
+from mesa_mobility.behaviors.yielding import Yielding
 
 __all__ = [
     "BlockedWays",
@@ -56,4 +57,5 @@ __all__ = [
     "TargetDistance",
     "VelocityChange",
     "WalkTogether",
+    "Yielding",
 ]
