@@ -30,6 +30,7 @@ from mesa_mobility.behaviors.velocity import (
     PreferredVelocity,
     VelocityChange,
 )
+from mesa_mobility.behaviors.yielding import Yielding
 
 __all__ = [
     "Attraction",
@@ -66,4 +67,5 @@ __all__ = [
     "VelocityChange",
     "WalkTogether",
     "WalkingAbreast",
+    "Yielding",
 ]
