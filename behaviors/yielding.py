@@ -40,6 +40,10 @@ ROOM_TO_ENTER = 2.5
 SECONDS_TO_STOP = 1.5
 """Time in which people come to a halt: the longest movement."""
 
+BERTH = 0.5
+"""Share of the narrowest body's radius that lines of sight along the way keep from walls: people
+who stand close to a wall see them, too."""
+
 LOOK = 0.5
 """Metres between the points of the way to which people who go back look."""
 
@@ -282,7 +286,7 @@ class Yielding(Tactic):
         at = np.searchsorted(corridor.way_along, wanted).clip(max=len(corridor.way) - 1)
         points = corridor.way[at]
         starts = np.tile(position, (len(points), 1))
-        seen = lines_of_sight(self._model.floor_plan, starts, points, self._narrowest)
+        seen = lines_of_sight(self._model.floor_plan, starts, points, BERTH * self._narrowest)
         found: NDArray[np.float64] = points[int(seen.argmax())] if seen.any() else points[-1]
         return found
 

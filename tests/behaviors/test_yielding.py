@@ -123,6 +123,7 @@ def test_all_one_way_nothing_changes():
     assert places([Yielding()]) == places([])
 
 
+@pytest.mark.slow
 def test_a_checkpoint_goes_on_to_the_same_bytes(tmp_path):
     model = PedestrianModel(corridor_plan(False), rng=5)
     model.tactics.append(Yielding())
@@ -148,7 +149,7 @@ def test_parameters_are_checked():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, 11))
-@pytest.mark.parametrize(("west", "east"), [(10, 10), (5, 5), (2, 10)])
+@pytest.mark.parametrize(("west", "east"), [(10, 10), (5, 5), (2, 10), (1, 1)])
 def test_without_a_niche_one_group_backs_out(west, east, seed):
     model = meeting(False, west, east, seed)
     model.run(max_seconds=200)
