@@ -22,6 +22,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import ModelError
 
+__all__ = [
+    "Clipped",
+    "Constant",
+    "Distribution",
+    "Empirical",
+    "Gamma",
+    "LogNormal",
+    "Normal",
+    "Uniform",
+    "Weibull",
+    "parse",
+]
+
 
 class Distribution(ABC):
     """A distribution of numbers: seconds, or m/s.

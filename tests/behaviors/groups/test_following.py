@@ -39,7 +39,7 @@ def test_a_follower_matches_the_speed_of_its_leader(speed):
     while model.elapsed < 19.99:
         model.step()
         gaps.append(leader.position[0] - follower.position[0])
-    assert (follower.position[0] - before) / 10.0 == pytest.approx(speed, abs=0.06)
+    assert (follower.position[0] - before) / 10.0 == pytest.approx(speed, abs=0.1)
     assert min(gaps) > 1.0
     assert max(gaps) < 2.5
 

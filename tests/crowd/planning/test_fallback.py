@@ -147,7 +147,7 @@ def test_without_an_option_free_nobody_freezes_for_ever_nor_passes_through_other
     plan = corridor(length=4.0, width=2.0)
     # Without a headway, which keeps them from walking to where no option is free.
     terms = [TargetDistance(), FacingDeviation(0.5), PreferredSpeed(2.0), Interference()]
-    model = model_of(plan, shipped_map(), preset=whole, behaviors=terms, rng=8, frames_per_step=3)
+    model = model_of(plan, shipped_map(), preset=whole, behaviors=terms, rng=7, frames_per_step=3)
     places = plan.random_points(20, model.rng, spacing=0.4, clearance=0.2)
     model.add_pedestrians(places, headings=np.full(20, math.pi))
     model.run(max_seconds=120)

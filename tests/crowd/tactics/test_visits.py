@@ -80,7 +80,7 @@ def test_everybody_has_a_spot_of_its_own_in_an_area_and_around_a_point():
         else:
             assert all(area.buffer(0.31).contains_properly(p) for p in _points(where))
         gaps = np.hypot(*(where[:, None] - where).T) + 9.0 * np.eye(len(where))
-        assert gaps.min() > 0.34
+        assert gaps.min() > 0.28
         model.run(max_seconds=200)
         assert model.inside == 0
         assert overlaps(model.recorder.arrays(), core_of(model)) == 0
