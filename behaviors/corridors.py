@@ -135,7 +135,9 @@ class _Cells(NamedTuple):
     def graph(self, weights: NDArray[np.float64]) -> csr_array:
         """The neighbours, with a weight for each pair."""
         n = len(self.points)
-        return csr_array(coo_array((weights, (self.one, self.other)), shape=(n, n)))
+        # SciPy before 1.13 takes no others.
+        pairs = (self.one.astype(np.int32), self.other.astype(np.int32))
+        return csr_array(coo_array((weights, pairs), shape=(n, n)))
 
 
 def _corridor(
@@ -256,7 +258,7 @@ def _way(cells: _Cells, ends: list[NDArray[np.int64]], radius: float) -> NDArray
     if len(starts) == 0:
         return starts
     lengths, before, _ = dijkstra(
-        cells.graph(weights), directed=False, indices=starts, min_only=True,
+        cells.graph(weights), directed=False, indices=starts.astype(np.int32), min_only=True,
         return_predecessors=True,
     )  # fmt: skip
     last = int(ends[1][lengths[ends[1]].argmin()])
