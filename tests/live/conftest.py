@@ -83,7 +83,8 @@ class Client:
         self._opening.__exit__(*error)
 
     def receive(self) -> Frame | dict[str, Any]:
-        message = self.socket.recv(timeout=20)
+        # The first step may have to be compiled.
+        message = self.socket.recv(timeout=240)
         if isinstance(message, str) and (values := json.loads(message))["type"] != "frame":
             return values
         self.last = read_frame(message)
