@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.state.people_grid import Grid, build_grid
 from mesa_mobility.crowd.state.records import Crowd
 
 
@@ -36,6 +38,11 @@ class CrowdView:
     def positions(self) -> NDArray[np.float64]:
         """(m, 2) metres."""
         return np.column_stack([self._crowd.x[self.pedestrians], self._crowd.y[self.pedestrians]])
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The people by cell, where they were when it was first asked for: tactics share it."""
+        return build_grid(self.pedestrians, self._crowd.x, self._crowd.y)
 
     @property
     def preferred_speeds(self) -> NDArray[np.float64]:

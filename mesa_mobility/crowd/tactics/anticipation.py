@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point, internal
-from mesa_mobility.crowd.state.people_grid import Grid, build_grid, cells_within
+from mesa_mobility.crowd.state.people_grid import Grid, cells_within
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.walls.line_of_sight import unwalled
@@ -76,7 +76,7 @@ _FIELDS = 5
 
 def turn_aside(
     rows: NDArray[np.int64],
-    inside: NDArray[np.int64],
+    grid: Grid,
     frame: int,
     crowd: Crowd,
     plan: FloorPlan,
@@ -88,7 +88,7 @@ def turn_aside(
 
     Args:
         rows: (n,) the pedestrians.
-        inside: rows of everybody inside.
+        grid: everybody inside.
         frame: now.
         crowd: the crowd.
         plan: its floor plan: people behind walls do not count.
@@ -97,8 +97,8 @@ def turn_aside(
     """
     points, speeds = points.copy(), speeds.copy()
     _turn_aside(
-        rows, frame, build_grid(inside, crowd.x, crowd.y), sight_on(plan, 0.0), crowd.records,
-        crowd.agenda, points, speeds, np.empty((_FIELDS, len(inside))),
+        rows, frame, grid, sight_on(plan, 0.0), crowd.records, crowd.agenda, points, speeds,
+        np.empty((_FIELDS, len(grid.people))),
     )  # fmt: skip
     return points, speeds
 

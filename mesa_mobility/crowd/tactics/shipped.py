@@ -194,7 +194,7 @@ class Anticipation(_OfTheCrowd):
         """Turn the points of those for whom another course is better, or slow them down."""
         if not desired.newcomers:
             desired.points, desired.speeds = turn_aside(
-                deciding.pedestrians, deciding.inside.pedestrians, _frame(deciding), self._crowd,
+                deciding.pedestrians, deciding.inside.grid, _frame(deciding), self._crowd,
                 deciding.site.plan, desired.points, desired.speeds,
             )  # fmt: skip
 
@@ -208,7 +208,7 @@ class AdaptSpeed(_OfTheCrowd):
         """Slow down those who have people ahead."""
         if not desired.newcomers:
             desired.speeds = adapt_speeds(
-                deciding.pedestrians, deciding.inside.pedestrians, self._crowd, desired.points,
+                deciding.pedestrians, deciding.inside.grid, self._crowd, desired.points,
                 desired.speeds,
             )  # fmt: skip
 

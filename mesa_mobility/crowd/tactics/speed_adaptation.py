@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point, internal
-from mesa_mobility.crowd.state.people_grid import Grid, build_grid, cells_within
+from mesa_mobility.crowd.state.people_grid import Grid, cells_within
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 
 STANDING_GAP = 0.28
@@ -54,7 +54,7 @@ the cost terms decide alone.  With less, waves of standing people last there."""
 
 def adapt_speeds(
     rows: NDArray[np.int64],
-    inside: NDArray[np.int64],
+    grid: Grid,
     crowd: Crowd,
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
@@ -63,13 +63,13 @@ def adapt_speeds(
 
     Args:
         rows: (n,) the pedestrians.
-        inside: rows of everybody inside.
+        grid: everybody inside.
         crowd: the crowd.
         points: (n, 2) where they want to go, metres.
         speeds: (n,) how fast, with nobody ahead, m/s.
     """
     speeds = speeds.copy()
-    _adapt_speeds(rows, build_grid(inside, crowd.x, crowd.y), crowd.records, points, speeds)
+    _adapt_speeds(rows, grid, crowd.records, points, speeds)
     return speeds
 
 

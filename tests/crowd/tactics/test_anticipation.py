@@ -11,6 +11,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.crowd.tactics.anticipation import turn_aside
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.oracles.counting import overlaps
@@ -39,7 +40,13 @@ def look(*others, plan=HALL, velocity=SPEED + 0j, target=AT + 12.0, speed=SPEED,
     crowd.agenda["waits_until"][list(waits)] = 1000
     wanted = np.array([[target.real, target.imag]])
     points, speeds = turn_aside(
-        np.array([0]), np.arange(len(places)), 10, crowd, plan, wanted, np.array([speed])
+        np.array([0]),
+        CrowdView(np.arange(len(places)), crowd).grid,
+        10,
+        crowd,
+        plan,
+        wanted,
+        np.array([speed]),
     )
     assert wanted.tolist() == [[target.real, target.imag]]
     found = complex(*points[0]) - AT

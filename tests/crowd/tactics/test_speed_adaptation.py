@@ -8,6 +8,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.crowd.tactics.speed_adaptation import adapt_speeds
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.scenes import model_of
@@ -25,7 +26,9 @@ def speed(*others, way=12.0 + 0j, own=OWN):
     crowd.vx[:], crowd.vy[:] = velocities.real, velocities.imag
     target = np.array([[(AT + way).real, (AT + way).imag]])
     rows = np.arange(len(places))
-    return float(adapt_speeds(rows[:1], rows, crowd, target, np.array([own]))[0])
+    return float(
+        adapt_speeds(rows[:1], CrowdView(rows, crowd).grid, crowd, target, np.array([own]))[0]
+    )
 
 
 @pytest.mark.parametrize(
