@@ -6,9 +6,38 @@ import hashlib
 import platform
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+import typer
+
+from mesa_mobility.commands.console import some_path
 from mesa_mobility.errors import ModelError
+
+Seed = Annotated[
+    int | None,
+    typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
+]
+Behaviors = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--behavior",
+        metavar="NAME[=WEIGHT]",
+        help="An installed behaviour to use besides the model's own; repeatable.",
+    ),
+]
+MapFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--map",
+        help="Mobility map instead of the shipped one.",
+        parser=some_path,
+        metavar="PATH",
+    ),
+]
 
 
 def find_model(name: str) -> type:

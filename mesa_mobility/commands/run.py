@@ -20,7 +20,14 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
-from mesa_mobility.commands.making import create_model, origin_of
+from mesa_mobility.commands.making import (
+    Behaviors,
+    MapFile,
+    Seed,
+    Settings,
+    create_model,
+    origin_of,
+)
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
@@ -36,22 +43,9 @@ def run(
         float | None,
         typer.Option(help="Simulated time at most; without it until everybody is out."),
     ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
-    ] = None,
-    behaviors: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--behavior",
-            metavar="NAME[=WEIGHT]",
-            help="An installed behaviour to use besides the model's own; repeatable.",
-        ),
-    ] = None,
+    seed: Seed = None,
+    settings: Settings = None,
+    behaviors: Behaviors = None,
     preset: Annotated[str, typer.Option(help="default or paper.")] = "default",
     population: Annotated[
         str | None,
@@ -59,15 +53,7 @@ def run(
             help="Types of people: mixed, care_home, or such as 'able_bodied: 0.9, child: 0.1'."
         ),
     ] = None,
-    map_file: Annotated[
-        Path | None,
-        typer.Option(
-            "--map",
-            help="Mobility map instead of the shipped one.",
-            parser=some_path,
-            metavar="PATH",
-        ),
-    ] = None,
+    map_file: MapFile = None,
     out: Annotated[
         Path | None,
         typer.Option(

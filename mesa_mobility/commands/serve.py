@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import secrets
 from importlib.util import find_spec
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from mesa_mobility._startup import nothing_collected
 from mesa_mobility.commands.behaviors import use_behaviors
-from mesa_mobility.commands.console import say, some_path
-from mesa_mobility.commands.making import create_model, find_model
+from mesa_mobility.commands.console import say
+from mesa_mobility.commands.making import (
+    Behaviors,
+    MapFile,
+    Seed,
+    Settings,
+    create_model,
+    find_model,
+)
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.interrupts import INTERRUPTED
 
@@ -25,32 +31,11 @@ def serve(
             help="Name of a model; `mesa-mobility models` has them. Or FILE.py, or FILE.py:NAME.",
         ),
     ],
-    seed: Annotated[
-        int | None,
-        typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
-    ] = None,
-    behaviors: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--behavior",
-            metavar="NAME[=WEIGHT]",
-            help="An installed behaviour to use besides the model's own; repeatable.",
-        ),
-    ] = None,
+    seed: Seed = None,
+    settings: Settings = None,
+    behaviors: Behaviors = None,
     preset: Annotated[str | None, typer.Option(help="default or paper.")] = None,
-    map_file: Annotated[
-        Path | None,
-        typer.Option(
-            "--map",
-            help="Mobility map instead of the shipped one.",
-            parser=some_path,
-            metavar="PATH",
-        ),
-    ] = None,
+    map_file: MapFile = None,
     rate: Annotated[int, typer.Option(help="Frames a second; a divisor of 30.")] = 30,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[
