@@ -75,11 +75,7 @@ class Corridor(NamedTuple):
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
         """(n,) where (n, 2) points, metres, are along the way, how far aside of it, metres, and
         whether they are within the corridor. NaN where they are neither in it nor before it."""
-        at = np.floor((points - self.origin) / self.cell).astype(np.int64)
-        ny, nx = self.along.shape
-        known = (at >= 0).all(axis=1) & (at[:, 0] < nx) & (at[:, 1] < ny)
-        at = np.where(known[:, None], at, 0)
-        x, y = at[:, 0], at[:, 1]
+        x, y, known = _cells_at(points, self.origin, self.cell, self.along.shape)
         along = np.where(known, self.along[y, x], np.nan)
         return along, np.where(known, self.aside[y, x], np.nan), known & self.within[y, x]
 
@@ -278,12 +274,22 @@ def _onwards(
     back = cells.points[way[-min(len(way), 8)]]
     course = (end - back) / max(float(np.hypot(*(end - back))), 1e-9)
     points = end + cell * np.arange(1, int(BEYOND / cell))[:, None] * course
-    at = np.floor((points - origin) / cell).astype(np.int64)
-    ny, nx = cells.number.shape
-    known = (at >= 0).all(axis=1) & (at[:, 0] < nx) & (at[:, 1] < ny)
-    found = np.where(known, cells.number[at[:, 1] % ny, at[:, 0] % nx], -1)
+    x, y, known = _cells_at(points, origin, cell, cells.number.shape)
+    found = np.where(known, cells.number[y, x], -1)
     off = np.flatnonzero(found < 0)
     return found[: off[0]] if len(off) else found
+
+
+def _cells_at(
+    points: NDArray[np.float64], origin: NDArray[np.float64], cell: float, shape: tuple[int, ...]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+    """(n,) columns and rows of the cells that (n, 2) points are in, 0 for those outside the grid of
+    a shape (ny, nx), and whether they are inside it."""
+    at = np.floor((points - origin) / cell).astype(np.int64)
+    ny, nx = shape
+    known = (at >= 0).all(axis=1) & (at[:, 0] < nx) & (at[:, 1] < ny)
+    x, y = np.where(known[:, None], at, 0).T
+    return x, y, known
 
 
 def _apart(

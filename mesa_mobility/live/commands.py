@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import LiveError
+from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.live.fields import Fields, shown, text_of
 from mesa_mobility.live.run import Command, Run
+
+Reader: TypeAlias = Callable[[Fields, Hashable], Command]
+"""Takes the fields of a client's command, and gives the function that executes it."""
 
 
 def read_command(text: str, client: Hashable = None) -> tuple[Any, Command]:
@@ -112,24 +116,19 @@ def _wait(fields: Fields, client: Hashable) -> Command:
     return command
 
 
-def _open(fields: Fields, client: Hashable) -> Command:
-    name = fields.text("opening")
+def _changing(change: Callable[[FloorPlan, str], None]) -> Reader:
+    """Reads a command that opens or closes a door, gate or exit."""
 
-    def command(run: Run) -> dict[str, Any]:
-        run.model.floor_plan.open_gate(name)
-        return {}
+    def read(fields: Fields, client: Hashable) -> Command:
+        name = fields.text("opening")
 
-    return command
+        def command(run: Run) -> dict[str, Any]:
+            change(run.model.floor_plan, name)
+            return {}
 
+        return command
 
-def _close(fields: Fields, client: Hashable) -> Command:
-    name = fields.text("opening")
-
-    def command(run: Run) -> dict[str, Any]:
-        run.model.floor_plan.close_gate(name)
-        return {}
-
-    return command
+    return read
 
 
 def _add(fields: Fields, client: Hashable) -> Command:
@@ -153,33 +152,27 @@ def _add(fields: Fields, client: Hashable) -> Command:
     return command
 
 
-def _pause(fields: Fields, client: Hashable) -> Command:
+def _playing(playing: bool) -> Reader:
+    """Reads a command that lets time go by, or not."""
+
     def command(run: Run) -> dict[str, Any]:
-        run.set_playing(False)
+        run.set_playing(playing)
         return {}
 
-    return command
+    return lambda fields, client: command
 
 
-def _resume(fields: Fields, client: Hashable) -> Command:
-    def command(run: Run) -> dict[str, Any]:
-        run.set_playing(True)
-        return {}
-
-    return command
-
-
-_COMMANDS: dict[str, Callable[[Fields, Hashable], Command]] = {
+_COMMANDS: dict[str, Reader] = {
     "walk": _walk,
     "steer": _steer,
     "release": _release,
     "leave": _leave,
     "wait": _wait,
-    "open": _open,
-    "close": _close,
+    "open": _changing(FloorPlan.open_gate),
+    "close": _changing(FloorPlan.close_gate),
     "add": _add,
-    "pause": _pause,
-    "resume": _resume,
+    "pause": _playing(False),
+    "resume": _playing(True),
 }
 
 
