@@ -7,6 +7,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel, Visit
 from mesa_mobility.errors import ModelError
+from tests.fixtures.checkpoints import check_going_on
 from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.oracles.counting import overlaps, wall_crossings
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put
@@ -121,13 +122,7 @@ def test_it_goes_on_from_a_checkpoint(tmp_path):
             leader, *others = self.add_pedestrians([(4.0, 2.0), (2.0, 2.0), (1.0, 3.0)])
             self.following.follow(others, leader)
 
-    model = Street(rng=1)
-    model.run(max_seconds=3)
-    model.save(tmp_path / "three.zip")
-    again = Street.load(tmp_path / "three.zip")
-    for each in (model, again):
-        each.run(max_seconds=6)
-    assert np.array_equal(model.recorder.arrays()["x"], again.recorder.arrays()["x"])
+    check_going_on(Street(rng=1), tmp_path, saved_at=3, until=6)
 
 
 def test_what_is_refused():

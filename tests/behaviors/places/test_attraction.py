@@ -1,12 +1,12 @@
 """Some of those who pass a shop window stop to look."""
 
-import numpy as np
 import pytest
 from mesa_mobility.behaviors import Attraction, Attractions
 from shapely import Point, box
 
 from mesa_mobility import PedestrianModel, Visit
 from mesa_mobility.errors import FloorPlanError, ModelError
+from tests.fixtures.checkpoints import check_going_on
 from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.scenes import corridor, model_of, put
 
@@ -98,13 +98,7 @@ def test_it_goes_on_from_a_checkpoint(tmp_path):
             self.add_tactic(Attractions([Attraction((10.0, 1.0), stay=4.0, share=0.6)]))
             self.add_pedestrians([(3.0 + k, 2.0) for k in range(4)])
 
-    model = Mall(rng=1)
-    model.run(max_seconds=4)
-    model.save(tmp_path / "four.zip")
-    again = Mall.load(tmp_path / "four.zip")
-    for each in (model, again):
-        each.run(max_seconds=10)
-    assert np.array_equal(model.recorder.arrays()["x"], again.recorder.arrays()["x"])
+    check_going_on(Mall(rng=1), tmp_path, saved_at=4, until=10)
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from shapely import box
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
 from mesa_mobility.distributions import Uniform
 from mesa_mobility.errors import ModelError
+from tests.fixtures.checkpoints import check_going_on
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.oracles.counting import overlaps, wall_crossings
 from tests.fixtures.scenes import core_of, model_of
@@ -105,13 +106,7 @@ def test_it_goes_on_from_a_checkpoint(tmp_path):
             self.add_tactic(Queueing([counter]))
             self.add_pedestrians([(7.0 + k, 5.0) for k in range(4)], route=[counter.visit])
 
-    model = Office(rng=1)
-    model.run(max_seconds=6)
-    model.save(tmp_path / "six.zip")
-    again = Office.load(tmp_path / "six.zip")
-    for each in (model, again):
-        each.run(max_seconds=12)
-    assert np.array_equal(model.recorder.arrays()["x"], again.recorder.arrays()["x"])
+    check_going_on(Office(rng=1), tmp_path, saved_at=6, until=12)
 
 
 @pytest.mark.parametrize(
