@@ -26,18 +26,26 @@ def _headway(  # type: ignore[no-untyped-def]
     # By factors that all neighbours share: a processor does few divisions at a time.
     share = 1.0 - abs(dy * mx - dx * my) * (1.0 / p[2])
     excess = speed - (ahead - p[0]) * (1.0 / p[1])
-    return 1.5 * share * excess if ahead > 0.0 and share > 0.0 and excess > 0.0 else 0.0
+    if ahead <= 0.0 or share <= 0.0 or excess <= 0.0:
+        return 0.0
+    soft = p[3]
+    counts = excess * excess * (0.5 / soft) if excess < soft else excess - 0.5 * soft
+    return 1.5 * share * counts
 
 
 class Headway(CompiledTerm):
     """Keeps a distance from people ahead that grows with speed.
 
     Sum over neighbours ahead of how much faster an option is than the room to them allows:
-    (v - (d - l) / T) x 1.5 where it is positive: d is how far ahead of the mobility point the
+    h(v - (d - l) / T) x 1.5 where it is positive: d is how far ahead of the mobility point the
     neighbour will be by then at constant velocity, v the speed of the option, l the distance that
     people keep when they stand, T the time gap when they walk.  In metres over the paper's 1.5 s.
     Ahead is where one faces there or, for an option that covers no ground, where one's target is:
     nobody makes room by looking elsewhere.
+    h is Huber's loss (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 s) of an excess
+    e up to s, ``softness``, and e - s / 2 beyond.  If all costs were linear, their sum would be
+    least at a kink, and a small change of the room ahead would take people from one kink to
+    another: from the speed that it allows to the one that they prefer.
     A neighbour straight ahead counts in full, one ``width`` to the side not at all.  The speed
     that room ahead allows is that of Tordeux, Chraibi and Seyfried's collision-free speed model
     (Traffic and Granular Flow '15); equation (2) alone lets people stand as close as their bodies
@@ -48,6 +56,7 @@ class Headway(CompiledTerm):
         distance: l, metres between the middles of two people.
         time: T, seconds.
         width: metres.
+        softness: s, m/s.
 
     Raises:
         ModelError: a number that is not finite and positive.
@@ -60,18 +69,25 @@ class Headway(CompiledTerm):
     def __init__(
         self,
         weight: float | None = None,
-        distance: float = 0.33,
+        distance: float = 0.36,
         time: float = 1.2,
         width: float = 0.35,
+        softness: float = 0.15,
     ) -> None:
         super().__init__(weight)
-        for name, value in (("distance", distance), ("time", time), ("width", width)):
+        for name, value in (
+            ("distance", distance),
+            ("time", time),
+            ("width", width),
+            ("softness", softness),
+        ):
             if not (math.isfinite(value) and value > 0.0):
                 raise ModelError(f"headway: {name} is {value}, expected more than 0")
         self.distance = distance
         self.time = time
         self.width = width
+        self.softness = softness
 
     def parameters(self) -> tuple[float, ...]:
-        """``(distance, time, width)``."""
-        return (self.distance, self.time, self.width)
+        """``(distance, time, width, softness)``."""
+        return (self.distance, self.time, self.width, self.softness)

@@ -22,8 +22,9 @@ A_METRE_A_SECOND = Ending(displacement=1.5, duration=1.5)
 STANDING = Ending(displacement=0.0, duration=0.4)
 EDGE = 1e-7
 
-# Figures below are for these: half a metre apart when standing, one second, 0.4 m wide.
-ROUND = {"distance": 0.5, "time": 1.0, "width": 0.4}
+# Figures below are for these: half a metre apart when standing, one second, 0.4 m wide.  An excess
+# of 0.2 m/s or more counts 0.1 less than it is.
+ROUND = {"distance": 0.5, "time": 1.0, "width": 0.4, "softness": 0.2}
 
 
 def cost(ending: Ending, *neighbours, **numbers) -> float:
@@ -37,17 +38,20 @@ def cost(ending: Ending, *neighbours, **numbers) -> float:
         # Room for v = d - 0.5: at 1.5 m for 1 m/s, at 1 m for half of it, at 0.5 m for nothing.
         (A_METRE_A_SECOND, (1.5, 0.0), 0.0),
         (A_METRE_A_SECOND, (1.75, 0.0), 0.0),
-        (A_METRE_A_SECOND, (1.0, 0.0), 0.75),
-        (A_METRE_A_SECOND, (0.5, 0.0), 1.5),
-        (A_METRE_A_SECOND, (0.25, 0.0), 1.875),
+        (A_METRE_A_SECOND, (1.0, 0.0), 0.6),
+        # A tenth too fast: 0.1^2 / 0.4.
+        (A_METRE_A_SECOND, (1.4, 0.0), 0.0375),
+        (A_METRE_A_SECOND, (1.3, 0.0), 0.15),
+        (A_METRE_A_SECOND, (0.5, 0.0), 1.35),
+        (A_METRE_A_SECOND, (0.25, 0.0), 1.725),
         # A metre over 1.5 s costs what it costs over 0.4 s.
-        (Ending(displacement=0.4, duration=0.4), (1.0, 0.0), 0.75),
+        (Ending(displacement=0.4, duration=0.4), (1.0, 0.0), 0.6),
         # A standing person has room from half a metre on, but not nearer.
         (STANDING, (0.5, 0.0), 0.0),
-        (STANDING, (0.25, 0.0), 0.375),
+        (STANDING, (0.25, 0.0), 0.225),
         # Beside: half a width off counts half; a width off, nothing. Either side.
-        (A_METRE_A_SECOND, (1.0, 0.2), 0.375),
-        (A_METRE_A_SECOND, (1.0, -0.2), 0.375),
+        (A_METRE_A_SECOND, (1.0, 0.2), 0.3),
+        (A_METRE_A_SECOND, (1.0, -0.2), 0.3),
         (A_METRE_A_SECOND, (1.0, 0.4), 0.0),
         (A_METRE_A_SECOND, (1.0, 1.0), 0.0),
         # Behind.
@@ -60,7 +64,7 @@ def test_numbers_worked_out_by_hand(ending, place, expected):
 
 def test_ahead_is_where_one_faces_at_the_mobility_point():
     facing_up = Ending((2.0, 1.0), heading=math.pi / 2, displacement=1.5, duration=1.5)
-    assert cost(facing_up, ((2.0, 2.0), STILL)) == pytest.approx(0.75)
+    assert cost(facing_up, ((2.0, 2.0), STILL)) == pytest.approx(0.6)
     assert cost(facing_up, ((3.0, 1.0), STILL)) == pytest.approx(0.0, abs=1e-12)
     assert cost(facing_up, ((2.0, 0.0), STILL)) == 0.0
 
@@ -70,7 +74,7 @@ def test_people_who_stand_make_no_room_by_looking_elsewhere():
     for heading in (0.0, 1.0, -2.0, math.pi):
         standing = Ending(heading=heading, displacement=0.0, duration=0.4)
         term = Headway(**ROUND)
-        for place, expected in (((0.25, 0.0), 0.375), ((-0.25, 0.0), 0.0)):
+        for place, expected in (((0.25, 0.0), 0.225), ((-0.25, 0.0), 0.0)):
             options = one_option(standing, target=(5.0, 0.0), neighbours=[(place, STILL)])
             assert term.cost(options) == pytest.approx([expected])
         nowhere = one_option(standing, target=(0.0, 0.0), neighbours=[((0.25, 0.0), STILL)])
@@ -84,8 +88,8 @@ def test_people_who_stand_make_no_room_by_looking_elsewhere():
 
 def test_ahead_is_where_the_neighbour_will_be():
     # 1.5 s at 0.6 m/s: from 0.1 m ahead to 1 m; and from 2.5 m back to that.
-    assert cost(A_METRE_A_SECOND, ((0.1, 0.0), (0.6, 0.0))) == pytest.approx(0.75)
-    assert cost(A_METRE_A_SECOND, ((2.5, 0.0), (-1.0, 0.0))) == pytest.approx(0.75)
+    assert cost(A_METRE_A_SECOND, ((0.1, 0.0), (0.6, 0.0))) == pytest.approx(0.6)
+    assert cost(A_METRE_A_SECOND, ((2.5, 0.0), (-1.0, 0.0))) == pytest.approx(0.6)
     # Ahead now, but behind by then.
     assert cost(A_METRE_A_SECOND, ((1.0, 0.0), (-1.0, 0.0))) == 0.0
 
@@ -95,20 +99,22 @@ def test_neighbours_add_up_and_those_of_others_do_not_count():
     alone = Chooser([A_METRE_A_SECOND])
     beset = Chooser([A_METRE_A_SECOND] * 2, neighbours=two)
     costs = Headway(**ROUND).cost(candidates(alone, beset, alone))
-    assert costs == pytest.approx([0.0, 1.125, 1.125, 0.0])
+    assert costs == pytest.approx([0.0, 0.9, 0.9, 0.0])
 
 
 def test_default_numbers_are_used():
     # At two thirds of the standing distance a person who stands lacks a third of it.
     term = Headway()
-    expected = 1.5 * (term.distance / 3.0) / term.time
+    excess = (term.distance / 3.0) / term.time
+    assert excess < term.softness
+    expected = 1.5 * excess**2 / (2.0 * term.softness)
     neighbour = ((2.0 * term.distance / 3.0, 0.0), STILL)
     options = one_option(STANDING, target=(20.0, 0.0), neighbours=[neighbour])
     assert term.cost(options) == pytest.approx([expected])
-    assert term.parameters() == (term.distance, term.time, term.width)
+    assert term.parameters() == (term.distance, term.time, term.width, term.softness)
 
 
-@pytest.mark.parametrize("name", ["distance", "time", "width"])
+@pytest.mark.parametrize("name", ["distance", "time", "width", "softness"])
 @pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])
 def test_numbers_out_of_range_are_refused_in_one_line(name, value):
     with pytest.raises(ModelError, match=rf"^headway: {name} is .*expected more than 0$") as caught:
@@ -143,9 +149,10 @@ def decided(options):
 def test_sum_over_the_neighbours_of_any_batch(options):
     rows, ahead, aside = pairs(options)
     allowed = (ahead - ROUND["distance"]) / ROUND["time"]
-    excess = np.maximum(options.speeds[rows] - allowed, 0.0) * 1.5
+    excess = np.maximum(options.speeds[rows] - allowed, 0.0)
     share = np.maximum(1.0 - np.abs(aside) / ROUND["width"], 0.0)
-    each = np.where(ahead > 0.0, excess * share, 0.0)
+    counts = np.where(excess < 0.2, excess**2 / 0.4, excess - 0.1)
+    each = np.where(ahead > 0.0, 1.5 * counts * share, 0.0)
     expected = np.bincount(rows, weights=each, minlength=len(options))
     sure = decided(options)
     costs = Headway(**ROUND).cost(options)

@@ -34,10 +34,10 @@ SHARE = 0.6
 """Share of the present distance that the room asked for is at most: nobody can demand room of
 people who are near already."""
 
-HORIZON = 3.0
+HORIZON = 4.0
 """Seconds within which a closest approach counts, or as long as the way to the target takes."""
 
-REACH = 6.0
+REACH = 9.0
 """Metres within which people count."""
 
 SLOWEST, RAMP = 0.9, 0.5
@@ -213,7 +213,8 @@ def _best_course(
         for step in range(2 * STEPS + 1):
             # Straight on, then to the right and the left in turns, ever wider.
             number = (step + 1) // 2
-            angle = WIDEST / STEPS * (-number if step % 2 == 1 else number)
+            turn = WIDEST / (STEPS * STEPS) * number * number
+            angle = -turn if step % 2 == 1 else turn
             c, s = math.cos(angle), math.sin(angle)
             ux, uy = share * speed * (c * ex - s * ey), share * speed * (s * ex + c * ey)
             dx, dy = ux - speed * ex, uy - speed * ey

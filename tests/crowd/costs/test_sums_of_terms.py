@@ -87,7 +87,7 @@ def test_all_terms_in_numpy_give_the_same_trajectories():
 
 def of_the_default() -> list[CostTerm]:
     return [TargetDistance(1.0), FacingDeviation(0.5), PreferredVelocity(2.0),
-            Interference(1.0), Headway(2.0), RightOfWay(1.0)]  # fmt: skip
+            Interference(1.0), Headway(2.0), RightOfWay(3.0)]  # fmt: skip
 
 
 @cache
@@ -95,7 +95,7 @@ def default_walk() -> bytes:
     return walk(two_doors(), shipped_map(), of_the_default())
 
 
-@pytest.mark.parametrize(("place", "twin"), [(2, Velocity(2.0)), (4, Room(2.0)), (5, Way(1.0))])
+@pytest.mark.parametrize(("place", "twin"), [(2, Velocity(2.0)), (4, Room(2.0)), (5, Way(3.0))])
 def test_terms_of_the_default_give_the_same_trajectories_in_numpy(place, twin):
     others = of_the_default()
     others[place] = twin

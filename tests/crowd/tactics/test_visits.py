@@ -44,8 +44,8 @@ def test_a_point_behind_a_corner_is_visited_for_as_long_as_said_then_the_exit():
     times, places = walk(model, person)
     assert model.inside == 0
     near = np.hypot(*(places - (14.0, 1.5)).T) < 0.6
-    # 8 s of standing, and half a metre of walking to and from.
-    assert 8.0 <= np.ptp(times[near]) <= 10.5
+    # 8 s of standing, and half a metre of walking to and from; or it walks past and comes back.
+    assert 8.0 <= np.ptp(times[near]) <= 12.5
     still = np.hypot(*np.diff(places, axis=0).T)[near[1:]] < 0.01
     assert 7.0 <= 0.1 * still.sum() <= 9.0
 
