@@ -196,7 +196,7 @@ class CompiledTerm(CostTerm):
 
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
         """Cost of each option, by calling the kernel on each row."""
-        numbers = np.array(self.parameters() or (0.0,), dtype=np.float64)
+        numbers = np.array((*self.parameters(), np.nan), dtype=np.float64)
         ends = np.array(
             [
                 *candidates.points.T,
