@@ -7,9 +7,11 @@ from mesa_mobility.errors import ModelError
 
 
 @pair_kernel
-def _interference(  # type: ignore[no-untyped-def]
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
-):
+def _interference(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
+    lead: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     # Read first, so that it is read once for all neighbours.
     a = p[0]
     dx = nx + nvx * duration - x

@@ -7,10 +7,11 @@ from mesa_mobility.errors import ModelError
 
 
 @pair_kernel(fields=("group",))
-def _keep_distance(  # type: ignore[no-untyped-def]
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-    group, their_group, p,
-):  # fmt: skip
+def _keep_distance(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
+    lead: float, group: float, their_group: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     if group > 0.0 and group == their_group:
         return 0.0
     dx = nx + nvx * duration - x

@@ -11,9 +11,11 @@ OPPOSED = 0.5
 
 
 @pair_kernel
-def _right_of_way(  # type: ignore[no-untyped-def]
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
-):
+def _right_of_way(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
+    lead: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     # Read first, so that they are read once for all neighbours.
     width = p[0]
     bias = p[1]

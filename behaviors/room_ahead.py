@@ -9,9 +9,11 @@ from mesa_mobility.errors import ModelError
 
 
 @wall_kernel
-def _room_ahead(  # type: ignore[no-untyped-def]
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, x1, y1, x2, y2, core, p
-):
+def _room_ahead(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, x1: float, y1: float, x2: float, y2: float, core: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     if speed * duration <= STANDS:
         dx = tx - sx
         dy = ty - sy

@@ -7,7 +7,10 @@ from mesa_mobility.errors import ModelError
 
 
 @option_kernel
-def _sideways(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _sideways(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = x - sx
     dy = y - sy
     back = max(-(dx * ux + dy * uy), 0.0)
@@ -15,9 +18,11 @@ def _sideways(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # t
 
 
 @bound_kernel
-def _sideways_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _sideways_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = x - sx
     dy = y - sy
     # An angle changes its sine and cosine by no more than itself: by 2 at most, the amount of a

@@ -10,15 +10,20 @@ STANDS = 0.01
 
 
 @option_kernel
-def _stepping(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _stepping(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     ground = speed * duration
     return max(1.0 - ground * (1.0 / p[0]), 0.0) if ground > STANDS else 0.0
 
 
 @bound_kernel
-def _stepping_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _stepping_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     farthest = fastest * duration
     return max(1.0 - farthest * (1.0 / p[0]), 0.0) if slowest * duration > STANDS else 0.0
 

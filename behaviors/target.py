@@ -8,23 +8,28 @@ from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 
 
 @option_kernel
-def _distance(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _distance(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = tx - x
     dy = ty - y
     return math.sqrt(dx * dx + dy * dy)
 
 
 @bound_kernel
-def _distance_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _distance_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = tx - x
     dy = ty - y
     return max(math.sqrt(dx * dx + dy * dy) - radius, 0.0)
 
 
 @njit(error_model="numpy")
-def _angle(along, across):  # type: ignore[no-untyped-def]
+def _angle(along: float, across: float) -> float:
     # The angle from its tangent by the polynomial 4.4.49 of Abramowitz and Stegun, to 2e-8 rad:
     # unlike a call of atan2, arithmetic alone runs for several options at once.
     ahead = abs(along)
@@ -45,16 +50,21 @@ def _angle(along, across):  # type: ignore[no-untyped-def]
 
 
 @option_kernel
-def _deviation(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _deviation(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = tx - x
     dy = ty - y
     return _angle(ux * dx + uy * dy, abs(ux * dy - uy * dx))
 
 
 @bound_kernel
-def _deviation_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _deviation_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = tx - x
     dy = ty - y
     # Seen from within the radius, the target is off by no more than the arc sine of share; its

@@ -7,26 +7,36 @@ from mesa_mobility.errors import ModelError
 
 
 @option_kernel
-def _displacement(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _displacement(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     return -speed * duration
 
 
 @option_kernel
-def _preferred_speed(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _preferred_speed(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     return 1.5 * abs(speed - preferred)
 
 
 @bound_kernel
-def _displacement_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _displacement_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     return -fastest * duration
 
 
 @bound_kernel
-def _preferred_speed_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _preferred_speed_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     return 1.5 * max(slowest - preferred, preferred - fastest, 0.0)
 
 
@@ -57,9 +67,10 @@ class PreferredSpeed(CompiledTerm):
 
 
 @option_kernel
-def _preferred_velocity(  # type: ignore[no-untyped-def]
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p
-):
+def _preferred_velocity(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = tx - sx
     dy = ty - sy
     away = math.sqrt(dx * dx + dy * dy)
@@ -70,9 +81,11 @@ def _preferred_velocity(  # type: ignore[no-untyped-def]
 
 
 @bound_kernel
-def _preferred_velocity_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _preferred_velocity_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     dx = tx - sx
     dy = ty - sy
     away = math.sqrt(dx * dx + dy * dy)
@@ -97,9 +110,10 @@ class PreferredVelocity(CompiledTerm):
 
 
 @option_kernel(own_velocity=True)
-def _velocity_change(  # type: ignore[no-untyped-def]
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, p
-):
+def _velocity_change(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, own_vx: float, own_vy: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     vx = (x - sx) / duration - own_vx
     vy = (y - sy) / duration - own_vy
     own2 = own_vx * own_vx + own_vy * own_vy
@@ -110,10 +124,11 @@ def _velocity_change(  # type: ignore[no-untyped-def]
 
 
 @bound_kernel(own_velocity=True)
-def _velocity_change_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, own_vx,
-    own_vy, p,
-):  # fmt: skip
+def _velocity_change_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    own_vx: float, own_vy: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     vx = (x - sx) / duration - own_vx
     vy = (y - sy) / duration - own_vy
     own2 = own_vx * own_vx + own_vy * own_vy

@@ -130,7 +130,7 @@ class Yielding(Tactic):
         more = int(deciding.inside.pedestrians.max()) + 1 - self._courses.shape[1]
         if more > 0:
             self._courses = np.pad(self._courses, ((0, 0), (0, more)))
-        waiting = self._waiting(deciding.pedestrians)
+        waiting = deciding.waiting
         for number, corridor in enumerate(self._corridors):
             along, aside, within = corridor.locate(deciding.positions)
             here = np.flatnonzero(~np.isnan(along))
@@ -161,13 +161,6 @@ class Yielding(Tactic):
         )
         self._negotiations = [None] * len(self._corridors)
         self._courses = np.zeros((len(self._corridors), self._courses.shape[1]), dtype=np.int8)
-
-    def _waiting(self, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """(n,) whether people wait because they were told to, or stay at a place."""
-        waiting: NDArray[np.bool_] = (
-            self._model.crowd.agenda["waits_until"][rows] > self._model.frame
-        )
-        return waiting
 
     def _people(self, number: int, deciding: Deciding) -> Party:
         """Those inside who go through a corridor, or negotiate there."""

@@ -41,9 +41,11 @@ class KeepLeft(CostTerm):
 
 
 @pair_kernel(fields=("infected",))
-def _avoid(  # type: ignore[no-untyped-def]
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, mine, theirs, p
-):
+def _avoid(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
+    lead: float, mine: float, theirs: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     gap = 1.5 - ((nx - x) ** 2 + (ny - y) ** 2) ** 0.5
     return theirs * gap if gap > 0.0 else 0.0
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from mesa_mobility.behaviors.exits.exit_choice import Choosing
 from mesa_mobility.behaviors.exits.random_utility import RandomUtility
+from numpy.typing import NDArray
 
 from mesa_mobility import FloorPlan, Pedestrian
 from mesa_mobility.errors import ModelError
@@ -59,7 +60,7 @@ class FamiliarExit(RandomUtility):
             self._known[person.row] = self._mask(names, plan)
             self.forget(person.row)
 
-    def bonus(self, choosing: Choosing):  # type: ignore[no-untyped-def]
+    def bonus(self, choosing: Choosing) -> NDArray[np.float64]:
         """(k, e) metres: the affiliation where an exit is known."""
         self._make_known(int(choosing.pedestrians.max()), choosing.deciding.site.plan)
         return self.affiliation * self._known[choosing.pedestrians]
@@ -71,7 +72,7 @@ class FamiliarExit(RandomUtility):
             new = np.tile(self._mask(self.familiar, plan), (more, 1))
             self._known = np.concatenate([self._known.reshape(-1, new.shape[1]), new])
 
-    def _mask(self, names: frozenset[str], plan: FloorPlan):  # type: ignore[no-untyped-def]
+    def _mask(self, names: frozenset[str], plan: FloorPlan) -> NDArray[np.bool_]:
         """(e,) which exits have one of these names."""
         there = [exit_.name for exit_ in plan.exits]
         for name in sorted(names.difference(there)):

@@ -44,7 +44,7 @@ class QuickestExit(ExitChoice):
             raise ModelError(f"{self.name}: patience {patience}, expected 0 to 1")
         self.patience = patience
 
-    def choose(self, choosing: Choosing):  # type: ignore[no-untyped-def]
+    def choose(self, choosing: Choosing) -> NDArray[np.int64]:
         """(k,) number of the exit with the least expected time, or the current one."""
         times = self.expected_times(choosing)
         best = times.argmin(axis=1)
@@ -55,7 +55,7 @@ class QuickestExit(ExitChoice):
         worth = (1.0 - self.patience) * now - self.patience * choosing.under_way
         return np.where((times[everyone, best] < worth) | ~has, best, choosing.current)
 
-    def expected_times(self, choosing: Choosing):  # type: ignore[no-untyped-def]
+    def expected_times(self, choosing: Choosing) -> NDArray[np.float64]:
         """(k, e) seconds that each expects to take to pass each exit."""
         inside = choosing.deciding.inside
         to_go = inside.distances

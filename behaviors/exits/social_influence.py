@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from mesa_mobility.behaviors.exits.exit_choice import Choosing
 from mesa_mobility.behaviors.exits.random_utility import RandomUtility
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from mesa_mobility.errors import ModelError
@@ -46,7 +47,7 @@ class SocialInfluence(RandomUtility):
         self.influence = influence
         self.sight = sight
 
-    def bonus(self, choosing: Choosing):  # type: ignore[no-untyped-def]
+    def bonus(self, choosing: Choosing) -> NDArray[np.float64]:
         """(k, e) metres: the influence times the share of those in view who head for an exit."""
         inside, exits = choosing.deciding.inside, choosing.distances.shape[1]
         decided = np.flatnonzero(choosing.heading >= 0)

@@ -119,11 +119,8 @@ class Following(Tactic):
         speed = np.clip(speed, 0.0, desired.speeds[who])
         stands = speed < _STANDS
         desired.points, desired.speeds = desired.points.copy(), desired.speeds.copy()
-        desired.points[who] = np.where(stands[:, None], here, points)
-        desired.speeds[who] = np.where(stands, 0.0, speed)
-        # Who stands behind its leader stays patient.
-        waits = crowd.agenda["waits_until"]
-        waits[rows[who[stands]]] = np.maximum(waits[rows[who[stands]]], self._model.frame + 1)
+        desired.points[who], desired.speeds[who] = points, speed
+        deciding.hold(desired, who[stands])
 
     def _note_trails(self, deciding: Deciding) -> None:
         """Note where leaders are, and part from those who have left."""

@@ -1,6 +1,7 @@
 """Groups of people who belong together."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, SpeedRule
 
@@ -22,7 +23,7 @@ class WalkTogether(SpeedRule):
 
     name = "walk_together"
 
-    def speeds(self, deciding: Deciding, speeds):  # type: ignore[no-untyped-def]
+    def speeds(self, deciding: Deciding, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Preferred speeds for now, m/s."""
         inside = deciding.inside
         groups, to_go = inside.groups, inside.distances

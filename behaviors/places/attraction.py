@@ -133,7 +133,7 @@ class Attractions(Tactic):
         if more > 0:
             new = np.zeros((more, len(self.attractions)), dtype=np.bool_)
             self._passed = np.concatenate([self._passed, new])
-        walks = self._model.crowd.agenda["waits_until"][rows] <= self._model.frame
+        walks = ~deciding.waiting
         places = shapely.points(deciding.positions)
         for number, attraction in enumerate(self.attractions):
             fresh = walks & ~self._passed[rows, number]

@@ -150,7 +150,7 @@ class Queueing(Tactic):
         desired: Desired,
     ) -> None:
         """Set points and speeds of those ``who`` decide and go to a counter."""
-        crowd, rows = self._model.crowd, deciding.pedestrians
+        rows, held = deciding.pedestrians, []
         places = counter.places(len(line) + len(who) + 1)
         seen = lines_of_sight(
             deciding.site.plan, deciding.positions[who], np.tile(places[len(line)], (len(who), 1))
@@ -172,15 +172,14 @@ class Queueing(Tactic):
             stands = off <= (_MOVES_UP if row in self._standing else _STANDS) and place > 0
             if stands:
                 self._standing.add(row)
-                desired.points[who[k]], desired.speeds[who[k]] = here, 0.0
-                waits = crowd.agenda["waits_until"]
-                waits[row] = max(waits[row], self._model.frame + 1)
+                held.append(who[k])
             else:
                 self._standing.discard(row)
                 if place > 0 or not self._is_served(row):
                     desired.points[who[k]] = places[place]
                     slowly = max(off / _GETS_THERE, _LEAST)
                     desired.speeds[who[k]] = min(desired.speeds[who[k]], slowly)
+        deciding.hold(desired, np.array(held, dtype=np.int64))
 
     def _is_served(self, row: int) -> bool:
         return self._model.journeys.stays.stands(row)

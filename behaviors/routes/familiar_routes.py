@@ -15,8 +15,8 @@ from mesa_mobility.errors import ModelError
 class FamiliarRoutes(RouteChoice):
     """Many people leave by the way by which they came; the others take the shortest way.
 
-    In fires people moved towards places and ways that they knew, past nearer ones that they did not
-    (Sime 1985, Environment and Behavior 17: 697-724). How many do so depends on the place, and
+    In a fire people moved towards what they knew (Sime 1985, Environment and Behavior 17: 697-724).
+    How many do so depends on the place, and
     ``share`` has to be calibrated. The exits by which people may leave are as before; who is to
     leave by the exit that it knows gets ``exits``, or ``FamiliarExit`` in place of this.
 

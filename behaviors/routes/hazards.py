@@ -90,9 +90,8 @@ class Hazards(TargetChoice):
 
     Everybody knows where they are. Ways keep ``margin`` metres from their edges; where there is no
     such way, any that leads clear of them; and where there is none at all, the shortest one,
-    through them: of people in fires with smoke 60 % tried to go through it, and 26 % of these
-    turned back (Wood 1972, Fire Research Note 953). Those whom a hazard has overtaken, or who are
-    within the margin, leave it by the nearest edge from which a way leads on.
+    through them. Those whom a hazard has overtaken, or who are within the margin, leave it by the
+    nearest edge from which a way leads on.
 
     Args:
         hazards: the hazards; ``hazards`` may be added to while the model runs.

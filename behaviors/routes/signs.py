@@ -65,7 +65,7 @@ class Signs(RouteChoice):
     obliquely only from near by (Xie, Filippidis, Gwynne, Galea, Blackshields and Lawrence 2007,
     Journal of Fire Protection Engineering 17: 41-64, the visibility catchment area). It must be
     ahead of a person and no wall before it. Each person has one chance to notice each sign: 38 %
-    did in an experiment, and 97 % of these followed it (Xie, Filippidis, Galea, Blackshields and
+    did in an experiment, and most of these followed it (Xie, Filippidis, Galea, Blackshields and
     Lawrence 2012, Fire and Materials 36: 367-382). The others go on as before.
 
     Args:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
-from mesa_mobility.crowd.hooks import Plugin, Saved
+from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.hooks import Plugin, Saved, check_behaviours, keeps_its_model
 from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
@@ -23,11 +25,18 @@ from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.state.people_grid import Grid, build_grid
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
+from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
+
+
+# The model that has bound a behaviour last, by the behaviour's identity.
+_SERVES: WeakValueDictionary[int, Dynamics] = WeakValueDictionary()
 
 
 class Dynamics(Saved):
@@ -51,6 +60,7 @@ class Dynamics(Saved):
         # Frame of the next event other than walking: a decision, or somebody leaves.
         self._next = 0
         self._bound: list[Plugin] = []
+        self._keeping: list[Plugin] = []
         self._grouped = False
         self._plan_version = scene.plan.version
 
@@ -71,7 +81,8 @@ class Dynamics(Saved):
         """Bind behaviours that have come in since the last time, and look at all their names.
 
         Raises:
-            ModelError: two cost terms of one name for people of one type.
+            ModelError: two cost terms of one name for people of one type, something that is no
+                behaviour or has no name, or a behaviour that serves another model by now.
         """
         model = self._model
         if model.population.groups and not self._grouped:
@@ -79,7 +90,12 @@ class Dynamics(Saved):
             model.speed_rules += self._scene.preset.make_group_paces()
         now = [*model.terms, *model.speed_rules, model.target_choice, *model.tactics]
         if now == self._bound:
+            self._check_shared()
             return
+        check_behaviours("terms", model.terms, CostTerm)
+        check_behaviours("speed_rules", model.speed_rules, SpeedRule)
+        check_behaviours("target_choice", [model.target_choice], TargetChoice)
+        check_behaviours("tactics", model.tactics, Tactic)
         for kind in model.pedestrian_types:
             names = [term.name for term in model.terms if term.is_for(kind.name)]
             for name in names:
@@ -88,10 +104,20 @@ class Dynamics(Saved):
                         f"terms: two of them are named {name!r}, expected names of their own"
                     )
         known = set(map(id, self._bound))
-        self._bound = now
+        self._bound, self._keeping = now, [each for each in now if keeps_its_model(each)]
         for each in now:
             if id(each) not in known:
+                _SERVES[id(each)] = self
                 each.bind(model)
+
+    def _check_shared(self) -> None:
+        """Raise ModelError where another model has bound a behaviour of this one meanwhile."""
+        for each in self._keeping:
+            if _SERVES.setdefault(id(each), self) is not self:
+                raise ModelError(
+                    f"behaviour {each.name!r}: serves another model by now, expected an object of "
+                    "its own for each model"
+                )
 
     def insert(self, positions: ArrayLike, new: Newcomers) -> list[Pedestrian]:
         """Put people on the floor; see ``PedestrianModel.add_pedestrians``.

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
+
+from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
+
+
+SHIPPED = "mesa_mobility."
+"""How the names of modules begin whose behaviours are taken on trust."""
+
+_OF_PRESETS = "mesa_mobility.crowd."
 
 
 def scheduled_events(model: object) -> int:
@@ -63,3 +71,30 @@ class Plugin(ABC):
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given, in this process or another."""
         vars(self).update(state)
+
+
+def check_behaviours(what: str, given: Iterable[object], kind: type[Plugin]) -> None:
+    """Raise ModelError unless all are behaviours of a kind, with names."""
+    for each in given:
+        if not isinstance(each, kind):
+            text = f"{each!r:.80}"
+            raise ModelError(f"{what}: got {text}, expected an object of a {kind.__name__}")
+        name = getattr(each, "name", None)
+        if not (isinstance(name, str) and name):
+            raise ModelError(
+                f"{what}: {type(each).__name__} has the name {name!r}, expected a text"
+            )
+
+
+def ships(behaviour: Plugin) -> bool:
+    """Whether a behaviour is the package's own."""
+    return type(behaviour).__module__.startswith(SHIPPED)
+
+
+def keeps_its_model(behaviour: Plugin) -> bool:
+    """Whether a behaviour takes something from the model by which it is bound.
+
+    Those of presets do, but are made for one model.
+    """
+    made_for_one = type(behaviour).__module__.startswith(_OF_PRESETS)
+    return not made_for_one and type(behaviour).bind is not Plugin.bind

@@ -247,7 +247,7 @@ class Population(Saved):
             ModelError: the person has left, or a route that is no list of gates and visits.
             FloorPlanError: an unknown exit or gate, a place without room, or no way there.
         """
-        self._check_inside(row)
+        self.check_inside(row)
         scene, crowd = self._scene, self._scene.crowd
         Newcomers(exits=exits, route=route)  # refuses what newcomers may not have
         kind = int(crowd.type_index[row])
@@ -273,7 +273,7 @@ class Population(Saved):
         Raises:
             ModelError: the person has left, or a speed out of range.
         """
-        self._check_inside(row)
+        self.check_inside(row)
         given, crowd = Newcomers(preferred_speeds=speed), self._scene.crowd
         crowd.agenda["speed"][row] = given.draw_speeds(
             crowd.type_index[[row]].astype(np.int64), self._scene.types, np.random.default_rng(0)
@@ -285,11 +285,12 @@ class Population(Saved):
         Raises:
             ModelError: the person has left, or a group that is neither name nor number.
         """
-        self._check_inside(row)
+        self.check_inside(row)
         Newcomers(group=group)
         self._scene.crowd.agenda["group"][row] = self._group_number(group)
 
-    def _check_inside(self, row: int) -> None:
+    def check_inside(self, row: int) -> None:
+        """Raise ModelError if the person in a row has left."""
         if not self._scene.crowd.active[row]:
             raise ModelError(f"pedestrian {row}: has left, expected somebody inside")
 

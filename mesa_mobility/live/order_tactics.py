@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import clearance_of
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.shipped import StayAtPlaces
@@ -70,8 +69,7 @@ class WalkToPlaces(_OfOrders):
         if desired.newcomers or not does.any():
             return
         # Their wait is over.
-        waits = self._crowd.agenda["waits_until"][rows]
-        over = rows[(does == STANDS) & (waits <= round(deciding.elapsed / FRAME_SECONDS))]
+        over = rows[(does == STANDS) & ~deciding.waiting]
         orders.does[over] = FREE
         going = np.flatnonzero(does == WALKS)
         points, speeds = desired.points.copy(), desired.speeds.copy()

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd import PedestrianModel
 from mesa_mobility.crowd.state.environment import passing_of
-from mesa_mobility.crowd.tactics.waiting import frames_of
+from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.errors import LiveError
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
 
@@ -102,8 +102,7 @@ class Orders:
         """Let people stand who have come to their place; it is a wait like any other."""
         self.does[rows] = STANDS
         until = self._model.frame + np.minimum(self.stay[rows], FOREVER - self._model.frame)
-        waits = self._model.crowd.agenda["waits_until"]
-        waits[rows] = np.maximum(waits[rows], until)
+        wait_until(rows, until, self._model.crowd)
 
     def _begin(self, rows: NDArray[np.int64], what: int) -> None:
         model = self._model
@@ -115,7 +114,7 @@ class Orders:
             self.place = np.append(self.place, np.zeros((more, 2)), axis=0)
             self.stay = np.append(self.stay, np.zeros(more, dtype=np.int64))
         agenda = model.crowd.agenda
-        agenda["waits_until"][rows[self.does[rows] == STANDS]] = model.frame
+        end_wait(rows[self.does[rows] == STANDS], model.frame, model.crowd)
         for row in rows.tolist():
             model.journeys.stays.end(row, model.frame, model.crowd)
         # Progress on the way to another place is no progress on this one, nor is its lack.

@@ -2,6 +2,11 @@
 
 The routes between the corners, gates and exits of a plan are searched for once. A place is joined
 to them by the views that it has of them, so another one costs little, however many there are.
+
+A ``Router`` leads to points too, and this module takes corners, gates and their views from one. But
+a router keeps each point for good, as a node by which other routes may lead, and looks for all
+views anew with each: right for the places of routes, which are few and known early. Places named by
+hand come one after the other, and with 80 of them a step of the doorway took 0.33 s.
 """
 
 from __future__ import annotations

@@ -13,11 +13,26 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from types import FunctionType
-from typing import Any, ClassVar, Self, overload
+from typing import Any, ClassVar, Literal, Self, overload
 
 from numba import njit, types
 
 from mesa_mobility.compiled.cache import kept_cfunc
+from mesa_mobility.crowd.costs.kernel_functions import (
+    BOUND,
+    OPTION,
+    PAIR,
+    PAIR_BOUND,
+    WALL,
+    BoundFunction,
+    BoundFunctionWithVelocity,
+    OptionFunction,
+    OptionFunctionWithVelocity,
+    PairBoundFunction,
+    PairFunction,
+    WallFunction,
+    check_arguments,
+)
 from mesa_mobility.crowd.costs.kernel_loops import (
     BOUND_LOOP,
     OPTION_LOOP,
@@ -37,6 +52,7 @@ INTS = types.CPointer(_N)
 class CostKernel:
     """A function that is compiled with a loop around it when its address is first needed."""
 
+    arguments: ClassVar[str]
     loop: ClassVar[str]
     signature: ClassVar[Any]
 
@@ -53,6 +69,12 @@ class CostKernel:
         self.fields = tuple(fields)
         self.own_velocity = own_velocity
         self._own = "own_vx, own_vy, " if own_velocity else ""
+        check_arguments(function, self._asked())
+
+    def _asked(self) -> str:
+        """Names of the arguments that the function takes."""
+        own = ["own_vx", "own_vy"] if self.own_velocity else []
+        return ", ".join([self.arguments, *own, *self.fields, "parameters"])
 
     def _taken(self, neighbour: str) -> str:
         """The values of fields in a call: the person's own, then its neighbour's, if any."""
@@ -101,6 +123,7 @@ class CostKernel:
 class OptionKernel(CostKernel):
     """Cost of one movement option."""
 
+    arguments = OPTION
     loop = OPTION_LOOP
     signature = types.void(_N, *[FLOATS] * 6, *[_F] * 7, FLOATS, INTS, FLOATS, _F, FLOATS)
 
@@ -108,6 +131,7 @@ class OptionKernel(CostKernel):
 class BoundKernel(CostKernel):
     """Lower bound of the cost of a group of movement options."""
 
+    arguments = BOUND
     loop = BOUND_LOOP
     signature = types.void(_N, *[FLOATS] * 9, *[_F] * 7, FLOATS, _F, FLOATS)
 
@@ -119,11 +143,16 @@ class PairKernel(CostKernel):
     options.
     """
 
+    arguments = PAIR
     loop = PAIR_LOOP
     signature = types.void(_N, *[_F] * 10, *[FLOATS] * 9, _N, INTS, FLOATS, FLOATS)
     all_pairs: ClassVar[Any] = types.void(
         _N, _N, *[FLOATS] * 6, *[_F] * 4, *[FLOATS] * 9, _N, INTS, FLOATS, _F, FLOATS
     )
+
+    def _asked(self) -> str:
+        fields = [*self.fields, *(f"neighbour_{name}" for name in self.fields)]
+        return ", ".join([self.arguments, *fields, "parameters"])
 
     @cached_property
     def _compiled(self) -> Any:
@@ -142,6 +171,7 @@ class PairKernel(CostKernel):
 class PairBoundKernel(CostKernel):
     """Lower bound of the cost of a group of movement options with respect to one neighbour."""
 
+    arguments = PAIR_BOUND
     loop = PAIR_BOUND_LOOP
     signature = types.void(_N, _N, *[FLOATS] * 9, *[_F] * 4, *[FLOATS] * 8, _F, FLOATS)
 
@@ -149,17 +179,24 @@ class PairBoundKernel(CostKernel):
 class WallKernel(CostKernel):
     """Cost of one movement option with respect to one wall."""
 
+    arguments = WALL
     loop = WALL_LOOP
     signature = types.float64(_N, *[_F] * 11, FLOATS, FLOATS)
 
 
 @overload
-def option_kernel(function: Callable[..., float]) -> OptionKernel: ...
+def option_kernel(function: OptionFunction) -> OptionKernel: ...
 
 
 @overload
 def option_kernel(
-    *, own_velocity: bool = False, fields: Sequence[str] = ()
+    *, own_velocity: Literal[True]
+) -> Callable[[OptionFunctionWithVelocity], OptionKernel]: ...
+
+
+@overload
+def option_kernel(
+    *, own_velocity: bool = False, fields: Sequence[str]
 ) -> Callable[[Callable[..., float]], OptionKernel]: ...
 
 
@@ -187,7 +224,7 @@ def option_kernel(
             "heading" (radians) and "core" (metres). Such a kernel has no bound.
 
     Raises:
-        ModelError: fields that are no list of different names.
+        ModelError: fields that are no list of different names, or another number of arguments.
     """
     if function is None:
         return partial(OptionKernel, own_velocity=own_velocity, fields=fields)
@@ -195,11 +232,13 @@ def option_kernel(
 
 
 @overload
-def bound_kernel(function: Callable[..., float]) -> BoundKernel: ...
+def bound_kernel(function: BoundFunction) -> BoundKernel: ...
 
 
 @overload
-def bound_kernel(*, own_velocity: bool) -> Callable[[Callable[..., float]], BoundKernel]: ...
+def bound_kernel(
+    *, own_velocity: Literal[True]
+) -> Callable[[BoundFunctionWithVelocity], BoundKernel]: ...
 
 
 def bound_kernel(
@@ -216,6 +255,9 @@ def bound_kernel(
     Args:
         function: the function.
         own_velocity: as for ``option_kernel``.
+
+    Raises:
+        ModelError: another number of arguments, as in the other kernels.
     """
     if function is None:
         return partial(BoundKernel, own_velocity=own_velocity)
@@ -223,7 +265,7 @@ def bound_kernel(
 
 
 @overload
-def pair_kernel(function: Callable[..., float]) -> PairKernel: ...
+def pair_kernel(function: PairFunction) -> PairKernel: ...
 
 
 @overload
@@ -248,14 +290,14 @@ def pair_kernel(
             ``fields=("infected",)``.
 
     Raises:
-        ModelError: fields that are no list of different names.
+        ModelError: fields that are no list of different names, or another number of arguments.
     """
     if function is None:
         return partial(PairKernel, fields=fields)
     return PairKernel(function, fields=fields)
 
 
-def pair_bound_kernel(function: Callable[..., float]) -> PairBoundKernel:
+def pair_bound_kernel(function: PairBoundFunction) -> PairBoundKernel:
     """Make a lower bound of a pair kernel over a group of similar options, for one neighbour.
 
     The function takes ``(x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest,
@@ -266,7 +308,7 @@ def pair_bound_kernel(function: Callable[..., float]) -> PairBoundKernel:
     return PairBoundKernel(function)
 
 
-def wall_kernel(function: Callable[..., float]) -> WallKernel:
+def wall_kernel(function: WallFunction) -> WallKernel:
     """Make a kernel of one movement option and one wall; the worst wall counts.
 
     The function takes ``(x, y, facing_x, facing_y, duration, speed, start_x, start_y, target_x,

@@ -105,13 +105,18 @@ class CostTerm(Plugin):
         self.weight = self.default_weight if weight is None else weight
 
     @property
+    def _called(self) -> str:
+        """The name, or that of the class: a term without a name is refused later."""
+        return getattr(self, "name", type(self).__name__)
+
+    @property
     def weight(self) -> float:
         """Factor of this term in the sum."""
         return self._weight
 
     @weight.setter
     def weight(self, value: float) -> None:
-        self._weight = _checked_weight(repr(self.name), value)
+        self._weight = _checked_weight(repr(self._called), value)
 
     @property
     def weight_by_type(self) -> Mapping[str, float]:
@@ -121,7 +126,7 @@ class CostTerm(Plugin):
     @weight_by_type.setter
     def weight_by_type(self, weights: Mapping[str, float]) -> None:
         self._by_type = {
-            name: _checked_weight(f"{self.name!r} for {name!r}", value)
+            name: _checked_weight(f"{self._called!r} for {name!r}", value)
             for name, value in weights.items()
         }
 
@@ -196,7 +201,7 @@ class CompiledTerm(CostTerm):
 
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
         """Cost of each option, by calling the kernel on each row."""
-        numbers = np.array(self.parameters() or (0.0,), dtype=np.float64)
+        numbers = np.array((*self.parameters(), np.nan), dtype=np.float64)
         ends = np.array(
             [
                 *candidates.points.T,

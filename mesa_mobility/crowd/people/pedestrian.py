@@ -17,6 +17,7 @@ from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.state.fields import field_column
 from mesa_mobility.crowd.state.records import FALLBACK
 from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
+from mesa_mobility.crowd.tactics.waiting import waiting
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
@@ -99,6 +100,8 @@ class Pedestrian(ContinuousSpaceAgent):
 
     def __setattr__(self, name: str, value: Any) -> None:
         fields = _fields_of(self)
+        if name == "row" and "row" in self.__dict__:
+            raise ModelError(f"pedestrian {self.row}: its row is the same for ever, got {value!r}")
         if name in fields:
             column = fields[name]
             column[self.row] = field_column(name, column.dtype, value, 1)[0]
@@ -183,14 +186,16 @@ class Pedestrian(ContinuousSpaceAgent):
         It walks on with its next decision, 0.4 s later at most.
 
         Raises:
-            ModelError: neither of them, both, or a time out of range.
+            ModelError: neither of them, both, a time out of range, or the person has left.
         """
+        self.model.population.check_inside(self.row)
         self.model.waits.tell(self.row, seconds, until, self.model.frame, self.model.crowd)
 
     @property
     def waiting(self) -> bool:
-        """Whether the person waits: told to, at a place that it visits, or before it sets off."""
-        return bool(self.model.crowd.agenda["waits_until"][self.row] > self.model.frame)
+        """Whether the person waits: told to, at a place that it visits, held by a behaviour, or
+        before it sets off."""
+        return bool(waiting(np.array([self.row]), self.model.frame, self.model.crowd)[0])
 
     @property
     def group(self) -> str | int | None:

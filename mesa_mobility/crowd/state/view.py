@@ -24,7 +24,7 @@ class CrowdView:
 
     def __init__(self, pedestrians: NDArray[np.int64], crowd: Crowd) -> None:
         self.pedestrians = pedestrians
-        self._crowd = crowd
+        self.crowd = crowd
 
     def places(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
         """(n,) indices of people with these rows in the arrays of this class."""
@@ -32,40 +32,40 @@ class CrowdView:
 
     def types_of(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
         """(n,) index of the pedestrian type of people with these rows."""
-        return self._crowd.type_index[pedestrians].astype(np.int64)
+        return self.crowd.type_index[pedestrians].astype(np.int64)
 
     @property
     def positions(self) -> NDArray[np.float64]:
         """(m, 2) metres."""
-        return np.column_stack([self._crowd.x[self.pedestrians], self._crowd.y[self.pedestrians]])
+        return np.column_stack([self.crowd.x[self.pedestrians], self.crowd.y[self.pedestrians]])
 
     @cached_property
     def grid(self) -> Grid:
         """The people by cell, where they were when it was first asked for: tactics share it."""
-        return build_grid(self.pedestrians, self._crowd.x, self._crowd.y)
+        return build_grid(self.pedestrians, self.crowd.x, self.crowd.y)
 
     @property
     def preferred_speeds(self) -> NDArray[np.float64]:
         """(m,) unhindered preferred speeds, m/s."""
-        speeds: NDArray[np.float64] = self._crowd.agenda["speed"][self.pedestrians]
+        speeds: NDArray[np.float64] = self.crowd.agenda["speed"][self.pedestrians]
         return speeds
 
     @property
     def destinations(self) -> NDArray[np.int32]:
         """(m,) number of the set of exits by which each may leave, or of the gate to cross."""
-        return self._crowd.destination[self.pedestrians]
+        return self.crowd.destination[self.pedestrians]
 
     @property
     def distances(self) -> NDArray[np.float64]:
         """(m,) length of the route when each last decided, metres; inf without one."""
-        return self._crowd.route[self.pedestrians]
+        return self.crowd.route[self.pedestrians]
 
     @property
     def fields(self) -> dict[str, NDArray[Any]]:
         """(m,) values of each field that the model declares for its people."""
-        return {name: values[self.pedestrians] for name, values in self._crowd.fields.items()}
+        return {name: values[self.pedestrians] for name, values in self.crowd.fields.items()}
 
     @property
     def groups(self) -> NDArray[np.int64]:
         """(m,) number of each one's group, 0 for those who walk alone."""
-        return self._crowd.agenda["group"][self.pedestrians].astype(np.int64)
+        return self.crowd.agenda["group"][self.pedestrians].astype(np.int64)

@@ -13,6 +13,7 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
+from mesa_mobility.crowd.tactics.given import Given
 from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
@@ -82,12 +83,15 @@ class DesiredMotion:
             rows, positions, destinations, frame * FRAME_SECONDS, CrowdView(inside, crowd),
             wants.rng, self._environment,
         )  # fmt: skip
-        targets = query_targets(wants.choice, deciding, crowd)
+        given = Given(deciding)
+        targets = query_targets(wants.choice, deciding, crowd, given)
         desired = Desired(targets.points, speeds, targets, newcomers)
         for tactic in wants.tactics:
-            points, speeds = desired.points, desired.speeds
+            points, speeds, outside = desired.points, desired.speeds, given.keep(tactic)
             tactic.apply(deciding, desired)
-            if desired.points is not points or desired.speeds is not speeds:
+            if outside:
+                given.check(tactic)
+            if outside or desired.points is not points or desired.speeds is not speeds:
                 _check(tactic, desired, n)
         settle(rows, desired.points, desired.speeds, crowd.records)
         return targets

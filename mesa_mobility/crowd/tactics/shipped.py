@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.anticipation import turn_aside
 from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
@@ -123,7 +122,7 @@ class TakeTurns(_OfTheCrowd):
         """Let people wait where others have the turn."""
         if not desired.newcomers:
             desired.points, desired.speeds = self._turns.take(
-                deciding.pedestrians, deciding.inside.pedestrians, _frame(deciding), self._crowd,
+                deciding.pedestrians, deciding.inside.pedestrians, deciding.frame, self._crowd,
                 desired.points, desired.speeds,
             )  # fmt: skip
 
@@ -168,11 +167,9 @@ class Wait(_OfTheCrowd):
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """As for people without a route: they stop, and stay."""
-        until: NDArray[np.int32] = self._crowd.agenda["waits_until"][deciding.pedestrians]
-        waiting = until > _frame(deciding)
-        if not desired.newcomers and waiting.any():
-            desired.speeds = np.where(waiting, 0.0, desired.speeds)
-            desired.points = np.where(waiting[:, None], deciding.positions, desired.points)
+        waits = deciding.waiting
+        if not desired.newcomers and waits.any():
+            desired.stand(waits, deciding.positions)
 
 
 class CompensateSpeed(_OfTheCrowd):
@@ -194,7 +191,7 @@ class Anticipation(_OfTheCrowd):
         """Turn the points of those for whom another course is better, or slow them down."""
         if not desired.newcomers:
             desired.points, desired.speeds = turn_aside(
-                deciding.pedestrians, deciding.inside.grid, _frame(deciding), self._crowd,
+                deciding.pedestrians, deciding.inside.grid, deciding.frame, self._crowd,
                 deciding.site.plan, desired.points, desired.speeds,
             )  # fmt: skip
 
@@ -241,7 +238,3 @@ class Impatience(_OfTheCrowd):
 def _stretch(kind: PedestrianType) -> float:
     """Radius of a circle that holds a body of a type, in core radii."""
     return max(abs(offset) + radius for offset, radius in kind.shape)
-
-
-def _frame(deciding: Deciding) -> int:
-    return round(deciding.elapsed / FRAME_SECONDS)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Plugin
+from mesa_mobility.crowd.tactics.given import Given
 from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_given
@@ -42,13 +43,16 @@ def apply_speed_rules(
     Raises:
         ModelError: speeds that are negative or not finite, or an array of another shape.
     """
+    given = Given(deciding)
     for pace in speed_rules:
-        giver = f"behaviour {pace.name!r}"
-        given = numbers_given(giver, "speeds", pace.speeds(deciding, speeds), speeds.shape)
-        off = ~((given >= 0.0) & (given <= FASTEST))
+        giver, outside = f"behaviour {pace.name!r}", given.keep(pace)
+        new = numbers_given(giver, "speeds", pace.speeds(deciding, speeds), speeds.shape)
+        if outside:
+            given.check(pace)
+        off = ~((new >= 0.0) & (new <= FASTEST))
         if off.any():
             raise ModelError(
-                f"{giver}: gave a speed of {given[off][0]} m/s, expected 0 to {FASTEST:g}"
+                f"{giver}: gave a speed of {new[off][0]} m/s, expected 0 to {FASTEST:g}"
             )
-        speeds = given
+        speeds = new
     return speeds

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,18 @@ class Desired:
     speeds: NDArray[np.float64]
     targets: Targets
     newcomers: bool = False
+
+    def stand(self, who: NDArray[Any], positions: NDArray[np.float64]) -> None:
+        """Let some stand where they are with their next movement.
+
+        Whoever stands for long gets impatient; ``Deciding.hold`` is for those who wait.
+
+        Args:
+            who: which: (n,) of them true, or (k,) indices.
+            positions: (n, 2) where all of them are, metres.
+        """
+        self.points, self.speeds = self.points.copy(), self.speeds.copy()
+        self.points[who], self.speeds[who] = positions[who], 0.0
 
 
 class Tactic(Plugin):

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.hooks import Plugin
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
+from mesa_mobility.crowd.tactics.given import Given
+from mesa_mobility.crowd.tactics.waiting import HELD, wait_until, waiting
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.output import numbers_given, whole_numbers_given
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.tactics.tactic import Desired
 
 FARTHEST = 1e9
 """Greatest distance of a target from the origin, metres; its square is still exact enough."""
@@ -54,6 +60,30 @@ class Deciding(NamedTuple):
         """(n,) index of the pedestrian type."""
         return self.inside.types_of(self.pedestrians)
 
+    @property
+    def frame(self) -> int:
+        """Number of the frame, counted from 0 on."""
+        return round(self.elapsed / FRAME_SECONDS)
+
+    @property
+    def waiting(self) -> NDArray[np.bool_]:
+        """(n,) whether each waits: told to, at a place that it visits, or held by a behaviour."""
+        return waiting(self.pedestrians, self.frame, self.inside.crowd)
+
+    def hold(self, desired: Desired, who: NDArray[Any]) -> None:
+        """Let some wait where they are until they decide again, 0.4 s later.
+
+        As all who wait, they stay patient and count as people who stand, for others who look ahead
+        and for the test whether a run has stalled. A tactic that holds them at each decision lets
+        them wait for as long as it does.
+
+        Args:
+            desired: what all of them want so far.
+            who: which: (n,) of them true, or (k,) indices.
+        """
+        desired.stand(who, self.positions)
+        wait_until(self.pedestrians[who], self.frame + HELD, self.inside.crowd)
+
 
 class TargetChoice(Plugin):
     """A behaviour that makes the target requests of section 6 of the paper.
@@ -72,15 +102,19 @@ class TargetChoice(Plugin):
         """
 
 
-def query_targets(choice: TargetChoice, deciding: Deciding, crowd: Crowd) -> Targets:
+def query_targets(choice: TargetChoice, deciding: Deciding, crowd: Crowd, frozen: Given) -> Targets:
     """The targets that a choice gives, checked and as arrays for compiled functions.
 
     The length of each route is written to the crowd.
 
     Raises:
-        ModelError: not ``Targets``, arrays of the wrong shape, or values out of range.
+        ModelError: not ``Targets``, arrays of the wrong shape, values out of range, or what the
+            choice was given is changed.
     """
+    outside = frozen.keep(choice)
     given, giver = choice.targets(deciding), f"behaviour {choice.name!r}"
+    if outside:
+        frozen.check(choice)
     if not isinstance(given, Targets):
         raise ModelError(f"{giver}: gave {type(given).__name__}, expected Targets")
     rows, n = deciding.pedestrians, len(deciding.pedestrians)

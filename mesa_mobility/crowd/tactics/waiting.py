@@ -14,6 +14,9 @@ from mesa_mobility.errors import ModelError
 LONGEST_WAIT = 1e6
 """Longest wait in seconds; eleven days."""
 
+HELD = 12
+"""Frames for which a behaviour holds somebody: people who stand decide again after as many."""
+
 _UNTIL_TOLD = np.iinfo(np.int32).max
 
 
@@ -27,6 +30,23 @@ def frames_of(seconds: NDArray[np.float64], name: str) -> NDArray[np.int64]:
     if off.any():
         raise ModelError(f"{name}: got {seconds[off][0]}, expected 0 to {LONGEST_WAIT:g} s")
     return np.ceil(seconds / FRAME_SECONDS - 1e-6).astype(np.int64)
+
+
+def waiting(rows: NDArray[np.int64], frame: int, crowd: Crowd) -> NDArray[np.bool_]:
+    """(n,) whether people in ``rows`` wait, for whatever reason."""
+    waits: NDArray[np.bool_] = crowd.agenda["waits_until"][rows] > frame
+    return waits
+
+
+def wait_until(rows: NDArray[np.int64], frames: int | NDArray[np.int64], crowd: Crowd) -> None:
+    """Have people in ``rows`` wait until these frames at least."""
+    until = crowd.agenda["waits_until"]
+    until[rows] = np.maximum(until[rows], frames)
+
+
+def end_wait(rows: int | NDArray[np.int64], frame: int, crowd: Crowd) -> None:
+    """Have people in ``rows`` wait no longer."""
+    crowd.agenda["waits_until"][rows] = frame
 
 
 class Waits:

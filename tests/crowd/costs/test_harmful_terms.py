@@ -143,3 +143,40 @@ def test_the_shipped_ones_and_those_in_numpy_are_not_looked_at(monkeypatch):
         "mesa_mobility.crowd.planning.scheduler.check_terms", lambda *_: pytest.fail("looked at")
     )
     crowd_with(Zero()).step()
+
+
+def test_a_function_of_other_arguments_is_refused_with_their_names():
+    with pytest.raises(
+        ModelError,
+        match=r"^kernel forgot: takes 2 arguments, expected 12: x, y, facing_x, .*parameters$",
+    ):
+
+        @option_kernel
+        def forgot(x, y):
+            return 0.0
+
+    def tall(*all_of_them):
+        return 0.0
+
+    with pytest.raises(ModelError, match="kernel tall: takes 0 arguments, expected 16: x, y"):
+        wall_kernel(tall)
+    with pytest.raises(ModelError, match=r"expected 20: .*lead, mood, neighbour_mood, parameters"):
+        pair_kernel(_near.function, fields=["mood"])
+    with pytest.raises(ModelError, match=r"expected 14: .*preferred_speed, own_vx, own_vy, param"):
+        option_kernel(_away.function, own_velocity=True)
+
+
+@pytest.mark.parametrize("others", [0, 1])
+def test_a_computed_index_past_the_end_gives_no_number(others):
+    @option_kernel
+    def past(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):
+        total = 0.0
+        for k in range(3):
+            total += p[k]
+        return total
+
+    # Another term with more parameters does not lend it any.
+    more = [term(_beside, None, (0.0,) * 6), term(past, None, (1.0, 1.0))]
+    more[0].__class__.name = "other"
+    with pytest.raises(ModelError, match=r"not a number but nan, .*'own'"):
+        crowd_with(*more[1 - others :]).step()

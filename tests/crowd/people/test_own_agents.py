@@ -275,3 +275,14 @@ def test_a_fire_alarm_after_a_second():
 def test_rows_of_a_base_model_stay_as_they_are():
     assert isinstance(put(model_of(corridor(), strider()), 1.0, 1.0), Pedestrian)
     assert PedestrianModel(corridor(), mobility_map=strider(), rng=1).crowd.fields == {}
+
+
+def test_a_row_stays_and_who_has_left_does_not_wait():
+    model = model_of(corridor(), strider())
+    first, second = model.add_pedestrians([(2.0, 1.0), (2.0, 3.0)])
+    with pytest.raises(ModelError, match=r"^pedestrian 0: its row is the same for ever, got 1"):
+        first.row = second.row
+    first.remove()
+    with pytest.raises(ModelError, match=r"^pedestrian 0: has left, expected somebody inside"):
+        first.wait(3.0)
+    assert not first.waiting

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mesa_mobility import Tactic
 from mesa_mobility.crowd.planning.explanation import Watch
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import shipped_map, strider
@@ -52,6 +53,54 @@ def test_the_last_of_several_waits_counts():
     assert not person.waiting
     advance(model, 45)
     assert person.position[0] > 2.0
+
+
+class HoldUntil(Tactic):
+    """Whoever is beyond x = 3 m waits until 70 s."""
+
+    name = "hold_until"
+
+    def __init__(self, by_index):
+        self.by_index = by_index
+        self.seen = []
+
+    def apply(self, deciding, desired):
+        self.seen.append((deciding.elapsed, deciding.waiting.tolist()))
+        beyond = deciding.positions[:, 0] > 3.0
+        if not desired.newcomers and deciding.elapsed < 70.0:
+            deciding.hold(desired, np.flatnonzero(beyond) if self.by_index else beyond)
+
+
+@pytest.mark.parametrize("by_index", [False, True])
+def test_a_behaviour_may_hold_people(by_index):
+    model = model_of(corridor(), strider())
+    hold = HoldUntil(by_index)
+    model.add_tactic(hold)
+    person = put(model, 2.0, 2.0, preferred_speeds=[1.25])
+    model.run(max_seconds=30)
+    assert person.waiting
+    # It is patient: for 28 s it has looked for no way round, nor turned.
+    assert person.target.tolist() == pytest.approx(person.position.tolist())
+    model.run(max_seconds=200)
+    assert not model.stalled
+    first, last = still(model, person)
+    assert first == pytest.approx(1.5)
+    assert last == pytest.approx(70.0, abs=0.41)
+    assert model.inside == 0
+    # At its next decisions the hold of the last one is over: behaviours hold people anew.
+    assert not any(waits for _, [waits] in hold.seen)
+
+
+def test_behaviours_see_who_waits():
+    model = model_of(corridor(), strider())
+    hold = HoldUntil(by_index=False)
+    model.add_tactic(hold)
+    person = put(model, 1.0, 2.0, preferred_speeds=[1.25])
+    person.wait(3.0)
+    model.run(max_seconds=4)
+    waits = {round(elapsed, 6): waits for elapsed, [waits] in hold.seen if elapsed > 0.0}
+    assert all(waits == (elapsed < 3.0) for elapsed, waits in waits.items())
+    assert set(waits.values()) == {True, False}
 
 
 def test_the_same_whatever_a_step_is():

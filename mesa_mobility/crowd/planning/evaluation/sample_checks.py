@@ -22,6 +22,7 @@ from mesa_mobility.crowd.costs.kernels import (
     WallKernel,
 )
 from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
+from mesa_mobility.crowd.hooks import SHIPPED
 from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.errors import ModelError
 
@@ -33,8 +34,6 @@ OPTIONS, NEIGHBOURS, WALLS = 24, 6, 6
 
 ROUNDING = 1e-6
 """Cost by which a bound may exceed a cost, or a cost lie below 0."""
-
-_SHIPPED = "mesa_mobility."
 
 
 class SampleChecks:
@@ -50,7 +49,7 @@ class SampleChecks:
             term
             for term in terms
             if isinstance(term, CompiledTerm)
-            and not term.kernel.function.__module__.startswith(_SHIPPED)
+            and not term.kernel.function.__module__.startswith(SHIPPED)
         ]
         if not others:
             return []

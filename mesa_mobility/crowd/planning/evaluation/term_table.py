@@ -31,6 +31,9 @@ from mesa_mobility.plugins.output import numbers_given
 NO_EXTRA = np.empty(0), np.zeros(1, dtype=np.int64)
 """What ``extra_costs`` returns without NumPy terms."""
 
+PAST_THE_END = 8
+"""Parameters behind those of a term that are no numbers."""
+
 BATCH_PAIRS = 2_000_000
 """Pairs of an option and a neighbour laid out at once for terms in NumPy; bounds memory."""
 
@@ -174,8 +177,9 @@ def _table(
     terms: Sequence[CompiledTerm], types: Sequence[str]
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Address of each term, its weights by type, and its parameters."""
-    width = max([1] + [len(term.parameters()) for term in terms])
-    parameters = np.zeros((len(terms), width))
+    # An index that is computed and past the end gives no number, which the search refuses.
+    width = max([0] + [len(term.parameters()) for term in terms]) + PAST_THE_END
+    parameters = np.full((len(terms), width), np.nan)
     for row, term in enumerate(terms):
         own = term.parameters()
         for kernel in (term.kernel, term.bound):

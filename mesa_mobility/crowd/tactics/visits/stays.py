@@ -12,7 +12,7 @@ from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.visits.place import Place
 from mesa_mobility.crowd.tactics.visits.visit import Visit
-from mesa_mobility.crowd.tactics.waiting import frames_of
+from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.distributions import Distribution
 
 THERE = 0.3
@@ -57,7 +57,7 @@ class Stays(Saved):
     def end(self, row: int, frame: int, crowd: Crowd) -> None:
         """End the stay of somebody, if it has one."""
         if self.stands(row):
-            crowd.agenda["waits_until"][row] = frame
+            end_wait(row, frame, crowd)
         if row < len(self._place):
             self._place[row] = -1
 
@@ -95,8 +95,7 @@ class Stays(Saved):
             if math.hypot(sx - x, sy - y) <= THERE or frame - self._came[row] >= GIVES_UP:
                 self._spot[row] = x, y
                 self._until[row] = frame + self._stay[row]
-                waits = crowd.agenda["waits_until"]
-                waits[row] = max(waits[row], self._until[row])
+                wait_until(np.array([row]), int(self._until[row]), crowd)
             return False
         if self._until[row] > frame:
             return False

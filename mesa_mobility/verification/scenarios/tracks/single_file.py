@@ -26,15 +26,20 @@ PEOPLE = (6, 10, 14, 19, 23, 28, 33, 38, 43, 48)
 
 
 @option_kernel
-def _off_line(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):  # type: ignore[no-untyped-def]
+def _off_line(
+    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
+    tx: float, ty: float, preferred: float, p: tuple[float, ...],
+) -> float:  # fmt: skip
     beside = max(abs(x) - p[0], 0.0)
     return abs(math.sqrt(beside * beside + y * y) - p[1])
 
 
 @bound_kernel
-def _off_line_bound(  # type: ignore[no-untyped-def]
-    x, y, radius, ux, uy, turn, duration, slowest, fastest, sx, sy, tx, ty, preferred, p
-):
+def _off_line_bound(
+    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
+    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
+    p: tuple[float, ...],
+) -> float:  # fmt: skip
     beside = max(abs(x) - p[0], 0.0)
     return max(abs(math.sqrt(beside * beside + y * y) - p[1]) - radius, 0.0)
 
