@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from mesa_mobility.bodies import BodyMotion, PoseBank
 from mesa_mobility.errors import ResultsError
@@ -79,6 +80,19 @@ class Walker:
     def pelvis(self) -> NDArray[np.float64]:
         """(n, 3) positions of the pelvis, metres."""
         return self.motion.positions[:, 0]
+
+    def turns(self) -> NDArray[np.float64]:
+        """(n, 17, 4) turns of ``skeleton.TURNING`` against their parents, as quaternions.
+
+        Of q and -q, the same rotation, it is the one nearer to the frame before: some viewers
+        interpolate without looking.
+        """
+        matrices = self.motion.local()
+        found = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat()
+        found = found.reshape(len(matrices), -1, 4)
+        along = np.einsum("njk,njk->nj", found[1:], found[:-1])
+        found[1:] *= np.cumprod(np.where(along < 0.0, -1.0, 1.0), axis=0)[..., None]
+        return found
 
 
 def walkers(
