@@ -1,7 +1,7 @@
 """A run as glTF 2.0: people as skinned, animated figures between the walls of the plan.
 
-All people share one mesh. Each has a skeleton of its own, whose joints are animated at 30 frames a
-second with quaternions of 16 bits.
+People share one mesh, those with a stick or a wheelchair another. Each has a skeleton of its own,
+whose joints are animated at 30 frames a second with quaternions of 16 bits.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from mesa_mobility.animation.figure import human_figure, rest_positions
+from mesa_mobility.animation.aids import aid_of, figure_with
+from mesa_mobility.animation.figure import rest_positions
 from mesa_mobility.animation.people import Walker
 from mesa_mobility.animation.scenery import COLOURS, linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
@@ -60,8 +61,9 @@ def write_glb(
     world = store.node(gltf.Node(name="world", rotation=_UP, children=[]))
     top = [world]
     _add_plan(gltf, file, store, plan, world)
-    meshes, bind = _add_figure(gltf, file, store)
     shown = list(people)
+    aids = sorted({aid_of(walker.type_name) for walker in shown})
+    meshes, bind = _add_figures(gltf, file, store, aids)
     first = min(walker.first for walker in shown)
     last = max(walker.first + len(walker.motion) for walker in shown)
     times = store.view(np.arange(last - first + 1, dtype=np.float32) / FRAME_RATE)
@@ -71,7 +73,7 @@ def write_glb(
         file.skins.append(gltf.Skin(inverseBindMatrices=bind, joints=joints, skeleton=joints[0]))
         figure = gltf.Node(
             name=f"person {walker.person}",
-            mesh=meshes[walker.person % len(meshes)],
+            mesh=meshes[aid_of(walker.type_name)][walker.person % len(COLOURS)],
             skin=len(file.skins) - 1,
         )
         top.append(store.node(figure))
@@ -177,19 +179,21 @@ def _material(gltf: Any, file: Any, colour: str, *, both_sides: bool = False) ->
     return len(file.materials) - 1
 
 
-def _add_figure(gltf: Any, file: Any, store: _Store) -> tuple[list[int], int]:
-    """The shared mesh in each colour, and the accessor of the inverse bind matrices."""
-    figure = human_figure()
-    attributes, indices = _mesh(store, gltf, figure.vertices, figure.normals, figure.triangles)
-    attributes.JOINTS_0 = store.accessor(figure.joints, "VEC4", _UBYTE, target=_ARRAY)
-    attributes.WEIGHTS_0 = store.accessor(figure.weights, "VEC4", _FLOAT, target=_ARRAY)
-    meshes = []
-    for colour in COLOURS:
-        part = gltf.Primitive(
-            attributes=attributes, indices=indices, material=_material(gltf, file, colour)
-        )
-        file.meshes.append(gltf.Mesh(name="person", primitives=[part]))
-        meshes.append(len(file.meshes) - 1)
+def _add_figures(
+    gltf: Any, file: Any, store: _Store, aids: list[str]
+) -> tuple[dict[str, list[int]], int]:
+    """The mesh for each aid in each colour, and the accessor of the inverse bind matrices."""
+    meshes: dict[str, list[int]] = {aid: [] for aid in aids}
+    materials = [_material(gltf, file, colour) for colour in COLOURS]
+    for aid in aids:
+        figure = figure_with(aid)
+        attributes, indices = _mesh(store, gltf, figure.vertices, figure.normals, figure.triangles)
+        attributes.JOINTS_0 = store.accessor(figure.joints, "VEC4", _UBYTE, target=_ARRAY)
+        attributes.WEIGHTS_0 = store.accessor(figure.weights, "VEC4", _FLOAT, target=_ARRAY)
+        for material in materials:
+            part = gltf.Primitive(attributes=attributes, indices=indices, material=material)
+            file.meshes.append(gltf.Mesh(name="person", primitives=[part]))
+            meshes[aid].append(len(file.meshes) - 1)
     bind = np.tile(np.eye(4, dtype=np.float32), (len(JOINTS), 1, 1))
     bind[:, 3, :3] = -rest_positions()  # matrices are stored column by column
     return meshes, store.accessor(bind, "MAT4", _FLOAT)

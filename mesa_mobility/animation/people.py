@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.bodies import BodyMotion, PoseBank
+from mesa_mobility.bodies.seated import seated_motion
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories
 
@@ -70,11 +72,13 @@ class Walker:
         person: its number.
         first: first frame of ``motion``.
         motion: its body in successive frames.
+        type_name: its pedestrian type, where the run tells it.
     """
 
     person: int
     first: int
     motion: BodyMotion
+    type_name: str = ""
 
     @property
     def pelvis(self) -> NDArray[np.float64]:
@@ -98,7 +102,7 @@ class Walker:
 def walkers(
     trajectories: Trajectories, selection: Selection, bank: PoseBank | None = None
 ) -> Iterator[Walker]:
-    """The people shown, one after the other.
+    """The people shown, one after the other; those in wheelchairs sit.
 
     Args:
         trajectories: a run with its decisions.
@@ -110,8 +114,16 @@ def walkers(
         MapError: no poses of their map ship, or the bank is of another map.
     """
     first, last = selection.frames_of(trajectories)
+    types = trajectories.person_data.get("type")
     for person in selection.people_of(trajectories):
-        motion = trajectories.poses(person, bank=bank)
+        name = str(types[person]) if types is not None else ""
+        if aid_of(name) == "wheelchair":
+            rows = trajectories.rows_of(person)
+            columns = (trajectories.x, trajectories.y, trajectories.heading)
+            track = np.column_stack([column[rows] for column in columns])
+            motion = seated_motion(trajectories.frame[rows], track)
+        else:
+            motion = trajectories.poses(person, bank=bank)
         there = np.flatnonzero((motion.frames >= first) & (motion.frames <= last))
         part = BodyMotion(
             frames=motion.frames[there],
@@ -120,4 +132,4 @@ def walkers(
             bearing=motion.bearing[there],
             scale=motion.scale,
         )
-        yield Walker(person, int(part.frames[0]), part)
+        yield Walker(person, int(part.frames[0]), part, name)

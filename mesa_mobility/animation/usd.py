@@ -1,6 +1,7 @@
 """A run as OpenUSD: people as skinned, animated figures (UsdSkel) between the walls of the plan.
 
-All people share one mesh and one skeleton by reference; each has its own animation.
+People share one mesh and one skeleton by reference, those with a stick or a wheelchair another;
+each has an animation of its own.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.animation.figure import human_figure, rest_positions
+from mesa_mobility.animation.aids import aid_of, figure_with
+from mesa_mobility.animation.figure import rest_positions
 from mesa_mobility.animation.people import Walker
 from mesa_mobility.animation.scenery import COLOURS, FLOOR, WALL, linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
@@ -68,10 +70,14 @@ def write_usd(
     stage.DefinePrim("/world/materials", "Scope")
     materials = {colour: _material(stage, colour) for colour in (*COLOURS, FLOOR, WALL)}
     _add_plan(stage, plan, materials)
-    _add_figure(stage)
+    figures: dict[str, str] = {}
     first, last = np.inf, -np.inf
     for done, walker in enumerate(people, start=1):
-        _add_person(stage, walker, materials[COLOURS[walker.person % len(COLOURS)]])
+        aid = aid_of(walker.type_name)
+        if aid not in figures:
+            figures[aid] = _add_figure(stage, aid)
+        colour = COLOURS[walker.person % len(COLOURS)]
+        _add_person(stage, walker, figures[aid], materials[colour])
         first = min(first, walker.first)
         last = max(last, walker.first + len(walker.motion) - 1)
         if progress is not None:
@@ -142,33 +148,35 @@ def _names() -> list[str]:
     return names
 
 
-def _add_figure(stage: Any) -> None:
-    """The mesh bound to its skeleton, as a class that people refer to."""
+def _add_figure(stage: Any, aid: str) -> str:
+    """The mesh bound to its skeleton, as a class that people refer to; its path."""
     from pxr import Sdf, UsdGeom, UsdSkel, Vt
 
-    stage.CreateClassPrim("/figure")
-    figure, names = human_figure(), _names()
-    skeleton = UsdSkel.Skeleton.Define(stage, "/figure/skeleton")
+    path = f"/figure_with_{aid}" if aid else "/figure"
+    stage.CreateClassPrim(path)
+    figure, names = figure_with(aid), _names()
+    skeleton = UsdSkel.Skeleton.Define(stage, f"{path}/skeleton")
     skeleton.CreateJointsAttr(names)
     skeleton.CreateBindTransformsAttr(_translations(rest_positions()))
     skeleton.CreateRestTransformsAttr(_translations(OFFSETS))
     skeleton.CreatePurposeAttr(UsdGeom.Tokens.guide)
-    mesh = _mesh(stage, "/figure/body", figure.vertices, figure.normals, figure.triangles)
+    mesh = _mesh(stage, f"{path}/body", figure.vertices, figure.normals, figure.triangles)
     binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
     flat = np.ascontiguousarray(figure.joints, dtype=np.int32).reshape(-1)
     binding.CreateJointIndicesPrimvar(False, 4).Set(Vt.IntArray.FromNumpy(flat))
     weights = np.ascontiguousarray(figure.weights, dtype=np.float32).reshape(-1)
     binding.CreateJointWeightsPrimvar(False, 4).Set(Vt.FloatArray.FromNumpy(weights))
     binding.CreateGeomBindTransformAttr(_translations(np.zeros((1, 3)))[0])
-    binding.CreateSkeletonRel().SetTargets([Sdf.Path("/figure/skeleton")])
+    binding.CreateSkeletonRel().SetTargets([Sdf.Path(f"{path}/skeleton")])
+    return path
 
 
-def _add_person(stage: Any, walker: Walker, material: Any) -> None:
+def _add_person(stage: Any, walker: Walker, figure: str, material: Any) -> None:
     from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
 
     place = f"/world/person_{walker.person}"
     root = UsdSkel.Root.Define(stage, place)
-    root.GetPrim().GetReferences().AddInternalReference("/figure")
+    root.GetPrim().GetReferences().AddInternalReference(figure)
     scale = walker.motion.scale
     if scale != 1.0:
         root.AddScaleOp().Set(Gf.Vec3f(scale))
