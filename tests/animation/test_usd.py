@@ -1,11 +1,13 @@
 """OpenUSD files, read back by Pixar's own library."""
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mesa_mobility.animation import Selection, walkers, write_usd
+from mesa_mobility.animation.aids import figure_with
 from mesa_mobility.animation.figure import human_figure
 from mesa_mobility.animation.people import Walker
 from mesa_mobility.bodies import BodyMotion
@@ -43,7 +45,7 @@ def person_in(stage, person, frame):
     assert skinned.ComputeSkinnedPoints(skeleton.ComputeSkinningTransforms(time), corners, time)
     placed = np.array(UsdGeom.Xformable(root).ComputeLocalToWorldTransform(time))
     joints = np.array(skeleton.ComputeJointSkelTransforms(time))[:, 3, :3]
-    return (each @ placed[:3, :3] + placed[3, :3] for each in (joints, np.array(corners)))
+    return tuple(each @ placed[:3, :3] + placed[3, :3] for each in (joints, np.array(corners)))
 
 
 def visible(stage, person, frame):
@@ -131,6 +133,22 @@ def test_small_people_are_small(pxr, run, plan, tmp_path):
     joints, corners = person_in(small, 0, 31)
     np.testing.assert_allclose(joints, 0.7 * adult.positions[31], atol=1e-5)
     assert np.ptp(corners[:, 2]) < 0.7 * 1.85
+
+
+def test_people_in_wheelchairs_sit(pxr, run, plan, tmp_path):
+    from pxr import Usd
+
+    mixed = replace(run, person_data={"type": np.array(["wheelchair_manual", "able_bodied"])})
+    write_usd(walkers(mixed, Selection()), plan, tmp_path / "mixed.usd")
+    again = Usd.Stage.Open(str(tmp_path / "mixed.usd"))
+    joints, corners = person_in(again, 0, 31)
+    row = run.rows_of(0)[31]
+    np.testing.assert_allclose(joints[0], [run.x[row], run.y[row], 0.55], atol=1e-5)
+    assert len(corners) == len(figure_with("wheelchair").vertices)
+    # Wheels of ten corners stand on the floor; a head is 1.2 m to 1.5 m up.
+    assert corners[:, 2].min() == pytest.approx(0.0, abs=0.005)
+    assert 1.2 < corners[:, 2].max() < 1.5
+    assert len(person_in(again, 1, 31)[1]) == len(human_figure().vertices)
 
 
 def test_what_cannot_be_written(pxr, run, plan, tmp_path, monkeypatch):
