@@ -1,19 +1,26 @@
 """A served model on loopback: latency, rate, and whether each frame is right.
 
     python benchmarks/live.py --seconds 60
+    python benchmarks/live.py --seconds 600 --form binary --dying 20
 
 500 people walk round a square between four places, for ever. A client in a process of its own
 receives each frame, in either form, and compares it to the last bit with those of the same model
 run without a server. Latency is the time from when a frame is published to when its numbers are
-there; lateness is how much later than in real time a frame comes.
+there; lateness is how much later than in real time a frame comes. With --dying, a second client is
+killed so many seconds after it has connected, again and again; another takes its place at once, and
+its frames are compared too.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
+import multiprocessing
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 from pathlib import Path
 from typing import Annotated
@@ -58,8 +65,8 @@ class Square(PedestrianModel):
         self.add_pedestrians(places[middle:], route=names[::-1], loop=True)
 
 
-def truth(pedestrians: int, seconds: float) -> list[tuple[bytes, ...]]:
-    """What each frame must hold, from a run without a server."""
+def truth(pedestrians: int, seconds: float) -> list[str]:
+    """Digest of what each frame must hold, from a run without a server."""
     model = Square(pedestrians, rng=1)
     model.frames_per_step = 1
     held = [_held(model)]
@@ -69,19 +76,68 @@ def truth(pedestrians: int, seconds: float) -> list[tuple[bytes, ...]]:
     return held
 
 
-def _held(model: PedestrianModel) -> tuple[bytes, ...]:
+def _held(model: PedestrianModel) -> str:
     rows = model.rows
     columns = [getattr(model.crowd, name)[rows].tobytes() for name in COLUMNS]
-    return (rows.astype(np.int32).tobytes(), *columns)
+    return _digest(rows.astype(np.int32).tobytes(), *columns)
 
 
-def of_frame(frame: Frame) -> tuple[bytes, ...]:
+def of_frame(frame: Frame) -> str:
     """The same of a frame that has come."""
     columns = [np.asarray(getattr(frame, name)).tobytes() for name in COLUMNS]
-    return (frame.person.tobytes(), *columns)
+    return _digest(frame.person.tobytes(), *columns)
 
 
-def measure(pedestrians: int, seconds: float, form: str) -> None:
+def _digest(*parts: bytes) -> str:
+    return hashlib.sha256(b"".join(parts)).hexdigest()
+
+
+def listen(address: str, path: str) -> None:
+    """Receive frames until killed; a line for each, its frame and digest."""
+    with connect(address) as socket, open(path, "a", encoding="ascii") as file:
+        json.loads(socket.recv())
+        while True:
+            frame = read_frame(socket.recv())
+            file.write(f"{frame.frame} {of_frame(frame)}\n")
+            file.flush()
+
+
+class DyingClients:
+    """Clients that are killed and replaced, in a thread that watches them."""
+
+    def __init__(self, address: str, life: float, folder: str) -> None:
+        self._address, self._life, self._folder = address, life, Path(folder)
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._replace, daemon=True)
+        self._thread.start()
+
+    def _replace(self) -> None:
+        new = multiprocessing.get_context("spawn").Process
+        number = 0
+        while not self._over.is_set():
+            path = self._folder / f"{number}.txt"
+            client = new(target=listen, args=(self._address, str(path)), daemon=True)
+            client.start()
+            self._over.wait(self._life)
+            client.kill()
+            client.join()
+            number += 1
+
+    def figures(self, expected: list[str]) -> str:
+        """End the last one; how many there were, and how many of their frames were wrong."""
+        self._over.set()
+        self._thread.join()
+        counts, wrong = [], 0
+        for path in self._folder.glob("*.txt"):
+            # A killed client may leave half a line.
+            lines = [line.split() for line in path.read_text().split("\n")[:-1]]
+            counts.append(len(lines))
+            wrong += sum(digest != expected[int(frame)] for frame, digest in lines)
+        served = sum(count > 0 for count in counts)
+        return f"{served} clients killed, {sum(counts)} frames of theirs, {wrong} wrong"
+
+
+def measure(pedestrians: int, seconds: float, form: str, dying: float | None) -> None:
     """Serve the model, receive its frames for so long, and print the figures."""
     expected = truth(pedestrians, seconds + 2.0)
     model = f"{Path(__file__)}:Square"
@@ -89,11 +145,16 @@ def measure(pedestrians: int, seconds: float, form: str) -> None:
     words += ["--set", f"pedestrians={pedestrians}"]
     server = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
     assert server.stdout is not None
-    latency, late, frames, wrong, size = [], [], [], 0, 0
+    address = f"{server.stdout.readline().strip()}&form={form}"
+    latency, late, wrong, size = [], [], 0, 0
+    first = last = None
+    others = None
     try:
-        with connect(f"{server.stdout.readline().strip()}&form={form}") as socket:
+        with tempfile.TemporaryDirectory() as folder, connect(address) as socket:
             json.loads(socket.recv())
-            while not frames or frames[-1].frame < seconds * FRAMES_A_SECOND:
+            if dying is not None:
+                others = DyingClients(address, dying, folder)
+            while last is None or last.frame < seconds * FRAMES_A_SECOND:
                 message = socket.recv()
                 frame = read_frame(message)
                 now = time.time()
@@ -101,19 +162,21 @@ def measure(pedestrians: int, seconds: float, form: str) -> None:
                 wrong += of_frame(frame) != expected[frame.frame]
                 # The first frames come before time begins.
                 if frame.frame >= 1:
-                    frames.append(frame)
+                    first, last = first or frame, frame
                     latency.append(now - frame.sent)
                     late.append(now - frame.frame / FRAMES_A_SECOND)
+            if others is not None:
+                print(others.figures(expected))
     finally:
         server.terminate()
         server.wait()
-    took = frames[-1].sent - frames[0].sent
-    lost = frames[-1].number - frames[0].number + 1 - len(frames)
-    simulated = (frames[-1].frame - frames[0].frame) / FRAMES_A_SECOND
+    took = last.sent - first.sent
+    lost = last.number - first.number + 1 - len(latency)
+    simulated = (last.frame - first.frame) / FRAMES_A_SECOND
     spread = np.array(late) - min(late)
     print(
         f"{form}: {pedestrians} people, {took:.1f} s, frames of {size / 1000:.0f} kB: "
-        f"{(len(frames) - 1) / took:.2f} frames/s, {simulated / took:.3f} x real time, "
+        f"{(len(latency) - 1) / took:.2f} frames/s, {simulated / took:.3f} x real time, "
         f"{lost} lost, {wrong} wrong; latency {_quantiles(latency)}; lateness {_quantiles(spread)}",
         flush=True,
     )
@@ -130,9 +193,10 @@ def main() -> None:
     parser.add_argument("--people", type=int, default=500)
     parser.add_argument("--seconds", type=float, default=60.0, help="of each form")
     parser.add_argument("--form", choices=("binary", "json"), help="one alone")
+    parser.add_argument("--dying", type=float, help="seconds after which a second client is killed")
     chosen = parser.parse_args()
     for form in ("binary", "json") if chosen.form is None else (chosen.form,):
-        measure(chosen.people, chosen.seconds, form)
+        measure(chosen.people, chosen.seconds, form, chosen.dying)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A run's people as moving figures in files: glTF, BVH, films."""
+"""A run's people as moving figures in files: glTF, OpenUSD, BVH, films."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from mesa_mobility.animation.gltf import write_glb
     from mesa_mobility.animation.page import write_page
     from mesa_mobility.animation.people import Selection, walkers
+    from mesa_mobility.animation.usd import write_usd
 
 _MODULES = {
     "Selection": "people",
@@ -20,8 +21,17 @@ _MODULES = {
     "write_film": "film",
     "write_glb": "gltf",
     "write_page": "page",
+    "write_usd": "usd",
 }
 
-__all__ = ["Selection", "walkers", "write_bvh", "write_film", "write_glb", "write_page"]
+__all__ = [
+    "Selection",
+    "walkers",
+    "write_bvh",
+    "write_film",
+    "write_glb",
+    "write_page",
+    "write_usd",
+]
 
 __getattr__, __dir__ = names_of(__name__, _MODULES)

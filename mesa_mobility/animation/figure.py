@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,9 @@ _FEWER_RINGS = {
 
 Ring = tuple[tuple[float, float, float], float, float, dict[str, float]]
 """Centre in metres from a joint, radii along and across, and the joints that move it."""
+
+Tube = tuple[list[Ring], int]
+"""Rings, and the axis along which they follow each other."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +58,9 @@ def rest_positions() -> NDArray[np.float64]:
     return places
 
 
-def human_figure(around: int = AROUND) -> Figure:
-    """The figure of an adult."""
-    return _joined([tube for _, tube in _tubes()], around)
+def human_figure(around: int = AROUND, more: Sequence[Tube] = ()) -> Figure:
+    """The figure of an adult, and more parts that its joints carry."""
+    return _joined([*(tube for _, tube in _tubes()), *more], around)
 
 
 def distant_figure() -> Figure:
@@ -102,9 +106,6 @@ def _joined(tubes: list[Tube], around: int) -> Figure:
         np.concatenate(joints).astype(np.uint8),
         np.concatenate(weights).astype(np.float32),
     )
-
-
-Tube = tuple[list[Ring], int]
 
 
 def _at(joint: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> tuple[float, float, float]:

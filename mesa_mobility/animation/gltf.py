@@ -1,7 +1,7 @@
 """A run as glTF 2.0: people as skinned, animated figures between the walls of the plan.
 
-All people share one mesh. Each has a skeleton of its own, whose joints are animated at 30 frames a
-second with quaternions of 16 bits.
+People share one mesh, those with a stick or a wheelchair another. Each has a skeleton of its own,
+whose joints are animated at 30 frames a second with quaternions of 16 bits.
 """
 
 from __future__ import annotations
@@ -14,8 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from mesa_mobility.animation.figure import human_figure, rest_positions
+from mesa_mobility.animation.aids import aid_of, figure_with
+from mesa_mobility.animation.figure import rest_positions
 from mesa_mobility.animation.people import Walker
+from mesa_mobility.animation.scenery import COLOURS, linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.errors import ResultsError
@@ -23,17 +25,6 @@ from mesa_mobility.files.atomic import replacing
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
-
-COLOURS = ("#3f6ea8", "#b65a43", "#5b8f5a", "#8c6bb1", "#c59a3d", "#4f9d9d", "#7d7d7d", "#a8577e")
-"""Of the people, in turn."""
-
-FLOOR, WALL = "#e6e6e2", "#8b8b88"
-
-WALL_HEIGHT = 1.2
-"""Metres: low enough to look over."""
-
-MARGIN = 0.5
-"""Metres by which the floor reaches beyond the walls."""
 
 _UP = Rotation.from_euler("x", -90, degrees=True).as_quat().tolist()
 """From z up to glTF's y up."""
@@ -70,8 +61,9 @@ def write_glb(
     world = store.node(gltf.Node(name="world", rotation=_UP, children=[]))
     top = [world]
     _add_plan(gltf, file, store, plan, world)
-    meshes, bind = _add_figure(gltf, file, store)
     shown = list(people)
+    aids = sorted({aid_of(walker.type_name) for walker in shown})
+    meshes, bind = _add_figures(gltf, file, store, aids)
     first = min(walker.first for walker in shown)
     last = max(walker.first + len(walker.motion) for walker in shown)
     times = store.view(np.arange(last - first + 1, dtype=np.float32) / FRAME_RATE)
@@ -81,7 +73,7 @@ def write_glb(
         file.skins.append(gltf.Skin(inverseBindMatrices=bind, joints=joints, skeleton=joints[0]))
         figure = gltf.Node(
             name=f"person {walker.person}",
-            mesh=meshes[walker.person % len(meshes)],
+            mesh=meshes[aid_of(walker.type_name)][walker.person % len(COLOURS)],
             skin=len(file.skins) - 1,
         )
         top.append(store.node(figure))
@@ -174,12 +166,10 @@ def _mesh(
 
 
 def _material(gltf: Any, file: Any, colour: str, *, both_sides: bool = False) -> int:
-    channels = [int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
     file.materials.append(
         gltf.Material(
             pbrMetallicRoughness=gltf.PbrMetallicRoughness(
-                baseColorFactor=[*(round(c, 5) for c in linear), 1.0],
+                baseColorFactor=[*linear(colour), 1.0],
                 metallicFactor=0.0,
                 roughnessFactor=0.9,
             ),
@@ -189,61 +179,35 @@ def _material(gltf: Any, file: Any, colour: str, *, both_sides: bool = False) ->
     return len(file.materials) - 1
 
 
-def _add_figure(gltf: Any, file: Any, store: _Store) -> tuple[list[int], int]:
-    """The shared mesh in each colour, and the accessor of the inverse bind matrices."""
-    figure = human_figure()
-    attributes, indices = _mesh(store, gltf, figure.vertices, figure.normals, figure.triangles)
-    attributes.JOINTS_0 = store.accessor(figure.joints, "VEC4", _UBYTE, target=_ARRAY)
-    attributes.WEIGHTS_0 = store.accessor(figure.weights, "VEC4", _FLOAT, target=_ARRAY)
-    meshes = []
-    for colour in COLOURS:
-        part = gltf.Primitive(
-            attributes=attributes, indices=indices, material=_material(gltf, file, colour)
-        )
-        file.meshes.append(gltf.Mesh(name="person", primitives=[part]))
-        meshes.append(len(file.meshes) - 1)
+def _add_figures(
+    gltf: Any, file: Any, store: _Store, aids: list[str]
+) -> tuple[dict[str, list[int]], int]:
+    """The mesh for each aid in each colour, and the accessor of the inverse bind matrices."""
+    meshes: dict[str, list[int]] = {aid: [] for aid in aids}
+    materials = [_material(gltf, file, colour) for colour in COLOURS]
+    for aid in aids:
+        figure = figure_with(aid)
+        attributes, indices = _mesh(store, gltf, figure.vertices, figure.normals, figure.triangles)
+        attributes.JOINTS_0 = store.accessor(figure.joints, "VEC4", _UBYTE, target=_ARRAY)
+        attributes.WEIGHTS_0 = store.accessor(figure.weights, "VEC4", _FLOAT, target=_ARRAY)
+        for material in materials:
+            part = gltf.Primitive(attributes=attributes, indices=indices, material=material)
+            file.meshes.append(gltf.Mesh(name="person", primitives=[part]))
+            meshes[aid].append(len(file.meshes) - 1)
     bind = np.tile(np.eye(4, dtype=np.float32), (len(JOINTS), 1, 1))
     bind[:, 3, :3] = -rest_positions()  # matrices are stored column by column
     return meshes, store.accessor(bind, "MAT4", _FLOAT)
 
 
 def _add_plan(gltf: Any, file: Any, store: _Store, plan: FloorPlan, world: int) -> None:
-    x0, y0, x1, y1 = plan.bounds
-    x0, y0, x1, y1 = x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN
-    floor = np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]], dtype=np.float32)
-    up = np.tile(np.array([0, 0, 1], dtype=np.float32), (4, 1))
-    surfaces = [("floor", floor, up, np.array([[0, 1, 2], [0, 2, 3]]), FLOOR)]
-    walls = np.asarray(plan.walls, dtype=np.float64)
     # Indices have 16 bits: 65,535 is not allowed.
-    for start in range(0, len(walls), 16_000):
-        surfaces.append(("walls", *_upright(walls[start : start + 16_000]), WALL))
-    for name, vertices, normals, triangles, colour in surfaces:
+    for name, vertices, normals, triangles, colour, both_sides in surfaces(plan, 16_000):
         attributes, indices = _mesh(store, gltf, vertices, normals, triangles)
-        material = _material(gltf, file, colour, both_sides=name == "walls")
+        material = _material(gltf, file, colour, both_sides=both_sides)
         part = gltf.Primitive(attributes=attributes, indices=indices, material=material)
         file.meshes.append(gltf.Mesh(name=name, primitives=[part]))
         node = store.node(gltf.Node(name=name, mesh=len(file.meshes) - 1))
         file.nodes[world].children.append(node)
-
-
-def _upright(
-    walls: NDArray[np.float64],
-) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int64]]:
-    """Vertices, normals and triangles of (m, 4) walls as upright rectangles."""
-    corners = np.zeros((len(walls), 4, 3))
-    corners[:, [0, 3], :2] = walls[:, None, :2]
-    corners[:, [1, 2], :2] = walls[:, None, 2:]
-    corners[:, 2:, 2] = WALL_HEIGHT
-    along = walls[:, 2:] - walls[:, :2]
-    length = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
-    normal = np.column_stack([-along[:, 1], along[:, 0], np.zeros(len(walls))]) / length
-    square = np.array([[0, 1, 2], [0, 2, 3]])
-    triangles = (4 * np.arange(len(walls))[:, None, None] + square).reshape(-1, 3)
-    return (
-        corners.reshape(-1, 3).astype(np.float32),
-        np.repeat(normal, 4, axis=0).astype(np.float32),
-        triangles,
-    )
 
 
 def _add_skeleton(gltf: Any, file: Any, store: _Store, walker: Walker, world: int) -> list[int]:
@@ -297,13 +261,9 @@ def _animate(
     channel(
         joints[0], "translation", store.accessor(walker.pelvis.astype(np.float32), "VEC3", _FLOAT)
     )
-    turns = walker.motion.local()
+    turns = walker.turns()
     for k, joint in enumerate(TURNING.tolist()):
-        found = Rotation.from_matrix(turns[:, k]).as_quat()
-        # The nearer of q and -q: viewers turn the shorter way.
-        sign = np.cumprod(np.where(np.einsum("ij,ij->i", found[1:], found[:-1]) < 0.0, -1.0, 1.0))
-        found[1:] *= sign[:, None]
-        whole = np.rint(found * 32767).astype(np.int16)
+        whole = np.rint(turns[:, k] * 32767).astype(np.int16)
         channel(joints[joint], "rotation", store.accessor(whole, "VEC4", _SHORT, normalized=True))
     _show(gltf, store, channel, walker, joints[0], (begin, begin + n))
 

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
+from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.bodies import BodyMotion, PoseBank
+from mesa_mobility.bodies.seated import seated_motion
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories
 
@@ -69,22 +72,37 @@ class Walker:
         person: its number.
         first: first frame of ``motion``.
         motion: its body in successive frames.
+        type_name: its pedestrian type, where the run tells it.
     """
 
     person: int
     first: int
     motion: BodyMotion
+    type_name: str = ""
 
     @property
     def pelvis(self) -> NDArray[np.float64]:
         """(n, 3) positions of the pelvis, metres."""
         return self.motion.positions[:, 0]
 
+    def turns(self) -> NDArray[np.float64]:
+        """(n, 17, 4) turns of ``skeleton.TURNING`` against their parents, as quaternions.
+
+        Of q and -q, the same rotation, it is the one nearer to the frame before: some viewers
+        interpolate without looking.
+        """
+        matrices = self.motion.local()
+        found = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat()
+        found = found.reshape(len(matrices), -1, 4)
+        along = np.einsum("njk,njk->nj", found[1:], found[:-1])
+        found[1:] *= np.cumprod(np.where(along < 0.0, -1.0, 1.0), axis=0)[..., None]
+        return found
+
 
 def walkers(
     trajectories: Trajectories, selection: Selection, bank: PoseBank | None = None
 ) -> Iterator[Walker]:
-    """The people shown, one after the other.
+    """The people shown, one after the other; those in wheelchairs sit.
 
     Args:
         trajectories: a run with its decisions.
@@ -96,8 +114,16 @@ def walkers(
         MapError: no poses of their map ship, or the bank is of another map.
     """
     first, last = selection.frames_of(trajectories)
+    types = trajectories.person_data.get("type")
     for person in selection.people_of(trajectories):
-        motion = trajectories.poses(person, bank=bank)
+        name = str(types[person]) if types is not None else ""
+        if aid_of(name) == "wheelchair":
+            rows = trajectories.rows_of(person)
+            columns = (trajectories.x, trajectories.y, trajectories.heading)
+            track = np.column_stack([column[rows] for column in columns])
+            motion = seated_motion(trajectories.frame[rows], track)
+        else:
+            motion = trajectories.poses(person, bank=bank)
         there = np.flatnonzero((motion.frames >= first) & (motion.frames <= last))
         part = BodyMotion(
             frames=motion.frames[there],
@@ -106,4 +132,4 @@ def walkers(
             bearing=motion.bearing[there],
             scale=motion.scale,
         )
-        yield Walker(person, int(part.frames[0]), part)
+        yield Walker(person, int(part.frames[0]), part, name)

@@ -18,6 +18,7 @@ class Format(StrEnum):
     GLB = "glb"
     BVH = "bvh"
     HTML = "html"
+    USD = "usd"
 
 
 RunDir = Annotated[Path, typer.Argument(metavar="RUN_DIR", help="Folder that `run --out` wrote.")]
@@ -47,7 +48,7 @@ def animate(
         Format,
         typer.Option(
             "--format",
-            help="glb: one file; bvh: a folder, one file a person; html: an offline page.",
+            help="glb, usd: one file; bvh: a folder, one file a person; html: an offline page.",
         ),
     ] = Format.GLB,
     people: People = None,
@@ -56,7 +57,14 @@ def animate(
     poses: Poses = None,
 ) -> None:
     """Write the people of a run as moving figures, for Blender and the web."""
-    from mesa_mobility.animation import Selection, walkers, write_bvh, write_glb, write_page
+    from mesa_mobility.animation import (
+        Selection,
+        walkers,
+        write_bvh,
+        write_glb,
+        write_page,
+        write_usd,
+    )
     from mesa_mobility.bodies import PoseBank
     from mesa_mobility.results.run import read_run, title_of
 
@@ -72,6 +80,8 @@ def animate(
 
         if kind is Format.GLB:
             write_glb(each, found.plan, output, progress=progress)
+        elif kind is Format.USD:
+            write_usd(each, found.plan, output, progress=progress)
         elif kind is Format.HTML:
             write_page(
                 found.trajectories,

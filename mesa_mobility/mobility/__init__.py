@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mesa_mobility.mobility.mapfile import shipped_map_path
     from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
     from mesa_mobility.mobility.poses import POSE_JOINTS, PoseTable, pose_table
+    from mesa_mobility.mobility.preparing.again import recordings_behind
     from mesa_mobility.mobility.preparing.bootstrap import draw_clips
     from mesa_mobility.mobility.preparing.clips import PreparedRecordings, prepare_recordings
     from mesa_mobility.mobility.preparing.derived import DerivedType, derived_type
@@ -54,6 +55,7 @@ _MODULES = {
     "pose_table": "poses",
     "prepare_recordings": "preparing.clips",
     "reachable_options": "paths",
+    "recordings_behind": "preparing.again",
     "shipped_map_path": "mapfile",
     "shortest_paths": "apsp",
 }
@@ -84,6 +86,7 @@ __all__ = [
     "pose_table",
     "prepare_recordings",
     "reachable_options",
+    "recordings_behind",
     "shipped_map_path",
     "shortest_paths",
 ]

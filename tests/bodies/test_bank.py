@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from mesa_mobility.bodies import PoseBank
-from mesa_mobility.bodies.bankfile import poses_path
+from mesa_mobility.bodies.bankfile import poses_path, shipped_banks
 from mesa_mobility.bodies.skeleton import JOINT, TURN_OF
 from mesa_mobility.errors import MapError
+from mesa_mobility.mobility import MobilityMap
 from tests.bodies.conftest import make_bank
 from tests.fixtures.maps import shipped_map
 
@@ -25,6 +26,28 @@ def test_the_bank_that_ships_belongs_to_the_map_that_ships():
     assert (counts.min(), counts.max()) == (1, 3)
     last = bank.frames[bank.offsets[1:] - 1]
     assert (last <= mobility_map.durations).all()
+
+
+def test_banks_that_ship_are_small_and_come_with_their_licences():
+    banks = shipped_banks()
+    assert sum(path.stat().st_size for path in banks) < 15e6
+    for path in banks:
+        bank = PoseBank.load(path)
+        assert bank.pedestrian_type == path.name.removesuffix(".poses.npz")
+        assert all(clip["sha256"] and clip["licence"] for clip in bank.metadata["clips"])
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("path", shipped_banks(), ids=lambda path: path.name)
+def test_each_bank_that_ships_belongs_to_its_map(path):
+    mobility_map = MobilityMap.load(path.with_name(path.name.removesuffix(".poses.npz") + ".npz"))
+    bank = PoseBank.load(path)
+    bank.check_map(mobility_map.digest)
+    assert bank.n_options == mobility_map.n_options
+    assert len(bank.cluster_poses) == mobility_map.n_clusters
+    # Lengths of a child are 1.25 / 1.75 of an adult's.
+    if bank.pedestrian_type == "child":
+        assert bank.scale == pytest.approx(1.25 / 1.75, abs=1e-4)
 
 
 def test_a_saved_bank_reads_back_unchanged_and_in_the_same_bytes(bank, tmp_path):

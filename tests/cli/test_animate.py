@@ -51,6 +51,7 @@ def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
         (("animate", "{run}", "-o", "x.glb", "--from", "5"), "within the run's"),
         (("animate", "nowhere", "-o", "x.glb"), "no summary.json"),
         (("animate", "{run}", "-o", "x.glb", "--poses", "absent.npz"), "no such file"),
+        (("animate", "{run}", "-o", "x.glb", "--format", "usd"), "ends with .usd"),
         (("render", "{run}", "-o", "x.avi"), "expected .mp4"),
     ],
 )

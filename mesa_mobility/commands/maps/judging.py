@@ -69,30 +69,16 @@ def coverage(
 
 def load_recordings(source: Path, report: Report, built: MobilityMap | None) -> list[Recording]:
     """All recordings as they are, or for a map those that it was built from, as they were used."""
-    from mesa_mobility.capture import find_clips, load_clips, scale
-    from mesa_mobility.mobility import prepare_recordings
-    from mesa_mobility.mobility.preparing.clips import ALONE, BOTH
+    from mesa_mobility.capture import find_clips, load_clips
+    from mesa_mobility.mobility import recordings_behind
 
     def progress(done: int, total: int) -> None:
         report("reading recordings", done, total)
 
     if built is not None:
-        # Older maps tell by clip.
-        sides = built.metadata.get("preparation", {}).get("mirrored")
-        each = [clip["mirrored"] for clip in built.metadata.get("provenance", [])]
-        mirrored = sides == BOTH if sides else all(each)
-        scaled = built.metadata.get("derived", {})
-        recorded = scaled.get("from", built.pedestrian_type)
-        prepared = prepare_recordings(
-            find_clips(source),
-            recorded,
-            mirrored=mirrored,
-            other_side=sides == ALONE,
-            progress=progress,
-        )
+        prepared = recordings_behind(built, find_clips(source), progress)
         say_clips(prepared.clips)
-        length, time_factor = scaled.get("length_factor", 1.0), scaled.get("time_factor", 1.0)
-        return [scale(recording, length, time_factor) for recording in prepared.recordings]
+        return prepared.recordings
     loaded = load_clips(find_clips(source), mirrored=False, progress=progress)
     say_clips(loaded)
     return loaded.recordings
