@@ -45,7 +45,7 @@ def settable(kind: type[PedestrianModel], given: Iterable[str] = ()) -> dict[str
         elif name == "preset":
             found[name] = Parameter(name, (tuple(PRESETS),), parameter.default)
         elif files is not None:
-            names = [each.name for each in sorted(FOLDER.glob(files.pattern)) if each.is_file()]
+            names = offered_files(files)
             if names:
                 choices = (shown(parameter.default), *names)
                 found[name] = Parameter(name, (choices,), parameter.default, files=files)
@@ -54,6 +54,12 @@ def settable(kind: type[PedestrianModel], given: Iterable[str] = ()) -> dict[str
             found[name] = parameter
     # The model's own parameters come first, those of all models last.
     return dict(sorted(found.items(), key=lambda item: item[0] in NOT_SETTABLE))
+
+
+def offered_files(files: Files) -> list[str]:
+    """Names of such files in the folder that the dashboard was started in."""
+    found = {each.name for pattern in files.patterns for each in FOLDER.glob(pattern)}
+    return sorted(name for name in found if (FOLDER / name).is_file())
 
 
 def shown(value: Any) -> str:
