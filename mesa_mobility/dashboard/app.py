@@ -170,11 +170,15 @@ def _Crowd(session: Session) -> None:
         else:
             session.toggle_obstacle(what["obstacle"], what["run"])
 
+    def steer(what: dict[str, Any]) -> None:
+        session.steer(what["row"], what["direction"], what["run"])
+
     shared = {
         "floor": session.floor.value,
         "selected": session.selected.value,
         "event_seen": session.seen,
         "event_pick": pick,
+        "event_steer": steer,
         "event_play": lambda _: session.play(session.status.peek().state != "playing"),
     }
     view, set_view = solara.use_state(PLAN)
