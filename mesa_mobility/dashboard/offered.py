@@ -24,6 +24,15 @@ FOLDER = Path.cwd()
 ASK_ABOVE = 10_000
 """Numbers above it are confirmed first: so large a crowd takes minutes to make."""
 
+COMMON = {
+    "rng": "seed of all random numbers: the same one gives the same run",
+    "preset": "rules and weights of decisions: the default ones, or those of the paper",
+    "mobility_map": "movements that people are made of: a map of this folder",
+    "population": 'types of people, as "mixed" or "able_bodied: 0.9, child: 0.1"',
+    "frames_per_step": "frames of 1/30 s that one step advances",
+}
+"""What parameters of all models are for, where a model's docstring does not say it."""
+
 AT_MOST = 1_000_000
 """Greatest whole number accepted: a million people take some gigabytes."""
 
