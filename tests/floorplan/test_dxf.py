@@ -201,6 +201,46 @@ def test_files_that_are_no_drawings(tmp_path):
         FloorPlan.from_file(tmp_path / "none.dxf")
 
 
+SPOILT = ("nan", "inf", "1e308", "-1", "0", "999999999", "INSERT", "SPLINE", "pillar", "", "40")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A file with a room, a pillar that is a block, and a spline, as lines."""
+    document = ezdxf.new(units=6)
+    document.blocks.new("pillar").add_circle((0, 0), 0.2)
+    space = document.modelspace()
+    room(space)
+    space.add_blockref("pillar", (2, 2), dxfattribs={"layer": "obstacle"})
+    curve = [(4, 1), (5, 2), (4, 3), (3.5, 2), (4, 1)]
+    space.add_spline(curve, dxfattribs={"layer": "obstacle"})
+    path = tmp_path_factory.mktemp("dxf") / "whole.dxf"
+    document.saveas(path)
+    return path, path.read_text().split("\n")
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.lists(
+        st.tuples(st.floats(0, 1), st.sampled_from(SPOILT) | st.none()), min_size=1, max_size=5
+    )
+)
+def test_a_damaged_file_is_read_or_refused_in_one_line(whole, damages):
+    path, lines = whole
+    lines = list(lines)
+    begin = lines.index("BLOCKS")
+    for share, text in damages:
+        lines[begin + int(share * (len(lines) - begin - 1))] = text
+    path.write_text("\n".join(each for each in lines if each is not None))
+    message, area = "", 1.0
+    try:
+        area = FloorPlan.from_dxf(path).area
+    except FloorPlanError as error:
+        message = str(error)
+    assert "\n" not in message
+    assert area > 0
+
+
 @st.composite
 def stars(draw):
     """The corners of a simple polygon around the origin, metres."""
@@ -210,7 +250,7 @@ def stars(draw):
     return np.round(xy, 3)
 
 
-@settings(max_examples=30)
+@settings(max_examples=15, deadline=None)
 @given(stars(), st.sampled_from(sorted(METRES_OF_CODE)), st.randoms(use_true_random=False))
 def test_what_is_drawn_comes_back_from_any_unit_and_from_single_lines(
     tmp_path_factory, corners, code, random

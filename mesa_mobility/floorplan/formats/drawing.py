@@ -1,5 +1,6 @@
 """Curves of a CAD drawing in DXF, by layer, in metres."""
 
+import logging
 import os
 from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
@@ -34,6 +35,10 @@ _NOTES = (
     "ATTDEF", "ATTRIB", "DIMENSION", "HATCH", "LEADER", "MTEXT", "MULTILEADER", "POINT", "TEXT",
 )  # fmt: skip
 """Entities that only say something about others, or fill what others outline."""
+
+
+# Faults of a file are errors here, or of no account; without a handler they would be printed.
+logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
 
 class Curve(NamedTuple):
@@ -74,7 +79,13 @@ class Drawing:
             raise FloorPlanError(f"unit: got {unit!r}, expected one of {', '.join(METRES)}")
         document = _read(path)
         self.unit = unit or self._unit_of(document)
-        self._entities = list(self._all(document.modelspace(), "", 0))
+        self._count = 0
+        try:
+            self._entities = list(self._all(document.modelspace(), "", 0))
+        except FloorPlanError:
+            raise
+        except Exception as error:  # ezdxf raises whatever malformed entities led it into
+            raise FloorPlanError(f"{path}: cannot be read ({_line(error)})") from None
         self.layers = sorted({layer for layer, _ in self._entities})
 
     def curves(self, layers: Iterable[str]) -> list[Curve]:
@@ -113,8 +124,7 @@ class Drawing:
         except FloorPlanError as error:
             raise FloorPlanError(f"{at}: {error}") from None
         except Exception as error:  # ezdxf raises whatever malformed entities led it into
-            reason = " ".join(str(error).split())[:100]
-            raise FloorPlanError(f"{at}: cannot be read ({reason})") from None
+            raise FloorPlanError(f"{at}: cannot be read ({_line(error)})") from None
         points = points.reshape(-1, 2)
         again = np.zeros(len(points), dtype=np.bool_)
         again[1:] = (points[1:] == points[:-1]).all(axis=1)
@@ -132,8 +142,6 @@ class Drawing:
 
     def _all(self, entities: Iterable[Any], inherited: str, depth: int) -> Iterator[Any]:
         """Layer and entity of everything drawn, blocks resolved."""
-        if depth == 0:
-            self._count = 0
         for entity in entities:
             self._count += 1
             if self._count > MOST_ENTITIES or depth > DEEPEST:
@@ -170,5 +178,9 @@ def _read(path: "str | os.PathLike[str]") -> Any:
     try:
         return ezdxf.readfile(path)
     except Exception as error:  # ezdxf raises whatever malformed files led it into
-        reason = " ".join(str(error).split())[:100] or type(error).__name__
-        raise FloorPlanError(f"{path}: is not a DXF that can be read ({reason})") from None
+        raise FloorPlanError(f"{path}: is not a DXF that can be read ({_line(error)})") from None
+
+
+def _line(error: Exception) -> str:
+    """What an error says, on one short line."""
+    return " ".join(str(error).split())[:100] or type(error).__name__
