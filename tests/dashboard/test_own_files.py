@@ -1,6 +1,7 @@
 """Models in files, floor plans and saved runs of the folder that the dashboard was started in."""
 
 import os
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -161,6 +162,18 @@ def test_a_saved_run_plays_in_a_frame_of_its_own(own_tab):
     assert frame.locator("body").evaluate(sealed) == "SecurityError"
     tab.page.get_by_role("tab", name="Simulation").click()
     tab.step(1)
+
+
+@pytest.mark.slow
+def test_on_a_network_no_python_file_is_offered(start_dashboard, open_tab, own_folder):
+    server = start_dashboard("doorway", "--host", "0.0.0.0", cwd=own_folder)
+    place = urlsplit(server.address)
+    tab = open_tab(f"http://127.0.0.1:{place.port}/?{place.query}")
+    tab.page.locator(".v-select", has=tab.page.get_by_label("model", exact=True)).click()
+    offered = tab.page.locator(".v-menu__content.menuable__content__active .v-list-item")
+    names = [text.strip() for text in offered.all_inner_texts()]
+    assert "floor_plan" in names
+    assert [name for name in names if ".py" in name] == []
 
 
 HELPLESS = """() => [...document.querySelectorAll("button, a, input, select, [role='tab']")]

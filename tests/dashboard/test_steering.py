@@ -9,6 +9,11 @@ from mesa_mobility import Exit, FloorPlan
 from tests.dashboard.selectors import SHOWN
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.scenes import model_of, put
+from tests.fixtures.waiting import until
+
+pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
+
+from mesa_mobility.dashboard.session.by_hand import ByHand
 
 BOX = "document.querySelector('.mm-bodies .mm-box')"
 BODIES = f"{BOX}.shown()"
@@ -33,9 +38,6 @@ def place_of(model, row):
 
 
 def test_somebody_walks_at_its_own_speed_stands_and_goes_on_as_before(hall):
-    pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
-    from mesa_mobility.dashboard.session.by_hand import ByHand
-
     hand = ByHand(hall)
     row = put(hall, 2.0, 2.0, heading=math.pi / 2, preferred_speeds=1.0).row
     hand.steer(row, (0.0, 5.0))
@@ -55,9 +57,6 @@ def test_somebody_walks_at_its_own_speed_stands_and_goes_on_as_before(hall):
 
 
 def test_of_two_the_one_steered_before_is_handed_back(hall):
-    pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
-    from mesa_mobility.dashboard.session.by_hand import ByHand
-
     hand = ByHand(hall)
     one, other = put(hall, 5.0, 3.0).row, put(hall, 2.0, 6.0).row
     hand.steer(one, (0.0, 0.0))
@@ -73,9 +72,6 @@ def test_of_two_the_one_steered_before_is_handed_back(hall):
 
 
 def test_a_model_is_as_it_was_made_until_somebody_is_steered(hall):
-    pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
-    from mesa_mobility.dashboard.session.by_hand import ByHand
-
     before = list(hall.tactics)
     hand = ByHand(hall)
     hand.release()
@@ -87,6 +83,29 @@ def test_a_model_is_as_it_was_made_until_somebody_is_steered(hall):
         "walking_orders",
         "steering",
     ]
+
+
+def test_another_selection_and_the_end_of_the_page_hand_back(session):
+    until(lambda: session.status.value.state == "ready")
+    runs = []
+    session.post(runs.append)
+    until(lambda: runs)
+    hand, (one, other) = runs[0].hand, runs[0].model.rows[:2].tolist()
+    session.steer(one, (0.0, 1.0))
+    until(lambda: hand.row == one)
+    session.select(one)
+    session.steer(other, (1.0, 0.0), session.run_number + 1)  # of another run than the one shown
+    done = []
+    session.post(done.append)
+    until(lambda: done)
+    assert hand.row == one
+    session.select(other)
+    until(lambda: hand.row == -1)
+    session.steer(other, (1.0, 0.0))
+    until(lambda: hand.row == other)
+    session.close()
+    session.join()
+    assert hand.row == -1
 
 
 def held(tab, keys, seconds):
