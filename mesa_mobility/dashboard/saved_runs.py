@@ -7,7 +7,6 @@ import solara
 from mesa_mobility.animation.page import page_text
 from mesa_mobility.dashboard import offered
 from mesa_mobility.dashboard.forms import Choice
-from mesa_mobility.dashboard.views.saved_run import SavedRunFrame
 from mesa_mobility.errors import MobilityError, ResultsError
 from mesa_mobility.results.run import read_run, title_of
 
@@ -85,4 +84,9 @@ def _Player(name: str) -> None:
     elif result.value[1]:
         solara.Error(result.value[1], dense=True)
     else:
-        SavedRunFrame(page=result.value[0])
+        _Frame(page=result.value[0])
+
+
+@solara.component_vue("saved_run.vue")
+def _Frame(page: str, height: str = "78vh") -> None:
+    """A page in a frame that has no access to the one around it."""
