@@ -17,7 +17,7 @@ class FloorPlanEgress(PedestrianModel):
     """People all over a floor plan leave by the nearest exit.
 
     Args:
-        plan: GeoJSON file of the floor plan, as ``FloorPlan.write_geojson`` writes it.
+        plan: file of the floor plan: GeoJSON, lines of WKT, or DXF.
         pedestrians: people, at random places all over the free floor.
         pre_movement: seconds before people set off, or their distribution.
         preset: "default" or "paper".
@@ -30,7 +30,7 @@ class FloorPlanEgress(PedestrianModel):
 
     def __init__(
         self,
-        plan: Annotated[Path | str | None, Files("*.geojson")] = None,
+        plan: Annotated[Path | str | None, Files("*.geojson", "*.wkt", "*.dxf")] = None,
         pedestrians: Annotated[int, Range(1, 500)] = 50,
         pre_movement: Distribution | float = 0.0,
         preset: str = "default",
@@ -64,8 +64,8 @@ def read_plan(path: Path | str | None) -> FloorPlan:
         FloorPlanError: the file cannot be read, or is no floor plan.
     """
     if path is None:
-        raise ModelError("plan: got none, expected a GeoJSON file of a floor plan")
-    plan = FloorPlan.from_geojson(path)
+        raise ModelError("plan: got none, expected a file of a floor plan (.geojson, .wkt or .dxf)")
+    plan = FloorPlan.from_file(path)
     if not plan.exits:
         raise ModelError(f"plan: {path} has no exit, expected one to leave by")
     return plan

@@ -68,9 +68,24 @@ def write_page(
         ResultsError: the file cannot be written, nobody to show, or not 30 frames a second.
         MapError: the bank is of none of the run's maps.
     """
+    page = page_text(trajectories, plan, selection, title=title, bank=bank, progress=progress)
+    with replacing(path, ResultsError) as target:
+        target.write_text(page, encoding="utf-8")
+
+
+def page_text(
+    trajectories: Trajectories,
+    plan: FloorPlan,
+    selection: Selection | None = None,
+    *,
+    title: str,
+    bank: PoseBank | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> str:
+    """The text of the page; arguments and errors are those of ``write_page``."""
     header, arrays = run_parts(trajectories, selection or Selection(), bank, progress)
     header |= {"title": title, "floor": drawn_floor(plan)}
-    page = Template(viewer_part("page.html")).substitute(
+    return Template(viewer_part("page.html")).substitute(
         title=html.escape(title),
         # Would end the script early.
         three=viewer_part("three.bundle.js").replace("</script", "<\\/script"),
@@ -80,8 +95,6 @@ def write_page(
             for each in ("bundle", "poses", "bodies", "troop", "stage", "player")
         ),
     )
-    with replacing(path, ResultsError) as target:
-        target.write_text(page, encoding="utf-8")
 
 
 def run_parts(

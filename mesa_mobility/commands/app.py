@@ -12,6 +12,7 @@ from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.explain import explain
 from mesa_mobility.commands.maps.app import app as maps
+from mesa_mobility.commands.plan import plan
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
@@ -38,6 +39,7 @@ app.command("animate")(animate)
 app.command("render")(render)
 app.command("replay")(replay)
 app.command("explain")(explain)
+app.command("plan")(plan)
 app.add_typer(maps, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")

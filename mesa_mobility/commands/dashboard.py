@@ -24,7 +24,7 @@ def dashboard(
     ] = None,
     plan: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="GeoJSON floor plan to put people on, without a model."),
+        typer.Option(metavar="FILE", help="Floor plan to put people on: .geojson, .wkt or .dxf."),
     ] = None,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8765,

@@ -12,8 +12,10 @@ import solara.lab
 from mesa_mobility import MobilityError, PedestrianModel
 from mesa_mobility.dashboard.address import Address, Start, read, write
 from mesa_mobility.dashboard.controls import BehaviourControls, TimeControls
-from mesa_mobility.dashboard.forms import ParameterForm
+from mesa_mobility.dashboard.forms import Choice, ParameterForm
+from mesa_mobility.dashboard.model_files import load_offered, offered_models
 from mesa_mobility.dashboard.quiet import keep_quiet
+from mesa_mobility.dashboard.saved_runs import SavedRuns
 from mesa_mobility.dashboard.session.feed import Fed
 from mesa_mobility.dashboard.session.session import AS_TAKEN, IF_NOW, Session
 from mesa_mobility.dashboard.views.body_view import BodyCanvas
@@ -29,6 +31,23 @@ DEFAULT_MODEL = "doorway"
 PLAN, BODIES = "plan", "three dimensions"
 """The two views of the crowd."""
 
+VIEWS = {PLAN: "The crowd from above, on its floor plan", BODIES: "The crowd as walking figures"}
+DECISIONS = {
+    AS_TAKEN: "The last decision of the selected person, with everything as it was then",
+    IF_NOW: "The decision that the selected person would take at this moment",
+}
+"""Buttons that choose a view, and what they show."""
+
+MODELS = "a model; floor_plan takes a plan of your own"
+MODELS_AND_FILES = f"{MODELS}, and files ending in .py are models of your own"
+
+TABS = {
+    "Simulation": "The model that runs",
+    "Mobility map": "The recorded movements that people are made of",
+    "Saved run": "Watch a run that was saved before",
+}
+"""The page's tabs, and what they are for."""
+
 # A page that imports this is served by Solara a moment later.
 keep_quiet()
 
@@ -37,6 +56,7 @@ keep_quiet()
 def Dashboard(
     model: str | type[PedestrianModel] = DEFAULT_MODEL,
     given: Mapping[str, Any] = {},
+    model_files: bool = False,
 ) -> None:
     """A model's whole page, with a run of its own for each browser tab.
 
@@ -45,12 +65,15 @@ def Dashboard(
     Args:
         model: name of an installed model, or the class of one.
         given: values of model parameters that the page does not set, by name.
+        model_files: whether models in Python files of the folder that the page was started in are
+            offered as well; the file of a model that is chosen is executed.
     """
     router = solara.use_router()
     start = solara.use_memo(lambda: read(router.search or ""), [])
     own = model if isinstance(model, type) else None
     opening = model if isinstance(model, str) else model.__name__
-    names = [*([] if own is None else [opening]), *registry.models()]
+    files = solara.use_memo(lambda: offered_models() if model_files else [], [])
+    names = [*([] if own is None else [opening]), *registry.models(), *files]
     first = start.model if start.model in names else opening
     name, choose = solara.use_state(first)
     texts, set_texts = solara.use_state(start.texts)
@@ -73,7 +96,7 @@ def Dashboard(
     problem, kind = "", own
     if own is None or name != opening:
         try:
-            kind = registry.load_model(name)
+            kind = load_offered(name) if name in files else registry.load_model(name)
         except MobilityError as error:
             problem, kind = str(error), None
 
@@ -83,9 +106,8 @@ def Dashboard(
         PageFrame()
     with solara.Sidebar():
         with solara.Card("Model", margin=0, elevation=0):
-            solara.Select("model", names, name, on_value=choose, dense=True)
-            if problem:
-                solara.Error(problem, dense=True)
+            about = MODELS_AND_FILES if model_files else MODELS
+            Choice("model", names, name, choose, about, problem)
             if kind is not None:
                 begins = name == first and not opened.current
                 ParameterForm(
@@ -100,10 +122,17 @@ def Dashboard(
     _Address(session, name, texts)
     solara.Style(STYLE)
     with solara.lab.Tabs():
-        with solara.lab.Tab("Simulation"):
+        with _tab("Simulation"):
             _Simulation(session)
-        with solara.lab.Tab("Mobility map"):
+        with _tab("Mobility map"):
             _Map(session)
+        with _tab("Saved run"):
+            SavedRuns()
+
+
+def _tab(name: str) -> solara.Element:
+    label = solara.v.Html(tag="span", children=[name], attributes={"title": TABS[name]})
+    return solara.lab.Tab(tab_children=[label])
 
 
 @solara.component
@@ -137,7 +166,7 @@ def _Map(session: Session) -> None:
         return
     name = name if name in maps else next(iter(maps))
     if len(maps) > 1:
-        solara.Select("pedestrian type", list(maps), name, on_value=choose, dense=True)
+        Choice("pedestrian type", list(maps), name, choose, "whose map is shown below")
     MapView(maps[name]).key(name)
 
 
@@ -170,11 +199,15 @@ def _Crowd(session: Session) -> None:
         else:
             session.toggle_obstacle(what["obstacle"], what["run"])
 
+    def steer(what: dict[str, Any]) -> None:
+        session.steer(what["row"], what["direction"], what["run"])
+
     shared = {
         "floor": session.floor.value,
         "selected": session.selected.value,
         "event_seen": session.seen,
         "event_pick": pick,
+        "event_steer": steer,
         "event_play": lambda _: session.play(session.status.peek().state != "playing"),
     }
     view, set_view = solara.use_state(PLAN)
@@ -185,8 +218,8 @@ def _Crowd(session: Session) -> None:
 
     with solara.Column(gap="6px"):
         with solara.ToggleButtonsSingle(view, on_value=choose, dense=True):
-            solara.Button(PLAN, value=PLAN, small=True)
-            solara.Button(BODIES, value=BODIES, small=True)
+            for name, about in VIEWS.items():
+                solara.Button(name, value=name, small=True, attributes={"title": about})
         if view == BODIES and session.poses.value:
             poses = session.poses.value
             Fed(session.frame, BodyCanvas, poses=poses, **shared).key("bodies")
@@ -207,10 +240,14 @@ def _Decision(session: Session) -> None:
     nobody = session.selected.value < 0
     with solara.Row(gap="8px", style={"align-items": "center"}):
         with solara.ToggleButtonsSingle(what, on_value=tell, dense=True):
-            solara.Button(AS_TAKEN, value=AS_TAKEN, small=True)
-            solara.Button(IF_NOW, value=IF_NOW, small=True)
+            for name, about in DECISIONS.items():
+                solara.Button(name, value=name, small=True, attributes={"title": about})
         solara.Button(
-            "To its next decision", small=True, on_click=session.play_to_decision, disabled=nobody
+            "To its next decision",
+            small=True,
+            on_click=session.play_to_decision,
+            disabled=nobody,
+            attributes={"title": "Play until the selected person decides, and stop there"},
         )
     Fed(session.decision, DecisionCanvas, floor=session.floor.value)
 

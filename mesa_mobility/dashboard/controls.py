@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import solara
 
-from mesa_mobility.dashboard.forms import TextField
+from mesa_mobility.dashboard.forms import Choice, TextField
 from mesa_mobility.dashboard.session.behaviours import TermState
 from mesa_mobility.dashboard.session.session import Session
 from mesa_mobility.errors import ModelError
@@ -19,10 +19,13 @@ def BehaviourControls(session: Session) -> None:
     """Behaviours on and off, and their weights, while the model runs."""
     choice = session.choice.value
     if len(choice.names) > 1:
-        solara.Select(
-            "where to go", list(choice.names), choice.name, on_value=session.choose_targets_by,
-            dense=True,
-        )  # fmt: skip
+        Choice(
+            "where to go",
+            list(choice.names),
+            choice.name,
+            session.choose_targets_by,
+            "how people choose an exit, from each one's next decision on",
+        )
     for state in session.behaviours.value:
         _Behaviour(session, state).key(state.name)
 
@@ -46,12 +49,13 @@ def _Behaviour(session: Session, state: TermState) -> None:
 
     label = state.name.replace("_", " ")
     with solara.Row(gap="4px", style={"align-items": "center"}):
-        with solara.Tooltip(state.description), solara.Div(style={"flex": "1"}):
+        with solara.Div(style={"flex": "1"}, attributes={"title": state.description or label}):
             solara.v.Checkbox(
                 label=label, v_model=state.on, on_v_model=switch, dense=True, hide_details=True,
                 class_="mt-0 pt-0",
             )  # fmt: skip
-        with solara.Div(style={"width": "88px"}):
+        factor = f"Factor of {label} in the sum of costs; Enter applies it"
+        with solara.Div(style={"width": "88px"}, attributes={"title": factor}):
             TextField("weight", f"{state.weight:g}", weigh, error, says=f"weight of {label}")
 
 
@@ -79,12 +83,23 @@ def TimeControls(session: Session) -> None:
             on_click=lambda: session.play(not playing),
             disabled=over,
             color="primary",
+            attributes={"title": "Let time go by, or not (space)"},
         )
         solara.Button(
-            "Step", icon_name="mdi-skip-next", on_click=session.step, disabled=over or playing
+            "Step",
+            icon_name="mdi-skip-next",
+            on_click=session.step,
+            disabled=over or playing,
+            attributes={"title": "One step of the model, 0.1 s unless it says otherwise"},
         )
-        solara.Button("Reset", icon_name="mdi-restart", on_click=session.reset)
-        with solara.Div(style={"width": "90px"}):
+        solara.Button(
+            "Reset",
+            icon_name="mdi-restart",
+            on_click=session.reset,
+            attributes={"title": "The same model from its beginning; behaviours stay as set"},
+        )
+        pace_help = "Simulated seconds in a second; full: as fast as possible"
+        with solara.Div(style={"width": "90px"}, attributes={"title": pace_help}):
             solara.Select(
                 "speed",
                 list(SPEEDS),
@@ -92,7 +107,9 @@ def TimeControls(session: Session) -> None:
                 on_value=set_speed,
                 dense=True,
             )
-        with solara.Div(style={"width": "130px"}):
+        with solara.Div(
+            style={"width": "130px"}, attributes={"title": "What the colours of people stand for"}
+        ):
             names = list(session.colourings.value)
             shown = colour if colour in names else names[0]
             solara.Select("colour by", names, shown, on_value=colour_by, dense=True)

@@ -10,7 +10,15 @@ from typing import Any
 import solara
 
 from mesa_mobility import PedestrianModel
-from mesa_mobility.dashboard.offered import blamed, large, problems, recipe_of, settable, shown
+from mesa_mobility.dashboard.offered import (
+    COMMON,
+    blamed,
+    large,
+    problems,
+    recipe_of,
+    settable,
+    shown,
+)
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.session import Session
 from mesa_mobility.plugins.parameters import Parameter, descriptions
@@ -49,7 +57,7 @@ def ParameterForm(
     nothing: tuple[Recipe, str] | None = None
     asking, ask = solara.use_state(nothing)
     texts_now = solara.use_ref(texts)
-    explanations = descriptions(kind)
+    explanations = {**COMMON, **descriptions(kind)}
 
     def make(recipe: Recipe, changed: str) -> None:
         made_of = texts_now.current
@@ -87,7 +95,7 @@ def ParameterForm(
         _Field(
             parameter,
             "seed" if name == "rng" else name.replace("_", " "),
-            explanations.get(name, ""),
+            explanations.get(name) or str(parameter),
             texts[name],
             errors.get(name, ""),
             partial(change, name),
@@ -135,18 +143,48 @@ def _Field(
 ) -> None:
     choices = parameter.kinds[0]
     if parameter.kinds == (bool,):
-        solara.Checkbox(
-            label=label, value=text == "True", on_value=lambda value: change(str(value))
+        solara.v.Checkbox(
+            label=label,
+            v_model=text == "True",
+            on_v_model=lambda value: change(str(value)),
+            **_below(error, description),
         )
     elif isinstance(choices, tuple) and len(parameter.kinds) == 1:
-        solara.Select(label, [str(each) for each in choices], text, on_value=change, dense=True)
+        Choice(label, [str(each) for each in choices], text, change, description, error)
     else:
         TextField(label, text, change, error, description)
         if parameter.range is not None:
             _Slider(parameter, label, text, change)
-        return
-    if error:
-        solara.Error(error, dense=True)
+
+
+def _below(error: str, description: str) -> dict[str, Any]:
+    """What stands below a field: what is wrong, or else what it is for."""
+    return {
+        "error": bool(error),
+        "messages": [error or description] if error or description else [],
+        "hide_details": "auto",
+        "dense": True,
+    }
+
+
+@solara.component
+def Choice(
+    label: str,
+    values: list[str],
+    value: str,
+    change: Callable[[str], None],
+    description: str = "",
+    error: str = "",
+) -> None:
+    """A list to choose from, with what it is for below it."""
+    solara.v.Select(
+        label=label,
+        items=values,
+        v_model=value,
+        on_v_model=change,
+        class_="mb-1",
+        **_below(error, description),
+    )
 
 
 @solara.component
@@ -168,12 +206,9 @@ def TextField(
         label=label,
         v_model=draft,
         on_v_model=set_draft,
-        error=bool(error),
-        messages=[error or description] if error or description else [],
-        hide_details="auto",
-        dense=True,
         class_="mb-1",
         attributes={"aria-label": says or label},
+        **_below(error, description),
     )
 
     def done(widget: Any, event: str, data: Any) -> None:
@@ -203,7 +238,7 @@ def _Slider(parameter: Parameter, label: str, text: str, change: Callable[[str],
         hide_details=True,
         thumb_label=True,
         class_="mb-2",
-        attributes={"aria-label": f"{label}, slider"},
+        attributes={"aria-label": f"{label}, slider", "title": f"Drag to set {label}"},
     )
 
     def released(widget: Any, event: str, data: Any) -> None:

@@ -24,6 +24,15 @@ FOLDER = Path.cwd()
 ASK_ABOVE = 10_000
 """Numbers above it are confirmed first: so large a crowd takes minutes to make."""
 
+COMMON = {
+    "rng": "seed of all random numbers: the same one gives the same run",
+    "preset": "rules and weights of decisions: the default ones, or those of the paper",
+    "mobility_map": "movements that people are made of: a map of this folder",
+    "population": 'types of people, as "mixed" or "able_bodied: 0.9, child: 0.1"',
+    "frames_per_step": "frames of 1/30 s that one step advances",
+}
+"""What parameters of all models are for, where a model's docstring does not say it."""
+
 AT_MOST = 1_000_000
 """Greatest whole number accepted: a million people take some gigabytes."""
 
@@ -45,7 +54,7 @@ def settable(kind: type[PedestrianModel], given: Iterable[str] = ()) -> dict[str
         elif name == "preset":
             found[name] = Parameter(name, (tuple(PRESETS),), parameter.default)
         elif files is not None:
-            names = [each.name for each in sorted(FOLDER.glob(files.pattern)) if each.is_file()]
+            names = offered_files(files)
             if names:
                 choices = (shown(parameter.default), *names)
                 found[name] = Parameter(name, (choices,), parameter.default, files=files)
@@ -54,6 +63,12 @@ def settable(kind: type[PedestrianModel], given: Iterable[str] = ()) -> dict[str
             found[name] = parameter
     # The model's own parameters come first, those of all models last.
     return dict(sorted(found.items(), key=lambda item: item[0] in NOT_SETTABLE))
+
+
+def offered_files(files: Files) -> list[str]:
+    """Names of such files in the folder that the dashboard was started in."""
+    found = {each.name for pattern in files.patterns for each in FOLDER.glob(pattern)}
+    return sorted(name for name in found if (FOLDER / name).is_file())
 
 
 def shown(value: Any) -> str:

@@ -12,9 +12,10 @@ from mesa_mobility.dashboard.app import Dashboard
 
 opening: str | type[PedestrianModel] = "doorway"
 given: Mapping[str, Any] = {}
+model_files = False
 
 
 @solara.component
 def Page() -> None:
     """The dashboard, on the model that the command named."""
-    Dashboard(opening, given)
+    Dashboard(opening, given, model_files)

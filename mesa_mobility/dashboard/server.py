@@ -87,6 +87,8 @@ def serve(
 
     page.opening = kind if own else model
     page.given = given or {}
+    # Who is on the network is to execute no file that nobody has named.
+    page.model_files = not token
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:

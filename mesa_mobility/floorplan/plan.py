@@ -16,11 +16,12 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import (
     checks,
     extent,
-    geojson,
     occupants,
     reachability,
     sampling,
 )
+from mesa_mobility.floorplan.formats import by_suffix, dxf, geojson
+from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.free_area import FreeArea
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.router import Router
@@ -120,7 +121,48 @@ class FloorPlan:
         See `to_geojson` for what it holds. Raises FloorPlanError naming the file
         and the feature.
         """
-        content = geojson.read(source)
+        return cls._of(geojson.read(source), geojson.label(source))
+
+    @classmethod
+    def from_dxf(
+        cls,
+        path: "str | os.PathLike[str]",
+        *,
+        layers: Mapping[str, str] | None = None,
+        unit: str | None = None,
+    ) -> "FloorPlan":
+        """Read a plan from a CAD drawing in DXF. Needs the extra `cad`.
+
+        Outlines on layers of areas are closed polylines, circles, or lines and arcs that meet; one
+        inside another is a hole. Gates and exits are single lines. Blocks are resolved.
+
+        Args:
+            path: the file.
+            layers: layer -> "walkable", "obstacle", "gate" or "exit", which a name may follow:
+                `{"A-FLOR": "walkable", "A-DOOR": "exit street"}`. By default layers whose names are
+                such texts count. Several lines of one layer are numbered.
+            unit: "mm", "cm", "dm", "m", "km", "in", "ft" or "yd", where the drawing does not say
+                its own or says a wrong one.
+
+        Raises:
+            FloorPlanError: no DXF, no unit, no such layer, an open outline, or no floor plan.
+            MobilityError: ezdxf is not installed.
+        """
+        return cls._of(dxf.read(path, layers, unit), str(path))
+
+    @classmethod
+    def from_file(cls, path: "str | os.PathLike[str]") -> "FloorPlan":
+        """Read a plan from a file: .geojson, .json, .wkt (parts line by line) or .dxf.
+
+        Raises:
+            FloorPlanError: the file is of another kind, cannot be read, or is no floor plan.
+            MobilityError: a DXF, and ezdxf is not installed.
+        """
+        return cls._of(by_suffix.read(path), str(path))
+
+    @classmethod
+    def _of(cls, content: Content, where: str) -> "FloorPlan":
+        """The plan of a file's content; `where` names the file in errors."""
         try:
             plan = cls(
                 content.walkable,
@@ -132,7 +174,7 @@ class FloorPlan:
                 cut_off=content.cut_off,
             )
         except FloorPlanError as error:
-            raise FloorPlanError(f"{geojson.label(source)}: {error}") from None
+            raise FloorPlanError(f"{where}: {error}") from None
         for closed in content.closed:
             plan.close_gate(closed)
         plan.version = 0

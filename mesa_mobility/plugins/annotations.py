@@ -30,12 +30,15 @@ class Range:
             raise ModelError(f"Range: got {self.low} to {self.high}, expected a low and a high end")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Files:
     """The files that a page offers: ``plan: Annotated[Path | None, Files("*.geojson")] = None``.
 
-    Attributes:
-        pattern: shell pattern of the file names.
+    Args:
+        patterns: shell patterns of the file names.
     """
 
-    pattern: str
+    patterns: tuple[str, ...]
+
+    def __init__(self, *patterns: str) -> None:
+        object.__setattr__(self, "patterns", patterns)

@@ -125,11 +125,11 @@ def test_people_leave_any_floor_plan(tmp_path, command):
     )
     assert model.inside == 12
     assert model.floor_plan.contains([person.position for person in model.agents]).all()
-    with pytest.raises(ModelError, match="plan: got none, expected a GeoJSON file"):
+    with pytest.raises(ModelError, match="plan: got none, expected a file of a floor plan"):
         FloorPlanEgress()
     setting = f"plan={tmp_path / 'room.geojson'}"
     arguments = ("--set", setting, "--set", "pedestrians=3", "--seconds", "1")
     assert command("run", "floor_plan", *arguments).status == 0
     assert command("run", "floor_plan").err == (
-        "error: plan: got none, expected a GeoJSON file of a floor plan\n"
+        "error: plan: got none, expected a file of a floor plan (.geojson, .wkt or .dxf)\n"
     )

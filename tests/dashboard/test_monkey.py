@@ -58,6 +58,8 @@ KEYS = (
     "PageDown",
     "Home",
     "Enter",
+    "w",
+    "d",
 )
 
 # Keeps what was published when a click came, before the page takes notice of it.

@@ -142,8 +142,8 @@ def damaged(change) -> dict:
             {"type": "FeatureCollection", "features": [3]},
             "feature 0: expected a Feature, found int",
         ),
-        ({"type": "FeatureCollection", "features": []}, "one feature of kind walkable, found 0"),
-        (damaged(lambda f: f.append(f[0])), "one feature of kind walkable, found 2"),
+        ({"type": "FeatureCollection", "features": []}, "one walkable area, found 0"),
+        (damaged(lambda f: f.append(f[0])), "one walkable area, found 2"),
         (
             damaged(lambda f: f[1]["properties"].update(kind="seat")),
             "feature 1: property kind must be one of walkable, .*, found 'seat'",

@@ -242,6 +242,13 @@ class Stage {
     this.how = how;
   }
 
+  // The direction on the floor that is to the right in the picture, of length 1.
+  toTheRight() {
+    this.camera.updateMatrixWorld();
+    const right = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), far = Math.hypot(right.x, right.y);
+    return far ? [right.x / far, right.y / far] : [1, 0];
+  }
+
   // The person nearest to a place on the page, within so many pixels; -1 for nobody.
   personAt(clientX, clientY, people, frame, reach = 30) {
     const box = this.canvas.getBoundingClientRect(), place = new THREE.Vector3();

@@ -100,6 +100,8 @@ class Engine(Shown):
                         return
                     raise
         finally:
+            if self._current is not None:
+                self._current.hand.release()
             if self._key:
                 kept.leave(self._key, self._current or self._left)
 

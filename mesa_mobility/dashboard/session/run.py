@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mesa_mobility import PedestrianModel
 from mesa_mobility.dashboard.session.behaviours import Behaviours
+from mesa_mobility.dashboard.session.by_hand import ByHand
 from mesa_mobility.dashboard.session.observer import Observer
 from mesa_mobility.dashboard.session.plan_changes import PlanChanges
 from mesa_mobility.dashboard.session.run_config import Recipe
@@ -28,6 +29,7 @@ class Run:
         terms: the behaviours in use.
         clock: when the next step is due.
         failed: whether a step has raised an error; no further step follows.
+        hand: the steering of somebody with keys.
         until_decision: whether it pauses when the watched person has decided.
     """
 
@@ -39,6 +41,10 @@ class Run:
     clock: Clock
     failed: bool = False
     until_decision: bool = False
+    hand: ByHand = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.hand = ByHand(self.model)
 
     def set_playing(self, playing: bool) -> None:
         """Play or pause."""

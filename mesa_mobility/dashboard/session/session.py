@@ -137,7 +137,28 @@ class Session(Engine):
 
         def command(run: Run) -> None:
             run.model.watch = Watch(row) if row >= 0 else None
+            if row != run.hand.row:
+                run.hand.release()
             self.mark(row)
+
+        self.post(command, shown)
+
+    def steer(
+        self, row: int, direction: tuple[float, float] | None, shown: int | None = None
+    ) -> None:
+        """Let somebody walk in a direction at its preferred speed, and others make way.
+
+        Args:
+            row: the person.
+            direction: (0, 0) to stand; None to go on as before.
+            shown: see `post`.
+        """
+
+        def command(run: Run) -> None:
+            if direction is None:
+                run.hand.release()
+            else:
+                run.hand.steer(row, direction)
 
         self.post(command, shown)
 

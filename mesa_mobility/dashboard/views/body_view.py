@@ -16,6 +16,7 @@ _VIEWER = Path(mesa_mobility.animation.__file__).parent / "viewer"
     "body_view.vue",
     "frames.js",
     "people.js",
+    "steering.js",
     *(
         str(_VIEWER / f"{name}.js")
         for name in ("three.bundle", "bundle", "poses", "bodies", "troop", "stage")
@@ -29,6 +30,7 @@ def BodyCanvas(
     height: str = "62vh",
     event_seen: Callable[[int], None] | None = None,
     event_pick: Callable[[dict[str, Any]], None] | None = None,
+    event_steer: Callable[[dict[str, Any]], None] | None = None,
     event_play: Callable[[Any], None] | None = None,
 ) -> None:
     """The canvas.
@@ -42,5 +44,7 @@ def BodyCanvas(
         event_seen: called with the number of a frame when the page has got it.
         event_pick: called with ``{"row": row, "run": number}``: the person that was clicked, or -1,
             and the run that was shown then.
+        event_steer: called with ``{"row": row, "direction": [x, y], "run": number}`` when keys that
+            steer somebody are pressed or let go; the direction is None when all are.
         event_play: called when the space bar is to start or to pause time.
     """

@@ -9,7 +9,14 @@ from mesa_mobility.dashboard.views.canvases import canvas_component
 
 
 @canvas_component(
-    "crowd_view.vue", "floor.js", "frames.js", "gestures.js", "people.js", "plane.js", "trails.js"
+    "crowd_view.vue",
+    "floor.js",
+    "frames.js",
+    "gestures.js",
+    "people.js",
+    "plane.js",
+    "steering.js",
+    "trails.js",
 )
 def CrowdCanvas(
     floor: dict[str, Any],
@@ -20,6 +27,7 @@ def CrowdCanvas(
     event_seen: Callable[[int], None] | None = None,
     event_pick: Callable[[dict[str, Any]], None] | None = None,
     event_toggle: Callable[[dict[str, Any]], None] | None = None,
+    event_steer: Callable[[dict[str, Any]], None] | None = None,
     event_play: Callable[[Any], None] | None = None,
 ) -> None:
     """The canvas.
@@ -35,5 +43,7 @@ def CrowdCanvas(
             and the run that was shown then.
         event_toggle: called with ``{"opening": name, "run": number}`` or ``{"obstacle": number,
             "run": number}`` when one was clicked.
+        event_steer: called with ``{"row": row, "direction": [x, y], "run": number}`` when keys that
+            steer somebody are pressed or let go; the direction is None when all are.
         event_play: called when the space bar is to start or to pause time.
     """

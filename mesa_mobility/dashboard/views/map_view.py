@@ -50,12 +50,18 @@ def MapView(mobility_map: MobilityMap) -> None:
                     attributes={"style": "height: 380px"},
                     responsive=True,
                 )
-                solara.InputInt(
-                    f"cluster, 0 to {mobility_map.n_clusters - 1}",
-                    number,
-                    on_value=lambda n: pick(min(max(n, 0), mobility_map.n_clusters - 1)),
-                )
-                solara.Checkbox(label="coverage of the whole map", value=whole, on_value=set_whole)
+                about = "Which poses that are alike are shown; a click on a point chooses, too"
+                with solara.Div(attributes={"title": about}):
+                    solara.InputInt(
+                        f"cluster, 0 to {mobility_map.n_clusters - 1}",
+                        number,
+                        on_value=lambda n: pick(min(max(n, 0), mobility_map.n_clusters - 1)),
+                    )
+                about = "Speeds and turns of the options of all clusters, or of the one shown"
+                with solara.Div(attributes={"title": about}):
+                    solara.Checkbox(
+                        label="coverage of the whole map", value=whole, on_value=set_whole
+                    )
                 solara.FigureEcharts(
                     covered, attributes={"style": "height: 340px"}, responsive=True
                 )

@@ -3,7 +3,7 @@
 const CLICK_REACH = 4; // pixels within which a press is a click
 
 class Gestures {
-  // `view` has zoomAt(x, y, factor), pan(dx, dy), click(event) and hint(), in pixels of the page.
+  // `view` has zoomAt(x, y, factor), pan(dx, dy), click(event) and remind(), in pixels of the page.
   constructor(canvas, view) {
     this.view = view;
     this.canvas = canvas;
@@ -49,7 +49,7 @@ class Gestures {
 
   wheel(event) {
     if (!event.ctrlKey && !event.metaKey) {
-      this.view.hint();
+      this.view.remind();
       return;
     }
     event.preventDefault();

@@ -1,0 +1,92 @@
+"""`mesa-mobility plan`: what a floor plan's file holds, and the same as GeoJSON."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mesa_mobility.commands.console import answer_json, answer_table, say, some_path
+
+
+def plan(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A .geojson, .wkt or .dxf.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", help="GeoJSON to write.", parser=some_path, metavar="FILE.geojson"
+        ),
+    ] = None,
+    layers: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--layer",
+            metavar="LAYER=KIND",
+            help="What a layer of a DXF holds: walkable, obstacle, gate or exit, and a name, as "
+            "'A-DOOR=exit street'; repeatable.",
+        ),
+    ] = None,
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of a DXF that does not say it: mm, cm, m, in, ft.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead.")] = False,
+) -> None:
+    """Check a floor plan and say what it holds; -o writes it as GeoJSON.
+
+    DXF needs the extra `cad`.
+    """
+    from mesa_mobility.floorplan import FloorPlan
+
+    if file.suffix.lower() == ".dxf":
+        found = FloorPlan.from_dxf(file, layers=_kinds(layers), unit=unit)
+    elif layers or unit:
+        raise typer.BadParameter(f"--layer and --unit are for DXF, got {file}")
+    else:
+        found = FloorPlan.from_file(file)
+    if output is not None:
+        found.write_geojson(output)
+    low, high = found.bounds[:2], found.bounds[2:]
+    exits = {each.name: each.length for each in found.exits}
+    gates = {each.name: each.length for each in found.gates}
+    size = (high[0] - low[0], high[1] - low[1])
+    values = {
+        "name": found.name,
+        "size_m": size,
+        "free_area_m2": found.area,
+        "exits": exits,
+        "gates": gates,
+        "obstacles": len(found.obstacles),
+        "zones": [each.name for each in found.zones],
+    }
+    if as_json:
+        answer_json(values)
+    else:
+        answer_table(
+            {
+                "size": f"{size[0]:.2f} by {size[1]:.2f} m",
+                "free area": f"{found.area:.2f} m\u00b2",
+                "exits": _listed(exits),
+                "gates": _listed(gates),
+                "obstacles": str(len(found.obstacles)),
+                "zones": ", ".join(each.name for each in found.zones) or "none",
+            }
+        )
+    if output is not None:
+        say(f"written to {output}")
+
+
+def _kinds(texts: list[str] | None) -> dict[str, str] | None:
+    if not texts:
+        return None
+    kinds = {}
+    for text in texts:
+        layer, equals, kind = text.rpartition("=")
+        if not equals or not layer:
+            raise typer.BadParameter(f"--layer: got {text!r}, expected LAYER=KIND")
+        kinds[layer] = kind
+    return kinds
+
+
+def _listed(openings: dict[str, float]) -> str:
+    return ", ".join(f"{name} ({length:.2f} m)" for name, length in openings.items()) or "none"

@@ -1,0 +1,1 @@
+"""Files of floor plans: GeoJSON, text with WKT, drawings in DXF."""

@@ -1,0 +1,93 @@
+"""Floor plans as GeoJSON: one FeatureCollection, coordinates in metres."""
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.files.atomic import replacing
+from mesa_mobility.floorplan.formats.content import Content, content_of
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+
+def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
+    """The plan as a FeatureCollection; see `FloorPlan.to_geojson`."""
+    features = [_feature("walkable", plan.name, plan.walkable)]
+    if plan.cut_off:
+        features[0]["properties"]["cut_off"] = True
+    features += [
+        _feature("obstacle", str(i), polygon) for i, polygon in enumerate(plan.obstacles.values())
+    ]
+    for opening in plan.openings():
+        feature = _feature(opening.kind, opening.name, opening.line)
+        if not plan.is_open(opening.name):
+            feature["properties"]["closed"] = True
+        features.append(feature)
+    for zone in plan.zones:
+        feature = _feature("zone", zone.name, zone.area)
+        feature["properties"]["factor"] = zone.factor
+        features.append(feature)
+    return {"type": "FeatureCollection", "features": features}
+
+
+def write(collection: Mapping[str, Any], path: "str | os.PathLike[str]") -> None:
+    """Write a FeatureCollection to `path`: complete or not at all."""
+    with replacing(path, FloorPlanError) as temporary:
+        temporary.write_text(json.dumps(collection, indent=1) + "\n", encoding="utf-8")
+
+
+def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:
+    """Name of a source in an error message: its path."""
+    return "GeoJSON" if isinstance(source, Mapping) else str(source)
+
+
+def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
+    """Read a FeatureCollection from a file or a mapping.
+
+    Raises:
+        FloorPlanError: the file cannot be read, is not JSON or not a FeatureCollection, or a
+            feature has an unknown kind or the wrong geometry; the message names file and feature.
+    """
+    if isinstance(source, Mapping):
+        return _content(source, label(source))
+    try:
+        text = Path(source).read_text(encoding="utf-8")
+    except OSError as error:
+        raise FloorPlanError(f"{source}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise FloorPlanError(f"{source}: is not text, expected GeoJSON") from None
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise FloorPlanError(f"{source}: is not JSON (line {error.lineno}: {error.msg})") from None
+    except RecursionError:
+        raise FloorPlanError(f"{source}: is not a floor plan (nested too deeply)") from None
+    except ValueError:  # Python refuses integers of thousands of digits
+        raise FloorPlanError(f"{source}: has a number of thousands of digits") from None
+    return _content(data, label(source))
+
+
+def _content(data: object, where: str) -> Content:
+    if not isinstance(data, Mapping) or data.get("type") != "FeatureCollection":
+        raise FloorPlanError(f"{where}: expected a GeoJSON FeatureCollection")
+    features = data.get("features")
+    if not isinstance(features, list):
+        raise FloorPlanError(f"{where}: features must be a list")
+    return content_of(
+        ((feature, f"{where}: feature {number}") for number, feature in enumerate(features)), where
+    )
+
+
+def _feature(kind: str, name: str, geometry: BaseGeometry) -> dict[str, Any]:
+    return {
+        "type": "Feature",
+        "properties": {"kind": kind, "name": name},
+        "geometry": json.loads(json.dumps(shapely.geometry.mapping(geometry))),
+    }

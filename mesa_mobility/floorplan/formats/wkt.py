@@ -1,0 +1,73 @@
+"""Floor plans as text: one part a line, its geometry as WKT, coordinates in metres."""
+
+import json
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import shapely
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.checks import read_wkt
+from mesa_mobility.floorplan.formats.content import KINDS, Content, content_of
+
+_PART = re.compile(
+    r"(?P<kind>\w+)\s+(?P<words>.*?)\s*(?P<wkt>(?:MULTI)?(?:POLYGON|LINESTRING)\b.*)", re.IGNORECASE
+)
+_PROPERTY = re.compile(r"(?P<name>\w+)=(?P<value>\S+)$")
+
+
+def read(path: "str | os.PathLike[str]") -> Content:
+    """Read a text with a line such as ``exit street LINESTRING (20 3, 20 5)`` for each part.
+
+    Between the kind and the geometry stand the part's name and properties, as ``closed=true`` or
+    ``factor=0.5``.  Empty lines and those that begin with ``#`` count for nothing.
+
+    Raises:
+        FloorPlanError: the file cannot be read, or a line is no part of a floor plan; the message
+            names file and line.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise FloorPlanError(f"{path}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise FloorPlanError(f"{path}: is not text, expected lines of WKT") from None
+    return content_of(_features(text, str(path)), str(path))
+
+
+def _features(text: str, where: str) -> Iterator[tuple[dict[str, Any], str]]:
+    for number, line in enumerate(text.splitlines(), start=1):
+        line = line.strip()
+        if line and not line.startswith("#"):
+            at = f"{where}: line {number}"
+            yield _feature(line, at), at
+
+
+def _feature(line: str, at: str) -> dict[str, Any]:
+    part = _PART.fullmatch(line)
+    if part is None:
+        raise FloorPlanError(
+            f"{at}: {line[:40]!a}, expected one of {', '.join(KINDS)}, a name and a POLYGON "
+            "or LINESTRING"
+        )
+    kind, words = part["kind"].lower(), part["words"].split()
+    properties: dict[str, Any] = {}
+    while words and (found := _PROPERTY.match(words[-1])):
+        words.pop()
+        properties[found["name"]] = _value(found["value"])
+    geometry = read_wkt(part["wkt"], f"{at}: {kind}", "POLYGON or LINESTRING")
+    return {
+        "properties": {**properties, "kind": kind, "name": " ".join(words)},
+        "geometry": shapely.geometry.mapping(geometry),
+    }
+
+
+def _value(text: str) -> Any:
+    """A number, true or false; a text where it is none of these, which is refused later."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text

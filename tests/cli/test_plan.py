@@ -1,0 +1,61 @@
+"""`mesa-mobility plan`, and runs on plans of files."""
+
+import json
+
+import pytest
+
+from mesa_mobility import FloorPlan
+
+WKT = """walkable POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))
+obstacle POLYGON ((1 1, 2 1, 2 2, 1 2, 1 1))
+exit street LINESTRING (6 1, 6 3)
+"""
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    """A room of 6 by 4 m in millimetres, which does not say so, on layers of its own names."""
+    ezdxf = pytest.importorskip("ezdxf", reason="no ezdxf: pip install 'mesa-mobility[cad]'")
+    document = ezdxf.new(units=0)
+    space = document.modelspace()
+    corners = [(0, 0), (6000, 0), (6000, 4000), (0, 4000)]
+    space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "A-FLOR"})
+    space.add_line((6000, 1000), (6000, 2200), dxfattribs={"layer": "A-DOOR"})
+    document.saveas(tmp_path / "room.dxf")
+    return tmp_path / "room.dxf"
+
+
+NAMED = ["--layer", "A-FLOR=walkable", "--layer", "A-DOOR=exit street", "--unit", "mm"]
+
+
+def test_what_a_plan_holds(command, tmp_path):
+    (tmp_path / "room.wkt").write_text(WKT)
+    done = command("plan", str(tmp_path / "room.wkt"), "--json")
+    assert json.loads(done.out) == {
+        "name": "", "size_m": [6.0, 4.0], "free_area_m2": 23.0, "exits": {"street": 2.0},
+        "gates": {}, "obstacles": 1, "zones": [],
+    }  # fmt: skip
+    assert "street (2.00 m)" in command("plan", str(tmp_path / "room.wkt")).out
+
+
+def test_a_drawing_becomes_geojson(command, drawing, tmp_path):
+    out = tmp_path / "room.geojson"
+    done = command("plan", str(drawing), *NAMED, "-o", str(out))
+    assert done.status == 0
+    plan = FloorPlan.from_geojson(out)
+    assert plan.area == pytest.approx(24.0)
+    assert plan.exits[0].length == pytest.approx(1.2)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "does not say its unit ($INSUNITS), expected one of mm, cm"),
+        (["--unit", "mm"], "has no layer of kind walkable; it has drawings on A-DOOR, A-FLOR"),
+        (["--unit", "mm", "--layer", "A-FLOR"], "--layer: got 'A-FLOR', expected LAYER=KIND"),
+    ],
+)
+def test_what_a_drawing_lacks_is_said_in_one_line(command, drawing, arguments, message):
+    done = command("plan", str(drawing), *arguments)
+    assert message in done.err
+    assert (done.status, done.err.count("\n")) == (2, 1)
