@@ -12,8 +12,8 @@ import numpy as np
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.intervals import Estimate, mean_interval, quantile_interval
 from mesa_mobility.experiments.points import point_key
-from mesa_mobility.experiments.rows import DONE, SERIES, STATUSES
-from mesa_mobility.experiments.shards import RUN_COLUMNS
+from mesa_mobility.experiments.storing.rows import DONE, SERIES, STATUSES
+from mesa_mobility.experiments.storing.shards import RUN_COLUMNS
 from mesa_mobility.reports.html import Page, picture
 from mesa_mobility.reports.versions import add_versions
 
