@@ -140,11 +140,14 @@ def coverage(place: Path, repetitions: int) -> None:
             counts.append(count)
         asked = ", ".join([*precision.figures, *(["occupancy"] if precision.occupancy else [])])
         share = np.mean(held)
+        hundreds = np.reshape(held[: repetitions // 100 * 100], (-1, 100)).sum(axis=1)
+        within = int(np.sum((hundreds >= 92) & (hundreds <= 98)))
         noise = np.sqrt(share * (1 - share) / repetitions)
         print(
             f"{asked}, to {precision.tolerance:.0%}: {sum(held)} of {repetitions} intervals hold "
             f"the mean, {share:.1%} (standard error {noise:.1%}); {sum(held[:100])} of the first "
-            f"100; {min(counts)} to {max(counts)} runs, median {np.median(counts):.0f}"
+            f"100, 92 to 98 in {within} of {len(hundreds)} hundreds; "
+            f"{min(counts)} to {max(counts)} runs, median {np.median(counts):.0f}"
         )
 
 

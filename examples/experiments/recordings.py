@@ -14,7 +14,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
-from mesa_mobility.experiments import Experiment, Table, run_experiment, variance_components
+from mesa_mobility.experiments import (
+    Experiment,
+    Table,
+    mean_interval,
+    run_experiment,
+    variance_components,
+)
 
 CROWDS, REPLICATIONS = 10, 5
 PLAN = "POLYGON ((0 0, 10 0, 10 8, 0 8, 0 0))"
@@ -68,7 +74,10 @@ def main(folder, place, picture=None, **keywords):
     store = run_experiment(experiment(Path(folder).glob("*.npz"), **keywords), place)
     parts = variance_components(store, "egress_s", ["mobility_map", "crowd"])
     frame = store.frame()
-    print(f"mean egress time {frame.egress_s.mean():.2f} s, {store.status()['done']} runs")
+    # Maps are what is independent here: runs and crowds of one map share its recordings.
+    mean = mean_interval(frame.groupby("mobility_map").egress_s.mean())
+    print(f"mean egress time {mean.value:.2f} s (95 %: {mean.low:.2f} to {mean.high:.2f}), "
+          f"{store.status()['done']} runs")  # fmt: skip
     for name, part in zip(["recordings", "people", "chance"], parts, strict=True):
         share = part.share
         print(f"{name}: standard deviation {part.variance**0.5:.2f} s, share {share.value:.0%} "

@@ -52,7 +52,7 @@ def run(
     Ends with status 1 if runs have failed or timed out.
     """
     from mesa_mobility.experiments import read_experiment, run_experiment
-    from mesa_mobility.experiments.driver import count_missing
+    from mesa_mobility.experiments.missing import count_missing
 
     if scheduler is not None and workers is not None:
         raise ModelError("--workers: a scheduler has its own workers, expected one of the two")

@@ -6,7 +6,7 @@ import math
 import os
 import uuid
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -15,10 +15,11 @@ import numpy as np
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.experiment import Experiment, check_parameters
-from mesa_mobility.experiments.points import Point, point_key, run_name
-from mesa_mobility.experiments.rows import DONE, RUNS, STALLED, TRAJECTORIES
+from mesa_mobility.experiments.missing import Runs, missing_runs
+from mesa_mobility.experiments.points import point_key, run_name
 from mesa_mobility.experiments.session import session_of
 from mesa_mobility.experiments.store import Store
+from mesa_mobility.experiments.storing.rows import DONE, RUNS, STALLED, TRAJECTORIES
 from mesa_mobility.experiments.workers.batches import (
     DEATHS,
     Batch,
@@ -50,8 +51,6 @@ _ATTEMPTS = 3
 
 _MOST_ATTEMPTS = 20
 """The same for a run that these workers had not begun, but waited with."""
-
-Missing = Iterator[tuple[Point, int]]
 
 
 @dataclass
@@ -137,13 +136,6 @@ def run_experiment(
     return kept
 
 
-def count_missing(experiment: Experiment, store: str | os.PathLike[str]) -> int:
-    """Runs that ``run_experiment`` would do now; with "auto", at first."""
-    kept = Store(store)
-    there = kept.folder.exists("experiment.json")
-    return _Driver(experiment, kept, None, lambda now: None).missing(there=there)[0]
-
-
 class _Driver:
     def __init__(
         self,
@@ -163,7 +155,7 @@ class _Driver:
         assert self._workers is not None
         setup = self._setup(self._workers.own_processes)
         while True:
-            count, runs = self.missing(there=True)
+            count, runs = missing_runs(self._experiment, self._store)
             if not count:
                 return
             self.progress.total += count
@@ -172,49 +164,7 @@ class _Driver:
             if self._experiment.replications != "auto":
                 return
 
-    def missing(self, *, there: bool) -> tuple[int, Missing]:
-        """Number of runs that are missing now, and the runs."""
-        experiment = self._experiment
-        points = range(len(experiment.design))
-        keys = np.array([point_key(experiment.point(index)) for index in points], dtype="S16")
-        # Whole numbers drawn between bounds may give a point twice.
-        _, first = np.unique(keys, return_index=True)
-        order = np.sort(first)
-        wanted = self._wanted(keys, order, there=there)
-        known = self._store.run_names() if there else np.empty(0, dtype="S40")
-
-        def runs() -> Missing:
-            for index in order.tolist():
-                key = keys[index].decode()
-                names = np.array(
-                    [run_name(key, number) for number in range(wanted[index])], dtype="S40"
-                )
-                # The known ones are in order: to sort them for each point would take for ever.
-                at = np.searchsorted(known, names)
-                present = np.zeros(len(names), dtype=bool)
-                inside = at < len(known)
-                present[inside] = known[at[inside]] == names[inside]
-                for number in np.flatnonzero(~present).tolist():
-                    yield experiment.point(index), number
-
-        return sum(1 for _ in runs()), runs()
-
-    def _wanted(self, keys: Any, order: Any, *, there: bool) -> dict[int, int]:
-        """Replications that each point should have by now."""
-        experiment = self._experiment
-        if experiment.replications != "auto":
-            return dict.fromkeys(order.tolist(), experiment.replications)
-        found = self._store.assessments(experiment) if there else {}
-        precision = experiment.precision
-        wanted = {}
-        for index in order.tolist():
-            known = found.get(keys[index].decode())
-            have = known.runs if known else 0
-            ended = known and have >= precision.least and (known.enough or known.hopeless)
-            wanted[index] = have if ended else precision.next_count(have)
-        return wanted
-
-    def _do(self, setup: Setup, runs: Missing) -> None:
+    def _do(self, setup: Setup, runs: Runs) -> None:
         workers = self._workers
         assert workers is not None
         under_way = 0
@@ -257,7 +207,7 @@ class _Driver:
                 "that all workers share"
             )
 
-    def _batch(self, runs: Missing) -> Batch | None:
+    def _batch(self, runs: Runs) -> Batch | None:
         """The next batch; the first ones are single runs, which tell how long a run takes."""
         size = 1
         if self._per_run is not None:

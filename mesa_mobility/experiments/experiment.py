@@ -18,7 +18,7 @@ from mesa_mobility.experiments.points import (
     check_whole,
     plain_value,
 )
-from mesa_mobility.experiments.rows import SERIES
+from mesa_mobility.experiments.storing.rows import SERIES
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.plugins.registry import did_you_mean
 
@@ -150,7 +150,7 @@ def model_class(model: type | str) -> type:
 
 def check_parameters(experiment: Experiment) -> None:
     """Raise ModelError if the model does not take a parameter of the experiment, or no ``rng``."""
-    from mesa_mobility.experiments.shards import RUN_COLUMNS
+    from mesa_mobility.experiments.storing.shards import RUN_COLUMNS
 
     kind = model_class(experiment.model)
     called = model_name(experiment.model)

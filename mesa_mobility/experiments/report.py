@@ -12,8 +12,8 @@ import numpy as np
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.intervals import Estimate, mean_interval, quantile_interval
 from mesa_mobility.experiments.points import point_key
-from mesa_mobility.experiments.rows import DONE, SERIES, STATUSES
-from mesa_mobility.experiments.shards import RUN_COLUMNS
+from mesa_mobility.experiments.storing.rows import DONE, SERIES, STATUSES
+from mesa_mobility.experiments.storing.shards import RUN_COLUMNS
 from mesa_mobility.reports.html import Page, picture
 from mesa_mobility.reports.versions import add_versions
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
+    from mesa_mobility.experiments.convergence import Assessment
     from mesa_mobility.experiments.store import Store
 
 _MOST_ROWS = 200
@@ -150,7 +151,7 @@ def _convergence(page: Page, store: Store) -> None:
             end = "maximum of runs" if known.runs >= precision.most else "not finished"
         rows.append(
             [*[_text(value) for value in point.values()], known.runs, end,
-             *["reached" if met else "not reached" for met in known.met.values()]]
+             *[_reached(name, known) for name in known.met]]
         )  # fmt: skip
     met = [*precision.figures, *(["occupancy"] if precision.occupancy else [])]
     page.table(
@@ -158,8 +159,16 @@ def _convergence(page: Page, store: Store) -> None:
         [*experiment.design.column_types(), "runs", "ended by", *met],
         rows,
         f"Figures are asked for to {precision.tolerance:.1%} at {precision.confidence:.0%} "
-        f"confidence, with {precision.least} to {precision.most} runs of each point.",
+        f"confidence, with {precision.least} to {precision.most} runs of each point. Runs end when "
+        "they happen to scatter little: where a mean has ended them, its interval here allows for "
+        "that, and is the one to quote.",
     )
+
+
+def _reached(name: str, known: Assessment) -> str:
+    """Whether what is asked for is reached, with the interval where it is a figure."""
+    said = "reached" if known.met[name] else "not reached"
+    return f"{_interval(known.estimates[name])} {said}" if name in known.estimates else said
 
 
 def _failures(page: Page, frame: pd.DataFrame) -> None:

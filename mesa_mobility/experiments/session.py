@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import hashlib
 import inspect
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.experiment import Experiment, model_class, model_name
 from mesa_mobility.plugins.model_files import is_model_file, path_and_name
 from mesa_mobility.reports.versions import machine, sha256_of, versions
@@ -24,6 +26,49 @@ def session_of(experiment: Experiment, executor: Any) -> dict[str, Any]:
         "versions": versions(),
         "inputs": _inputs(experiment),
     }
+
+
+def check_goes_on(store: str, before: Mapping[str, Any], said: Mapping[str, Any]) -> None:
+    """Raise ModelError unless an experiment may add its runs to those of a store.
+
+    Args:
+        store: its name, for the message.
+        before: definition of the experiment whose runs are there.
+        said: definition of the one to be run.
+    """
+    for key in ("model", "seed", "max_seconds"):
+        if before.get(key) != said.get(key) and not (
+            key == "model" and _is_same_file(str(before["model"]), str(said["model"]))
+        ):
+            raise ModelError(
+                f"{store}: holds runs with {key} {before.get(key)}, got {said.get(key)}; "
+                "expected another store"
+            )
+
+
+def check_inputs(store: str, sessions: Sequence[Mapping[str, Any]], now: Mapping[str, Any]) -> None:
+    """Raise ModelError where a map, model file or source differs from that of earlier runs.
+
+    Args:
+        store: its name, for the message.
+        sessions: those before.
+        now: the session that begins.
+    """
+    before = {name: digest for each in sessions for name, digest in each["inputs"].items()}
+    for name, digest in sorted(now["inputs"].items()):
+        if before.get(name, digest) != digest:
+            raise ModelError(
+                f"{store}: holds runs with another {name} (sha256 {before[name][:16]}...), got "
+                f"{digest[:16]}...; expected the same, or another store"
+            )
+
+
+def _is_same_file(one: str, other: str) -> bool:
+    """Whether two models are of one file, from wherever; its content is compared elsewhere."""
+    if not (is_model_file(one) and is_model_file(other)):
+        return False
+    (file, name), (other_file, other_name) = path_and_name(one), path_and_name(other)
+    return file.name == other_file.name and name == other_name
 
 
 def _inputs(experiment: Experiment) -> dict[str, str]:

@@ -13,15 +13,13 @@ import json
 import os
 import uuid
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from pathlib import Path
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute
-from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError, ResultsError
@@ -33,14 +31,10 @@ from mesa_mobility.experiments.definition import (
 )
 from mesa_mobility.experiments.experiment import Experiment
 from mesa_mobility.experiments.points import point_key
-from mesa_mobility.experiments.rows import DONE, RUNS, SERIES, STATUSES, TRAJECTORIES, WORK
-from mesa_mobility.experiments.shards import (
-    Folder,
-    joined,
-    read_table,
-    write_table,
-)
-from mesa_mobility.plugins.model_files import is_model_file, path_and_name
+from mesa_mobility.experiments.session import check_goes_on, check_inputs
+from mesa_mobility.experiments.storing.locks import is_locked, locked
+from mesa_mobility.experiments.storing.rows import DONE, RUNS, SERIES, STATUSES, TRAJECTORIES, WORK
+from mesa_mobility.experiments.storing.shards import Folder, joined, read_table, write_table
 from mesa_mobility.plugins.registry import did_you_mean
 
 if TYPE_CHECKING:
@@ -253,34 +247,15 @@ class Store:
         sessions = []
         if self.folder.exists(DEFINITION):
             before = self.definition()
-            self._check_same(before["experiment"], said)
             sessions = before["sessions"]
-            known = {name: digest for each in sessions for name, digest in each["inputs"].items()}
-            self._check_inputs(known, session["inputs"])
+            check_goes_on(str(self), before["experiment"], said)
+            check_inputs(str(self), sessions, session)
         for name in (RUNS, WORK, *([TRAJECTORIES] if "trajectories" in experiment.keep else [])):
             self.folder.make(name)
         values = {
             "format_version": FORMAT_VERSION, "experiment": said, "sessions": [*sessions, session]
         }  # fmt: skip
         self.folder.write_bytes(DEFINITION, (json.dumps(values, indent=1) + "\n").encode())
-
-    def _check_same(self, before: dict[str, Any], said: dict[str, Any]) -> None:
-        for key in ("model", "seed", "max_seconds"):
-            if before.get(key) != said.get(key) and not (
-                key == "model" and _is_same_file(before, said)
-            ):
-                raise ModelError(
-                    f"{self}: holds runs with {key} {before.get(key)}, got {said.get(key)}; "
-                    "expected another store"
-                )
-
-    def _check_inputs(self, before: dict[str, str], now: dict[str, str]) -> None:
-        for name in sorted(set(before) & set(now)):
-            if before[name] != now[name]:
-                raise ModelError(
-                    f"{self}: holds runs with another {name} (sha256 {before[name][:16]}...), got "
-                    f"{now[name][:16]}...; expected the same, or another store"
-                )
 
     def compact(self) -> None:
         """Merge small files of rows into one."""
@@ -300,20 +275,9 @@ class Store:
 
     def is_locked(self) -> bool:
         """Whether a process runs the experiment now, as far as this file system tells."""
-        path = Path(self.folder.path("driver.lock"))
-        if not self.folder.local or not path.exists():
-            return False
-        try:
-            # Others who only look hold it for a moment.
-            with FileLock(path, timeout=0.2):
-                return False
-        except Timeout:
-            return True
-        except (OSError, NotImplementedError):  # a folder that can only be read, or has no locks
-            return False
+        return is_locked(self.folder)
 
-    @contextmanager
-    def locked(self) -> Iterator[None]:
+    def locked(self) -> AbstractContextManager[None]:
         """Be the only process that runs the experiment; the lock ends with the process.
 
         Object stores and some shared file systems have no locks. Two drivers would there do runs
@@ -322,32 +286,7 @@ class Store:
         Raises:
             ResultsError: another process runs it, or the folder cannot be written.
         """
-        self.folder.make("")
-        if not self.folder.local:
-            yield
-            return
-        lock = FileLock(self.folder.path("driver.lock"), timeout=1.0)
-        try:
-            lock.acquire()
-        except Timeout as error:
-            raise ResultsError(f"{self}: another process is running this experiment") from error
-        except OSError as error:
-            raise ResultsError(f"{self}: cannot be written: {error.strerror or error}") from error
-        except NotImplementedError:  # of the file system, says filelock
-            pass
-        try:
-            yield
-        finally:
-            lock.release()
-
-
-def _is_same_file(before: dict[str, Any], said: dict[str, Any]) -> bool:
-    """Whether two models are of one file, from wherever; its content is compared elsewhere."""
-    names = [str(each["model"]) for each in (before, said)]
-    if not all(is_model_file(name) for name in names):
-        return False
-    one, other = (path_and_name(name) for name in names)
-    return one[0].name == other[0].name and one[1] == other[1]
+        return locked(self.folder)
 
 
 def open_store(url: str | os.PathLike[str]) -> Store:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.experiments.intervals import Estimate, check_confidence
-from mesa_mobility.experiments.rows import DONE
+from mesa_mobility.experiments.storing.rows import DONE
 
 if TYPE_CHECKING:
     import pandas as pd

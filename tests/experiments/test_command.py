@@ -82,6 +82,9 @@ def test_bad_input_is_one_line(command, arguments, message):
 
 
 def test_ctrl_c_keeps_what_has_ended(file, tmp_path):
+    # Half of the runs do not end, however slow the machine is.
+    file.write_text(FILE.replace('end = "slow"', f'mark = "{tmp_path / "mark"}"')
+                    + 'end = ["well", "wait"]\n')  # fmt: skip
     started = subprocess.Popen(
         [sys.executable, "-m", "mesa_mobility", "experiment", "run", str(file), "--workers", "1"],
         env=os.environ | {"PYTHONPATH": str(ROOT)}, stderr=subprocess.PIPE, text=True,
@@ -92,7 +95,7 @@ def test_ctrl_c_keeps_what_has_ended(file, tmp_path):
     _, error = started.communicate(timeout=60)
     assert started.returncode == 130
     assert error.splitlines()[-1].startswith("interrupted: what has ended is kept")
-    assert 0 < open_store(store).status()["done"] < 30
+    assert 0 < open_store(store).status()["done"] <= 30
 
 
 def wait_for(condition, seconds=60.0):

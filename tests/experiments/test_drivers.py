@@ -27,8 +27,8 @@ import sys
 from mesa_mobility.experiments import Experiment, run_experiment
 if __name__ == "__main__":
     experiment = Experiment(
-        "tests.fixtures.experiment_models:Quick", {"x": [0.0, 1.5, 3.0]}, seed=5,
-        replications=10, fixed=json.loads(sys.argv[3]),
+        "tests.fixtures.experiment_models:Quick", json.loads(sys.argv[3]), seed=5,
+        replications=10, fixed=json.loads(sys.argv[4]),
     )
     run_experiment(experiment, sys.argv[1], executor=sys.argv[2], workers=2)
 """
@@ -37,11 +37,15 @@ if __name__ == "__main__":
 SLOW = {"end": "slow"}
 
 
-def driver(tmp_path, store, executor, fixed=SLOW, **keywords):
+X = {"x": [0.0, 1.5, 3.0]}
+
+
+def driver(tmp_path, store, executor, fixed=SLOW, parameters=X, **keywords):
     script = tmp_path / "driver.py"
     script.write_text(DRIVER)
     return subprocess.Popen(
-        [sys.executable, str(script), str(store), executor, json.dumps(fixed)],
+        [sys.executable, str(script), str(store), executor, json.dumps(parameters),
+         json.dumps(fixed)],
         env=os.environ | {"PYTHONPATH": str(ROOT)}, stderr=subprocess.PIPE, text=True, **keywords,
     )  # fmt: skip
 
@@ -67,17 +71,23 @@ def slow_rows(tmp_path_factory):
     return run_experiment(experiment, store, executor="processes", workers=2)
 
 
-def test_a_driver_that_is_killed(slow_rows, rows, tmp_path):
-    path = tmp_path / "s"
-    first = driver(tmp_path, path, "processes")
+def test_a_driver_that_is_killed(rows, tmp_path):
+    path, mark = tmp_path / "s", tmp_path / "mark"
+    # Half of the runs do not end before the driver is killed, however slow the machine is.
+    fixed, parameters = {"mark": str(mark)}, {"end": ["well", "wait"], "x": [0.0, 1.5, 3.0]}
+    experiment = quick(10, parameters=parameters, fixed=fixed)
+    first = driver(tmp_path, path, "processes", fixed, parameters)
     wait_for_rows(path, 5)
     first.send_signal(signal.SIGKILL)
     first.wait()
     had = open_store(path).frame().set_index("run").began
-    assert 5 <= len(had) < 30
+    assert 5 <= len(had) <= 30
     assert not open_store(path).status()["running"]
-    store = run_experiment(quick(10, fixed={"end": "slow"}), path, workers=2)
-    assert rows(store) == rows(slow_rows)
+    mark.touch()
+    store = run_experiment(experiment, path, workers=2)
+    assert store.status()["done"] == len(store.frame()) == 60
+    alone = run_experiment(experiment, tmp_path / "alone", executor="serial")
+    assert rows(store) == rows(alone)
     # What had finished was not run again.
     assert (store.frame().set_index("run").began[had.index] == had).all()
     assert list(Path(store.folder.path("work")).glob("*")) == []
@@ -174,7 +184,8 @@ def test_a_script_without_a_guard_is_told_so(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
     done = subprocess.run(
-        [sys.executable, str(script), str(tmp_path / "s"), "processes", json.dumps(SLOW)],
+        [sys.executable, str(script), str(tmp_path / "s"), "processes", json.dumps(X),
+         json.dumps(SLOW)],
         env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert done.returncode == 1

@@ -2,6 +2,7 @@
 
 import hashlib
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments import Experiment
-from mesa_mobility.experiments.driver import _Driver
+from mesa_mobility.experiments.missing import missing_runs
 from mesa_mobility.experiments.points import plain_value, point_key, run_name, seed_of_run
 
 NUMBERS = st.integers() | st.floats(allow_nan=False, allow_infinity=False)
@@ -74,6 +75,8 @@ def test_numpys_numbers_are_plain_ones():
 class Names:
     """What stands for a store: the names of the runs that are there."""
 
+    folder = SimpleNamespace(exists=lambda name: True)
+
     def __init__(self, names):
         self.names = np.unique(np.array(names, dtype="S40"))
 
@@ -82,8 +85,7 @@ class Names:
 
 
 def missing(experiment, names):
-    driver = _Driver(experiment, Names(names), None, lambda now: None)
-    count, runs = driver.missing(there=True)
+    count, runs = missing_runs(experiment, Names(names))
     found = [run_name(point_key(point), number) for point, number in runs]
     assert len(found) == count
     return found

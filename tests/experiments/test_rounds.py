@@ -1,5 +1,7 @@
 """Which runs an experiment does next: by rounds, after interruptions, and after workers died."""
 
+import gc
+import weakref
 from types import SimpleNamespace
 
 import pytest
@@ -15,7 +17,7 @@ from mesa_mobility.experiments import (
 )
 from mesa_mobility.experiments.driver import _Driver
 from mesa_mobility.experiments.points import point_key, run_name
-from mesa_mobility.experiments.workers import one_run
+from mesa_mobility.experiments.workers import batches, one_run
 from mesa_mobility.experiments.workers.batches import Batch, Journal
 
 MODELS = "tests.fixtures.experiment_models:"
@@ -125,6 +127,32 @@ def test_a_run_is_not_to_blame_for_workers_that_died_before_it_began(tmp_path):
         journal.begin(run_name(point_key(experiment.point(0)), 0))
     assert driver._again(setup, batch) == []
     assert driver.progress.failed == 1
+
+
+@pytest.mark.parametrize("own_process", [True, False])
+def test_models_of_long_batches_leave_the_memory_of_a_worker(own_process, tmp_path, monkeypatch):
+    """A caller's own process is not held up: it may have many objects of its own."""
+    made, run_once = [], one_run.run_once
+
+    def remembered(*arguments):
+        row, model = run_once(*arguments)
+        model.itself = model
+        made.append(weakref.ref(model))
+        return {**row, "wall_s": 1.0}, model
+
+    monkeypatch.setattr(batches, "run_once", remembered)
+    experiment, store = Experiment(MODELS + "Quick"), Store(tmp_path / "s")
+    store.folder.make("runs")
+    crew = SimpleNamespace(count=1, address="")
+    setup = _Driver(experiment, store, crew, lambda now: None)._setup(own_processes=own_process)
+    gc.disable()
+    try:
+        for runs in (1, 2):
+            batches.run_batch(setup, Batch(f"b{runs}", tuple(({}, k) for k in range(runs))))
+            alive = sum(each() is not None for each in made)
+            assert alive == (0 if own_process and runs == 2 else len(made))
+    finally:
+        gc.enable()
 
 
 SOURCE = """

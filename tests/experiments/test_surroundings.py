@@ -11,7 +11,7 @@ from fsspec.implementations.memory import MemoryFileSystem
 from mesa_mobility.errors import MapError, ModelError, ResultsError
 from mesa_mobility.experiments import Experiment, Precision, Store, open_store, run_experiment
 from mesa_mobility.experiments.session import session_of
-from mesa_mobility.experiments.shards import Folder, joined, table_of
+from mesa_mobility.experiments.storing.shards import Folder, joined, table_of
 from mesa_mobility.experiments.workers import batches, compiling
 from mesa_mobility.files.atomic import replacing
 

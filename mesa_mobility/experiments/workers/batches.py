@@ -8,6 +8,7 @@ as failed.
 from __future__ import annotations
 
 import faulthandler
+import gc
 import json
 import os
 import tempfile
@@ -22,8 +23,8 @@ from typing import Any
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.points import Point, point_key, run_name
-from mesa_mobility.experiments.rows import FAILED, RUNS, TIMED_OUT, TRAJECTORIES, WORK, Row
-from mesa_mobility.experiments.shards import Folder, read_table, table_of, write_table
+from mesa_mobility.experiments.storing.rows import FAILED, RUNS, TIMED_OUT, TRAJECTORIES, WORK, Row
+from mesa_mobility.experiments.storing.shards import Folder, read_table, table_of, write_table
 from mesa_mobility.experiments.workers.compiling import compile_once
 from mesa_mobility.experiments.workers.one_run import (
     Setup,
@@ -33,6 +34,9 @@ from mesa_mobility.experiments.workers.one_run import (
 
 DEATHS = 2
 """Deaths of workers during a run after which it counts as failed."""
+
+_WORTH_COLLECTING = 2.0
+"""Seconds of runs after which a tenth of a second for the collection of garbage is little."""
 
 _one_at_a_time = threading.Lock()
 
@@ -83,7 +87,12 @@ def run_batch(setup: Setup, batch: Batch) -> Finished:
         rows = list(_rows(setup, batch, folder, journal))
         write_table(folder, name, table_of(rows, setup.column_types))
         journal.remove()
-        return _finished(rows)
+        finished = _finished(rows)
+        if setup.may_end and finished.wall_s >= _WORTH_COLLECTING:
+            # Models and their agents know each other. Python finds few objects in them, however
+            # large their arrays are, and would let hundreds of models wait.
+            gc.collect()
+        return finished
 
 
 class Journal:

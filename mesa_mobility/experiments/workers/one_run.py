@@ -14,7 +14,7 @@ from typing import Any
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.experiment import model_class
 from mesa_mobility.experiments.points import Point, point_key, run_name, seed_of_run
-from mesa_mobility.experiments.rows import DONE, FAILED, SERIES, STALLED, TIMED_OUT, Row
+from mesa_mobility.experiments.storing.rows import DONE, FAILED, SERIES, STALLED, TIMED_OUT, Row
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 
 _LONGEST_ERROR = 500

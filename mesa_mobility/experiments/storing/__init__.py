@@ -1,0 +1,1 @@
+"""How a store keeps runs: rows, files of rows, and who may write."""
