@@ -25,7 +25,7 @@ from mesa_mobility.crowd.collision.simd_tests import (
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS, drop_beside, places_beside
 from mesa_mobility.crowd.options.option_groups import AT_X, AT_Y, LANE_FIELDS, OptionGroups
 from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
-from mesa_mobility.crowd.state.environment import MARGIN
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.records import CrowdState
 
 ALL_LANES = 2**LANES - 1

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import internal
 from mesa_mobility.crowd.collision.exact import hits_wall, swept_collision
 from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.state.environment import MARGIN
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, facing_at_waypoint, position_at
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.floorplan.walls.geometry import segment_segment_distance2

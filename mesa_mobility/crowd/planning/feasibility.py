@@ -15,9 +15,10 @@ from mesa_mobility.crowd.collision.sampled import SLACK, EgoPose, sampled_collis
 from mesa_mobility.crowd.collision.walls import path_off2
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
-from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, to_world
 from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
 @internal()
