@@ -36,9 +36,9 @@ _CLEARANCE = 0.2
 class Following(Tactic):
     """People walk behind a leader, at its speed, and leave by the exit by which it has left.
 
-    Who sees its leader closes up to ``distance``, and then walks as fast as it does. Who does not
-    see it walks along the leader's trail. Nobody walks faster than it prefers, so that a leader who
-    hurries loses its people. Behind one leader people are a bunch: the k-th keeps as far away as a
+    Followers who see their leader close up to ``distance``, and then walk as fast as it does. The
+    others walk along its trail. Nobody walks faster than it prefers, so that a leader who hurries
+    loses its people. Behind one leader people are a bunch: the k-th keeps as far away as a
     half circle with k people, one to each m2, reaches. A leader may follow another.
 
     People who walk behind somebody match its speed, rather than keep a certain distance (Rio, Rhea
@@ -121,7 +121,7 @@ class Following(Tactic):
         desired.points, desired.speeds = desired.points.copy(), desired.speeds.copy()
         desired.points[who] = np.where(stands[:, None], here, points)
         desired.speeds[who] = np.where(stands, 0.0, speed)
-        # Who stands behind its leader stays patient.
+        # Followers who stand behind their leader stay patient.
         waits = crowd.agenda["waits_until"]
         waits[rows[who[stands]]] = np.maximum(waits[rows[who[stands]]], self._model.frame + 1)
 
@@ -139,7 +139,7 @@ class Following(Tactic):
             self._trails[leader] = trail
 
     def _exit_near(self, deciding: Deciding, place: NDArray[np.float64]) -> str | None:
-        """Name of the exit by which somebody who is at a place now, metres, must have left."""
+        """Name of the exit by which a person now at this place, metres, must have left."""
         away = {each.line.distance(shapely.Point(place)): each for each in deciding.site.plan.exits}
         return away[min(away)].name if away and min(away) <= _BEYOND else None
 

@@ -1,6 +1,6 @@
 """The command line, assembled from its commands.
 
-Whatever is slow to import is imported where it is used, so that help and errors come at once.
+Slow imports are made where they are used, so that help and errors come at once.
 """
 
 from __future__ import annotations

@@ -152,7 +152,7 @@ def option_gone_or_blocked(
             if who >= 0:
                 return -2, who
     elif hard_bodies:
-        # Somebody who leaves on the way may miss the people ahead: the exact test decides.
+        # People who leave on the way may miss those ahead: the exact test decides.
         doubtful = now.found
         for a in range(now.found):
             work.unsure[a] = work.close.people[a].who

@@ -104,7 +104,7 @@ class Environment(Saved):
             # All routers number destinations alike.
             for router in self._routers:
                 if router is not None:
-                    self._tell(router, names)
+                    self._add_destination(router, names)
         return number * self.bodies + body
 
     def _router(self, body: int) -> Router:
@@ -117,10 +117,10 @@ class Environment(Saved):
         """A router that knows all destinations by their numbers."""
         router = Router(plan, clearance=clearance)
         for names in self._destinations:
-            self._tell(router, names)
+            self._add_destination(router, names)
         return router
 
-    def _tell(self, router: Router, names: Destination) -> None:
+    def _add_destination(self, router: Router, names: Destination) -> None:
         if is_point(names):
             router.point(names)
         elif names is not None and any(gate.name == names[0] for gate in self.plan.gates):
@@ -168,7 +168,7 @@ class Environment(Saved):
             known._destinations.append(names)
             for router in known._routers:
                 if router is not None:
-                    known._tell(router, names)
+                    known._add_destination(router, names)
         return known
 
     def abreast(

@@ -95,7 +95,7 @@ AGENDA = np.dtype(
         ("checked", "f8"),
         ("nearest", "f8"),
         ("since", "f8"),
-        ("wished", "f8"),
+        ("desired_speed", "f8"),
         ("behind", "f8"),
     ],
     align=True,
@@ -110,7 +110,7 @@ number of its group, 0 for none; ``corner``, number of the next corner of its ro
 ``mouth``, number from 1 on of the mouth by which it is about to enter a narrow passage, minus that
 number if it leaves by the mouth, else 0; ``nearest``, shortest route so far, metres, and ``since``,
 time of its last progress, s;
-``wished``, the preferred speed of its last decision, m/s, and ``behind``, its accumulated distance
+``desired_speed``, the preferred speed of its last decision, m/s, and ``behind``, its accumulated distance
 error, metres.
 """
 

@@ -14,7 +14,7 @@ from mesa_mobility.errors import ModelError
 LONGEST_WAIT = 1e6
 """Longest wait in seconds; eleven days."""
 
-_UNTIL_TOLD = np.iinfo(np.int32).max
+_UNTIL_CONDITION = np.iinfo(np.int32).max
 
 
 def frames_of(seconds: NDArray[np.float64], name: str) -> NDArray[np.int64]:
@@ -59,18 +59,18 @@ class Waits:
             raise ModelError(f"wait: until is {until!r}, expected a function without arguments")
         if until is not None:
             self._conditions[row] = until
-            crowd.agenda["waits_until"][row] = _UNTIL_TOLD
+            crowd.agenda["waits_until"][row] = _UNTIL_CONDITION
         else:
             self._conditions.pop(row, None)
             frames = frames_of(np.array([seconds], dtype=np.float64), "wait")
             crowd.agenda["waits_until"][row] = frame + frames[0]
 
-    def ask(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
+    def evaluate(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
         """Evaluate the conditions of those in ``rows``; where one holds, the person goes on."""
         if not self._conditions:
             return
         until = crowd.agenda["waits_until"]
-        for row in rows[until[rows] == _UNTIL_TOLD].tolist():
+        for row in rows[until[rows] == _UNTIL_CONDITION].tolist():
             if self._conditions[row]():
                 del self._conditions[row]
                 until[row] = frame

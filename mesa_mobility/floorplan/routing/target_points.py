@@ -73,7 +73,7 @@ def past_corner(
 ) -> tuple[float, float]:
     """The target at corner (nx, ny): straight past it, as far as the next node stays in view.
 
-    Somebody who aimed at the corner itself would slow down to stop on it, since every step beyond
+    With the corner itself as target, people would slow down to stop on it, since every step beyond
     leads away from it.
     """
     clearance = ways.view_clearance
@@ -106,8 +106,8 @@ def _beyond(
 ) -> tuple[float, float]:
     """The target behind point q of an opening, on the straight line there.
 
-    The more oblique the line, the nearer the target: somebody who comes along the wall would get
-    closer to a far target by walking past the door. With the square of the cosine, those who come
+    The more oblique the line, the nearer the target: on the way along a wall, walking past the door
+    would lead closer to a far target. With the square of the cosine, those who come
     from the front have the full distance.
     """
     away = np.hypot(qx - x, qy - y)

@@ -101,7 +101,7 @@ class Place:
         taken: NDArray[np.float64],
         rng: np.random.Generator,
     ) -> tuple[float, float]:
-        """Where somebody who has arrived at (x, y) is going to stand, metres.
+        """Where a person that has arrived at (x, y) is going to stand, metres.
 
         Args:
             x: metres.
