@@ -1,8 +1,8 @@
 """Exact collision tests of bodies of one to three discs along the facing.
 
 The discs turn with the facing, so the tests need it all along a path.  While a body turns, its
-discs are taken to move in straight lines from frame to frame, else from waypoint to waypoint.  Bodies of
-one disc get the tests of ``exact``.
+discs are taken to move in straight lines from frame to frame, else from waypoint to waypoint.
+Bodies of one disc get the tests of ``exact``.
 """
 
 from __future__ import annotations

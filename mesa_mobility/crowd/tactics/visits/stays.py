@@ -27,8 +27,8 @@ _WALKING = -1
 class Stays(Saved):
     """The people who stay at a place of their route. Rows are those of the crowd.
 
-    People who arrive get a spot to stand at, walk there, and stand from then on. Nothing is computed
-    before the first has arrived.
+    People who arrive get a spot to stand at, walk there, and stand from then on. Nothing is
+    computed before the first has arrived.
     """
 
     saved = ("_place", "_spot", "_came", "_stay", "_until")
