@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import typer
 
-from mesa_mobility.commands import experiment, new, plugins
+from mesa_mobility.commands import experiment
 from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.explain import explain
 from mesa_mobility.commands.maps.app import app as maps
+from mesa_mobility.commands.plugins import listing, new
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
@@ -41,5 +42,5 @@ app.command("explain")(explain)
 app.add_typer(maps, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")
-app.command("models")(plugins.models)
-app.command("behaviors")(plugins.behaviors)
+app.command("models")(listing.models)
+app.command("behaviors")(listing.behaviors)
