@@ -163,7 +163,7 @@ class Yielding(Tactic):
         self._courses = np.zeros((len(self._corridors), self._courses.shape[1]), dtype=np.int8)
 
     def _waiting(self, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """(n,) whether people wait on an order, or stay at a place."""
+        """(n,) whether people wait because they were told to, or stay at a place."""
         waiting: NDArray[np.bool_] = (
             self._model.crowd.agenda["waits_until"][rows] > self._model.frame
         )

@@ -121,7 +121,7 @@ class Following(Tactic):
         desired.points, desired.speeds = desired.points.copy(), desired.speeds.copy()
         desired.points[who] = np.where(stands[:, None], here, points)
         desired.speeds[who] = np.where(stands, 0.0, speed)
-        # Followers who stand behind their leader stay patient.
+        # Who stands behind its leader stays patient.
         waits = crowd.agenda["waits_until"]
         waits[rows[who[stands]]] = np.maximum(waits[rows[who[stands]]], self._model.frame + 1)
 

@@ -189,7 +189,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def waiting(self) -> bool:
-        """Whether the person waits: by ``wait``, at a place it visits, or before it sets off."""
+        """Whether the person waits: told to, at a place that it visits, or before it sets off."""
         return bool(self.model.crowd.agenda["waits_until"][self.row] > self.model.frame)
 
     @property

@@ -14,7 +14,7 @@ from mesa_mobility.errors import ModelError
 LONGEST_WAIT = 1e6
 """Longest wait in seconds; eleven days."""
 
-_UNTIL_CONDITION = np.iinfo(np.int32).max
+_UNTIL_TOLD = np.iinfo(np.int32).max
 
 
 def frames_of(seconds: NDArray[np.float64], name: str) -> NDArray[np.int64]:
@@ -59,7 +59,7 @@ class Waits:
             raise ModelError(f"wait: until is {until!r}, expected a function without arguments")
         if until is not None:
             self._conditions[row] = until
-            crowd.agenda["waits_until"][row] = _UNTIL_CONDITION
+            crowd.agenda["waits_until"][row] = _UNTIL_TOLD
         else:
             self._conditions.pop(row, None)
             frames = frames_of(np.array([seconds], dtype=np.float64), "wait")
@@ -70,7 +70,7 @@ class Waits:
         if not self._conditions:
             return
         until = crowd.agenda["waits_until"]
-        for row in rows[until[rows] == _UNTIL_CONDITION].tolist():
+        for row in rows[until[rows] == _UNTIL_TOLD].tolist():
             if self._conditions[row]():
                 del self._conditions[row]
                 until[row] = frame
