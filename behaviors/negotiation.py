@@ -26,7 +26,7 @@ STUCK = 10.0
 """Seconds without progress after which the others give way."""
 
 STOPS = 2.5
-"""Metres in which somebody who walks comes to a halt: the longest movement at walking speed."""
+"""Metres in which a walker comes to a halt: the longest movement at walking speed."""
 
 OFF = 0.45
 """Metres aside of the way from which on somebody leaves it to others."""

@@ -21,7 +21,7 @@ ARRIVED = 0.15
 """Metres from its place at which somebody stands."""
 
 FACING = 0.1
-"""Metres before somebody who stands, towards where it wants to go: people turn round while they
+"""Metres in front of a person who stands, towards its target: people turn round while they
 wait, for which there is no room at a jamb."""
 
 ASIDE = 0.8
@@ -91,7 +91,7 @@ class Yielding(Tactic):
         self._courses = np.zeros((0, 0), dtype=np.int8)
 
     def bind(self, model: PedestrianModel) -> None:
-        """Keep the model, whose people may be told to wait."""
+        """Keep the model, whose orders to wait are heeded."""
         self._model = model
         self._widest = max(each.half_width for each in model.pedestrian_types)
         self._narrowest = min(each.least_core for each in model.pedestrian_types)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.distributions import strata
+from mesa_mobility.distributions.base import strata
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:

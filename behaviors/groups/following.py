@@ -36,9 +36,9 @@ _CLEARANCE = 0.2
 class Following(Tactic):
     """People walk behind a leader, at its speed, and leave by the exit by which it has left.
 
-    Who sees its leader closes up to ``distance``, and then walks as fast as it does. Who does not
-    see it walks along the leader's trail. Nobody walks faster than it prefers, so that a leader who
-    hurries loses its people. Behind one leader people are a bunch: the k-th keeps as far away as a
+    Followers who see their leader close up to ``distance``, and then walk as fast as it does. The
+    others walk along its trail. Nobody walks faster than it prefers, so that a leader who hurries
+    loses its people. Behind one leader people are a bunch: the k-th keeps as far away as a
     half circle with k people, one to each m2, reaches. A leader may follow another.
 
     People who walk behind somebody match its speed, rather than keep a certain distance (Rio, Rhea
@@ -136,7 +136,7 @@ class Following(Tactic):
             self._trails[leader] = trail
 
     def _exit_near(self, deciding: Deciding, place: NDArray[np.float64]) -> str | None:
-        """Name of the exit by which somebody who is at a place now, metres, must have left."""
+        """Name of the exit by which a person now at this place, metres, must have left."""
         away = {each.line.distance(shapely.Point(place)): each for each in deciding.site.plan.exits}
         return away[min(away)].name if away and min(away) <= _BEYOND else None
 

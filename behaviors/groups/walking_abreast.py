@@ -27,8 +27,8 @@ _SOON = 0.4
 # radians.
 _WITHIN, _TURN = 1.5, 0.5
 
-# Seconds within which somebody who is behind or ahead gets to its place, and the shares of its
-# pace between which it does so.
+# Seconds within which a member behind or ahead gets to its place, and the shares of its pace
+# between which it does so.
 _CATCHES_UP, _LEAST, _FASTEST = 1.5, 0.5, 1.3
 
 

@@ -84,7 +84,7 @@ class Counter:
 class Queueing(Tactic):
     """People who are to be served line up before their counter, in the order in which they come.
 
-    Who comes within a metre of the end of the line joins it, and moves up as those before it do.
+    They join the line within a metre of its end, and move up as those before them do.
     The first steps up to the counter, is served and goes on with its route. In the line people
     are patient.
 

@@ -1,18 +1,19 @@
 """The command line, assembled from its commands.
 
-Whatever is slow to import is imported where it is used, so that help and errors come at once.
+Slow imports are made where they are used, so that help and errors come at once.
 """
 
 from __future__ import annotations
 
 import typer
 
-from mesa_mobility.commands import experiment, new, plugins
+from mesa_mobility.commands import experiment
 from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.explain import explain
 from mesa_mobility.commands.maps.app import app as maps
 from mesa_mobility.commands.plan import plan
+from mesa_mobility.commands.plugins import listing, new
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
@@ -43,5 +44,5 @@ app.command("plan")(plan)
 app.add_typer(maps, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")
-app.command("models")(plugins.models)
-app.command("behaviors")(plugins.behaviors)
+app.command("models")(listing.models)
+app.command("behaviors")(listing.behaviors)

@@ -47,7 +47,7 @@ def explain(
 
     The run is repeated up to the decision, and compared with what was saved.
     """
-    from mesa_mobility.commands.repeating import decision_frame, repeat_decision
+    from mesa_mobility.commands.models.repeating import decision_frame, repeat_decision
     from mesa_mobility.results.run import read_run
 
     found = read_run(run)

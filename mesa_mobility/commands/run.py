@@ -12,7 +12,6 @@ from typing import Annotated, Any
 import typer
 
 from mesa_mobility._startup import nothing_collected
-from mesa_mobility.commands.behaviors import use_behaviors
 from mesa_mobility.commands.console import (
     answer_json,
     answer_table,
@@ -20,7 +19,8 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
-from mesa_mobility.commands.making import (
+from mesa_mobility.commands.models.behaviors import use_behaviors
+from mesa_mobility.commands.models.making import (
     Behaviors,
     MapFile,
     Seed,

@@ -9,9 +9,9 @@ from typing import Annotated
 import typer
 
 from mesa_mobility._startup import nothing_collected
-from mesa_mobility.commands.behaviors import use_behaviors
 from mesa_mobility.commands.console import say
-from mesa_mobility.commands.making import (
+from mesa_mobility.commands.models.behaviors import use_behaviors
+from mesa_mobility.commands.models.making import (
     Behaviors,
     MapFile,
     Seed,

@@ -245,7 +245,7 @@ class Dynamics(Saved):
         scene.journeys.advance(
             deciding, model.frame, scene.crowd, scene.repertoire.table, model.rng
         )
-        model.waits.ask(deciding, model.frame, scene.crowd)
+        model.waits.evaluate(deciding, model.frame, scene.crowd)
         # The crowd has the rest of the targets by then, so they can be freed here.
         order = decision_order(deciding, self._set_targets(deciding, inside))
         self._scheduler.take(

@@ -31,8 +31,8 @@ from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.state.advance import move
 from mesa_mobility.crowd.state.aggregates import aggregate, split_active
 from mesa_mobility.crowd.state.departed import merge, move_on, walk_on
-from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.crowd.tactics.impatience import pick, turn
 from mesa_mobility.crowd.tactics.turns import find_mouths, give_turns
 from mesa_mobility.floorplan.routing.passages import Passages

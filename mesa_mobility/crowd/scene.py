@@ -15,7 +15,7 @@ from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd
-from mesa_mobility.crowd.tactics.journeys import Journeys
+from mesa_mobility.crowd.tactics.visits.journeys import Journeys
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.populations import Population
 

@@ -67,7 +67,7 @@ class StallWatch(Saved):
         """
         elapsed = frame * FRAME_SECONDS
         now = (gone, seen.going, crossed)
-        # Others may be standing because of somebody who has not set off yet.
+        # Others may be standing because one person has not set off yet.
         if seen.awaited or now != self._mark:
             self._begin(elapsed, rows, crowd)
             self._mark = now

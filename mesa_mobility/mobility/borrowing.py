@@ -1,7 +1,7 @@
 """Standing and turning on the spot for recordings that do not show it: those of another map.
 
-Somebody who cannot stand cannot wait, nor set off from rest; somebody who cannot turn on the spot
-stays in a corner for ever. Where nobody stands, the other map gives its standing cluster with all
+Without standing, people cannot wait or set off from rest; without turns on the spot, they stay in
+a corner for ever. Where nobody stands, the other map gives its standing cluster with all
 options from there. Each cluster gets the options that end in it, from the pose most alike that has
 such options; so it does where people stand but options do not lead back to that. Where they do not
 turn on the spot, the other map gives its turns, and where they do not step aside either way and

@@ -28,7 +28,7 @@ LEAST_SECONDS = 5.0
 """Least time of all recordings together: a few steps of a walk, a start and a stop."""
 
 LEAST_WAY = 0.4
-"""Metres that somebody who walks covers within 1.5 s at some time."""
+"""Metres that a walker covers within 1.5 s at some time."""
 
 Progress = Callable[[str, int, int], None]
 

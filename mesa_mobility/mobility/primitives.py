@@ -3,7 +3,7 @@
 The state is the speed, in bins. In an option the speed changes evenly from one bin to another, and
 the rate of turn is one of a few in each part of it, all within the limits of the drive: motion
 primitives of a state lattice (Pivtoraiko, Knepper and Kelly 2009). The wheels do not slip: each
-step leads along the heading, and there is no step to the side. Who stands turns on the spot.
+step leads along the heading, and there is no step to the side. From rest it turns on the spot.
 """
 
 from __future__ import annotations

@@ -120,6 +120,47 @@ def discs_of(value: ArrayLike, person: IntArray) -> FloatArray:
     return read_only(discs)
 
 
+def last_frame_of(given: int | None, frame: IntArray) -> int:
+    """The last frame that was simulated; that of the last row where none is given.
+
+    Raises:
+        ResultsError: it is before the last row, or more than 32 bits hold.
+    """
+    last = int(frame[-1]) if len(frame) else 0
+    if given is None:
+        return last
+    if given < last:
+        raise ResultsError(
+            f"trajectories: last_frame is {given}, but there are rows of frame {last}"
+        )
+    if given > np.iinfo(np.int32).max:
+        raise ResultsError(
+            f"trajectories: last_frame is {given}, expected at most {np.iinfo(np.int32).max}"
+        )
+    return given
+
+
+def remaining_of(given: ArrayLike | None, present: IntArray, last_frame: int) -> IntArray:
+    """The people still inside in the last frame; all who have a row in it where none are given.
+
+    Args:
+        given: (k,) their numbers, or None.
+        present: those who have a row in the last frame.
+        last_frame: its number.
+
+    Raises:
+        ResultsError: somebody without a row in it.
+    """
+    inside = np.unique(whole_numbers("inside_at_end", present if given is None else given))
+    absent = np.setdiff1d(inside, present)
+    if len(absent):
+        raise ResultsError(
+            f"trajectories: person {absent[0]} is said to be inside at the end, but has no "
+            f"row in frame {last_frame}"
+        )
+    return read_only(inside)
+
+
 DATA_KINDS = "Uifb"
 """What data of people may be: texts, whole numbers, numbers, and whether something is so."""
 

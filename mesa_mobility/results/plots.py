@@ -30,12 +30,12 @@ from mesa_mobility.results.trajectories import Trajectories
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
-# Largest number of track pieces in a picture; more cannot be told apart and are slow to draw.
+# Largest number of track pieces in a picture; more cannot be distinguished and are slow to draw.
 MOST_PIECES = 250_000
 PAPER = "paper (Casburn et al. 2005, Fig. 7)"
 # Without the green of exits, the blue of doors and the pale yellow that is lost on white.
 TRACK_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.9, 256)))
-# Told apart with every kind of colour vision as far as twelve can be; those of the dashboard.
+# Distinguishable with every kind of colour vision as far as twelve can be; those of the dashboard.
 TYPE_COLOURS = (
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00",
     "#999999", "#5b3a93", "#8c510a", "#b5a300", "#00a6a6", "#b2182b",

@@ -12,14 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.columns import (
-    COLUMNS,
     checked_person_data,
     discs_of,
     in_order,
+    last_frame_of,
     one_dimensional,
     radii_of,
     read_only,
     real_numbers,
+    remaining_of,
     whole_numbers,
 )
 
@@ -116,29 +117,10 @@ class Trajectories:
         object.__setattr__(
             self, "person_data", checked_person_data(self.person_data, columns["person"], own)
         )
-        last = int(columns["frame"][-1]) if lengths["frame"] else 0
-        if self.last_frame is None:
-            object.__setattr__(self, "last_frame", last)
-        elif self.last_frame < last:
-            raise ResultsError(
-                f"trajectories: last_frame is {self.last_frame}, but there are rows of frame {last}"
-            )
-        elif self.last_frame > np.iinfo(np.int32).max:
-            raise ResultsError(
-                f"trajectories: last_frame is {self.last_frame}, expected at most "
-                f"{np.iinfo(np.int32).max}"
-            )
-        present = self.person[self.frame == self.last_frame]
-        if self.inside_at_end is None:
-            object.__setattr__(self, "inside_at_end", present)
-        inside = np.unique(whole_numbers("inside_at_end", self.remaining))
-        absent = np.setdiff1d(inside, present)
-        if len(absent):
-            raise ResultsError(
-                f"trajectories: person {absent[0]} is said to be inside at the end, but has no "
-                f"row in frame {self.last_frame}"
-            )
-        object.__setattr__(self, "inside_at_end", read_only(inside))
+        last = last_frame_of(self.last_frame, columns["frame"])
+        object.__setattr__(self, "last_frame", last)
+        present = self.person[self.frame == last]
+        object.__setattr__(self, "inside_at_end", remaining_of(self.inside_at_end, present, last))
 
     @classmethod
     def of(cls, model: Any) -> Trajectories:
@@ -311,19 +293,9 @@ class Trajectories:
 
         Texts, such as the type, are categories.
         """
-        import pandas as pd
+        from mesa_mobility.results.formats.export import to_pandas
 
-        columns: dict[str, Any] = {name: getattr(self, name) for name in COLUMNS}
-        columns |= self.fields
-        for name, values in self.person_data.items():
-            if values.dtype.kind == "U":
-                texts, codes = np.unique(values, return_inverse=True)
-                columns[name] = pd.Categorical.from_codes(
-                    codes[self.person], categories=pd.Index(texts.tolist())
-                )
-            else:
-                columns[name] = values[self.person]
-        return pd.DataFrame(columns)
+        return to_pandas(self)
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Write a Parquet file: see :func:`mesa_mobility.results.write_parquet`."""

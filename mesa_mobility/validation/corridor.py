@@ -25,7 +25,7 @@ from mesa_mobility.verification.references import corridor_band
 from mesa_mobility.verification.scenarios.tracks.track import DENSITY_BIN, binned, track
 
 DENSITIES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
-ASKED = (0.5, 1.125, 1.625, 2.125, 3.125)
+AT_DENSITIES = (0.5, 1.125, 1.625, 2.125, 3.125)
 """Densities at which the speed must lie within the reference, persons/m2: bins of it."""
 WIDTH = 1.8
 RECORDED = replace(ADULTS, of=Normal(1.55, 0.18))
@@ -57,7 +57,7 @@ def _judged(runs: Runs, crowd: str) -> tuple[list[Check], dict[str, Any]]:
     """Checks and figures of one crowd, each prefixed with its name."""
     flat = [each for row in runs for each in row]
     checks: list[Check] = []
-    for density in ASKED:
+    for density in AT_DENSITIES:
         speeds = near(flat, density)
         low, _, high = corridor_band(density)
         median = float(np.median(speeds)) if len(speeds) >= 20 else None

@@ -126,7 +126,7 @@ def pairs(options):
     """Rows of options and of neighbours, and how far ahead and aside these will be."""
     rows, others = options.pairs()
     gap = options.predicted(rows, others) - options.points[rows]
-    # Who covers less than a centimetre looks where it wants to go.
+    # Below a centimetre the direction counts that leads to the target.
     aim = (options.targets - options.positions)[options.owner[rows]]
     stands = options.speeds[rows] * options.durations[rows] <= 0.01
     way = np.where(stands, np.arctan2(aim[:, 1], aim[:, 0]), options.headings[rows])

@@ -46,7 +46,7 @@ def cost(ending: Ending, *walls, **numbers) -> float:
 @pytest.mark.parametrize(
     ("ending", "wall", "expected"),
     [
-        # A metre wished for. The core touches the wall 0.2 m before one is there.
+        # A metre is wanted. The core touches the wall 0.2 m before one is there.
         (A_METRE_A_SECOND, across(1.0), 0.2),
         (A_METRE_A_SECOND, across(0.45), 0.75),
         (A_METRE_A_SECOND, across(1.2), 0.0),
@@ -55,7 +55,7 @@ def cost(ending: Ending, *walls, **numbers) -> float:
         (A_METRE_A_SECOND, across(0.1), 1.0),
         # The same speed for a shorter time.
         (Ending(displacement=0.4, duration=0.4), across(0.45), 0.75),
-        # 2 m wished for; half a metre by those who are slow or stand.
+        # 2 m are wanted; half a metre by slow and standing people.
         (Ending(displacement=3.0, duration=1.5), across(1.2), 0.5),
         (Ending(displacement=0.1, duration=0.4), across(0.45), 0.5),
         (STANDING, across(0.45), 0.5),
@@ -132,9 +132,9 @@ def test_the_worst_wall_counts_and_those_of_others_do_not():
 def test_default_numbers_are_used():
     term = RoomAhead()
     assert term.parameters() == (term.time, term.least)
-    # Half of the room that somebody who stands wishes for, and of what a walker does.
-    for ending, wished in ((STANDING, term.least), (A_METRE_A_SECOND, max(term.time, term.least))):
-        options = one_option(ending, core=CORE, walls=[across(CORE + wished / 2.0)])
+    # Half of the room that a standing person wants, and half of what a walker wants.
+    for ending, wanted in ((STANDING, term.least), (A_METRE_A_SECOND, max(term.time, term.least))):
+        options = one_option(ending, core=CORE, walls=[across(CORE + wanted / 2.0)])
         assert term.cost(options) == pytest.approx([0.5])
 
 

@@ -58,8 +58,8 @@ def bound(x, y, radius, target, preferred, duration, start=(0.0, 0.0)):
         ((-1.5, 0.0), (0.0, 0.0), (5.0, 0.0), 1.0, 1.5, 3.0),  # the other way
         ((0.0, 1.5), (0.0, 0.0), (5.0, 0.0), 1.0, 1.5, 1.5 * math.sqrt(2.0)),  # across
         ((0.6, 0.0), (0.0, 0.0), (5.0, 0.0), 1.0, 0.4, 0.75),  # half a metre a second too fast
-        ((2.0, 1.0), (2.0, 1.8), (2.0, 0.0), 1.25, 0.8, 0.375),  # 1 m/s down; 1.25 m/s wished
-        ((1.24, 0.32), (1.0, 0.0), (4.0, 4.0), 0.5, 0.4, 0.75),  # 1 m/s along 3-4-5; half wished
+        ((2.0, 1.0), (2.0, 1.8), (2.0, 0.0), 1.25, 0.8, 0.375),  # 1 m/s down; 1.25 m/s desired
+        ((1.24, 0.32), (1.0, 0.0), (4.0, 4.0), 0.5, 0.4, 0.75),  # 1 m/s along 3-4-5; half desired
         ((0.3, 0.4), (0.0, 0.0), (0.0, 0.0), 1.0, 1.5, 0.5),  # at the target one wants to stay
         ((0.3, 0.4), (0.0, 0.0), (9.0, 0.0), 0.0, 0.4, 1.875),  # so with no way to go
     ],
@@ -73,7 +73,7 @@ def test_numbers_worked_out_by_hand(point, start, target, preferred, duration, e
 
 
 def test_a_near_target_does_not_slow_down():
-    # Half a metre away the wish is 1 m/s as well, not what would end at the target.
+    # Half a metre away the desired speed is 1 m/s as well, not what would end at the target.
     options = one_option(Ending((1.5, 0.0), displacement=1.5), target=(0.5, 0.0))
     assert PreferredVelocity().cost(options) == pytest.approx([0.0], abs=1e-12)
 
@@ -129,7 +129,7 @@ def test_no_option_of_a_group_costs_less_than_its_bound(
 
 
 def test_a_bound_is_worth_something():
-    # Wished: 1.5 m ahead. A group 0.5 m around the start comes within 1 m of it, in 1.5 s.
+    # Desired: 1.5 m ahead. A group 0.5 m around the start comes within 1 m of it, in 1.5 s.
     assert bound(0.0, 0.0, 0.5, (9.0, 0.0), 1.0, 1.5) == pytest.approx(1.0)
     assert bound(1.0, 0.0, 0.6, (9.0, 0.0), 1.0, 1.5) == 0.0
     assert bound(0.7, 0.2, 0.0, (9.0, 0.0), 1.0, 0.8) == pytest.approx(

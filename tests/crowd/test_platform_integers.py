@@ -6,7 +6,7 @@ from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.state.people_grid import build_grid
-from mesa_mobility.floorplan.routing import target_search
+from mesa_mobility.floorplan.routing import target_points, target_search
 
 MAKERS = ("arange", "array", "cumsum", "full", "ones", "zeros")
 
@@ -35,7 +35,9 @@ def walk():
 @pytest.fixture
 def counted():
     """How many combinations of types functions of the hot path are compiled for."""
-    functions = (decide, build_grid, *vars(target_search).values())
+    functions = (
+        decide, build_grid, *vars(target_search).values(), *vars(target_points).values()
+    )  # fmt: skip
     compiled = [each for each in functions if hasattr(each, "signatures")]
 
     def count():

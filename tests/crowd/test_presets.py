@@ -57,7 +57,7 @@ def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_short
 
 
 def test_only_in_the_default_do_people_look_for_a_way_round():
-    # Somebody who can but stand; its target stays for 5 s, and turns now and then later.
+    # A person that can only stand: its target stays for 5 s, and then turns now and then.
     for preset, turns in (("paper", False), ("default", True)):
         model = model_of(corridor(), make_map([[stand(), stand(45)]]), preset=preset, rng=1)
         person = put(model, 2.0, 2.0)

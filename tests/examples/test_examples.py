@@ -150,7 +150,7 @@ def test_giving_way(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.thorough
 def test_batch_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    narrow, middle, wide = numbers(r": (\S+) s, sd", run("batch_of_runs", capsys))
+    narrow, middle, wide = numbers(r": (\S+) s, sd", run("experiments/batch_of_runs", capsys))
 
     assert narrow > middle > wide
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from mesa_mobility.experiments import open_store
-from tests.cli.conftest import command
+from tests.commands.conftest import command
 
 # Many processes, which take minutes and count on a machine that is not loaded.
 pytestmark = pytest.mark.slow

@@ -33,7 +33,7 @@ def test_sixty_people_pass_both_doors_in_turn(doorway):
     once_over = crossings(rows, second.a, second.b)
     assert once_over == dict.fromkeys(range(60), 1)
     passed = crossings(rows, first.a, first.b)
-    # Who sways back over the line in a jam crosses it once more in the end.
+    # People who sway back over the line in a jam cross it once more in the end.
     assert set(passed) == set(range(60))
     assert all(times % 2 == 1 for times in passed.values())
 

@@ -16,16 +16,12 @@ from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.intrinsics import prefetch
 from mesa_mobility.compiled.simd import LANES, WIDE
 from mesa_mobility.crowd.collision.sampled import SLACK, Close, EgoPose, lay_ahead, off_box2
-from mesa_mobility.crowd.collision.simd_tests import (
-    drop_within,
-    extent,
-    levels_within,
-    places_within,
-)
+from mesa_mobility.crowd.collision.simd_boxes import extent, levels_within
+from mesa_mobility.crowd.collision.simd_tests import drop_within, places_within
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS, drop_beside, places_beside
 from mesa_mobility.crowd.options.option_groups import AT_X, AT_Y, LANE_FIELDS, OptionGroups
 from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
-from mesa_mobility.crowd.state.environment import MARGIN
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.records import CrowdState
 
 ALL_LANES = 2**LANES - 1

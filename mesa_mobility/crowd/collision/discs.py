@@ -1,8 +1,8 @@
 """Exact collision tests of bodies of one to three discs along the facing.
 
 The discs turn with the facing, so the tests need it all along a path.  While a body turns, its
-discs are taken to move in straight lines from frame to frame, else from knot to knot.  Bodies of
-one disc get the tests of ``exact``.
+discs are taken to move in straight lines from frame to frame, else from waypoint to waypoint.
+Bodies of one disc get the tests of ``exact``.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import internal
 from mesa_mobility.crowd.collision.exact import hits_wall, swept_collision
 from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.state.environment import MARGIN
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, facing_at_waypoint, position_at
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.floorplan.walls.geometry import segment_segment_distance2

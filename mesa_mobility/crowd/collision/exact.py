@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal
 from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, position_at, waypoint
 from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.floorplan.walls.geometry import segment_segment_distance2
 
 

@@ -16,10 +16,10 @@ from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.intrinsics import prefetch
 from mesa_mobility.compiled.simd import WIDE, lowest_bit
 from mesa_mobility.crowd.collision.discs import discs_touch, overhang_of
-from mesa_mobility.crowd.collision.simd_tests import near_box
+from mesa_mobility.crowd.collision.simd_boxes import near_box
 from mesa_mobility.crowd.collision.simd_transforms import samples_to_ego
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable, in_lines
-from mesa_mobility.crowd.state.environment import MARGIN
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, position_at
 from mesa_mobility.crowd.state.records import CrowdState
 

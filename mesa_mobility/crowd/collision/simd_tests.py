@@ -17,34 +17,27 @@ from numba import types
 from numba.core import cgutils
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import force_inlined
-from mesa_mobility.compiled.simd import LANES, SAMPLES, WIDE
+from mesa_mobility.compiled.simd import LANES, WIDE
 from mesa_mobility.compiled.twins import with_twin
 from mesa_mobility.compiled.vectors import (
     BIT,
-    DOUBLE,
     FLOAT,
     INT,
     LONG,
     Start,
-    across,
     bits_of,
-    less_of,
     load,
     load_one,
     load_three,
     more_of,
     same,
-    some_lanes,
     spread,
     start_of,
     store,
     whole,
 )
-from mesa_mobility.crowd.options.table import LEVELS
 
 NOTHING = np.float32(0.0)
-ENDLESS = np.float32(np.inf)
 
 
 def _away2(builder: Any, x: Any, y: Any, bodies: Start, at: Any, row: Any) -> tuple[Any, Any]:
@@ -214,113 +207,3 @@ def numbers_between(typingctx, values, at, above, up_to):
         return bits_of(builder, builder.and_(more, little))
 
     return types.int64(values, at, types.float64, types.float64), codegen
-
-
-@force_inlined()
-def near_box(
-    circles: NDArray[np.float32], at: int, row: int, x0: float, y0: float, x1: float, y1: float
-) -> int:
-    """Bits of those of 16 circles that reach into a box; arguments as of ``drop_within``."""
-    of = circles.flat
-    left, low, right, high = np.float32(x0), np.float32(y0), np.float32(x1), np.float32(y1)
-    bits = 0
-    for lane in range(WIDE):
-        x, y, radius = of[at + lane], of[at + row + lane], of[at + 2 * row + lane]
-        dx, dy = _beyond(x, left, right), _beyond(y, low, high)
-        bits |= int(dx * dx + dy * dy < radius * radius) << lane
-    return bits
-
-
-@force_inlined()
-def _beyond(place: np.float32, low: np.float32, high: np.float32) -> Any:
-    """How far a place is outside of an interval."""
-    away = low - place if low - place > place - high else place - high
-    return away if away > NOTHING else NOTHING
-
-
-def _plain_extent(
-    circles: NDArray[np.float32], at: int, row: int, n: int, dropped: NDArray[np.int32]
-) -> tuple[float, float, float, float]:
-    of = circles.flat
-    x0, y0, x1, y1 = ENDLESS, ENDLESS, -ENDLESS, -ENDLESS
-    for k in range(n):
-        if dropped[k] == 0:
-            x, y, radius = of[at + k], of[at + row + k], of[at + 2 * row + k]
-            x0, y0 = min(x0, x - radius), min(y0, y - radius)
-            x1, y1 = max(x1, x + radius), max(y1, y + radius)
-    return np.float64(x0), np.float64(y0), np.float64(x1), np.float64(y1)
-
-
-@with_twin(_plain_extent)
-def extent(typingctx, circles, at, row, n, dropped):
-    """A box around those of n circles that are not dropped: least x and y, greatest x and y.
-
-    Arguments as of ``drop_within``. If all are dropped, it is empty: the least are inf, the
-    greatest -inf.
-    """
-
-    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        begin = start_of(context, builder, sig.args[0], args[0])
-        marks = start_of(context, builder, sig.args[4], args[4])
-        at, row, n = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2, 3))
-        ends = [(less_of, np.inf)] * 2 + [(more_of, -np.inf)] * 2
-        found = [cgutils.alloca_once_value(builder, same(FLOAT, WIDE, end)) for _, end in ends]
-        wide = ir.Constant(LONG, WIDE)
-        with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
-            x, y, radius = load_three(builder, begin, builder.add(at, block), row, WIDE)
-            kept = builder.icmp_signed("==", load(builder, marks, block, WIDE), same(INT, WIDE, 0))
-            low = [builder.fsub(middle, radius) for middle in (x, y)]
-            high = [builder.fadd(middle, radius) for middle in (x, y)]
-            for (of_two, none), slot, value in zip(ends, found, low + high, strict=True):
-                value = builder.select(kept, value, same(FLOAT, WIDE, none))
-                builder.store(of_two(builder, value, builder.load(slot)), slot)
-        box = [
-            builder.fpext(across(builder, builder.load(slot), of_two), DOUBLE)
-            for (of_two, _), slot in zip(ends, found, strict=True)
-        ]
-        return context.make_tuple(builder, sig.return_type, box)
-
-    return types.UniTuple(types.float64, 4)(circles, at, row, n, dropped), codegen
-
-
-def _plain_levels_within(
-    ahead: NDArray[np.float32], at: int, row: int, spans: NDArray[np.float32], apart: float
-) -> int:
-    of, most = ahead.flat, np.float32(apart) * np.float32(apart)
-    bits = 0
-    for level in range(len(LEVELS)):
-        sample = at + LEVELS[level]
-        dx = _beyond(of[sample], spans[0, level], spans[2, level])
-        dy = _beyond(of[sample + row], spans[1, level], spans[3, level])
-        bits |= int(dx * dx + dy * dy < most) << level
-    return bits
-
-
-@with_twin(_plain_levels_within)
-def levels_within(typingctx, ahead, at, row, spans, apart):
-    """Bits of the levels at which somebody is less than ``apart`` from a box.
-
-    ``ahead`` C-contiguous: x at the 16 samples from place ``at`` on, y ``row`` places farther on;
-    ``spans`` (4, levels), C-contiguous: least x and y, greatest x and y of the boxes.
-    """
-
-    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        begin = start_of(context, builder, sig.args[0], args[0])
-        spans = start_of(context, builder, sig.args[3], args[3])
-        at, row = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
-        width = len(LEVELS)
-        apart = spread(builder, builder.fptrunc(args[4], FLOAT), width)
-        off2 = []
-        for k in range(2):
-            samples = load(builder, begin, builder.add(at, row) if k else at, SAMPLES)
-            place = some_lanes(builder, samples, LEVELS)
-            low, high = (
-                load(builder, spans, ir.Constant(LONG, width * end), width) for end in (k, k + 2)
-            )
-            off = more_of(builder, builder.fsub(low, place), builder.fsub(place, high))
-            off = more_of(builder, off, same(FLOAT, width, 0.0))
-            off2.append(builder.fmul(off, off))
-        near = builder.fcmp_ordered("<", builder.fadd(*off2), builder.fmul(apart, apart))
-        return bits_of(builder, near)
-
-    return types.int64(ahead, at, row, spans, types.float64), codegen

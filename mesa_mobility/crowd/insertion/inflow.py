@@ -14,7 +14,7 @@ from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian_type import indices_of
 from mesa_mobility.crowd.scene import Scene
-from mesa_mobility.crowd.state.environment import passing_of
+from mesa_mobility.crowd.state.clearances import passing_of
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan.entrance import Entrance, read_entrance
 from mesa_mobility.populations import Population

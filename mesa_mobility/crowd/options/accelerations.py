@@ -1,7 +1,7 @@
 """Accelerations of movement options.
 
-A cluster joins poses of many speeds.  An option starts from one of them, and whoever is in the
-cluster may take it, so options exist that get from standing to a brisk walk within one step.
+A cluster joins poses of many speeds. An option starts from one of them but may be taken from any
+pose of the cluster, so some options lead from standing to a brisk walk within one step.
 People rarely do: of the recorded walkers' accelerations, 99 of 100 are below 1.1 m/s2, and of those
 of people inside measured crowds, 99 of 100 are below 0.6 to 0.8 m/s2.
 """

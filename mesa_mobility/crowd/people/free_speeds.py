@@ -30,8 +30,8 @@ def free_speeds(mobility_map: MobilityMap) -> Distribution:
     By the map's metadata, in this order:
 
     1. ``preferred_speed_m_s``: ``mean`` and ``standard_deviation`` of a published source, cut off
-       as many deviations from the mean as those of adults are, and below a quarter of it. Nobody
-       is told to walk faster than the ``p95`` of ``walking_speed_m_s``, if there is one.
+       as many deviations from the mean as those of adults are, and below a quarter of it. No
+       preferred speed exceeds the ``p95`` of ``walking_speed_m_s``, if there is one.
     2. ``walking_speed_m_s``: quantiles of the recorded speeds. The distribution is that of adults,
        scaled to the steady walk that was recorded.
     3. Neither: that of adults.

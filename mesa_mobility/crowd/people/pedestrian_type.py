@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.shapes import ONE_DISC, Discs, check_discs, core_of
 from mesa_mobility.crowd.people.free_speeds import free_speeds
-from mesa_mobility.distributions import EXTREMES, Distribution
+from mesa_mobility.distributions.base import EXTREMES, Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.map import CORE_RADIUS

@@ -42,8 +42,9 @@ from mesa_mobility.crowd.planning.evaluation.neighbour_costs import (
 from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, option_costs, wall_cost
 from mesa_mobility.crowd.planning.feasibility import option_gone_or_blocked
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
-from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 NONE = -1
 NOT_A_NUMBER = -2

@@ -36,10 +36,11 @@ from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.planning.grid import cover_in, neighbours_within, place_in
 from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Rules, Workspace
-from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import commit, to_world
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
 @entry_point()

@@ -23,10 +23,10 @@ from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTabl
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.paths import to_world
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 FREE, WALL, PERSON = 0, 1, 2
 """Verdicts on an option: it hits nothing, a wall, or a person."""

@@ -11,9 +11,9 @@ from mesa_mobility.compiled.decorators import internal
 from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
-from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.paths import commit
 from mesa_mobility.crowd.state.records import FALLBACK, CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 FALLBACK_FRAMES = 4
 """Frames of the fallback (section 6 of the paper)."""

@@ -15,9 +15,10 @@ from mesa_mobility.crowd.collision.sampled import SLACK, EgoPose, sampled_collis
 from mesa_mobility.crowd.collision.walls import path_off2
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
-from mesa_mobility.crowd.state.environment import MARGIN, Surroundings
+from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, to_world
 from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
 @internal()
@@ -151,7 +152,7 @@ def option_gone_or_blocked(
             if who >= 0:
                 return -2, who
     elif hard_bodies:
-        # Somebody who leaves on the way may miss the people ahead: the exact test decides.
+        # People who leave on the way may miss those ahead: the exact test decides.
         doubtful = now.found
         for a in range(now.found):
             work.unsure[a] = work.close.people[a].who

@@ -10,9 +10,9 @@ from mesa_mobility.crowd.collision.discs import body_collides, body_hits_wall, o
 from mesa_mobility.crowd.collision.exact import crosses_exit, near_walls
 from mesa_mobility.crowd.options.table import SAMPLES, OptionTable
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.paths import facing_at_waypoint, waypoint
 from mesa_mobility.crowd.state.records import NO_OPTION, CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
 @kept()

@@ -25,9 +25,9 @@ from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
 from mesa_mobility.crowd.planning.grid import headways
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
-from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.people_grid import Grid, build_grid
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.errors import ModelError
 
 

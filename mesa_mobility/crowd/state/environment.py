@@ -3,65 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.state.clearances import clearance_of, passing_of
 from mesa_mobility.crowd.state.corners import Corners
+from mesa_mobility.crowd.state.surroundings import Surroundings, survey
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Router, Targets
-from mesa_mobility.floorplan.routing.route_nodes import NODE_SHARE
-from mesa_mobility.floorplan.routing.router import Destination, is_point
-from mesa_mobility.floorplan.walls.wall_index import cell_table
-
-CELL_SIZE = 1.0
-
-BERTH = 0.05
-"""Metres by which routes keep clear of corners, in addition to the core radius."""
-
-
-MARGIN = 1e-4
-"""Metres added to every clearance, so that rounded results still keep it."""
-
+from mesa_mobility.floorplan.routing.targets import Destination, is_point
 
 _SLIM = 0.05
 """Clearance in metres of routes for a body so slim that only walls stop it."""
-
-
-class Surroundings(NamedTuple):
-    """Walls and exits, with a grid of nearby walls.
-
-    Fields: ``segments`` (w, 4) walls; ``x0``, ``y0``, ``nx``, ``ny``, ``size`` a grid of square
-    cells; ``offsets`` (nx * ny + 1,) and ``indices``: walls near each cell; ``exits`` (e, 4);
-    ``leads_out`` (destinations, e): whether people of a destination may leave there.
-    """
-
-    segments: NDArray[np.float64]
-    x0: float
-    y0: float
-    nx: int
-    ny: int
-    size: float
-    offsets: NDArray[np.int64]
-    indices: NDArray[np.int32]
-    exits: NDArray[np.float64]
-    leads_out: NDArray[np.bool_]
-
-
-def clearance_of(core: float) -> float:
-    """Clearance in metres that routes of bodies with this core radius keep from walls.
-
-    In narrow passages a route keeps ``NODE_SHARE`` of it, which must still hold the body.
-    """
-    return max(core + BERTH, (core + 2.0 * MARGIN) / NODE_SHARE)
-
-
-def passing_of(core: float) -> float:
-    """Half the width in metres of the narrowest gap that routes of such bodies lead through."""
-    return NODE_SHARE * clearance_of(core)
 
 
 class Environment(Saved):
@@ -147,7 +104,7 @@ class Environment(Saved):
             # All routers number destinations alike.
             for router in self._routers:
                 if router is not None:
-                    self._tell(router, names)
+                    self._add_destination(router, names)
         return number * self.bodies + body
 
     def _router(self, body: int) -> Router:
@@ -160,10 +117,10 @@ class Environment(Saved):
         """A router that knows all destinations by their numbers."""
         router = Router(plan, clearance=clearance)
         for names in self._destinations:
-            self._tell(router, names)
+            self._add_destination(router, names)
         return router
 
-    def _tell(self, router: Router, names: Destination) -> None:
+    def _add_destination(self, router: Router, names: Destination) -> None:
         if is_point(names):
             router.point(names)
         elif names is not None and any(gate.name == names[0] for gate in self.plan.gates):
@@ -211,7 +168,7 @@ class Environment(Saved):
             known._destinations.append(names)
             for router in known._routers:
                 if router is not None:
-                    known._tell(router, names)
+                    known._add_destination(router, names)
         return known
 
     def abreast(
@@ -302,38 +259,8 @@ class Environment(Saved):
         """Walls and exits as they are now."""
         if self._version != self.plan.version:
             self._version = self.plan.version
-            self._now = self._survey()
+            self._now = survey(self.plan, self._destinations, self.bodies, self._reach)
         return self._now
-
-    def _survey(self) -> Surroundings:
-        walls = self.plan.walls
-        cells = cell_table(walls, CELL_SIZE, self._reach)
-        exits = self.plan.exits
-        leads_out = np.array(
-            [
-                [
-                    self.plan.is_open(exit_.name) and (names is None or exit_.name in names)
-                    for exit_ in exits
-                ]
-                for names in self._destinations
-            ],
-            dtype=np.bool_,
-        )
-        return Surroundings(
-            segments=np.ascontiguousarray(walls),
-            x0=cells.x0,
-            y0=cells.y0,
-            nx=cells.nx,
-            ny=cells.ny,
-            size=cells.cell_size,
-            offsets=cells.offsets,
-            indices=cells.indices,
-            exits=np.array([[*e.a, *e.b] for e in exits], dtype=np.float64).reshape(-1, 4),
-            # A set of exits has one number for each core radius.
-            leads_out=leads_out.reshape(len(self._destinations), len(exits)).repeat(
-                self.bodies, axis=0
-            ),
-        )
 
 
 def _without_way(

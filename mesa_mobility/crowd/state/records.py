@@ -95,7 +95,7 @@ AGENDA = np.dtype(
         ("checked", "f8"),
         ("nearest", "f8"),
         ("since", "f8"),
-        ("wished", "f8"),
+        ("desired_speed", "f8"),
         ("behind", "f8"),
     ],
     align=True,
@@ -109,9 +109,8 @@ frame before which it does not walk; ``journey``, the number of its journey, 0 f
 number of its group, 0 for none; ``corner``, number of the next corner of its route;
 ``mouth``, number from 1 on of the mouth by which it is about to enter a narrow passage, minus that
 number if it leaves by the mouth, else 0; ``nearest``, shortest route so far, metres, and ``since``,
-time of its last progress, s;
-``wished``, the preferred speed of its last decision, m/s, and ``behind``, its accumulated distance
-error, metres.
+time of its last progress, s; ``desired_speed``, the preferred speed of its last decision, m/s, and
+``behind``, its accumulated distance error, metres.
 """
 
 

@@ -31,7 +31,7 @@ REACH = 4.0
 stop."""
 
 BESIDE_JAMB = 0.35
-"""Metres by which the way of somebody who goes by an opening may miss it: half a wide body."""
+"""Metres by which the way of a person going by an opening may miss it: half a wide body."""
 
 AT_JAMB = 0.05
 """Metres from a jamb within which somebody is up against it."""

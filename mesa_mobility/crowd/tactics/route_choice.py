@@ -24,7 +24,7 @@ class RouteChoice(TargetChoice):
 
     Subclasses set ``name`` and define ``routes``. Everybody chooses at its first decision, and
     again at random, every ``interval`` seconds on average. Between gates people take the shortest
-    way. Who has a route of its own keeps it. An object of this class serves one model.
+    way. People with a route of their own keep it. An object of this class serves one model.
 
     Args:
         interval: mean seconds between two choices; by default people choose once.

@@ -58,9 +58,9 @@ def _keep_pace(
         i = rows[k]
         seconds = (state[i].end - state[i].start) * FRAME_SECONDS
         walked = math.hypot(state[i].to_x - state[i].from_x, state[i].to_y - state[i].from_y)
-        short = agenda[i]["wished"] * seconds - walked
+        short = agenda[i]["desired_speed"] * seconds - walked
         behind = 0.0
         if state[i].option > NO_OPTION and abs(short) <= FREELY * seconds:
             behind = min(max(agenda[i]["behind"] + short, -MOST), MOST)
-        agenda[i]["behind"], agenda[i]["wished"] = behind, speeds[k]
+        agenda[i]["behind"], agenda[i]["desired_speed"] = behind, speeds[k]
         kept[k] = max(speeds[k] + behind / MAKES_UP, 0.0) if speeds[k] > 0.0 else speeds[k]

@@ -35,7 +35,7 @@ ASIDE = 0.3
 person's width."""
 
 BESIDE_JAMB = 0.15
-"""Share of a mouth's width by which the way of somebody who goes by it may miss it: people aim just
+"""Share of a mouth's width by which the way of a person going by may miss it: people aim just
 past a jamb."""
 
 _MISS = BESIDE_JAMB * FOR_TWO + 1e-6

@@ -85,7 +85,7 @@ class Waits:
             frames = frames_of(np.array([seconds], dtype=np.float64), "wait")
             crowd.agenda["waits_until"][row] = frame + frames[0]
 
-    def ask(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
+    def evaluate(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> None:
         """Evaluate the conditions of those in ``rows``; where one holds, the person goes on."""
         if not self._conditions:
             return

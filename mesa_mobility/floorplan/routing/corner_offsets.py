@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal, kept
 from mesa_mobility.floorplan.routing.route_graph import Ways
-from mesa_mobility.floorplan.routing.target_search import past_corner
+from mesa_mobility.floorplan.routing.target_points import past_corner
 from mesa_mobility.floorplan.walls.line_of_sight import clear_line, free_length
 from mesa_mobility.floorplan.walls.sight import NO_WALL, Sight
 from mesa_mobility.floorplan.walls.wall_distances import wall_distance

@@ -1,9 +1,7 @@
 """Shortest routes to exits and gates, and the target of each person."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias, TypeGuard
+from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
@@ -13,17 +11,17 @@ from mesa_mobility.compiled.threads import in_threads, shares
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.corner_offsets import pass_abreast
-from mesa_mobility.floorplan.routing.route_graph import Ways, edges_in_view
+from mesa_mobility.floorplan.routing.network import network, ways_of
+from mesa_mobility.floorplan.routing.route_graph import edges_in_view
 from mesa_mobility.floorplan.routing.route_nodes import (
     EDGE_SHARE,
     NODE_SHARE,
-    VIEW_SHARE,
-    Nodes,
     find_nodes,
     with_points,
 )
 from mesa_mobility.floorplan.routing.target_cache import empty_cache
 from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
+from mesa_mobility.floorplan.routing.targets import Destination, Targets, is_point
 from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
 from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
@@ -31,44 +29,6 @@ from mesa_mobility.floorplan.walls.sight import Sight, sight_of
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
-
-_KIND_NAMES = ("corner", "gate", "exit")
-
-
-Destination: TypeAlias = tuple[str, ...] | tuple[float, float] | None
-"""Names of exits, or of a gate; a point, metres; or None for all exits."""
-
-
-def is_point(destination: Destination) -> TypeGuard[tuple[float, float]]:
-    """Whether a destination is a point."""
-    return destination is not None and not isinstance(destination[0], str)
-
-
-@dataclass(frozen=True)
-class Targets:
-    """Targets of n people.
-
-    Attributes:
-        points: (n, 2) metres: behind a gate or exit to cross, or past a corner to walk around, as
-            far as the way on from there is in view. A person who cannot reach the destination gets
-            its own position.
-        gates: (n,) the gate or exit aimed through, as its number in `FloorPlan.openings()` (gates
-            first, then exits); -1 for a corner.
-        distances: (n,) length of the route to the line of the exit, or of the gate to cross, or to
-            the point, in metres; inf where there is none.
-        corners: (n, 2) the next corner of the route and the node after it, as their numbers in
-            `Router.graph`; -1 where the next node is a gate or exit. None if unknown.
-    """
-
-    points: NDArray[np.float64]
-    gates: NDArray[np.int64]
-    distances: NDArray[np.float64]
-    corners: NDArray[np.int64] | None = None
-
-    @cached_property
-    def nearest_first(self) -> NDArray[np.intp]:
-        """(n,) the people in rising order of distance; equal ones keep their order."""
-        return np.asarray(self.distances).argsort(kind="stable")
 
 
 class Router:
@@ -289,55 +249,14 @@ class Router:
         self._sight: Sight = sight_of(walls, np.concatenate(curtains), self._clearance)
         points = [each for each in self._destinations if is_point(each)]
         nodes = with_points(find_nodes(plan, self._sight, self._clearance), points)
-        self._ways = self._prepare(nodes, len(walls))
+        self._ways = ways_of(plan, nodes, len(walls), self._clearance, self._beyond)
         edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         self._edges = np.array(edges, dtype=np.int64).reshape(-1, 2)
         step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
-        self._graph = self._network(nodes)
+        self._graph = network(nodes, self._edges, self._edge_lengths, plan.openings())
         self._views = no_views(plan.bounds, len(nodes.kind))
         self._cache = empty_cache()
         self._distances, self._follow = {}, {}
         self._lengths = self._lengths[:0]
         self._version = plan.version
-
-    def _prepare(self, nodes: Nodes, walls: int) -> Ways:
-        openings = self._plan.openings()
-        curtains = np.full(len(openings), -1, dtype=np.int64)
-        for k, opening in enumerate(self._plan.open_exits()):
-            curtains[openings.index(opening)] = walls + k
-        lines = opening_segments(openings)
-        ends, passable = lines.copy(), np.zeros(len(openings), dtype=np.bool_)
-        for number in np.unique(nodes.opening[nodes.opening >= 0]):
-            places = nodes.xy[nodes.opening == number]
-            along = np.argsort(((places - lines[number, :2]) ** 2).sum(axis=1), kind="stable")
-            ends[number] = *places[along[0]], *places[along[-1]]
-            passable[number] = True
-        return Ways(
-            nodes.kind,
-            nodes.xy,
-            nodes.opening,
-            nodes.normal,
-            lines,
-            ends,
-            passable,
-            curtains,
-            VIEW_SHARE * self._clearance,
-            self._beyond,
-        )
-
-    def _network(self, nodes: Nodes) -> nx.DiGraph:
-        openings = self._plan.openings()
-        graph = nx.DiGraph()
-        for i, (x, y) in enumerate(nodes.xy.tolist()):
-            number = int(nodes.opening[i])
-            graph.add_node(
-                i,
-                kind=_KIND_NAMES[nodes.kind[i]],
-                position=(x, y),
-                opening=openings[number].name if number >= 0 else None,
-                direction=tuple(nodes.normal[i].tolist()) if number >= 0 else None,
-            )
-        pairs = zip(*self._edges.T.tolist(), self._edge_lengths.tolist(), strict=True)
-        graph.add_weighted_edges_from(pairs)
-        return graph

@@ -1,44 +1,27 @@
-"""Compiled search for the target of each person."""
+"""Compiled search for the node that each person aims at first."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import inlined, internal, kept
 from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
-from mesa_mobility.floorplan.routing.opening_points import (
-    nearest,
-    nearest_serves,
-    opening_behind,
-    place,
-)
+from mesa_mobility.floorplan.routing.opening_points import nearest_serves
 from mesa_mobility.floorplan.routing.route_graph import IN_LINE, Ways, in_view, side
-from mesa_mobility.floorplan.routing.route_nodes import CORNER, EXIT, GATE
+from mesa_mobility.floorplan.routing.route_nodes import CORNER, GATE
 from mesa_mobility.floorplan.routing.target_cache import keep, recall
+from mesa_mobility.floorplan.routing.target_points import aim_at
 from mesa_mobility.floorplan.routing.visibility_cache import (
     Views,
     has_room,
     is_known,
     nodes_maybe_in_view,
 )
-from mesa_mobility.floorplan.walls.geometry import segments_cross
-from mesa_mobility.floorplan.walls.line_of_sight import clear_line, free_length, unwalled
-from mesa_mobility.floorplan.walls.sight import NO_WALL, Sight
+from mesa_mobility.floorplan.walls.line_of_sight import unwalled
+from mesa_mobility.floorplan.walls.sight import Sight
 from mesa_mobility.floorplan.walls.wall_distances import wall_distance
-
-# A target behind a gate lies at least this far behind it, however near the next wall is (metres).
-_LEAST_BEYOND = 0.3
-
-# Somebody this near to the point where the route crosses a gate aims at the node after it, or a
-# step straight through could end where that node is out of view again (metres).
-_THROUGH = 0.05
 
 # Nodes tried in order of length before the nodes that may be in view are computed.
 _TRIES = np.int64(3)
-
-# How far past a corner people may aim, as shares of the distance beyond a gate; the first that
-# keeps the next node in view is taken.
-_PAST_CORNER = (0.5, 0.25, 0.125)
-
 
 UNSEEN = -2
 """Gate of a person whose target is not known yet."""
@@ -119,7 +102,7 @@ def aim(
             (
                 lengths[person], gates[person], points[person, 0], points[person, 1],
                 corner,
-            ) = _aim_at(sight, ways, x, y, node, to_go, after, own)  # fmt: skip
+            ) = aim_at(sight, ways, x, y, node, to_go, after, own)  # fmt: skip
             if corner >= 0:
                 corners[person, 0] = corner
                 corners[person, 1] = after[corner]
@@ -201,147 +184,3 @@ def _nearest_unwalled(
             least = away
             node = i
     return node
-
-
-@internal()
-def _aim_at(
-    sight: Sight,
-    ways: Ways,
-    x: float,
-    y: float,
-    node: int,
-    to_go: NDArray[np.float64],
-    after: NDArray[np.int64],
-    own: float,
-) -> tuple[float, int, float, float, int]:
-    """Route length, gate, target and corner of a person whose route starts with `node`."""
-    nx, ny = ways.xy[node]
-    length = np.hypot(nx - x, ny - y) + to_go[node]
-    corner = -1
-    qx, qy, away = place(sight, ways, x, y, node, after[node], own)
-    if ways.kind[node] == GATE and after[node] >= 0 and np.hypot(qx - x, qy - y) < _THROUGH:
-        node = after[node]
-        qx, qy, away = place(sight, ways, x, y, node, after[node], own)
-    elif ways.kind[node] == CORNER and after[node] >= 0:
-        corner = node
-        door, sx, sy = opening_behind(sight, ways, x, y, node, to_go, after, own)
-        if door >= 0:
-            node, qx, qy, away = door, sx, sy, length
-    opening = ways.opening[node]
-    if ways.kind[node] == CORNER and after[node] < 0:  # a point, at which the route ends
-        px, py = nx, ny
-    elif ways.kind[node] == CORNER:
-        px, py = past_corner(sight, ways, x, y, ways.xy[node, 0], ways.xy[node, 1], after[node])
-    else:
-        leaves = ways.kind[node] == EXIT
-        if after[node] < 0:
-            length = min(length, away)
-        px, py = _beyond(
-            sight, ways, x, y, qx, qy, ways.normal[node, 0], ways.normal[node, 1], leaves
-        )
-    gate = _gate_on_the_way(ways, x, y, px, py)
-    if gate >= 0 and gate != opening:
-        opening = gate
-        px, py = _through(sight, ways, x, y, px, py, gate, own)
-        corner = -1
-    return length, opening, px, py, corner
-
-
-@internal()
-def past_corner(
-    sight: Sight, ways: Ways, x: float, y: float, nx: float, ny: float, after: int
-) -> tuple[float, float]:
-    """The target at corner (nx, ny): straight past it, as far as the next node stays in view.
-
-    Somebody who aimed at the corner itself would slow down to stop on it, since every step beyond
-    leads away from it.
-    """
-    clearance = ways.view_clearance
-    away = np.hypot(nx - x, ny - y)
-    if away < 1e-6:
-        return nx, ny
-    for share in _PAST_CORNER:
-        px = nx + share * ways.beyond * (nx - x) / away
-        py = ny + share * ways.beyond * (ny - y) / away
-        if ways.kind[after] != CORNER and side(ways, after, px, py) > -IN_LINE:
-            continue
-        if clear_line(sight, nx, ny, px, py, clearance, np.inf, NO_WALL) and in_view(
-            sight, ways, px, py, after, ways.xy[after, 0], ways.xy[after, 1], clearance, np.inf
-        ):
-            return px, py
-    return nx, ny
-
-
-@internal()
-def _beyond(
-    sight: Sight,
-    ways: Ways,
-    x: float,
-    y: float,
-    qx: float,
-    qy: float,
-    normal_x: float,
-    normal_y: float,
-    leaves: bool,
-) -> tuple[float, float]:
-    """The target behind point q of an opening, on the straight line there.
-
-    The more oblique the line, the nearer the target: somebody who comes along the wall would get
-    closer to a far target by walking past the door. With the square of the cosine, those who come
-    from the front have the full distance.
-    """
-    away = np.hypot(qx - x, qy - y)
-    ux, uy = normal_x, normal_y
-    if away > 0.05 and (qx - x) * ux + (qy - y) * uy > 0.0:
-        ux, uy = (qx - x) / away, (qy - y) / away
-    along = max(0.0, ux * normal_x + uy * normal_y)
-    length = max(_LEAST_BEYOND, ways.beyond * along * along)
-    if not leaves:
-        seen = free_length(sight, qx, qy, qx + length * ux, qy + length * uy)
-        if seen < length:
-            length = max(_LEAST_BEYOND, seen - ways.view_clearance)
-    return qx + length * ux, qy + length * uy
-
-
-@inlined()
-def _gate_on_the_way(ways: Ways, x: float, y: float, px: float, py: float) -> int:
-    """The first gate that the line to a target crosses just before it, -1 for none."""
-    first = -1
-    nearest = np.inf
-    way = np.hypot(px - x, py - y)
-    for gate in range(len(ways.passable)):
-        if not ways.passable[gate] or ways.curtains[gate] >= 0:
-            continue
-        ax, ay, bx, by = ways.lines[gate]
-        if not segments_cross(x, y, px, py, ax, ay, bx, by):
-            continue
-        width = np.hypot(bx - ax, by - ay)
-        before = abs((x - ax) * (by - ay) - (y - ay) * (bx - ax)) / width
-        behind = abs((px - ax) * (by - ay) - (py - ay) * (bx - ax)) / width
-        to_gate = way * before / (before + behind)
-        if before > _THROUGH and way - to_gate < ways.beyond and to_gate < nearest:
-            nearest = to_gate
-            first = gate
-    return first
-
-
-@inlined()
-def _through(
-    sight: Sight, ways: Ways, x: float, y: float, px: float, py: float, gate: int, own: float
-) -> tuple[float, float]:
-    """Target behind a gate that lies on the straight line to (px, py)."""
-    ax, ay, bx, by = ways.lines[gate]
-    width = np.hypot(bx - ax, by - ay)
-    normal_x, normal_y = -(by - ay) / width, (bx - ax) / width
-    ahead = (px - x) * normal_x + (py - y) * normal_y
-    if ahead < 0.0:
-        normal_x, normal_y = -normal_x, -normal_y
-    qx, qy = nearest(ways.ends[gate], x, y)
-    if not (
-        clear_line(sight, x, y, qx, qy, ways.view_clearance, own, NO_WALL)
-        and clear_line(sight, qx, qy, px, py, ways.view_clearance, np.inf, NO_WALL)
-    ):
-        share = ((ax - x) * normal_x + (ay - y) * normal_y) / abs(ahead)
-        qx = x + share * (px - x)
-        qy = y + share * (py - y)
-    return _beyond(sight, ways, x, y, qx, qy, normal_x, normal_y, np.bool_(False))

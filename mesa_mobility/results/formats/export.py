@@ -5,15 +5,17 @@ from __future__ import annotations
 import os
 import sqlite3
 import zlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.columns import COLUMNS
 
 if TYPE_CHECKING:
+    import pandas as pd
     import pedpy
 
     from mesa_mobility.results.trajectories import Trajectories
@@ -30,6 +32,23 @@ CREATE TABLE metadata (key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL
 CREATE TABLE geometry (hash INTEGER NOT NULL, wkt TEXT NOT NULL);
 CREATE TABLE frame_data (frame INTEGER NOT NULL, geometry_hash INTEGER NOT NULL);
 """
+
+
+def to_pandas(trajectories: Trajectories) -> pd.DataFrame:
+    """Trajectories as a data frame; see ``Trajectories.to_pandas``."""
+    import pandas as pd
+
+    columns: dict[str, Any] = {name: getattr(trajectories, name) for name in COLUMNS}
+    columns |= trajectories.fields
+    for name, values in trajectories.person_data.items():
+        if values.dtype.kind == "U":
+            texts, codes = np.unique(values, return_inverse=True)
+            columns[name] = pd.Categorical.from_codes(
+                codes[trajectories.person], categories=pd.Index(texts.tolist())
+            )
+        else:
+            columns[name] = values[trajectories.person]
+    return pd.DataFrame(columns)
 
 
 def to_pedpy(trajectories: Trajectories) -> pedpy.TrajectoryData:

@@ -23,7 +23,7 @@ def by_type(trajectories: Trajectories, key: str = "type") -> pd.DataFrame:
 
     Args:
         trajectories: the run.
-        key: by which of ``person_data`` people are told apart; ``"group"`` for instance.
+        key: which of ``person_data`` distinguishes people; ``"group"`` for instance.
 
     Returns:
         A row for each type, by name: ``people``, ``left``; ``mean_egress_s`` and ``p95_egress_s``,

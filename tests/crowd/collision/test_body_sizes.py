@@ -11,8 +11,8 @@ from shapely import Polygon, box, union_all
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel, PedestrianType
 from mesa_mobility.crowd.insertion.placement import check_beside_walls
 from mesa_mobility.crowd.state import environment
+from mesa_mobility.crowd.state.clearances import clearance_of
 from mesa_mobility.crowd.state.corners import Corners
-from mesa_mobility.crowd.state.environment import clearance_of
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import Router
 from tests.fixtures.maps import shipped_map

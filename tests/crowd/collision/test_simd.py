@@ -17,11 +17,9 @@ from mesa_mobility.compiled.simd import (
     place_of_least,
     press_numbers,
 )
+from mesa_mobility.crowd.collision.simd_boxes import extent, levels_within, near_box
 from mesa_mobility.crowd.collision.simd_tests import (
     drop_within,
-    extent,
-    levels_within,
-    near_box,
     numbers_between,
     places_near,
     places_within,

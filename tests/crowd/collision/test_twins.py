@@ -7,7 +7,7 @@ from numba import njit
 
 from mesa_mobility.compiled import simd
 from mesa_mobility.compiled.simd import LANES, SAMPLES, WIDE
-from mesa_mobility.crowd.collision import simd_tests, simd_transforms, walls
+from mesa_mobility.crowd.collision import simd_boxes, simd_tests, simd_transforms, walls
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS
 from mesa_mobility.crowd.options.table import LEVELS
 
@@ -18,10 +18,10 @@ _bits_beside = njit(walls._plain_places_beside)
 _path_off2 = njit(walls._plain_path_off2)
 _lay = njit(simd_transforms._plain_lanes_to_world)
 _sample = njit(simd_transforms._plain_samples_to_ego)
-_levels = njit(simd_tests._plain_levels_within)
+_levels = njit(simd_boxes._plain_levels_within)
 _any = njit(simd._plain_any_of)
 _little = njit(simd._plain_no_more_than)
-_extent = njit(simd_tests._plain_extent)
+_extent = njit(simd_boxes._plain_extent)
 _near = njit(simd_tests._plain_places_near)
 _between = njit(simd_tests._plain_numbers_between)
 _compress = njit(simd._plain_compress)
@@ -115,7 +115,7 @@ def test_where_options_end(seed, group, at, angle):
 @njit
 def _ahead_by_hand(paths, path, first, share, c, s, x, y, to, spans, apart):
     simd_transforms.samples_to_ego(paths, path, first, share, c, s, x, y, to, SAMPLES, 2 * SAMPLES)
-    return simd_tests.levels_within(to, SAMPLES, 2 * SAMPLES, spans, apart)
+    return simd_boxes.levels_within(to, SAMPLES, 2 * SAMPLES, spans, apart)
 
 
 @given(seeds, st.integers(0, 15), st.floats(0.0, 1.0), st.floats(-4.0, 4.0), st.floats(0.0, 1.0))
@@ -167,7 +167,7 @@ def test_what_holds_for_eight_numbers(values, others, at, most, x, y):
 
 @njit
 def _extent_by_hand(circles, at, row, n, dropped):
-    return simd_tests.extent(circles, at, row, n, dropped)
+    return simd_boxes.extent(circles, at, row, n, dropped)
 
 
 @given(seeds, st.integers(1, 40))

@@ -65,10 +65,10 @@ def by_reach(term, person) -> list[float]:
 
 def test_wall_kernels_count_for_the_worst_wall(whole):
     # From (0.4, 1) to the right by 0, 0.5, 1 and 1.875 m. The core of 0.15 m has 0.85 m to the wall
-    # below all the time, and 0.25, 0.75, 1.25 and 2.125 m to the one behind; a metre is wished for.
+    # below all the time, and 0.25, 0.75, 1.25 and 2.125 m to the one behind; a metre is wanted.
     person = put(model_of(corridor(), strider(), preset=whole), 0.4, 1.0)
     assert by_reach(KeepOff(), person) == pytest.approx([0.75, 0.25, 0.15, 0.15], abs=1e-6)
-    assert by_reach(KeepOff(wished=0.5), person) == pytest.approx([0.5, 0.0, 0.0, 0.0], abs=1e-6)
+    assert by_reach(KeepOff(wanted=0.5), person) == pytest.approx([0.5, 0.0, 0.0, 0.0], abs=1e-6)
 
 
 def test_wall_kernels_see_walls_that_an_option_could_touch(whole):

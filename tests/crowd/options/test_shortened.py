@@ -62,7 +62,7 @@ def test_who_is_no_faster_than_somebody_who_stands_ends_up_standing():
         (5, STANDING),  # as slow, and turning by 0.31 rad/s
         (6, WALKING),
     ]
-    # Who stays in place stands, turning or not.
+    # Staying in place is standing, turning or not.
     assert shortened(parts, 0.0) == [(0, STANDING), (5, STANDING), (6, STANDING)]
 
 

@@ -100,7 +100,7 @@ def test_gates_are_crossed_on_the_way_out():
     assert model.inside == 0
     rows = model.recorder.arrays()
     passed = crossings(rows, gate.a, gate.b)
-    # Who sways back over the line in a jam crosses it once more in the end.
+    # People who sway back over the line in a jam cross it once more in the end.
     assert all(times % 2 == 1 for times in passed.values())
     assert len(passed) == 25
     assert overlaps(rows, core_of(model)) == 0

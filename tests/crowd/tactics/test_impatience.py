@@ -130,7 +130,7 @@ def test_getting_nearer_or_another_way_starts_patience_anew(by, resets):
     assert untouched(crowd, 2.5 * PATIENCE) == resets
     if resets:
         assert untouched(crowd, 3.5 * PATIENCE)
-        # Who never has a way is never impatient.
+        # People without any way to go are never impatient.
         assert untouched(crowd, 3.6 * PATIENCE) == math.isinf(by)
 
 

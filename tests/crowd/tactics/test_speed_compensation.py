@@ -11,14 +11,14 @@ from tests.fixtures.maps import make_map, stand, straight
 from tests.fixtures.scenes import corridor, model_of, put
 
 
-def after(walked: float, *, wished: float = 1.25, frames: int = 45, behind: float = 0.0) -> Crowd:
-    """Somebody who wished for a speed and has walked so many metres in so many frames."""
+def after(walked: float, *, desired: float = 1.25, frames: int = 45, behind: float = 0.0) -> Crowd:
+    """A person with a desired speed that has walked so many metres in so many frames."""
     crowd = Crowd(1)
     crowd.from_x[:], crowd.from_y[:] = 2.0, -1.0
     # 3-4-5: a movement along neither axis.
     crowd.to_x[:], crowd.to_y[:] = 2.0 + 0.6 * walked, -1.0 + 0.8 * walked
     crowd.start[:], crowd.end[:], crowd.option[:] = 30, 30 + frames, 7
-    crowd.agenda["wished"], crowd.agenda["behind"] = wished, behind
+    crowd.agenda["desired_speed"], crowd.agenda["behind"] = desired, behind
     return crowd
 
 
@@ -42,7 +42,7 @@ def next_speed(crowd: Crowd, speed: float = 1.25) -> float:
 def test_by_hand(walked, behind, expected):
     crowd = after(walked, behind=behind)
     assert next_speed(crowd) == pytest.approx(expected)
-    assert crowd.agenda["wished"][0] == 1.25
+    assert crowd.agenda["desired_speed"][0] == 1.25
 
 
 def test_the_error_starts_anew_before_the_first_move_and_after_a_fallback():
@@ -62,17 +62,17 @@ def test_people_who_stand_stay():
 @settings(deadline=None)  # compiled at the first
 @given(
     walked=st.floats(0.0, 4.0),
-    wished=st.floats(0.0, 2.0),
+    desired=st.floats(0.0, 2.0),
     frames=st.sampled_from([12, 24, 45]),
     behind=st.floats(-MOST, MOST),
     speed=st.floats(0.0, 2.0),
 )
-def test_within_bounds(walked, wished, frames, behind, speed):
-    crowd = after(walked, wished=wished, frames=frames, behind=behind)
+def test_within_bounds(walked, desired, frames, behind, speed):
+    crowd = after(walked, desired=desired, frames=frames, behind=behind)
     got = next_speed(crowd, speed)
     assert got >= 0.0
     assert abs(got - speed) <= MOST / MAKES_UP + 1e-12
-    if abs(walked - wished * frames / 30.0) > FREELY * frames / 30.0 + 1e-9:
+    if abs(walked - desired * frames / 30.0) > FREELY * frames / 30.0 + 1e-9:
         assert got == speed
 
 

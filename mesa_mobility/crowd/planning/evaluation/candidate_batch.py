@@ -14,9 +14,9 @@ from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.planning.grid import people_within
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
 def pairs_of(

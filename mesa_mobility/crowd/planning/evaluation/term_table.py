@@ -22,9 +22,9 @@ from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates, pairs_of
 from mesa_mobility.crowd.planning.evaluation.option_costs import Terms
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.state.environment import Surroundings
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_given
 

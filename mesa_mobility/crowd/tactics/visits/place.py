@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.crowd.state.environment import passing_of
+from mesa_mobility.crowd.state.clearances import passing_of
 from mesa_mobility.crowd.tactics.visits.visit import Visit
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, line_of_sight, lines_of_sight
@@ -101,7 +101,7 @@ class Place:
         taken: NDArray[np.float64],
         rng: np.random.Generator,
     ) -> tuple[float, float]:
-        """Where somebody who has arrived at (x, y) is going to stand, metres.
+        """Where a person that has arrived at (x, y) is going to stand, metres.
 
         Args:
             x: metres.

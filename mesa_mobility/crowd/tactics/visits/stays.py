@@ -19,7 +19,7 @@ THERE = 0.3
 """Metres from its spot at which somebody stops."""
 
 GIVES_UP = 10 * FRAMES_A_SECOND
-"""Frames after which somebody who does not get to its spot stays where it is."""
+"""Frames after which a person who has not reached its spot stays where it is."""
 
 _WALKING = -1
 
@@ -27,8 +27,8 @@ _WALKING = -1
 class Stays(Saved):
     """The people who stay at a place of their route. Rows are those of the crowd.
 
-    Whoever arrives gets a spot to stand at, walks there, and stands from then on. Nobody costs
-    anything before the first has arrived.
+    People who arrive get a spot to stand at, walk there, and stand from then on. Nothing is
+    computed before the first has arrived.
     """
 
     saved = ("_place", "_spot", "_came", "_stay", "_until")

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesa_mobility.commands.behaviors import use_behaviors
-from mesa_mobility.commands.making import create_model, find_model, origin_of
+from mesa_mobility.commands.models.behaviors import use_behaviors
+from mesa_mobility.commands.models.making import create_model, find_model, origin_of
 from mesa_mobility.crowd import Explanation, PedestrianModel, Watch
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.results import Trajectories

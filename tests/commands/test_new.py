@@ -8,7 +8,7 @@ import tomllib
 
 import pytest
 
-from mesa_mobility.commands.behaviors import use_behaviors
+from mesa_mobility.commands.models.behaviors import use_behaviors
 from mesa_mobility.crowd import PedestrianModel
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import strider

@@ -2,6 +2,9 @@ import pytest
 
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins import registry
+from tests.commands.conftest import install, plugins
+
+__all__ = ["install", "plugins"]
 
 SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium", "mixed_evacuation"}
 SHIPPED_BEHAVIORS = {

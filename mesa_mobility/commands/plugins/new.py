@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from mesa_mobility.commands.console import say, some_path
-from mesa_mobility.commands.skeletons import (
+from mesa_mobility.commands.plugins.skeletons import (
     BEHAVIOR,
     BEHAVIOR_TEST,
     MODEL,

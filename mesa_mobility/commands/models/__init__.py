@@ -1,0 +1,1 @@
+"""The model that a command names: made, given behaviours, run again."""

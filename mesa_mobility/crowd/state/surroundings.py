@@ -1,0 +1,71 @@
+"""Walls and exits for compiled functions, with a grid of the walls near each place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.routing.targets import Destination
+from mesa_mobility.floorplan.walls.wall_index import cell_table
+
+CELL_SIZE = 1.0
+
+
+class Surroundings(NamedTuple):
+    """Walls and exits, with a grid of nearby walls.
+
+    Fields: ``segments`` (w, 4) walls; ``x0``, ``y0``, ``nx``, ``ny``, ``size`` a grid of square
+    cells; ``offsets`` (nx * ny + 1,) and ``indices``: walls near each cell; ``exits`` (e, 4);
+    ``leads_out`` (destinations, e): whether people of a destination may leave there.
+    """
+
+    segments: NDArray[np.float64]
+    x0: float
+    y0: float
+    nx: int
+    ny: int
+    size: float
+    offsets: NDArray[np.int64]
+    indices: NDArray[np.int32]
+    exits: NDArray[np.float64]
+    leads_out: NDArray[np.bool_]
+
+
+def survey(
+    plan: FloorPlan, destinations: Sequence[Destination], bodies: int, reach: float
+) -> Surroundings:
+    """Walls and exits of a floor plan as they are now.
+
+    Args:
+        plan: the floor plan.
+        destinations: exits, gate or point of each number of a destination.
+        bodies: number of distinct core radii, each of which has numbers of its own.
+        reach: how far from a person walls matter, metres.
+    """
+    walls = plan.walls
+    cells = cell_table(walls, CELL_SIZE, reach)
+    exits = plan.exits
+    leads_out = np.array(
+        [
+            [plan.is_open(exit_.name) and (names is None or exit_.name in names) for exit_ in exits]
+            for names in destinations
+        ],
+        dtype=np.bool_,
+    )
+    return Surroundings(
+        segments=np.ascontiguousarray(walls),
+        x0=cells.x0,
+        y0=cells.y0,
+        nx=cells.nx,
+        ny=cells.ny,
+        size=cells.cell_size,
+        offsets=cells.offsets,
+        indices=cells.indices,
+        exits=np.array([[*e.a, *e.b] for e in exits], dtype=np.float64).reshape(-1, 4),
+        # A set of exits has one number for each core radius.
+        leads_out=leads_out.reshape(len(destinations), len(exits)).repeat(bodies, axis=0),
+    )

@@ -1,0 +1,81 @@
+"""The route graph made of its nodes: arrays for compiled functions, a network for Python."""
+
+from typing import TYPE_CHECKING
+
+import networkx as nx
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.routing.route_graph import Ways
+from mesa_mobility.floorplan.routing.route_nodes import VIEW_SHARE, Nodes
+from mesa_mobility.floorplan.walls.boundaries import opening_segments
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+_KIND_NAMES = ("corner", "gate", "exit")
+
+
+def ways_of(plan: "FloorPlan", nodes: Nodes, walls: int, clearance: float, beyond: float) -> Ways:
+    """The route graph's nodes and openings, as arrays for compiled functions.
+
+    Args:
+        plan: the floor plan.
+        nodes: the nodes of the graph.
+        walls: number of walls of the plan, which the lines of open exits follow in the sight.
+        clearance: distance in metres that routes keep from walls.
+        beyond: how far behind a gate or exit the target lies, metres.
+    """
+    openings = plan.openings()
+    curtains = np.full(len(openings), -1, dtype=np.int64)
+    for k, opening in enumerate(plan.open_exits()):
+        curtains[openings.index(opening)] = walls + k
+    lines = opening_segments(openings)
+    ends, passable = lines.copy(), np.zeros(len(openings), dtype=np.bool_)
+    for number in np.unique(nodes.opening[nodes.opening >= 0]):
+        places = nodes.xy[nodes.opening == number]
+        along = np.argsort(((places - lines[number, :2]) ** 2).sum(axis=1), kind="stable")
+        ends[number] = *places[along[0]], *places[along[-1]]
+        passable[number] = True
+    return Ways(
+        nodes.kind,
+        nodes.xy,
+        nodes.opening,
+        nodes.normal,
+        lines,
+        ends,
+        passable,
+        curtains,
+        VIEW_SHARE * clearance,
+        beyond,
+    )
+
+
+def network(
+    nodes: Nodes,
+    edges: NDArray[np.int64],
+    lengths: NDArray[np.float64],
+    openings: tuple[Gate | Exit, ...],
+) -> nx.DiGraph:
+    """The route graph for Python, as ``Router.graph`` describes it.
+
+    Args:
+        nodes: its nodes.
+        edges: (k, 2) from and to which node.
+        lengths: (k,) metres.
+        openings: the gates and exits that nodes number.
+    """
+    graph = nx.DiGraph()
+    for i, (x, y) in enumerate(nodes.xy.tolist()):
+        number = int(nodes.opening[i])
+        graph.add_node(
+            i,
+            kind=_KIND_NAMES[nodes.kind[i]],
+            position=(x, y),
+            opening=openings[number].name if number >= 0 else None,
+            direction=tuple(nodes.normal[i].tolist()) if number >= 0 else None,
+        )
+    pairs = zip(*edges.T.tolist(), lengths.tolist(), strict=True)
+    graph.add_weighted_edges_from(pairs)
+    return graph

@@ -1,0 +1,15 @@
+"""What tests of `mesa-mobility map` share."""
+
+import json
+
+
+def last_line(outcome):
+    """The JSON that a command has written last."""
+    return json.loads(outcome.out.splitlines()[-1])
+
+
+def rows_of(recordings):
+    """Header, line of the frame time and rows of movement of the slow recording."""
+    lines = (recordings / "slow.bvh").read_text().splitlines()
+    first = lines.index("MOTION") + 3
+    return lines[: first - 2], lines[first - 1], lines[first:]
