@@ -13,7 +13,6 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
-from mesa_mobility.crowd.tactics.given import Given
 from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
@@ -23,6 +22,7 @@ from mesa_mobility.crowd.tactics.target_choice import (
     TargetChoice,
     query_targets,
 )
+from mesa_mobility.crowd.unchanged import Given
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.output import numbers_given

@@ -14,8 +14,8 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
-from mesa_mobility.crowd.tactics.given import Given
 from mesa_mobility.crowd.tactics.waiting import HELD, wait_until, waiting
+from mesa_mobility.crowd.unchanged import Given
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.output import numbers_given, whole_numbers_given
