@@ -7,7 +7,7 @@ import pytest
 
 from tests.dashboard.selectors import SHOWN
 
-README = Path(__file__).parents[2] / "README.md"
+README = Path(__file__).parents[3] / "README.md"
 
 PLAIN = """
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
