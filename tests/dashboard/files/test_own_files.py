@@ -4,9 +4,9 @@ import os
 from urllib.parse import urlsplit
 
 import pytest
+from tests.dashboard.test_own_models import PLAIN, inside
 
 from tests.dashboard.selectors import SHOWN
-from tests.dashboard.test_own_models import PLAIN, inside
 
 pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
 
