@@ -20,7 +20,7 @@ from mesa_mobility.crowd.state.records import NO_OPTION, Crowd, CrowdState
 FREELY = 0.1
 """A walker within this much of its preferred speed walks freely, m/s."""
 
-MOST = 0.15
+MOST = 0.25
 """Greatest distance error that is kept, metres."""
 
 MAKES_UP = 1.5
