@@ -33,8 +33,8 @@ def next_speed(crowd: Crowd, speed: float = 1.25) -> float:
         (1.95, 0.0, 1.20),  # 7.5 cm too far: 5 cm/s less for 1.5 s
         (1.80, 0.0, 1.30),
         (1.80, 0.06, 1.34),  # and 6 cm from before
-        (1.80, 0.60, 1.35),  # nobody is further behind than 15 cm
-        (1.95, -0.60, 1.15),
+        (1.80, 0.60, 17 / 12),  # nobody is further behind than 25 cm
+        (1.95, -0.60, 13 / 12),
         (1.70, 0.06, 1.25),  # 0.12 m/s too slow: it could not walk freely, and starts anew
         (2.05, 0.06, 1.25),
     ],

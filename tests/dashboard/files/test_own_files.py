@@ -4,7 +4,7 @@ import os
 from urllib.parse import urlsplit
 
 import pytest
-from tests.dashboard.test_own_models import PLAIN, inside
+from tests.dashboard.files.test_own_models import PLAIN, inside
 
 from tests.dashboard.selectors import SHOWN
 
