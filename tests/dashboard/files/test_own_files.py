@@ -4,8 +4,8 @@ import os
 from urllib.parse import urlsplit
 
 import pytest
-from tests.dashboard.files.test_own_models import PLAIN, inside
 
+from tests.dashboard.files.test_own_models import PLAIN, inside
 from tests.dashboard.selectors import SHOWN
 
 pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
