@@ -236,7 +236,9 @@ class Dashboard:
 
     def choose(self, name: str, option: str) -> None:
         """Pick from a list."""
-        self.page.locator(".v-select", has=self.page.get_by_label(name, exact=True)).click()
+        field = self.page.locator(".v-select", has=self.page.get_by_label(name, exact=True))
+        # Its middle may be the explanation below.
+        field.locator(".v-input__slot").click()
         self.page.locator(".v-menu__content.menuable__content__active .v-list-item").filter(
             has_text=re.compile(f"^{re.escape(option)}$")
         ).click()
