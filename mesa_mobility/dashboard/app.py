@@ -39,7 +39,7 @@ DECISIONS = {
 """Buttons that choose a view, and what they show."""
 
 MODELS = "a model; floor_plan takes a plan of your own"
-MODELS_AND_FILES = f"{MODELS}, and files ending in .py are models of your own"
+MODELS_AND_FILES = "floor_plan takes a plan of your own, .py files are models"
 
 TABS = {
     "Simulation": "The model that runs",
