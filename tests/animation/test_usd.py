@@ -114,6 +114,10 @@ def test_people_share_one_mesh(stage):
 
 
 def test_pixars_validators_find_nothing(stage):
+    from pxr import Usd
+
+    if Usd.GetVersion() < (0, 26, 11):
+        pytest.skip("the wheels of usd-core 25.8 and 25.11 lack a file that their validators open")
     validation = pytest.importorskip("pxr.UsdValidation")
     registry = validation.ValidationRegistry()
     context = validation.ValidationContext(registry.GetOrLoadAllValidators())

@@ -86,5 +86,5 @@ def test_coordinates_come_back_to_the_last_bit(tmp_path_factory, width, height):
         f"exit door LINESTRING ({width!r} 0, {width!r} {height!r})\n"
     )
     plan = FloorPlan.from_file(path)
-    assert plan.walkable.equals_exact(box)
+    assert plan.walkable.equals_exact(box, 0.0)
     assert (plan.exits[0].a, plan.exits[0].b) == ((width, 0.0), (width, height))
