@@ -70,6 +70,7 @@ def figures(run: Path) -> None:
 
     from mesa_mobility.bodies import PoseBank, body_motion, quality
     from mesa_mobility.bodies.rotations import angles
+    from mesa_mobility.results.bodies import track_of
     from mesa_mobility.results.run import read_run
 
     trajectories = read_run(run).trajectories
@@ -82,9 +83,7 @@ def figures(run: Path) -> None:
     for planted in (False, True):
         found = []
         for person in np.unique(trajectories.person).tolist():
-            rows = trajectories.rows_of(person)
-            columns = [getattr(trajectories, name)[rows] for name in ("x", "y", "heading")]
-            frames, track = trajectories.frame[rows].astype(np.int64), np.column_stack(columns)
+            frames, track = track_of(trajectories, person)
             movements = decisions.movements_of(person)
             found.append(quality(body_motion(bank, movements, frames, track, planted=planted)))
         slides, jumps = (

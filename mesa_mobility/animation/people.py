@@ -14,6 +14,7 @@ from mesa_mobility.bodies import BodyMotion, PoseBank
 from mesa_mobility.bodies.seated import seated_motion
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories
+from mesa_mobility.results.bodies import track_of
 
 
 @dataclass(frozen=True)
@@ -118,10 +119,7 @@ def walkers(
     for person in selection.people_of(trajectories):
         name = str(types[person]) if types is not None else ""
         if aid_of(name) == "wheelchair":
-            rows = trajectories.rows_of(person)
-            columns = (trajectories.x, trajectories.y, trajectories.heading)
-            track = np.column_stack([column[rows] for column in columns])
-            motion = seated_motion(trajectories.frame[rows], track)
+            motion = seated_motion(*track_of(trajectories, person))
         else:
             motion = trajectories.poses(person, bank=bank)
         there = np.flatnonzero((motion.frames >= first) & (motion.frames <= last))

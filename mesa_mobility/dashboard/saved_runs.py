@@ -8,9 +8,7 @@ from mesa_mobility.animation.page import page_text
 from mesa_mobility.dashboard import offered
 from mesa_mobility.dashboard.forms import Choice
 from mesa_mobility.errors import MobilityError, ResultsError
-from mesa_mobility.results.run import read_run, title_of
-
-SUMMARY, TRAJECTORIES = "summary.json", "trajectories.parquet"
+from mesa_mobility.results.run import SUMMARY, TRAJECTORIES, read_run, title_of
 
 LARGEST = 60_000_000
 """Letters of a page that is shown inside another one."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.state.environment import clearance_of
+from mesa_mobility.crowd.state.clearances import clearance_of
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.shipped import StayAtPlaces
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic

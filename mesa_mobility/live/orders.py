@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd import PedestrianModel
-from mesa_mobility.crowd.state.environment import passing_of
+from mesa_mobility.crowd.state.clearances import passing_of
 from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.errors import LiveError
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.bodies import BodyMotion, PoseBank, body_motion
 from mesa_mobility.bodies.motion import FRAME_RATE
@@ -40,10 +40,9 @@ def body_of(
             "the run has no decisions, from which bodies are drawn: record them with "
             "`mesa-mobility run --record decisions`"
         )
-    rows = trajectories.rows_of(person)
-    if not len(rows):
+    known, track = track_of(trajectories, person)
+    if not len(known):
         raise ResultsError(f"person {person}: not in this run of {trajectories.people} people")
-    known = trajectories.frame[rows].astype(np.int64)
     if trajectories.frame_rate != FRAME_RATE or np.any(np.diff(known) != 1):
         raise ResultsError(
             f"person {person}: expected each frame of its track at {FRAME_RATE:g} Hz"
@@ -53,6 +52,14 @@ def body_of(
     if bank is None:
         bank = PoseBank.of(digest)
     bank.check_map(digest)
-    track = np.column_stack([getattr(trajectories, name)[rows] for name in ("x", "y", "heading")])
     motion = body_motion(bank, decisions.movements_of(person), known, track)
     return motion if frames is None else motion.at(frames)
+
+
+def track_of(
+    trajectories: Trajectories, person: int
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Where one person is: (k,) frames, and (k, 3) x, y (metres) and heading (radians) in them."""
+    rows = trajectories.rows_of(person)
+    columns = (trajectories.x, trajectories.y, trajectories.heading)
+    return trajectories.frame[rows].astype(np.int64), np.column_stack([c[rows] for c in columns])

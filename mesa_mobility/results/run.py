@@ -18,13 +18,15 @@ from mesa_mobility.results.trajectories import Trajectories, read_parquet
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
+SUMMARY, TRAJECTORIES = "summary.json", "trajectories.parquet"
+
 RUN_FILES = (
-    "trajectories.parquet",
+    TRAJECTORIES,
     "decisions.parquet",
     "floorplan.geojson",
     "occupancy.png",
     "trajectories.png",
-    "summary.json",
+    SUMMARY,
 )
 
 
@@ -59,8 +61,8 @@ def write_run(
     title = title_of(summary, trajectories)
     with all_or_none(directory, RUN_FILES) as temporary:
         text = json_text(summary, indent=2) + "\n"
-        (temporary / "summary.json").write_text(text, encoding="utf-8")
-        trajectories.to_parquet(temporary / "trajectories.parquet")
+        (temporary / SUMMARY).write_text(text, encoding="utf-8")
+        trajectories.to_parquet(temporary / TRAJECTORIES)
         if trajectories.decisions is not None:
             trajectories.decisions.to_parquet(temporary / "decisions.parquet")
         plan.write_geojson(temporary / "floorplan.geojson")
@@ -101,17 +103,17 @@ def read_run(directory: str | os.PathLike[str]) -> Run:
 
     folder = Path(directory)
     try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise ResultsError(
             f"{folder}: no summary.json, expected the folder of a run, "
             "which `mesa-mobility run --out` writes"
         ) from None
     except (OSError, ValueError, RecursionError) as error:
-        raise ResultsError(f"{folder / 'summary.json'}: cannot be read: {error}") from error
+        raise ResultsError(f"{folder / SUMMARY}: cannot be read: {error}") from error
     if not isinstance(summary, dict):
-        raise ResultsError(f"{folder / 'summary.json'}: not a JSON object")
-    trajectories = read_parquet(folder / "trajectories.parquet")
+        raise ResultsError(f"{folder / SUMMARY}: not a JSON object")
+    trajectories = read_parquet(folder / TRAJECTORIES)
     decided = folder / "decisions.parquet"
     if decided.exists():
         trajectories = replace(trajectories, decisions=read_decisions(decided))

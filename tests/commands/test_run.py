@@ -8,16 +8,9 @@ import sys
 import pytest
 
 from mesa_mobility.results import read_parquet
+from tests.fixtures.interrupting import RUN_FILES
 
 pytestmark = pytest.mark.usefixtures("plugins")
-
-RUN_FILES = {
-    "summary.json",
-    "trajectories.parquet",
-    "floorplan.geojson",
-    "occupancy.png",
-    "trajectories.png",
-}
 
 
 def last_line(outcome):
