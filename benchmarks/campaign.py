@@ -38,8 +38,11 @@ ROUND: tuple[Case, ...] = (
     case(bottleneck, width=2.0),
     case(counterflow, opposing=100),
     case(shipped, model="auditorium"),
+    case(shipped, model="doorway", population="mixed"),
+    case(shipped, model="auditorium", population="mixed"),
+    case(shipped, model="mixed_evacuation"),
 )
-"""Scenarios, run in turn: in 500 runs 84 doorways, 251 bottlenecks, 124 counterflows, 41 halls."""
+"""Scenarios, run in turn; people of all types walk in a fifth of the runs."""
 
 PLANS: tuple[Case, ...] = tuple(
     case(random_plan, shape=shape, both_ways=both_ways)

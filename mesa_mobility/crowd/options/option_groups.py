@@ -30,9 +30,13 @@ from mesa_mobility.mobility import MobilityMap
 GROUP_SIZE = LANES
 """Most options in a group."""
 
-_TURN_M = 0.5
-_SPEED_S = 3.0
-"""Metres that a radian and a m/s count for when options are compared."""
+_VELOCITY_S = 6.0
+_TURN_M = 2.0
+"""Metres that a m/s and a radian count for when options are compared.
+
+The terms of the default preset that follow the mean velocity of an option have weights of 6 in
+all, and those that follow its facing of some 2 a radian.
+"""
 
 _SLACK = 1e-6
 """Added to the extent of a group for rounding: metres, radians, m/s."""
@@ -89,13 +93,15 @@ class OptionGroups(NamedTuple):
 def alike(mobility_map: MobilityMap, parts: Parts) -> NDArray[np.float64]:
     """(n, 8) features by which options are compared, all in metres.
 
-    They are the positions at the end, at 0.8 s and at 1.2 s, the final heading and the speed.
+    They are the mean velocity, the positions at 0.8 s and at 1.2 s, the final heading and the
+    speed.
     """
     places = sampled(mobility_map, parts, (SAMPLES - 1, LEVELS[1], LEVELS[2])).astype(np.float64)
     end = places[:, 0]
-    speed = np.hypot(end[:, 0], end[:, 1]) / (mobility_map.durations[parts.rows] * FRAME_SECONDS)
-    where = places[:, :, :2].reshape(len(places), 6)
-    return np.column_stack([where, _TURN_M * end[:, 2], _SPEED_S * speed])
+    velocity = end[:, :2] / (mobility_map.durations[parts.rows] * FRAME_SECONDS)[:, None]
+    speed = np.hypot(velocity[:, 0], velocity[:, 1])
+    on_the_way = places[:, 1:, :2].reshape(len(places), 4)
+    return np.column_stack([_VELOCITY_S * velocity, on_the_way, _TURN_M * end[:, 2], speed])
 
 
 @internal()

@@ -52,11 +52,11 @@ NOT_A_NUMBER = -2
 FEW = 16
 """Up to this many groups are opened at once, without bands."""
 
-FIRST_BAND = 0.15
+FIRST_BAND = 0.3
 """Width of the first band above the least bound, in which the best option mostly lies."""
 
-WIDENING = 2.0
-BANDS = 8
+WIDENING = 1.3
+BANDS = 12
 """Number of bands after which all other groups are opened."""
 
 CROWD = 10

@@ -10,7 +10,7 @@ from mesa_mobility.verification.runs import evacuate
 LIMIT_S = 900.0
 
 
-def shipped(seed: int, *, model: str) -> dict[str, Any]:
-    """A model that ships, with its own numbers, until everybody is out."""
-    run = evacuate(load_model(model)(record=True, rng=seed), LIMIT_S)
+def shipped(seed: int, *, model: str, **parameters: Any) -> dict[str, Any]:
+    """A model that ships, with its own numbers but for ``parameters``, until everybody is out."""
+    run = evacuate(load_model(model)(record=True, rng=seed, **parameters), LIMIT_S)
     return run.figures()
