@@ -29,3 +29,19 @@ def test_no_folder_with_modules_lacks_its_init_file():
     for root in (ROOT / "mesa_mobility", *(ROOT / folder for folder in BESIDE)):
         folders = {file.parent for file in root.rglob("*.py")}
         assert all((folder / "__init__.py").is_file() for folder in folders)
+
+
+def test_every_file_that_is_no_module_is_installed():
+    setuptools = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
+    installed = {
+        file
+        for package, patterns in setuptools["package-data"].items()
+        for pattern in patterns
+        for file in ROOT.joinpath(*package.split(".")).glob(pattern)
+    }
+    there = {
+        file
+        for file in (ROOT / "mesa_mobility").rglob("*")
+        if file.is_file() and file.suffix != ".py" and "__pycache__" not in file.parts
+    }
+    assert there - installed == set()

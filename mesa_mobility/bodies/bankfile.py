@@ -41,14 +41,14 @@ _DTYPES: dict[str, str] = {
 
 
 def poses_path(map_path: str | Path) -> Path:
-    """Where the pose bank of a map's file stands: beside it."""
+    """Where the pose bank of a map's file is written: beside it."""
     path = Path(map_path)
     return path.with_name(path.name.removesuffix(".npz") + SUFFIX)
 
 
 def shipped_banks() -> list[Path]:
-    """Files of the banks that ship with the package."""
-    return sorted(Path(str(files("mesa_mobility.maps"))).glob("*" + SUFFIX))
+    """Files of the banks that ship with the package, in ``poses`` beside the maps."""
+    return sorted((Path(str(files("mesa_mobility.maps"))) / "poses").glob("*" + SUFFIX))
 
 
 def write_bank(bank: PoseBank, path: str | Path) -> None:

@@ -47,7 +47,7 @@ def shipped_map_path(name: str) -> Path:
     folder = shipped_maps()
     path = folder / f"{name}.npz"
     if not path.is_file():
-        known = sorted(p.stem for p in folder.glob("*.npz") if "." not in p.stem)
+        known = sorted(p.stem for p in folder.glob("*.npz"))
         raise MapError(
             f"no map named {name!r} ships with the package, expected one of {', '.join(known)}"
         )

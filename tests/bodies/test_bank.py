@@ -7,7 +7,7 @@ from mesa_mobility.bodies import PoseBank
 from mesa_mobility.bodies.bankfile import poses_path, shipped_banks
 from mesa_mobility.bodies.skeleton import JOINT, TURN_OF
 from mesa_mobility.errors import MapError
-from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility import MobilityMap, shipped_map_path
 from tests.bodies.conftest import make_bank
 from tests.fixtures.maps import shipped_map
 
@@ -40,7 +40,7 @@ def test_banks_that_ship_are_small_and_come_with_their_licences():
 @pytest.mark.thorough
 @pytest.mark.parametrize("path", shipped_banks(), ids=lambda path: path.name)
 def test_each_bank_that_ships_belongs_to_its_map(path):
-    mobility_map = MobilityMap.load(path.with_name(path.name.removesuffix(".poses.npz") + ".npz"))
+    mobility_map = MobilityMap.load(shipped_map_path(path.name.removesuffix(".poses.npz")))
     bank = PoseBank.load(path)
     bank.check_map(mobility_map.digest)
     assert bank.n_options == mobility_map.n_options
