@@ -1,6 +1,6 @@
 """The part of a floor plan that is free at one time, and its walls."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from copy import copy
 from typing import TypeVar
 
@@ -11,6 +11,7 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan import checks
+from mesa_mobility.floorplan.layout import Layout
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.walls import boundaries
 
@@ -21,9 +22,7 @@ class FreeArea:
     """The walkable area minus obstacles, with some openings closed. A change gives another one.
 
     Args:
-        walkable: the walkable area.
-        exits: all exits, open at first.
-        gates: all gates, open at first.
+        layout: the walkable area, and all exits and gates, open at first.
         obstacles: by id.
         cut_off: whether obstacles may cut pieces off from every exit.
 
@@ -39,13 +38,11 @@ class FreeArea:
 
     def __init__(
         self,
-        walkable: Polygon,
-        exits: Sequence[Exit],
-        gates: Sequence[Gate],
+        layout: Layout,
         obstacles: Mapping[int, Polygon],
         cut_off: bool = False,
     ) -> None:
-        self._walkable, self._exits, self._gates = walkable, exits, gates
+        self._walkable, self._exits, self._gates = layout.walkable, layout.exits, layout.gates
         self.cut_off = cut_off
         self.closed: frozenset[str] = frozenset()
         self._subtract(obstacles)

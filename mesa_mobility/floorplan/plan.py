@@ -1,4 +1,4 @@
-"""The floor plan: walkable area, obstacles, gates and exits."""
+"""The floor plan: a layout, the obstacles on it, and what is closed."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -13,23 +13,20 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import (
-    checks,
-    extent,
-    occupants,
-    reachability,
-    sampling,
-)
+from mesa_mobility.floorplan import occupants, reachability, sampling
+from mesa_mobility.floorplan.checks import read_polygon
+from mesa_mobility.floorplan.extent import warn_of_other_units
 from mesa_mobility.floorplan.formats import by_suffix, dxf, geojson
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.free_area import FreeArea
+from mesa_mobility.floorplan.layout import Layout
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.walls.wall_index import WallIndex
-from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
+from mesa_mobility.floorplan.zones import SpeedZone
 
 
-class FloorPlan:
+class FloorPlan(Layout):
     """A walkable polygon with exits, gates and obstacles.
 
     Warns, with the extent, of coordinates that look like millimetres or degrees.
@@ -79,26 +76,16 @@ class FloorPlan:
         name: str = "",
         cut_off: bool = False,
     ) -> None:
-        self.name = name
+        super().__init__(walkable, exits, gates, zones, name)
         self.version = 0
-        self._walkable = checks.read_polygon(walkable, "walkable area")
-        extent.check_extent(self._walkable)
-        self._exits = tuple(exits)
-        self._gates = tuple(gates)
         polygons = {
-            i: checks.read_polygon(obstacle, f"obstacle {i}")
-            for i, obstacle in enumerate(obstacles)
+            i: read_polygon(obstacle, f"obstacle {i}") for i, obstacle in enumerate(obstacles)
         }
         self._next_obstacle = len(polygons)
-        checks.check_exits(self._walkable, self._exits, self._gates)
-        checks.check_gates(self._walkable, self._gates)
-        self._zones = tuple(zones)
-        check_zones(self._walkable, self._zones)
-        checks.check_names([*self._exits, *self._gates])
         self._wall_index = WallIndex(())
         self._router: Router | None = None
-        self._take(FreeArea(self._walkable, self._exits, self._gates, polygons, cut_off))
-        extent.warn_of_other_units(self._walkable, self.openings())
+        self._take(FreeArea(self, polygons, cut_off))
+        warn_of_other_units(self.walkable, self.openings())
 
     @classmethod
     def from_wkt(
@@ -180,23 +167,9 @@ class FloorPlan:
         plan.version = 0
         return plan
 
-    def to_geojson(self) -> dict[str, Any]:
-        """The plan as a GeoJSON FeatureCollection, coordinates in metres.
-
-        Every feature has the properties `kind` (walkable, obstacle, gate, exit or zone)
-        and `name`; a closed gate or exit has `closed` true, a zone its `factor`.
-        Reading it back gives the same coordinates to the last bit; obstacle ids count from 0 again.
-        """
-        return geojson.feature_collection(self)
-
-    def write_geojson(self, path: "str | os.PathLike[str]") -> None:
-        """Write `to_geojson` to a file, complete or not at all."""
-        geojson.write(self.to_geojson(), path)
-
-    @property
-    def walkable(self) -> Polygon:
-        """The walkable polygon as given, obstacles not subtracted."""
-        return self._walkable
+    # Functions of a plan are methods as they are.
+    to_geojson = geojson.feature_collection
+    write_geojson = geojson.write
 
     @property
     def free(self) -> BaseGeometry:
@@ -214,42 +187,14 @@ class FloorPlan:
         return self._wall_index
 
     @property
-    def exits(self) -> tuple[Exit, ...]:
-        """All exits, open or closed."""
-        return self._exits
-
-    @property
-    def gates(self) -> tuple[Gate, ...]:
-        """All gates, open or closed."""
-        return self._gates
-
-    @property
     def obstacles(self) -> dict[int, Polygon]:
         """The obstacles by id."""
         return dict(self._area.obstacles)
 
     @property
-    def zones(self) -> tuple[SpeedZone, ...]:
-        """The zones of reduced speed."""
-        return self._zones
-
-    def speed_factors(self, points: ArrayLike) -> NDArray[np.float64]:
-        """(n,) share of the preferred speed at (n, 2) points, metres."""
-        return speed_factors(self._zones, np.asarray(points, dtype=np.float64).reshape(-1, 2))
-
-    @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """(xmin, ymin, xmax, ymax) of the walkable area in metres."""
-        return self._walkable.bounds
-
-    @property
     def area(self) -> float:
         """Free area in square metres."""
         return self._area.geometry.area
-
-    def openings(self) -> tuple[Gate | Exit, ...]:
-        """Gates, then exits: the numbering of `Targets.gates`."""
-        return (*self._gates, *self._exits)
 
     @property
     def route_graph(self) -> nx.DiGraph:
@@ -262,14 +207,6 @@ class FloorPlan:
         if self._router is None:
             self._router = Router(self)
         return self._router.graph
-
-    def gate(self, name: str) -> Gate | Exit:
-        """The gate or exit of this name; a FloorPlanError lists the known names."""
-        for opening in self.openings():
-            if opening.name == name:
-                return opening
-        names = ", ".join(repr(opening.name) for opening in self.openings())
-        raise FloorPlanError(f"there is no gate or exit {name!r}; there are {names}")
 
     def is_open(self, name: str) -> bool:
         """Whether the gate or exit of this name is open."""
@@ -300,7 +237,7 @@ class FloorPlan:
         """
         number = self._next_obstacle
         name = f"obstacle {number}"
-        obstacle = checks.read_polygon(polygon, name)
+        obstacle = read_polygon(polygon, name)
         area = self._area.with_obstacles({**self._area.obstacles, number: obstacle}, cut_off)
         occupants.check_vacant(self, obstacle, name, area.geometry)
         self._next_obstacle += 1
@@ -346,48 +283,18 @@ class FloorPlan:
 
     def open_exits(self) -> tuple[Exit, ...]:
         """The exits that are open now."""
-        return self._area.open_ones(self._exits)
+        return self._area.open_ones(self.exits)
 
     def open_gates(self) -> tuple[Gate, ...]:
         """The gates that are open now."""
-        return self._area.open_ones(self._gates)
+        return self._area.open_ones(self.gates)
 
     def closed_gates(self) -> tuple[Gate, ...]:
         """The gates that are closed now."""
-        return self._area.closed_ones(self._gates)
+        return self._area.closed_ones(self.gates)
 
-    def check_reachable(self, points: ArrayLike, clearance: float) -> None:
-        """Raise FloorPlanError if a body of radius `clearance` metres cannot reach an open exit.
-
-        `points` is (n, 2) in metres.
-        """
-        reachability.check_reachable(self, points, clearance)
-
-    def random_points(
-        self,
-        n: int,
-        rng: np.random.Generator,
-        *,
-        within: Polygon | None = None,
-        spacing: float,
-        clearance: float,
-        avoid: ArrayLike = (),
-    ) -> NDArray[np.float64]:
-        """(n, 2) random points in metres with room for people to stand.
-
-        Every point is at least `clearance` from walls and exits and at least `spacing` from
-        the other points and from the (k, 2) points of `avoid`. It has a way to an exit, were
-        all doors open, through gaps of at least 0.323 m, which adults pass; if there is no such
-        place, none needs to have one. The points are the same for the same state of `rng`. Points
-        thrown one by one (random sequential placement) are tried first, then a jittered hexagonal
-        lattice.
-
-        Raises:
-            FloorPlanError: there is room for fewer than n points; the message says for how many.
-        """
-        return sampling.random_points(
-            self, n, rng, within=within, spacing=spacing, clearance=clearance, avoid=avoid
-        )
+    check_reachable = reachability.check_reachable
+    random_points = sampling.random_points
 
     def state(self) -> dict[str, Any]:
         """All that changes while models run: obstacles, the next one's id, and what is closed."""

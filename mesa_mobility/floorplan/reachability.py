@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def check_reachable(plan: "FloorPlan", points: ArrayLike, clearance: float) -> None:
-    """See `FloorPlan.check_reachable`."""
+    """Raise FloorPlanError if a body of radius `clearance` metres cannot reach an open exit.
+
+    `points` is (n, 2) in metres.
+    """
     xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
     if not np.isfinite(xy).all():
         raise FloorPlanError("points to check must be finite")

@@ -27,12 +27,23 @@ def random_points(
     n: int,
     rng: np.random.Generator,
     *,
-    within: Polygon | None,
+    within: Polygon | None = None,
     spacing: float,
     clearance: float,
-    avoid: ArrayLike,
+    avoid: ArrayLike = (),
 ) -> NDArray[np.float64]:
-    """See `FloorPlan.random_points`."""
+    """(n, 2) random points in metres with room for people to stand.
+
+    Every point is at least `clearance` from walls and exits and at least `spacing` from
+    the other points and from the (k, 2) points of `avoid`. It has a way to an exit, were
+    all doors open, through gaps of at least 0.323 m, which adults pass; if there is no such
+    place, none needs to have one. The points are the same for the same state of `rng`. Points
+    thrown one by one (random sequential placement) are tried first, then a jittered hexagonal
+    lattice.
+
+    Raises:
+        FloorPlanError: there is room for fewer than n points; the message says for how many.
+    """
     if n < 0 or not (np.isfinite([spacing, clearance]).all() and spacing > 0 and clearance >= 0):
         raise FloorPlanError(
             "random points need n >= 0, spacing > 0 and clearance >= 0, "

@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 
 
 def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
-    """The plan as a FeatureCollection; see `FloorPlan.to_geojson`."""
+    """The plan as a GeoJSON FeatureCollection, coordinates in metres.
+
+    Every feature has the properties `kind` (walkable, obstacle, gate, exit or zone)
+    and `name`; a closed gate or exit has `closed` true, a zone its `factor`.
+    Reading it back gives the same coordinates to the last bit; obstacle ids count from 0 again.
+    """
     features = [_feature("walkable", plan.name, plan.walkable)]
     if plan.cut_off:
         features[0]["properties"]["cut_off"] = True
@@ -37,10 +42,10 @@ def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
     return {"type": "FeatureCollection", "features": features}
 
 
-def write(collection: Mapping[str, Any], path: "str | os.PathLike[str]") -> None:
-    """Write a FeatureCollection to `path`: complete or not at all."""
+def write(plan: "FloorPlan", path: "str | os.PathLike[str]") -> None:
+    """Write `to_geojson` to a file, complete or not at all."""
     with replacing(path, FloorPlanError) as temporary:
-        temporary.write_text(json.dumps(collection, indent=1) + "\n", encoding="utf-8")
+        temporary.write_text(json.dumps(plan.to_geojson(), indent=1) + "\n", encoding="utf-8")
 
 
 def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:

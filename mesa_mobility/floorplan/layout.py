@@ -1,0 +1,87 @@
+"""The parts of a floor plan that never change: walkable area, exits, gates and zones."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from shapely import Polygon
+
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan import checks, extent
+from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
+
+
+class Layout:
+    """A walkable area with exits, gates and zones, checked together.
+
+    Args:
+        walkable: one connected polygon, holes allowed; shapely or WKT, metres.
+        exits: lines on the edge of the walkable area (within 1 cm).
+        gates: lines to cross, inside the walkable area.
+        zones: parts of the floor where people walk more slowly.
+        name: for titles and files.
+
+    Raises:
+        FloorPlanError: parts that ``FloorPlan`` refuses.
+    """
+
+    def __init__(
+        self,
+        walkable: Polygon | str,
+        exits: Iterable[Exit],
+        gates: Iterable[Gate],
+        zones: Iterable[SpeedZone],
+        name: str,
+    ) -> None:
+        self.name = name
+        self._walkable = checks.read_polygon(walkable, "walkable area")
+        extent.check_extent(self._walkable)
+        self._exits = tuple(exits)
+        self._gates = tuple(gates)
+        checks.check_exits(self._walkable, self._exits, self._gates)
+        checks.check_gates(self._walkable, self._gates)
+        self._zones = tuple(zones)
+        check_zones(self._walkable, self._zones)
+        checks.check_names([*self._exits, *self._gates])
+
+    @property
+    def walkable(self) -> Polygon:
+        """The walkable polygon as given, obstacles not subtracted."""
+        return self._walkable
+
+    @property
+    def exits(self) -> tuple[Exit, ...]:
+        """All exits, open or closed."""
+        return self._exits
+
+    @property
+    def gates(self) -> tuple[Gate, ...]:
+        """All gates, open or closed."""
+        return self._gates
+
+    @property
+    def zones(self) -> tuple[SpeedZone, ...]:
+        """The zones of reduced speed."""
+        return self._zones
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """(xmin, ymin, xmax, ymax) of the walkable area in metres."""
+        return self._walkable.bounds
+
+    def speed_factors(self, points: ArrayLike) -> NDArray[np.float64]:
+        """(n,) share of the preferred speed at (n, 2) points, metres."""
+        return speed_factors(self._zones, np.asarray(points, dtype=np.float64).reshape(-1, 2))
+
+    def openings(self) -> tuple[Gate | Exit, ...]:
+        """Gates, then exits: the numbering of `Targets.gates`."""
+        return (*self._gates, *self._exits)
+
+    def gate(self, name: str) -> Gate | Exit:
+        """The gate or exit of this name; a FloorPlanError lists the known names."""
+        for opening in self.openings():
+            if opening.name == name:
+                return opening
+        names = ", ".join(repr(opening.name) for opening in self.openings())
+        raise FloorPlanError(f"there is no gate or exit {name!r}; there are {names}")
