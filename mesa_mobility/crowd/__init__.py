@@ -12,14 +12,15 @@ from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.costs.candidates import Candidates
-    from mesa_mobility.crowd.costs.kernels import (
+    from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
+    from mesa_mobility.crowd.costs.kernel_decorators import (
         bound_kernel,
         option_kernel,
         pair_bound_kernel,
         pair_kernel,
         wall_kernel,
     )
-    from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
+    from mesa_mobility.crowd.costs.terms import CostTerm
     from mesa_mobility.crowd.insertion.inflow import Inflow
     from mesa_mobility.crowd.insertion.source import Source
     from mesa_mobility.crowd.model import PedestrianModel
@@ -41,7 +42,7 @@ _MODULES = {
     "WALL": "planning.explanation",
     "Candidates": "costs.candidates",
     "Capability": "options.capability",
-    "CompiledTerm": "costs.terms",
+    "CompiledTerm": "costs.compiled_terms",
     "CostTerm": "costs.terms",
     "Deciding": "tactics.target_choice",
     "Desired": "tactics.tactic",
@@ -58,11 +59,11 @@ _MODULES = {
     "TargetChoice": "tactics.target_choice",
     "Visit": "tactics.visits.visit",
     "Watch": "planning.explanation",
-    "bound_kernel": "costs.kernels",
-    "option_kernel": "costs.kernels",
-    "pair_bound_kernel": "costs.kernels",
-    "pair_kernel": "costs.kernels",
-    "wall_kernel": "costs.kernels",
+    "bound_kernel": "costs.kernel_decorators",
+    "option_kernel": "costs.kernel_decorators",
+    "pair_bound_kernel": "costs.kernel_decorators",
+    "pair_kernel": "costs.kernel_decorators",
+    "wall_kernel": "costs.kernel_decorators",
 }
 
 __all__ = [

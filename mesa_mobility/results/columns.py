@@ -16,6 +16,34 @@ IntArray = NDArray[np.int32]
 COLUMNS = ("frame", "person", "x", "y", "heading")
 
 
+def checked_columns(
+    given: Mapping[str, ArrayLike], fields: Mapping[str, ArrayLike]
+) -> dict[str, NDArray[Any]]:
+    """The columns and the fields of trajectories, sorted by (frame, person) and read-only.
+
+    Args:
+        given: (n,) values of each of ``COLUMNS``.
+        fields: (n,) values of each field.
+
+    Raises:
+        ResultsError: values that are no column, a field named as a column is, columns of unequal
+            length, or a person twice in a frame.
+    """
+    columns: dict[str, NDArray[Any]] = {
+        **{name: whole_numbers(name, given[name]) for name in COLUMNS[:2]},
+        **{name: real_numbers(name, given[name]) for name in COLUMNS[2:]},
+    }
+    own = {name: one_dimensional(name, values) for name, values in fields.items()}
+    taken = columns.keys() & own.keys()
+    if taken:
+        raise ResultsError(f"trajectories: a field is named {min(taken)!r}, as a column is")
+    columns |= own
+    lengths = {name: len(values) for name, values in columns.items()}
+    if len(set(lengths.values())) != 1:
+        raise ResultsError(f"trajectories: columns of unequal length: {lengths}")
+    return {name: read_only(values) for name, values in in_order(columns).items()}
+
+
 def whole_numbers(name: str, values: ArrayLike) -> NDArray[np.int32]:
     """(n,) whole numbers, 0 or more.
 

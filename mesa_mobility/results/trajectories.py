@@ -12,16 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.columns import (
+    COLUMNS,
+    checked_columns,
     checked_person_data,
     discs_of,
-    in_order,
     last_frame_of,
-    one_dimensional,
     radii_of,
-    read_only,
-    real_numbers,
     remaining_of,
-    whole_numbers,
 )
 
 if TYPE_CHECKING:
@@ -88,25 +85,11 @@ class Trajectories:
     decisions: Decisions | None = None
 
     def __post_init__(self) -> None:
-        columns: dict[str, NDArray[Any]] = {
-            "frame": whole_numbers("frame", self.frame),
-            "person": whole_numbers("person", self.person),
-            "x": real_numbers("x", self.x),
-            "y": real_numbers("y", self.y),
-            "heading": real_numbers("heading", self.heading),
-        }
-        own = {name: one_dimensional(name, values) for name, values in self.fields.items()}
-        taken = columns.keys() & own.keys()
-        if taken:
-            raise ResultsError(f"trajectories: a field is named {min(taken)!r}, as a column is")
-        columns |= own
-        lengths = {name: len(values) for name, values in columns.items()}
-        if len(set(lengths.values())) != 1:
-            raise ResultsError(f"trajectories: columns of unequal length: {lengths}")
-        columns = in_order(columns)
-        object.__setattr__(self, "fields", {name: read_only(columns[name]) for name in own})
-        for name in columns.keys() - own.keys():
-            object.__setattr__(self, name, read_only(columns[name]))
+        columns = checked_columns({name: getattr(self, name) for name in COLUMNS}, self.fields)
+        own = {name: columns[name] for name in self.fields}
+        object.__setattr__(self, "fields", own)
+        for name in COLUMNS:
+            object.__setattr__(self, name, columns[name])
         if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
             raise ResultsError(
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
@@ -142,7 +125,7 @@ class Trajectories:
         from mesa_mobility.results.decisions import Decisions
 
         arrays = recorder.arrays()
-        rows = {name: arrays.pop(name) for name in ("frame", "person", "x", "y", "heading")}
+        rows = {name: arrays.pop(name) for name in COLUMNS}
         if len(model.rows) and not len(rows["frame"]):
             raise ResultsError("the model has recorded nothing: expected a step before")
         return cls(
@@ -280,9 +263,7 @@ class Trajectories:
         rows = kept[self.person]
         return replace(
             self,
-            **{
-                name: getattr(self, name)[rows] for name in ("frame", "person", "x", "y", "heading")
-            },
+            **{name: getattr(self, name)[rows] for name in COLUMNS},
             fields={name: values[rows] for name, values in self.fields.items()},
             inside_at_end=self.remaining[kept[self.remaining]],
         )

@@ -10,44 +10,26 @@ first. The result is exactly that of costing every option.
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.intrinsics import prefetch
-from mesa_mobility.compiled.simd import (
-    AT_ONCE,
-    LANES,
-    bits_set,
-    compress,
-    no_more_than,
-    place_of_least,
-    press_numbers,
-)
-from mesa_mobility.crowd.collision.broad_phase import ALL_LANES, free_options
-from mesa_mobility.crowd.collision.sampled import SLACK, EgoPose
-from mesa_mobility.crowd.collision.simd_transforms import lanes_to_world
-from mesa_mobility.crowd.costs.layout import END_ROWS, SPEED
-from mesa_mobility.crowd.options.option_groups import DURATION, OptionGroups
+from mesa_mobility.compiled.simd import place_of_least
+from mesa_mobility.crowd.collision.sampled import EgoPose
+from mesa_mobility.crowd.costs.layout import SPEED
+from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.planning.evaluation.lanes import fill_ends, pick_between
-from mesa_mobility.crowd.planning.evaluation.neighbour_costs import (
-    ENOUGH,
-    LITTLE_LESS,
-    pair_cost,
-    pair_costs_at_least,
-)
-from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, option_costs, wall_cost
+from mesa_mobility.crowd.planning.evaluation.lanes import pick_between
+from mesa_mobility.crowd.planning.evaluation.neighbour_costs import ENOUGH, LITTLE_LESS, pair_cost
+from mesa_mobility.crowd.planning.evaluation.opened_groups import NOT_A_NUMBER, open_groups
+from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, wall_cost
 from mesa_mobility.crowd.planning.feasibility import option_gone_or_blocked
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
-from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
 
 NONE = -1
-NOT_A_NUMBER = -2
 
 FEW = 16
 """Up to this many groups are opened at once, without bands."""
@@ -65,98 +47,8 @@ CROWD = 10
 DEAREST = 1e300
 """Cost above which an option counts as blocked."""
 
-_LEAST = -sys.float_info.max
-
 _ROUNDING = 1e-12
 """Relative bound of the rounding error of a sum of costs."""
-
-_AHEAD = 4
-"""Groups that are prefetched."""
-
-
-@force_inlined()
-def _open_groups(
-    me: EgoPose,
-    now: DecisionContext,
-    count: int,
-    opened: int,
-    most: float,
-    walls: NDArray[np.float64],
-    extra: NDArray[np.float64],
-    table: OptionTable,
-    groups: OptionGroups,
-    state: CrowdState,
-    terms: Terms,
-    work: Workspace,
-) -> int:
-    """Bound the costs of the options in the first ``opened`` groups of ``work.picked``.
-
-    Options that end within somebody or a wall, or cost more than ``most``, are left out.
-
-    Returns the number of open options, ``count`` before this call; -2 if a cost is not a number.
-    """
-    picked, free = work.picked, work.free
-    apart = me.core + MARGIN - SLACK
-    # The cost is faster to test than blockage.
-    has_cost_limit = most < np.inf
-    for q in range(min(opened, _AHEAD)):
-        prefetch(groups.lanes, picked[q], 416)
-    n = 0
-    for q in range(opened):
-        if q + _AHEAD < opened:
-            prefetch(groups.lanes, picked[q + _AHEAD], 416)
-        g, bits = picked[q], ALL_LANES
-        if not has_cost_limit:
-            bits = free_options(g, bits, work.bodies, work.fences, apart, groups)
-        lanes_to_world(
-            groups.lanes, g, work.lanes, LANES * n, me.c, me.s, me.x, me.y, groups.ends[DURATION, g]
-        )
-        picked[n], free[n] = g, bits
-        n += int(bits != 0)
-    if n == 0:
-        return count
-    costs = work.lane_costs[: LANES * n]
-    costs[:] = 0.0
-    if len(extra) > 0:
-        base = table.offsets[state.cluster[me.row]]
-        for q in range(n):
-            row = groups.first[picked[q]]
-            for lane in range(groups.first[picked[q] + 1] - row):
-                costs[LANES * q + lane] = extra[row + lane - base]
-    option_costs(me, 0, LANES * n, work.lanes, state, terms, costs)
-    bad, kept = 0, count
-    for q in range(n):
-        g, bits = picked[q], free[q] & no_more_than(costs, LANES * q, most)
-        if has_cost_limit and bits != 0:
-            bits = free_options(g, bits, work.bodies, work.fences, apart, groups)
-        # Only values that are not numbers compare as no more than the least number.
-        bad |= bits & no_more_than(costs, LANES * q, _LEAST)
-        press_numbers(groups.first[g], bits, work.rows, kept)
-        compress(work.lane_costs, 0, LANES * q, bits, work.costs, 0, kept, 1)
-        compress(work.lanes, 0, LANES * q, bits, work.ends, 0, kept, END_ROWS)
-        kept += bits_set(bits)
-    if now.has_negative_pairs:
-        for k in range(count, kept):
-            work.costs[k] += pair_cost(
-                me, k, work.ends, now.neighbours, work.others, np.inf, state, terms, work.sums,
-                work.most_selective_term,
-            ) + wall_cost(me, k, work.ends, walls, state, terms)  # fmt: skip
-            bad |= int(not abs(work.costs[k]) < np.inf)
-    if bad != 0:
-        return NOT_A_NUMBER
-    has_walls = len(terms.wall_address) > 0 and not now.has_negative_pairs
-    fill_ends(count, kept, work.ends)
-    pair_costs_at_least(
-        me, count, kept, work.ends, now.foremost, now.approximate, work.foremost, work.marks,
-        work.some, state, terms, work.least,
-    )  # fmt: skip
-    for k in range(count, kept):
-        work.least[k] += work.costs[k]
-        work.approximate[k] = now.approximate
-        work.unwalled[k] = has_walls
-    for k in range(kept, kept + AT_ONCE):
-        work.least[k] = np.inf
-    return kept
 
 
 @internal()
@@ -248,7 +140,7 @@ def cheapest_free(
                 band += 1
                 opened = pick_between(bounds, above, up_to, first, work.picked)
             if opened > 0:
-                count = _open_groups(
+                count = open_groups(
                     me, now, count, opened, most, walls, extra, table, groups, state, terms, work
                 )
             if count < 0:

@@ -18,15 +18,10 @@ from mesa_mobility.crowd.collision.walls import walls_to_ego
 from mesa_mobility.crowd.costs.layout import FIELDS, LEAD
 from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
-from mesa_mobility.crowd.planning.branch_and_bound import (
-    CROWD,
-    FEW,
-    NONE,
-    NOT_A_NUMBER,
-    cheapest_free,
-)
+from mesa_mobility.crowd.planning.branch_and_bound import CROWD, FEW, NONE, cheapest_free
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, least
 from mesa_mobility.crowd.planning.evaluation.neighbour_costs import add_pair_bounds
+from mesa_mobility.crowd.planning.evaluation.opened_groups import NOT_A_NUMBER
 from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, group_bounds
 from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
     mark_relevant,

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
     OptionKernel,
@@ -21,7 +22,7 @@ from mesa_mobility.crowd.costs.kernels import (
     PairKernel,
     WallKernel,
 )
-from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
+from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import SHIPPED
 from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.errors import ModelError

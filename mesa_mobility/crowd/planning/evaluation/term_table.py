@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
+from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
 from mesa_mobility.crowd.costs.kernel_reads import parameters_read
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
@@ -17,7 +18,7 @@ from mesa_mobility.crowd.costs.kernels import (
     PairKernel,
     WallKernel,
 )
-from mesa_mobility.crowd.costs.terms import CompiledTerm, CostTerm
+from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates, pairs_of
 from mesa_mobility.crowd.planning.evaluation.option_costs import Terms
