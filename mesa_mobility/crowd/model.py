@@ -10,40 +10,34 @@ from typing import Any, Self
 import mesa
 import numpy as np
 from mesa.datacollection import DataCollector
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from mesa_mobility.crowd.checkpoint.copying import copy_model
+from mesa_mobility.crowd.arguments import check_frames_per_step, check_record, read_scene
+from mesa_mobility.crowd.checkpoint.copying import copy_model, refuse_to_pickle
 from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.costs.candidates import Candidates
-from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
 from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
-from mesa_mobility.crowd.insertion.inflow import Inflow, Sources
+from mesa_mobility.crowd.insertion import adding
+from mesa_mobility.crowd.insertion.inflow import Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
-from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.people.pedestrian import (
-    Pedestrian,
-    check_pedestrian_class,
-)
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, types_of
+from mesa_mobility.crowd.people.pedestrian import Pedestrian
+from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.people.person_data import describe_people
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
-from mesa_mobility.crowd.presets import Preset, read_preset
+from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder, movements_under_way
-from mesa_mobility.crowd.scene import make_scene
 from mesa_mobility.crowd.space import space_of
 from mesa_mobility.crowd.stall import StallWatch, stall_reason
-from mesa_mobility.crowd.state.fields import read_fields
 from mesa_mobility.crowd.statistics import REPORTERS, Statistics
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
-from mesa_mobility.crowd.tactics.visits.visit import Route
 from mesa_mobility.crowd.tactics.waiting import Waits
-from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.occupants import add_occupants
@@ -83,6 +77,7 @@ class PedestrianModel(mesa.Model):
         crowd: the crowd's arrays; see ``Crowd``.
         population: who has come and who is inside; see ``Population``.
         statistics: the figures of the run so far; see ``Statistics``.
+        dynamics: what happens in each frame; see ``Dynamics``.
         sources: an ``Inflow`` for each ``add_source``.
         journeys: the routes of people who cross gates and visit places in order.
         speed_rules: behaviours that change preferred speeds; the preset's rule for groups is added
@@ -150,28 +145,29 @@ class PedestrianModel(mesa.Model):
     ) -> None:
         super().__init__(rng=seed_of(rng))
         self.events_at_first = scheduled_events(self)
-        if not isinstance(frames_per_step, int) or frames_per_step < 1:
-            raise ModelError(f"frames_per_step: got {frames_per_step!r}, expected 1, 2, 3 or more")
-        rules = read_preset(preset)
-        self.preset, self.rules = rules.name, rules
-        self.floor_plan = floor_plan
-        check_pedestrian_class(pedestrian_class)
-        kinds = read_fields(fields, taken=[*dir(pedestrian_class), "row", *KERNEL_FIELDS])
-        shares = None if population is None else Population.of(population)
-        self.pedestrian_types = types_of(mobility_map, pedestrian_types, shares)
-        self._scene = scene = make_scene(
-            floor_plan, self.pedestrian_types, rules, shares=shares, fields=kinds
+        check_frames_per_step(frames_per_step)
+        check_record(record)
+        self._scene = scene = read_scene(
+            floor_plan,
+            preset=preset,
+            mobility_map=mobility_map,
+            pedestrian_types=pedestrian_types,
+            population=population,
+            pedestrian_class=pedestrian_class,
+            fields=fields,
         )
+        self.preset, self.rules = scene.preset.name, scene.preset
+        self.floor_plan, self.pedestrian_types = floor_plan, scene.types
         self._agents_step = pedestrian_class.step is not mesa.Agent.step
         self.crowd, self.journeys = scene.crowd, scene.journeys
-        self.terms: list[CostTerm] = list(rules.make_terms() if behaviors is None else behaviors)
+        self.terms: list[CostTerm] = list(
+            self.rules.make_terms() if behaviors is None else behaviors
+        )
         self.speed_rules: list[SpeedRule] = []
-        self.tactics: list[Tactic] = rules.make_tactics()
-        self.target_choice = target_choice or rules.make_target_choice()
+        self.tactics: list[Tactic] = self.rules.make_tactics()
+        self.target_choice = target_choice or self.rules.make_target_choice()
         self.frames_per_step = frames_per_step
         self.frame = 0
-        if record not in (False, True, "decisions"):
-            raise ModelError(f"record: got {record!r}, expected True, False or 'decisions'")
         self.recorder = Recorder() if record else None
         self.decisions = DecisionRecorder() if record == "decisions" else None
         self.watch: Watch | None = None
@@ -180,7 +176,7 @@ class PedestrianModel(mesa.Model):
         self.sources = Sources(scene)
         self.statistics = Statistics(self)
         self.waits = Waits()
-        self._dynamics = Dynamics(self, scene)
+        self.dynamics = Dynamics(self, scene)
         self._stall_watch, self.stalled = StallWatch(), False
         add_occupants(floor_plan, self.population)
         self.datacollector = DataCollector(model_reporters=REPORTERS)
@@ -200,7 +196,7 @@ class PedestrianModel(mesa.Model):
             "sources": self.sources,
             "statistics": self.statistics,
             "stall_watch": self._stall_watch,
-            "dynamics": self._dynamics,
+            "dynamics": self.dynamics,
         }
         if self.recorder is not None:
             parts["recorder"] = self.recorder
@@ -210,7 +206,7 @@ class PedestrianModel(mesa.Model):
 
     def bind(self) -> None:
         """Bind behaviours that the model has not used yet."""
-        self._dynamics.bind()
+        self.dynamics.bind()
 
     @property
     def inside(self) -> int:
@@ -255,62 +251,13 @@ class PedestrianModel(mesa.Model):
         """Why the evacuation has stalled, in a few words; None if it has not."""
         return stall_reason(self.floor_plan, self.population.aggregates) if self.stalled else None
 
-    def add_pedestrians(
-        self,
-        positions: ArrayLike,
-        *,
-        headings: ArrayLike | None = None,
-        preferred_speeds: ArrayLike | Distribution | None = None,
-        pre_movement: ArrayLike | Distribution = 0.0,
-        exits: Sequence[str] | None = None,
-        route: Route = (),
-        loop: bool = False,
-        group: str | int | None = None,
-        type_index: ArrayLike | None = None,
-        population: Population | Mapping[str | PedestrianType, float] | str | None = None,
-        fields: Mapping[str, ArrayLike] | None = None,
-    ) -> list[Pedestrian]:
-        """Put people on the floor, standing.
-
-        Args:
-            positions: (n, 2) metres, on free floor, with room for the body between walls.
-            headings: (n,) radians; by default everybody faces its first target.
-            preferred_speeds: (n,) m/s or a distribution; by default drawn from the type.
-            pre_movement: (n,) seconds, or a distribution of them, for which they stand before they
-                set off; their first decision is in the first frame after that.
-            exits: names of the exits by which they may leave; by default all.
-            route: names of gates that they cross, in either direction, and places that they visit
-                (``Visit``), in this order, before they leave.
-            loop: whether the route starts over after its last stop, and they never leave. On a
-                closed track three gates or more determine the direction.
-            group: name or number of the group that they join.
-            type_index: index of their type in ``pedestrian_types``, or (n,) of them; by default
-                types are drawn from ``population``.
-            population: the shares of types, of which each gets its share of n, rounded up or down;
-                by default those of the model, or the first type alone. Positions are exchanged so
-                that wide people stand where they have room and a way out.
-            fields: (n,) values of fields that the model declares; 0 or false by default.
-
-        Raises:
-            ModelError: positions off the floor, too near to a wall, or where somebody is or will
-                be; an unknown type; arrays of the wrong length; numbers out of range; shares that
-                do not add up to 1, or too few places for people of a wide type.
-            FloorPlanError: an unknown exit or gate, a place to visit without room for their bodies,
-                or no way from a position to any exit, or to the route's first stop, or on from one.
-        """
-        new = Newcomers(
-            headings=headings,
-            preferred_speeds=preferred_speeds,
-            pre_movement=pre_movement,
-            exits=exits,
-            route=route,
-            loop=loop,
-            group=group,
-            type_index=type_index,
-            population=None if population is None else Population.of(population),
-            fields=fields or {},
-        )
-        return self._dynamics.insert(positions, new)
+    # Functions of a model are methods as they are.
+    add_pedestrians = adding.add_pedestrians
+    add_source = adding.add_source
+    person_data = describe_people
+    save = save_model
+    __deepcopy__ = copy_model
+    __reduce_ex__ = refuse_to_pickle
 
     def draw_types(self, n: int) -> NDArray[np.int64]:
         """(n,) indices of types, drawn from the model's population; 0 where it has none.
@@ -326,24 +273,6 @@ class PedestrianModel(mesa.Model):
         self.population.remove(people)
         self.population.look_over(self.frame)
 
-    def add_source(self, source: Source) -> Inflow:
-        """Let people in over time.
-
-        Each appears at a random place of the source's area with room for its body. While there is
-        no room, people are held back in order.
-
-        Returns:
-            The inflow, which counts those who have come and those held back.
-
-        Raises:
-            ModelError: an unknown type, or what ``add_pedestrians`` refuses.
-            FloorPlanError: an area without room for a body, an unknown exit or gate, or no route
-                from there.
-        """
-        inflow = self.sources.add(source, self.frame, self.rng)
-        self.running = True
-        return inflow
-
     def add_tactic(self, tactic: Tactic) -> None:
         """Add a tactic behind the one that it names in ``after``, or else at the end."""
         names = [each.name for each in self.tactics]
@@ -358,7 +287,7 @@ class PedestrianModel(mesa.Model):
                     agent.step()
         people, end = self.population, self.frame + self.frames_per_step
         while self.frame < end:
-            self._dynamics.advance(end)
+            self.dynamics.advance(end)
             if len(people.present) == 0 and not self.sources.expecting:
                 break  # the last person has left: the step ends here
         people.take_out_inactive()
@@ -398,7 +327,7 @@ class PedestrianModel(mesa.Model):
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows`` if they decided now."""
-        return self._dynamics.candidates(rows)
+        return self.dynamics.candidates(rows)
 
     def explain(self, row: int) -> Explanation:
         """The decision of the person in ``row`` if it decided now, before all others.
@@ -410,26 +339,7 @@ class PedestrianModel(mesa.Model):
         """
         if not (0 <= row < self.population.count and self.crowd.active[row]):
             raise ModelError(f"pedestrian {row}: expected the row of somebody inside")
-        return self._dynamics.explain(row)
-
-    def person_data(self) -> dict[str, ArrayLike]:
-        """What trajectories say of each person besides its place; models may add to it.
-
-        Returns:
-            (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.
-            The group is an empty text for people without one. Where a type's core radii are drawn
-            from a distribution, ``core_radius``, metres, as well.
-        """
-        crowd, count = self.crowd, self.population.count
-        types = np.array([kind.name for kind in self.pedestrian_types])
-        groups = np.array(["", *map(str, self.population.groups)])
-        data: dict[str, ArrayLike] = {
-            "type": types[crowd.type_index[:count]],
-            "group": groups[crowd.agenda["group"][:count]],
-        }
-        if any(isinstance(kind.core_radius, Distribution) for kind in self.pedestrian_types):
-            data["core_radius"] = self.core_radii
-        return data
+        return self.dynamics.explain(row)
 
     def summary(self) -> dict[str, Any]:
         """Figures of the run so far, ready for JSON.
@@ -443,35 +353,6 @@ class PedestrianModel(mesa.Model):
             ([[t, inside], ...] each second).
         """
         return self.statistics.summary()
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        """An independent copy that continues exactly as this model would.
-
-        Both share the mobility map and compiled code, which neither changes.
-        """
-        return copy_model(self, memo)
-
-    def __reduce_ex__(self, protocol: Any) -> Any:
-        raise ModelError(
-            f"{type(self).__name__}: a model can be copied by copy.deepcopy, neither by copy.copy "
-            "nor by pickle; expected its parameters and seed, which make it anew"
-        )
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a checkpoint, from which ``load`` goes on to the same trajectories.
-
-        It holds the constructor's arguments and all that has changed since: people, behaviours,
-        generators, records, and attributes of the model and its people. Maps are not in it but
-        their digest is.
-
-        Args:
-            path: the file, a zip of arrays and JSON.
-
-        Raises:
-            ModelError: an attribute or a behaviour's state that cannot be saved, people who wait
-                for a function, or a file that cannot be written.
-        """
-        save_model(self, path)
 
     @classmethod
     def load(

@@ -44,7 +44,19 @@ _COUNTERS = ("frame", "frames_per_step", "running", "steps", "stalled")
 
 
 def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
-    """Write a checkpoint; see ``PedestrianModel.save``."""
+    """Write a checkpoint, from which ``load`` goes on to the same trajectories.
+
+    It holds the constructor's arguments and all that has changed since: people, behaviours,
+    generators, records, and attributes of the model and its people. Maps are not in it but
+    their digest is.
+
+    Args:
+        path: the file, a zip of arrays and JSON.
+
+    Raises:
+        ModelError: an attribute or a behaviour's state that cannot be saved, people who wait
+            for a function, or a file that cannot be written.
+    """
     model.bind()  # behaviours have a state from then on
     packer = Packer(_references(model))
     _refuse_functions(model)
