@@ -84,9 +84,9 @@ class Counter:
 class Queueing(Tactic):
     """People who are to be served line up before their counter, in the order in which they come.
 
-    They join the line within a metre of its end, and move up as those before them do.
-    The first steps up to the counter, is served and goes on with its route. In the line people
-    are patient.
+    They join the line within a metre of its end, face along it while they stand, and move up as
+    those before them do. The first steps up to the counter, is served and goes on with its route.
+    In the line people are patient.
 
     Args:
         counters: the counters; ``counters`` may be added to while the model runs.
@@ -150,7 +150,7 @@ class Queueing(Tactic):
         desired: Desired,
     ) -> None:
         """Set points and speeds of those ``who`` decide and go to a counter."""
-        rows, held = deciding.pedestrians, []
+        rows, held, ahead = deciding.pedestrians, [], []
         places = counter.places(len(line) + len(who) + 1)
         seen = lines_of_sight(
             deciding.site.plan, deciding.positions[who], np.tile(places[len(line)], (len(who), 1))
@@ -173,13 +173,15 @@ class Queueing(Tactic):
             if stands:
                 self._standing.add(row)
                 held.append(who[k])
+                ahead.append(places[place - 1])
             else:
                 self._standing.discard(row)
                 if place > 0 or not self._is_served(row):
                     desired.points[who[k]] = places[place]
                     slowly = max(off / _GETS_THERE, _LEAST)
                     desired.speeds[who[k]] = min(desired.speeds[who[k]], slowly)
-        deciding.hold(desired, np.array(held, dtype=np.int64))
+        if held:
+            deciding.hold(desired, np.array(held), facing=np.array(ahead))
 
     def _is_served(self, row: int) -> bool:
         return self._model.journeys.stays.stands(row)

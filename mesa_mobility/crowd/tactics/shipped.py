@@ -167,7 +167,8 @@ class Wait(_OfTheCrowd):
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """As for people without a route: they stop, and stay."""
-        waits = deciding.waiting
+        # Those who stand already may turn to something meanwhile (``Deciding.hold``).
+        waits = deciding.waiting & (desired.speeds > 0.0)
         if not desired.newcomers and waits.any():
             desired.stand(waits, deciding.positions)
 

@@ -70,7 +70,9 @@ class Deciding(NamedTuple):
         """(n,) whether each waits: told to, at a place that it visits, or held by a behaviour."""
         return waiting(self.pedestrians, self.frame, self.inside.crowd)
 
-    def hold(self, desired: Desired, who: NDArray[Any]) -> None:
+    def hold(
+        self, desired: Desired, who: NDArray[Any], facing: NDArray[np.float64] | None = None
+    ) -> None:
         """Let some wait where they are until they decide again, 0.4 s later.
 
         As all who wait, they stay patient and count as people who stand, for others who look ahead
@@ -80,8 +82,12 @@ class Deciding(NamedTuple):
         Args:
             desired: what all of them want so far.
             who: which: (n,) of them true, or (k,) indices.
+            facing: (k, 2) points to which they turn meanwhile, metres; by default they stand as
+                they are.
         """
         desired.stand(who, self.positions)
+        if facing is not None:
+            desired.points[who] = facing
         wait_until(self.pedestrians[who], self.frame + HELD, self.inside.crowd)
 
 

@@ -50,8 +50,8 @@ def test_the_last_of_six_is_served_after_six_service_times():
     # In between the next one walks 0.6 m: more than 0.4 s, the shortest movement.
     moving_up = times[1:, 0] - times[:-1, 1]
     assert (moving_up > 0.4).all()
-    assert moving_up.mean() < 3.5
-    assert 6 * 4.0 + 5 * 0.4 < times[-1, 1] - times[0, 0] < 6 * 4.25 + 5 * 3.5
+    assert moving_up.mean() < 1.8
+    assert 6 * 4.0 + 5 * 0.4 < times[-1, 1] - times[0, 0] < 6 * 4.25 + 5 * 1.8
     assert np.mean(apart) == pytest.approx(0.6, abs=0.08)
     rows = model.recorder.arrays()
     assert overlaps(rows, core_of(model)) == 0

@@ -91,6 +91,30 @@ def test_a_behaviour_may_hold_people(by_index):
     assert not any(waits for _, [waits] in hold.seen)
 
 
+class LookBack(Tactic):
+    """Everybody waits, and turns to the left end of the corridor."""
+
+    name = "look_back"
+    after = "speed_rules"
+
+    def apply(self, deciding, desired):
+        everybody = np.arange(len(deciding.pedestrians))
+        if not desired.newcomers:
+            back = np.column_stack([np.zeros(len(everybody)), deciding.positions[:, 1]])
+            deciding.hold(desired, everybody, facing=back)
+
+
+def test_people_who_are_held_turn_to_what_they_are_to_face():
+    model = model_of(corridor(), shipped_map(), frames_per_step=3)
+    model.add_tactic(LookBack())
+    person = put(model, 5.0, 2.0, heading=np.pi / 2)
+    model.run(max_seconds=8)
+    assert person.waiting
+    # From 90 degrees off to next to nothing, on the spot.
+    assert np.cos(person.heading) < np.cos(np.radians(150.0))
+    assert np.hypot(*(person.position - (5.0, 2.0))) < 0.5
+
+
 def test_behaviours_see_who_waits():
     model = model_of(corridor(), strider())
     hold = HoldUntil(by_index=False)
