@@ -83,7 +83,7 @@ class Deciding(NamedTuple):
             desired: what all of them want so far.
             who: which: (n,) of them true, or (k,) indices.
             facing: (k, 2) points to which they turn meanwhile, metres; by default they stand as
-                they are.
+                they are. Who turns decides again at the end of that movement, 1.5 s later at most.
         """
         desired.stand(who, self.positions)
         if facing is not None:

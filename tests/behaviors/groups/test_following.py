@@ -31,16 +31,17 @@ def rooms():
 def test_a_follower_matches_the_speed_of_its_leader(speed):
     # Rio, Rhea and Warren (2014): followers match their leader's speed.
     following = Following(distance=1.5)
-    model = led(corridor(40.0), following)
+    model = led(corridor(80.0), following)
     leader = put(model, 3.0, 2.0, preferred_speeds=speed)
     follower = put(model, 1.0, 2.2, preferred_speeds=1.6)
     following.follow([follower], leader)
     model.run(max_seconds=10)
     before, gaps = follower.position[0], []
-    while model.elapsed < 19.99:
+    while model.elapsed < 39.99:
         model.step()
         gaps.append(leader.position[0] - follower.position[0])
-    assert (follower.position[0] - before) / 10.0 == pytest.approx(speed, abs=0.1)
+    # Over 30 s: the distance between the two swings by half a metre, which is 0.05 m/s over 10 s.
+    assert (follower.position[0] - before) / 30.0 == pytest.approx(speed, abs=0.05)
     assert min(gaps) > 1.0
     assert max(gaps) < 2.5
 
@@ -70,7 +71,7 @@ def test_a_bunch_follows_round_a_wall_stands_and_leaves_by_the_leaders_exit():
     away = sorted(np.hypot(*(person.position - guide.position)) for person in people)
     # A half circle of r metres holds 1.57 r2 people at 1 person/m2: 2.5 m for ten.
     assert away[4] < 2.5
-    # One may still be turning on its spot.
+    # One at the edge may have no room to come as near as it should, and still look for a way.
     assert sorted(person.speed for person in people)[-2] < 0.1
     model.run(max_seconds=60)
     assert model.inside == 0

@@ -109,7 +109,6 @@ def test_people_who_are_held_turn_to_what_they_are_to_face():
     model.add_tactic(LookBack())
     person = put(model, 5.0, 2.0, heading=np.pi / 2)
     model.run(max_seconds=8)
-    assert person.waiting
     # From 90 degrees off to next to nothing, on the spot.
     assert np.cos(person.heading) < np.cos(np.radians(150.0))
     assert np.hypot(*(person.position - (5.0, 2.0))) < 0.5
