@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mesa_mobility.animation.figure import Figure, Tube, human_figure
+from mesa_mobility.animation.figure import Figure, Tube, human_figure, joined
 from mesa_mobility.bodies.seated import SEATED_PELVIS
 from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, LEG_LENGTH
 from mesa_mobility.mobility import WHEELCHAIRS
@@ -24,6 +24,11 @@ def aid_of(type_name: str) -> str:
     if type_name in WHEELCHAIRS:
         return "wheelchair"
     return type_name if type_name in _AIDS else ""
+
+
+def aid_figure(aid: str, around: int) -> Figure:
+    """An aid alone, as its user's joints carry it, with so many vertices round each bar."""
+    return joined(_AIDS[aid], around)
 
 
 def figure_with(aid: str) -> Figure:

@@ -11,20 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.animation.figure import (
-    Figure,
-    distant_figure,
-    human_figure,
-    pawn,
-    rest_positions,
-)
+from mesa_mobility.animation.figure import Figure, rest_positions
+from mesa_mobility.animation.levels import jointed_figures, rigid_figures, seated_head
 from mesa_mobility.bodies import PoseBank
 from mesa_mobility.bodies.bank import OTHER_SIDE
 from mesa_mobility.bodies.feet import LEGS
 from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, HEEL_BACK, JOINT, OFFSETS, PARENTS, TURNING
-
-NEAR_AROUND = 8
-"""Vertices round a limb of somebody near."""
 
 _LETTERS = {"float32": "f4", "int32": "i4", "int16": "i2", "uint16": "u2", "uint8": "u1"}
 
@@ -56,7 +48,9 @@ def bundled(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> st
 def figure_parts() -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """Header and arrays of the neutral skeleton and of the figures round it."""
     parents = np.asarray(PARENTS, dtype=np.int32)
+    jointed, rigid = jointed_figures(), rigid_figures()
     header = {
+        "figures": [*jointed, *rigid],
         "skeleton": {
             "parents": parents.tolist(),
             "offsets": OFFSETS.reshape(-1).tolist(),
@@ -67,24 +61,26 @@ def figure_parts() -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
             "ankleHeight": ANKLE_HEIGHT,
             "heel": [-HEEL_BACK, 0.0, -ANKLE_HEIGHT],
             "ball": [float(OFFSETS[JOINT["left_toe"], 0]), 0.0, -ANKLE_HEIGHT],
-        }
+            "seatedHead": seated_head(),
+        },
     }
-    arrays: dict[str, NDArray[Any]] = {}
-    figures = {"near": human_figure(NEAR_AROUND), "far": distant_figure(), "pawn": pawn()}
-    for name, figure in figures.items():
-        arrays |= {f"{name}.{key}": values for key, values in _mesh(figure).items()}
+    parts = {name: _mesh(figure) | _moved(figure) for name, figure in jointed.items()}
+    parts |= {name: _mesh(figure) for name, figure in rigid.items()}
+    arrays = {f"{name}.{key}": each for name, own in parts.items() for key, each in own.items()}
     return header, arrays
 
 
 def _mesh(figure: Figure) -> dict[str, NDArray[Any]]:
-    # No vertex is moved by more than two joints.
     return {
         "vertices": figure.vertices,
         "normals": figure.normals,
         "triangles": figure.triangles,
-        "joints": figure.joints[:, :2].astype(np.float32),
-        "weights": figure.weights[:, 0],
     }
+
+
+def _moved(figure: Figure) -> dict[str, NDArray[Any]]:
+    # No vertex is moved by more than two joints.
+    return {"joints": figure.joints[:, :2].astype(np.float32), "weights": figure.weights[:, 0]}
 
 
 def bank_arrays(bank: PoseBank, name: str) -> dict[str, NDArray[Any]]:

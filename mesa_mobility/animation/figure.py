@@ -60,12 +60,12 @@ def rest_positions() -> NDArray[np.float64]:
 
 def human_figure(around: int = AROUND, more: Sequence[Tube] = ()) -> Figure:
     """The figure of an adult, and more parts that its joints carry."""
-    return _joined([*(tube for _, tube in _tubes()), *more], around)
+    return joined([*(tube for _, tube in _tubes()), *more], around)
 
 
 def distant_figure() -> Figure:
     """The figure of an adult seen from afar: fewer rings, fewer corners."""
-    return _joined(
+    return joined(
         [([rings[k] for k in _FEWER_RINGS[name]], axis) for name, (rings, axis) in _tubes()],
         FEWER_AROUND,
     )
@@ -79,7 +79,7 @@ def pawn() -> Figure:
 
     body = rings((0.0, 0.09, 0.13), (0.9, 0.11, 0.17), (1.38, 0.12, 0.22), (1.5, 0.05, 0.06))
     head = rings((1.5, 0.04, 0.04), (1.63, 0.10, 0.08), (1.75, 0.03, 0.03))
-    return _joined([(body, 2), (head, 2)], 6)
+    return joined([(body, 2), (head, 2)], 6)
 
 
 def _tubes() -> list[tuple[str, Tube]]:
@@ -89,7 +89,8 @@ def _tubes() -> list[tuple[str, Tube]]:
     return tubes
 
 
-def _joined(tubes: list[Tube], around: int) -> Figure:
+def joined(tubes: list[Tube], around: int) -> Figure:
+    """One mesh of tubes, each with so many vertices round it."""
     vertices, normals, triangles, joints, weights, count = [], [], [], [], [], 0
     for rings, axis in tubes:
         v, n, t, j, w = _tube(rings, axis, around)

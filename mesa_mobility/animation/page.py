@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
 from mesa_mobility.animation.floor import drawn_floor
 from mesa_mobility.animation.people import Selection
@@ -53,7 +54,8 @@ def write_page(
     """Write a page with a run, its player and all that it needs.
 
     People are figures whose limbs move where the run has its decisions and the poses of their map
-    are known. Others are drawn without limbs.
+    are known, with the aids that they hold. Those in wheelchairs sit. Others are drawn without
+    limbs.
 
     Args:
         trajectories: the run.
@@ -132,6 +134,7 @@ def run_parts(
         "first": first,
         "last": last,
         "types": names,
+        "aids": [aid_of(name) for name in names],
         "scales": [found.scale for found in banks.values()],
         "clips": [
             [str(clip["clip"]) for clip in each.metadata["clips"]] for each in banks.values()

@@ -8,6 +8,7 @@ import pytest
 from mesa_mobility.animation import Selection, walkers, write_glb
 from mesa_mobility.animation.aids import FLOOR, aid_of, figure_with
 from mesa_mobility.animation.figure import human_figure
+from mesa_mobility.animation.levels import jointed_figures, rigid_figures, seated_head
 from mesa_mobility.bodies.skeleton import JOINT
 from tests.animation.test_animation import joints_in_glb, read_glb
 
@@ -46,6 +47,41 @@ def test_a_wheelchair_takes_the_room_of_one():
     # 1.20 m with the feet, 0.70 m.
     assert 0.9 < long <= 1.2
     assert 0.55 < wide <= 0.70
+
+
+@pytest.mark.parametrize("level", ["near", "far"])
+def test_somebody_who_sits_is_bent_and_not_stretched(level):
+    upright, sitting = jointed_figures()[f"person_{level}"], rigid_figures()[f"seated_{level}"]
+    edges = upright.triangles[:, :2]
+    # Parts that one joint moves.
+    own = (upright.weights[edges, 0] == 1.0).all(axis=1)
+    own &= upright.joints[edges[:, 0], 0] == upright.joints[edges[:, 1], 0]
+    assert own.mean() > 0.4
+    before, after = (
+        np.linalg.norm(np.diff(each.vertices[edges[own]], axis=1)[:, 0], axis=1)
+        for each in (upright, sitting)
+    )
+    np.testing.assert_allclose(after, before, atol=1e-6)
+    np.testing.assert_allclose(np.linalg.norm(sitting.normals, axis=1), 1.0, atol=0.3)
+    # Hips 0.55 m above the floor: shanks of 0.42 m and 0.08 m of foot are upright below the knees.
+    assert 0.0 < sitting.vertices[:, 2].min() < 0.1
+    shank = sitting.vertices[upright.joints[:, 0] == JOINT["left_ankle"]]
+    assert 0.3 < shank[:, 0].mean() < 0.6
+    x, y, z = seated_head()
+    head = sitting.vertices[upright.joints[:, 0] == JOINT["head"]]
+    np.testing.assert_allclose(head.mean(axis=0), [x + 0.02, y, z + 0.07], atol=0.02)
+
+
+@pytest.mark.parametrize("level", ["near", "far"])
+def test_aids_of_the_view_are_those_of_the_files(level):
+    for aid in ("cane", "crutches", "walking_frame", "wheelchair"):
+        drawn = {**jointed_figures(), **rigid_figures()}[f"{aid}_{level}"].vertices
+        whole = figure_with(aid).vertices[len(human_figure().vertices) :]
+        whole = whole + np.array([0.0, 0.0, 0.55 if aid == "wheelchair" else 0.0])
+        # The fewer corners a bar has, the narrower it may be: by half of the widest wheel's radius
+        # at three, and by 0.14 of it at six.
+        for side in (np.min, np.max):
+            np.testing.assert_allclose(side(drawn, axis=0), side(whole, axis=0), atol=0.045)
 
 
 def test_people_in_wheelchairs_sit_and_need_no_poses(run, plan, tmp_path):

@@ -137,6 +137,55 @@ def test_people_without_poses_are_drawn_without_limbs(open_page, run, plan):
     assert "no record of decisions" in page.inner_text("#why")
 
 
+@pytest.fixture
+def mixed(open_page, run, plan):
+    """Somebody in a wheelchair, and somebody with a cane."""
+    types = np.array(["wheelchair_manual", "cane"])
+    page = open_page(replace(run, person_data={"type": types}), plan, title="mixed")
+    page.evaluate("show(30)")
+    return page
+
+
+@pytest.mark.slow
+def test_wheelchairs_and_sticks_are_drawn_near_and_far(mixed):
+    counts = "(draw(), state.stage.troops.counts())"
+
+    def expected(level):
+        return {f"{name}_{level}": 1 for name in ("seated", "wheelchair", "person", "cane")}
+
+    stand = """(metres) => {
+      const { perspective, orbit } = state.stage;
+      perspective.position.copy(orbit.target).add(new THREE.Vector3(0, -metres, metres));
+      orbit.update();
+    }"""
+    mixed.evaluate(stand, 2)
+    assert mixed.evaluate(counts) == expected("near")
+    mixed.evaluate(stand, 12)
+    assert mixed.evaluate(counts) == expected("far")
+    # From far away people have no limbs and no sticks, but they still sit.
+    mixed.evaluate("Object.assign(state.stage, { detail: DETAIL.length - 1 }); null")
+    mixed.evaluate(stand, 40)
+    assert mixed.evaluate(counts) == {"seated_far": 1, "wheelchair_far": 1, "person_pawn": 1}
+    # Through the eyes of somebody who sits.
+    mixed.select_option("#person", "0")
+    mixed.select_option("#camera", "eyes")
+    mixed.evaluate("draw()")
+    assert mixed.evaluate("state.stage.perspective.position.z") == pytest.approx(1.25, abs=0.1)
+
+
+@pytest.mark.slow
+def test_people_who_come_later_are_drawn_too(page):
+    triangles = """(count) => {
+      const { stage } = state, people = Array(count).fill(present()[0]);
+      stage.draw(people, state.frame, -1);
+      return stage.renderer.info.render.triangles;
+    }"""
+    page.evaluate("show(30)")
+    few, more, most = (page.evaluate(triangles, count) for count in (100, 150, 400))
+    assert more > few
+    assert most - more == 5 * (more - few)
+
+
 @pytest.mark.slow
 def test_a_part_of_a_run(open_page, run, plan):
     page = open_page(run, plan, selection=Selection((0,), 1.0, 2.0), title="one second of one")

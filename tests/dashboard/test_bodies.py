@@ -1,8 +1,12 @@
 """The crowd in three dimensions, beside the plan."""
 
+import base64
+import json
+import zlib
+
 import numpy as np
 import pytest
-from mesa_mobility.models import Doorway
+from mesa_mobility.models import Doorway, MixedEvacuation
 
 from mesa_mobility.bodies import PoseBank
 from mesa_mobility.bodies.sequence import pose_sequence
@@ -27,6 +31,28 @@ def test_what_people_do_now_is_what_they_have_decided():
         poses = pose_sequence(bank, frames, run.decisions.movements_of(int(row))).numbers
         now = int(bank.later(np.array([number]), np.array([into * moving]))[0])
         assert (which, now) == (0, poses[-1])
+
+
+def test_people_are_told_by_their_types():
+    from mesa_mobility.dashboard.session.bodies import Bodies
+
+    model = MixedEvacuation(
+        pedestrians=20, population="wheelchair_manual: 0.5, cane: 0.3, child: 0.2", rng=3
+    )
+    bodies = Bodies(model)
+    content = zlib.decompress(base64.b64decode(bodies.bundle()))
+    header = json.loads(content[4 : 4 + int.from_bytes(content[:4], "little")])
+    types = [
+        (kind.name, of["aid"], of["bank"] >= 0)
+        for kind, of in zip(model.pedestrian_types, header["types"], strict=True)
+    ]
+    assert types == [
+        ("wheelchair_manual", "wheelchair", False), ("cane", "cane", True), ("child", "", True)
+    ]  # fmt: skip
+    now = bodies.now()
+    np.testing.assert_array_equal(now[:, 0], model.crowd.type_index[model.rows])
+    assert not now[now[:, 0] == 0, 1:].any()
+    assert (now[now[:, 0] > 0, 4] > 0).all()
 
 
 @pytest.fixture
@@ -87,3 +113,7 @@ def test_another_run_and_another_model(open_bodies):
     tab.wait(f"() => {BODIES}.inside === 17 && {BODIES}.figures[1] + {BODIES}.figures[0] === 17")
     tab.choose("model", "auditorium")
     tab.wait(f"() => {BODIES}.inside === 750")
+    tab.choose("model", "mixed_evacuation")
+    tab.wait(f"() => {BODIES}.inside === 60")
+    meshes = f"{BODIES}.meshes"
+    tab.wait(f"() => ({meshes}.wheelchair_far || 0) + ({meshes}.wheelchair_near || 0) > 10")

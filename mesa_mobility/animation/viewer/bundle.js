@@ -27,9 +27,8 @@ function partsOf(arrays, name) {
 }
 
 function figureOf({ header, arrays }) {
-  const figure = { skeleton: header.skeleton };
-  for (const name of ["near", "far", "pawn"]) figure[name] = partsOf(arrays, name);
-  return figure;
+  return { skeleton: header.skeleton,
+    meshes: Object.fromEntries(header.figures.map((name) => [name, partsOf(arrays, name)])) };
 }
 
 function bankOf({ header, arrays }, name, scale) {

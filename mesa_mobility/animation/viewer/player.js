@@ -38,7 +38,7 @@ function peopleOf({ header, arrays }) {
       course.strides = Float32Array.from(raw("courses", 3, c, pieces), (each) => each / 1000);
       course.own = raw("courses", 4, c, pieces);
     }
-    found.push({ row, kind, bank, track, course, colour: [0.5, 0.5, 0.5], first: track.frames[0],
+    found.push({ row, kind, bank, track, course, aid: header.aids[kind] || "", colour: [0.5, 0.5, 0.5], first: track.frames[0],
       last: track.frames[places - 1], decided: { frames: part("decisions", 0, d, decisions),
         options: raw("decisions", 1, d, decisions), shares: raw("decisions", 2, d, decisions) } });
     t += places;

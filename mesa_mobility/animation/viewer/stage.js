@@ -8,12 +8,13 @@ const QUICK = 0.018; // seconds between pictures from which on there is more det
 // Where pictures come more slowly than in so many seconds: fewer pixels, then fewer figures.
 const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
   { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
+const SEATED = "wheelchair", METAL = [0.26, 0.27, 0.29];
 const channels = (colour) => (colour[0] === "#" ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
   : colour.match(/\d+/g).map(Number)).map((each) => each / 255);
 const OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
 
 class Stage {
-  // figure: {skeleton, near, far, pawn}, meshes of people. Throws where a page cannot draw so.
+  // figure: {skeleton, meshes}, see animation/levels.py. Throws where a page cannot draw so.
   constructor(holder, figure) {
     this.holder = holder;
     this.skeleton = figure.skeleton;
@@ -30,9 +31,7 @@ class Stage {
     this.body = new Body(this.skeleton);
     this.rows = 0;
     this.bones = { value: null };
-    this.near = new Troop(figure.near, FIGURE_VERTEX(true), { bones: this.bones, first: { value: 0 } }, this.scene);
-    this.far = new Troop(figure.far, FIGURE_VERTEX(false), { bones: this.bones, first: { value: 0 } }, this.scene);
-    this.pawns = new Troop(figure.pawn, PAWN_VERTEX, {}, this.scene, { stand: 4 });
+    this.troops = new Troops(figure.meshes, this.bones, this.scene);
     this.ring = new THREE.Mesh(new THREE.RingGeometry(0.36, 0.46, 24),
       new THREE.MeshBasicMaterial({ color: 0xe6007e, side: THREE.DoubleSide }));
     this.scene.add(this.ring);
@@ -133,7 +132,7 @@ class Stage {
     this.resize();
   }
 
-  // people: [{row, track, course or null, colour: [r, g, b]}]; chosen: a row or -1.
+  // people: [{row, track, course or null, aid: what they hold or sit in, colour: [r, g, b]}]; chosen: a row or -1.
   draw(people, frame, chosen) {
     this.resize();
     const rows = people.length;
@@ -147,9 +146,10 @@ class Stage {
     const { x: cx, y: cy, z: cz } = camera.position, ahead = camera.getWorldDirection(new THREE.Vector3());
     const pixels = camera === this.above ? this.canvas.clientHeight / (this.above.top - this.above.bottom)
       : this.canvas.clientHeight / (2 * Math.tan((this.perspective.fov * Math.PI) / 360));
-    for (const each of [this.near, this.far, this.pawns]) each.reserve(rows);
+    this.troops.begin();
     this.ring.visible = Boolean(who);
     const figures = [], least = FIGURE_PIXELS * DETAIL[this.detail].afar;
+    let pawns = 0;
     for (const person of people) {
       const [x, y, heading] = person.track.at(frame), dx = x - cx, dy = y - cy;
       const depth = dx * ahead.x + dy * ahead.y + (1 - cz) * ahead.z;
@@ -157,25 +157,33 @@ class Stage {
       if (right && Math.abs(dx * right.x + dy * right.y) > wide * Math.max(depth, 0) + 1.5) continue; // beside the picture
       const high = camera === this.above ? pixels : (1.75 * pixels) / Math.max(depth, 0.3);
       if (person === who) this.mark(x, y);
-      if (person.course && high >= least) figures.push({ person, high });
+      if (person.aid === SEATED || (person.course && high >= least)) figures.push({ person, high });
       else {
         const scale = person.course ? person.course.bank.scale : person.scale || 1;
-        this.pawns.add({ stand: [x, y, heading, scale], colour: person.colour });
+        this.troops.add("person_pawn", { stand: [x, y, heading, scale], colour: person.colour });
+        pawns += 1;
       }
     }
     figures.sort((a, b) => b.high - a.high);
-    let fine = 0;
+    let fine = 0, row = 0;
     while (fine < Math.min(FINE_MOST, figures.length) && figures[fine].high >= FINE_PIXELS) fine += 1;
-    figures.forEach(({ person }, row) => {
-      this.body.pose(person, frame, row < HELD_MOST || person === who);
+    figures.forEach(({ person }, k) => {
+      const level = k < fine ? "near" : "far", { aid, colour } = person;
+      if (aid === SEATED) {
+        const stand = [...person.track.at(frame), 1];
+        this.troops.add(`seated_${level}`, { stand, colour });
+        this.troops.add(`${aid}_${level}`, { stand, colour: METAL });
+        return;
+      }
+      this.body.pose(person, frame, k < HELD_MOST || person === who);
       this.write(data, row, person.course.bank.scale);
-      (row < fine ? this.near : this.far).add({ colour: person.colour });
+      this.troops.add(`person_${level}`, { row, colour });
+      if (aid) this.troops.add(`${aid}_${level}`, { row, colour: METAL });
+      row += 1;
     });
-    this.near.finish(0);
-    this.far.finish(fine);
-    this.pawns.finish();
-    this.figures = [fine, figures.length - fine, this.pawns.count];
-    if (figures.length) this.bones.value.needsUpdate = true;
+    this.troops.finish();
+    this.figures = [fine, figures.length - fine, pawns];
+    if (row) this.bones.value.needsUpdate = true;
     this.renderer.render(this.scene, camera);
     this.drawn += 1;
   }
@@ -208,7 +216,11 @@ class Stage {
   // Joints of somebody's body: where the head is and where it looks.
   head(person, frame) {
     const [x, y, heading] = person.track.at(frame);
-    if (!person.course) return { place: [x, y, 1.6], ahead: [Math.cos(heading), Math.sin(heading), 0] };
+    if (person.aid === SEATED || !person.course) {
+      const c = Math.cos(heading), s = Math.sin(heading), [forward, , high] = this.skeleton.seatedHead;
+      const place = person.aid === SEATED ? [x + c * forward, y + s * forward, high] : [x, y, 1.6];
+      return { place, ahead: [c, s, 0] };
+    }
     this.body.pose(person, frame, false);
     const ahead = [0, 0, 0];
     turned(this.body.turns, 16, [1, 0, 0], 0, ZERO, 0, ahead, 0);

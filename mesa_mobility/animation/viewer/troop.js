@@ -1,4 +1,5 @@
-// People of one level of detail, drawn at once by the graphics card or what stands in for it.
+// People, and what they hold or sit in, of one level of detail, drawn at once by the graphics card or
+// what stands in for it.
 "use strict";
 
 // Light is worked out for each corner: without a graphics card each pixel is dear.
@@ -10,23 +11,23 @@ const SHADE = `
 const FRAGMENT = "in vec3 vColour; out vec4 painted; void main() { painted = vec4(vColour, 1.0); }";
 // From afar a corner goes with one joint.
 const FIGURE_VERTEX = (fine) => `
-  uniform sampler2D bones; uniform int first;
-  in vec2 joints; in float weight; in vec3 colour; out vec3 vColour;
+  uniform sampler2D bones;
+  in vec2 joints; in float weight, row; in vec3 colour; out vec3 vColour;
   vec3 turn(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
   ${SHADE}
   void main() {
-    int row = first + gl_InstanceID, a = 2 * int(joints.x);
-    vec4 q = texelFetch(bones, ivec2(a, row), 0), p = texelFetch(bones, ivec2(a + 1, row), 0);
+    int own = int(row), a = 2 * int(joints.x);
+    vec4 q = texelFetch(bones, ivec2(a, own), 0), p = texelFetch(bones, ivec2(a + 1, own), 0);
     vec3 place = turn(q, position) * p.w + p.xyz, facing = turn(q, normal);
     if (${fine} && weight < 0.999) {
       int b = 2 * int(joints.y);
-      q = texelFetch(bones, ivec2(b, row), 0); p = texelFetch(bones, ivec2(b + 1, row), 0);
+      q = texelFetch(bones, ivec2(b, own), 0); p = texelFetch(bones, ivec2(b + 1, own), 0);
       place = mix(turn(q, position) * p.w + p.xyz, place, weight);
     }
     vColour = shaded(colour, facing);
     gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
   }`;
-const PAWN_VERTEX = `
+const RIGID_VERTEX = `
   in vec4 stand; in vec3 colour; out vec3 vColour; ${SHADE}
   void main() {
     float c = cos(stand.z), s = sin(stand.z);
@@ -41,9 +42,9 @@ const WALL_VERTEX = `
     gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
   }`;
 
-// People of one level of detail, drawn at once.
+// Copies of one mesh, drawn at once: bent by their rows of bones, or rigid where it has no joints.
 class Troop {
-  constructor(mesh, vertex, uniforms, scene, extra) {
+  constructor(mesh, fine, bones, scene) {
     this.geometry = new THREE.InstancedBufferGeometry();
     const set = (name, values, size) => this.geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
     set("position", mesh.vertices, 3);
@@ -53,39 +54,42 @@ class Troop {
       set("weight", mesh.weights, 1);
     }
     this.geometry.setIndex(new THREE.BufferAttribute(mesh.triangles, 1));
-    const material = new THREE.ShaderMaterial({ vertexShader: vertex, fragmentShader: FRAGMENT, uniforms,
-      glslVersion: THREE.GLSL3 });
+    const material = new THREE.ShaderMaterial({ vertexShader: mesh.joints ? FIGURE_VERTEX(fine) : RIGID_VERTEX,
+      fragmentShader: FRAGMENT, uniforms: mesh.joints ? { bones } : {}, glslVersion: THREE.GLSL3 });
     this.mesh = new THREE.Mesh(this.geometry, material);
     this.mesh.frustumCulled = false;
-    this.uniforms = uniforms;
-    this.sizes = { colour: 3, ...extra };
+    this.sizes = mesh.joints ? { colour: 3, row: 1 } : { colour: 3, stand: 4 };
     this.room = 0;
     this.count = 0;
     scene.add(this.mesh);
   }
 
-  reserve(count) {
-    this.count = 0;
-    if (count <= this.room) return;
-    this.room = 2 * count;
-    for (const [name, size] of Object.entries(this.sizes)) {
-      const values = new THREE.InstancedBufferAttribute(new Float32Array(this.room * size), size);
-      values.setUsage(THREE.DynamicDrawUsage);
-      this.geometry.setAttribute(name, values);
-    }
-  }
-
+  // For each copy its colour, and its row of bones or its place: x, y, heading, size.
   add(values) {
-    for (const [name, each] of Object.entries(values)) {
-      this.geometry.attributes[name].array.set(each, this.count * this.sizes[name]);
+    if (this.count === this.room) this.enlarge(Math.max(64, 2 * this.room));
+    for (const name of Object.keys(this.sizes)) {
+      const { array } = this.geometry.attributes[name], from = this.count * this.sizes[name];
+      if (name === "row") array[from] = values.row;
+      else array.set(values[name], from);
     }
     this.count += 1;
   }
 
-  finish(first = 0) {
+  enlarge(room) {
+    this.room = room;
+    this.geometry.dispose(); // three.js keeps how many copies there were room for
+    for (const [name, size] of Object.entries(this.sizes)) {
+      const before = this.geometry.attributes[name], values = new Float32Array(room * size);
+      if (before) values.set(before.array);
+      const made = new THREE.InstancedBufferAttribute(values, size);
+      made.setUsage(THREE.DynamicDrawUsage);
+      this.geometry.setAttribute(name, made);
+    }
+  }
+
+  finish() {
     this.geometry.instanceCount = this.count;
     this.mesh.visible = this.count > 0;
-    if (this.uniforms.first) this.uniforms.first.value = first;
     for (const [name, size] of Object.entries(this.sizes)) {
       const each = this.geometry.attributes[name];
       if (!each) continue;
@@ -94,4 +98,21 @@ class Troop {
       each.needsUpdate = true;
     }
   }
+}
+
+// Troops by the names of their meshes: see animation/levels.py.
+class Troops {
+  constructor(meshes, bones, scene) {
+    this.all = Object.entries(meshes).map(([name, mesh]) => [name, new Troop(mesh, name.endsWith("_near"), bones, scene)]);
+    this.named = Object.fromEntries(this.all);
+  }
+
+  begin() { for (const [, troop] of this.all) troop.count = 0; }
+
+  add(name, values) { this.named[name].add(values); }
+
+  finish() { for (const [, troop] of this.all) troop.finish(); }
+
+  // How many of each are drawn.
+  counts() { return Object.fromEntries(this.all.filter(([, { count }]) => count).map(([name, { count }]) => [name, count])); }
 }

@@ -6,14 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility import PedestrianModel
+from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
 from mesa_mobility.bodies import Movements, PoseBank
 from mesa_mobility.bodies.sequence import stretch_of_each
 from mesa_mobility.errors import MapError
 
 NUMBERS = 5
-"""Of each person: bank (-1 where poses are not known), frames since its stretch of a recording
-began, number of the pose then, whether it moves, factor of its strides."""
+"""Of each person: its type, frames since its stretch of a recording began, number of the pose then,
+whether it moves, factor of its strides; only the type where poses are not known."""
 
 
 class Bodies:
@@ -39,8 +40,16 @@ class Bodies:
             self._bank_of.append(known[digest])
 
     def bundle(self) -> str:
-        """Figures and poses as ``viewer/bundle.js`` opens them."""
+        """Figures and poses as ``viewer/bundle.js`` opens them.
+
+        The header has of each pedestrian type its bank of poses (-1 where they are not known) and
+        what its people hold or sit in.
+        """
         header, arrays = figure_parts()
+        header["types"] = [
+            {"bank": bank, "aid": aid_of(kind.name)}
+            for bank, kind in zip(self._bank_of, self._model.pedestrian_types, strict=True)
+        ]
         header["scales"] = [bank.scale for bank in self._banks]
         for number, bank in enumerate(self._banks):
             arrays |= bank_arrays(bank, f"bank{number}")
@@ -51,10 +60,10 @@ class Bodies:
         model = self._model
         doing = model.under_way()
         found = np.zeros((len(doing["person"]), NUMBERS), dtype=np.float32)
-        of_type = np.array(self._bank_of)[doing["type_index"]]
-        found[:, 0] = of_type
+        found[:, 0] = doing["type_index"]
+        of_bank = np.array(self._bank_of)[doing["type_index"]]
         for number, bank in enumerate(self._banks):
-            own = of_type == number
+            own = of_bank == number
             movements = Movements(
                 doing["frame"][own].astype(np.int64),
                 doing["option"][own].astype(np.int64),

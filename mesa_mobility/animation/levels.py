@@ -1,0 +1,80 @@
+"""Figures of people and what they hold or sit in, near and far, for the three-dimensional view."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from mesa_mobility.animation.aids import aid_figure
+from mesa_mobility.animation.figure import (
+    Figure,
+    distant_figure,
+    human_figure,
+    pawn,
+    rest_positions,
+)
+from mesa_mobility.bodies.motion import BodyMotion
+from mesa_mobility.bodies.rotations import matrices
+from mesa_mobility.bodies.seated import seated_motion
+from mesa_mobility.bodies.skeleton import JOINT
+
+NEAR_AROUND = 8
+"""Vertices round a limb of somebody near."""
+
+_CARRIED = ("cane", "crutches", "walking_frame")
+_BARS = {"near": 6, "far": 3}
+"""Vertices round a bar of what is carried."""
+
+_WHEELS = {"near": 12, "far": 6}
+"""Vertices round a wheel, and each bar of a wheelchair."""
+
+
+def jointed_figures() -> dict[str, Figure]:
+    """People and what they hold, in the pose of the neutral skeleton, the pelvis at the origin.
+
+    Names end with the level of detail: ``person_near``, ``cane_far``.
+    """
+    found = {"person_near": human_figure(NEAR_AROUND), "person_far": distant_figure()}
+    for level, around in _BARS.items():
+        found |= {f"{aid}_{level}": aid_figure(aid, around) for aid in _CARRIED}
+    return found
+
+
+def rigid_figures() -> dict[str, Figure]:
+    """Figures that move as a whole and stand on the floor at the origin.
+
+    ``seated_near`` in ``wheelchair_near``, the far ones, and ``person_pawn``: somebody without
+    limbs.
+    """
+    people = {"near": human_figure(NEAR_AROUND), "far": distant_figure()}
+    found = {"person_pawn": pawn()}
+    for level, person in people.items():
+        found[f"seated_{level}"] = _seated(person)
+        found[f"wheelchair_{level}"] = _seated(aid_figure("wheelchair", _WHEELS[level]))
+    return found
+
+
+def seated_head() -> list[float]:
+    """Place of the head of somebody who sits in a wheelchair at the origin, metres."""
+    head: list[float] = _sitting().positions[0, JOINT["head"]].tolist()
+    return head
+
+
+def _sitting() -> BodyMotion:
+    return seated_motion(np.zeros(1, dtype=np.int64), np.zeros((1, 3)))
+
+
+def _seated(figure: Figure) -> Figure:
+    """A figure as its joints move it when somebody sits in a wheelchair at the origin."""
+    motion = _sitting()
+    turns = matrices(motion.rotations[0])[figure.joints]
+    away = figure.vertices[:, None] - rest_positions()[figure.joints]
+    places = motion.positions[0][figure.joints] + np.einsum("vkij,vkj->vki", turns, away)
+    facing = np.einsum("vkij,vj->vki", turns, figure.normals)
+    shares = figure.weights[..., None]
+    return replace(
+        figure,
+        vertices=(shares * places).sum(axis=1).astype(np.float32),
+        normals=(shares * facing).sum(axis=1).astype(np.float32),
+    )
