@@ -200,8 +200,8 @@ def _add_figures(
 
 
 def _add_plan(gltf: Any, file: Any, store: _Store, plan: FloorPlan, world: int) -> None:
-    # Indices have 16 bits: 65,535 is not allowed.
-    for name, vertices, normals, triangles, colour, both_sides in surfaces(plan, 16_000):
+    # Indices have 16 bits, and 65,535 is not allowed.
+    for name, vertices, normals, triangles, colour, both_sides in surfaces(plan, 65_535):
         attributes, indices = _mesh(store, gltf, vertices, normals, triangles)
         material = _material(gltf, file, colour, both_sides=both_sides)
         part = gltf.Primitive(attributes=attributes, indices=indices, material=material)

@@ -40,16 +40,23 @@ class Surface(NamedTuple):
     both_sides: bool
 
 
-def surfaces(plan: FloorPlan, walls_in_one: int) -> Iterator[Surface]:
-    """The floor, and the walls as upright rectangles, so many at most in a mesh."""
+def surfaces(plan: FloorPlan, most_vertices: int | None = None) -> Iterator[Surface]:
+    """The floor, and the walls as upright rectangles.
+
+    Args:
+        plan: floor and walls.
+        most_vertices: of a mesh of walls, which are divided among as many meshes as that takes; all
+            of them are in one mesh if None.
+    """
     x0, y0, x1, y1 = plan.bounds
     x0, y0, x1, y1 = x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN
     floor = np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]], dtype=np.float32)
     up = np.tile(np.array([0, 0, 1], dtype=np.float32), (4, 1))
     yield Surface("floor", floor, up, _SQUARE, FLOOR, False)
     walls = np.asarray(plan.walls, dtype=np.float64)
-    for start in range(0, len(walls), walls_in_one):
-        yield Surface("walls", *_upright(walls[start : start + walls_in_one]), WALL, True)
+    at_once = len(walls) if most_vertices is None else most_vertices // 4
+    for start in range(0, len(walls), at_once):
+        yield Surface("walls", *_upright(walls[start : start + at_once]), WALL, True)
 
 
 def _upright(

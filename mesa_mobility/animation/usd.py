@@ -128,7 +128,7 @@ def _mesh(
 
 
 def _add_plan(stage: Any, plan: FloorPlan, materials: dict[str, Any]) -> None:
-    for name, vertices, normals, triangles, colour, both_sides in surfaces(plan, 1_000_000):
+    for name, vertices, normals, triangles, colour, both_sides in surfaces(plan):
         mesh = _mesh(stage, f"/world/{name}", vertices, normals, triangles)
         mesh.CreateDoubleSidedAttr(both_sides)
         _bind(mesh, materials[colour])

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from mesa_mobility.animation import Selection, walkers, write_bvh, write_film, write_glb
 from mesa_mobility.animation.figure import human_figure, rest_positions
+from mesa_mobility.animation.scenery import surfaces
 from mesa_mobility.bodies.skeleton import JOINTS, PARENTS
 from mesa_mobility.capture.bvh import read_bvh
 from mesa_mobility.errors import ResultsError
@@ -170,3 +171,13 @@ def test_a_film_has_a_picture_for_each_fifteenth_of_a_second(run, plan, tmp_path
         write_film(run, plan, tmp_path / "crowd.avi")
     with pytest.raises(ResultsError, match="speed -1"):
         write_film(run, plan, path, speed=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("most", "walls"), [(None, [5]), (65_535, [5]), (16, [4, 1]), (15, [3, 2]), (4, [1] * 5)]
+)
+def test_walls_are_divided_among_meshes_of_so_many_vertices(plan, most, walls):
+    _, *meshes = surfaces(plan, most)
+    assert [len(each.vertices) for each in meshes] == [4 * count for count in walls]
+    starts = np.concatenate([each.vertices[::4, :2] for each in meshes])
+    np.testing.assert_array_equal(starts, plan.walls[:, :2].astype(np.float32))
