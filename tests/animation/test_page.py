@@ -128,6 +128,30 @@ def test_the_page_tells_what_somebody_is_doing(page, run):
 
 
 @pytest.mark.slow
+def test_the_page_tells_of_any_person_at_any_time(page, run):
+    for person in (0, 1):
+        own = run.decisions.rows_of(person)
+        decided, options = run.decisions.frame[own], run.decisions.option[own]
+        frames = run.frame[run.rows_of(person)]
+        assert len(frames) > 45
+        said = page.evaluate(
+            """([person, frames]) => {
+              element("person").value = person;
+              return frames.map((frame) => (state.frame = frame, why()));
+            }""",
+            [str(person), frames.tolist()],
+        )
+        for frame, text in zip(frames, said, strict=True):
+            k = int((decided <= frame).sum()) - 1
+            if k < 0:
+                assert text == f"person {person}: has not decided yet"
+                continue
+            assert f"decision {k + 1} of {len(own)}, taken at {decided[k] / 30:.2f} s" in text
+            assert f"option {options[k]} of its map" in text
+            assert text.endswith(f"--person {person} --time {decided[k] / 30:.2f}")
+
+
+@pytest.mark.slow
 def test_people_without_poses_are_drawn_without_limbs(open_page, run, plan):
     page = open_page(replace(run, decisions=None), plan, title="no decisions")
     page.evaluate("show(30)")

@@ -46,28 +46,29 @@ def run_folder(saved, tmp_path):
     return shutil.copytree(saved, tmp_path / "run")
 
 
-def taken_live():
-    """The same decision, watched while the model runs, and what the person's type can do."""
+def taken_live(person=PERSON, seconds=SECONDS):
+    """A decision of that run, watched while the model runs, and the model."""
     from mesa_mobility.behaviors import KeepDistance
 
     from mesa_mobility.distributions import Uniform
 
     model = Doorway(pedestrians=20, pre_movement=Uniform(0.0, 0.5), frames_per_step=1, rng=3)
     model.terms.append(KeepDistance(weight=0.2))
-    model.watch, last = Watch(PERSON), None
-    while model.frame <= SECONDS * 30:
+    model.watch, last = Watch(person), None
+    while model.frame <= seconds * 30:
         model.step()
         last = model.watch.decision or last
     return last, model
 
 
-def test_the_answer_is_that_of_the_decision_when_it_was_taken(command, saved):
-    live, model = taken_live()
+@pytest.mark.parametrize(("person", "seconds"), [(PERSON, SECONDS), (0, 0.8), (19, 3.9)])
+def test_the_answer_is_that_of_the_decision_when_it_was_taken(command, saved, person, seconds):
+    live, model = taken_live(person, seconds)
     assert live.taken
-    outcome = command("explain", saved, "--person", PERSON, "--time", SECONDS, "--json")
+    outcome = command("explain", saved, "--person", person, "--time", seconds, "--json")
     assert outcome.status == 0, outcome.err
     answer = json.loads(outcome.out)
-    assert (answer["person"], answer["frame"]) == (PERSON, live.frame)
+    assert (answer["person"], answer["frame"]) == (person, live.frame)
     assert answer["position"] == live.candidates.positions[0].tolist()
     assert answer["target"] == live.candidates.targets[0].tolist()
     options = answer["options"]

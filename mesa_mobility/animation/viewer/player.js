@@ -80,7 +80,8 @@ function why() {
   const at = (frame) => `${(frame / RATE).toFixed(2)} s`;
   const until = k + 1 < frames.length ? ` until ${at(frames[k + 1])}` : "";
   const told = [`person ${person.row}, decision ${k + 1} of ${frames.length}, taken at ${at(frames[k])}${until}`];
-  if (options[k] < 0) return [...told, "no option was free: it moves straight towards its target"].join("\n");
+  const others = `why not another: mesa-mobility explain RUN_DIR --person ${person.row} --time ${(frames[k] / RATE).toFixed(2)}`;
+  if (options[k] < 0) return [...told, "no option was free: it moves straight towards its target", others].join("\n");
   const share = shares[k] * state.run.header.steps.share;
   told.push(`option ${options[k]} of its map${share < 0.9995 ? `, shortened to ${(100 * share).toFixed(0)} % of its ground` : ""}`);
   if (person.course) {
@@ -91,7 +92,7 @@ function why() {
       told.push(`recorded in ${state.run.header.clips[person.bank][clip]}, ${at((number >> 1) - clips[clip])}${number & 1 ? ", mirrored" : ""}`);
     }
   }
-  return told.join("\n");
+  return [...told, others].join("\n");
 }
 
 function draw() {
