@@ -102,3 +102,12 @@ def test_sixty_get_through_a_door_of_90_centimetres(name):
         figures = through_a_door(name, 60, 0.9, seed)
         assert figures["left_inside"] == 0, seed
         assert_safe(figures)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [5, 9])
+def test_people_on_crutches_do_not_wedge_each_other_in(seed):
+    """Two of 0.44 m just fit through 0.9 m: three stood there like the stones of an arch."""
+    figures = through_a_door("crutches", 60, 0.9, seed)
+    assert figures["left_inside"] == 0
+    assert_safe(figures)

@@ -7,7 +7,8 @@ it (Dresner and Stone, Journal of Artificial Intelligence Research 31, 2008).  H
 people who are about to enter an opening too narrow for two of them, the one who is nearest to it
 has the right to go first.  The others keep the width of a body clear of the opening until it is
 through.  One that is up against a jamb first goes back to the middle, since it cannot step
-aside either.  People on foot neither wait nor are waited for.
+aside either.  Where two just fit, they go together until they hold each other up.  People on foot
+without crutches neither wait nor are waited for.
 """
 
 from __future__ import annotations
@@ -23,8 +24,18 @@ from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import narrow_mouths
 
-WIDE = 0.3
-"""Core radius in metres above which a body is wide: one on foot takes 0.6 m (Fruin 1971)."""
+WIDE = 0.2
+"""Core radius in metres above which a body is wide.
+
+People on foot, with a cane or with a walking frame slip past one another; those on crutches and
+in wheelchairs do not.
+"""
+
+CLEARANCE = 0.15
+"""Metres between two wide bodies and the jambs with which they get through side by side.
+
+With less they mostly do, but may wedge each other in: then one goes first after all.
+"""
 
 REACH = 4.0
 """Metres before an opening at which wide people heed it: the longest movement, 3 m, and room to
@@ -90,7 +101,7 @@ class Precedence(Saved):
 
     def _look_for_openings(self) -> None:
         self._version = self._plan.version
-        mouths = narrow_mouths(self._plan, 4.0 * self._widest)
+        mouths = narrow_mouths(self._plan, 4.0 * self._widest + CLEARANCE)
         wide_enough = np.hypot(*(mouths[:, 2:4] - mouths[:, :2]).T) > 2.0 * WIDE
         self._mouths = mouths[wide_enough]
 
@@ -136,8 +147,10 @@ class Precedence(Saved):
             if mouth != NOBODY:
                 self._choose(mouth, heeding[self._at[heeding] == mouth], elapsed, crowd)
         at = self._at[who]
-        waits = (at != NOBODY) & (self._first[at] != who) & self._too_narrow(who, at, crowd)
-        stuck = (at != NOBODY) & ~waits & (elapsed - self._since[at] > STUCK)
+        held_up = elapsed - self._since[at] > STUCK
+        waits = (at != NOBODY) & (self._first[at] != who)
+        waits &= self._too_narrow(who, at, np.where(held_up, CLEARANCE, 0.0), crowd)
+        stuck = (at != NOBODY) & ~waits & held_up
         stuck[stuck] = at_a_jamb(self._mouths[at[stuck]], places[stuck], crowd.core[who[stuck]])
         if not (waits.any() or stuck.any()):
             return points, speeds
@@ -168,14 +181,18 @@ class Precedence(Saved):
         self._since[mouth] = elapsed
 
     def _too_narrow(
-        self, who: NDArray[np.int64], at: NDArray[np.int64], crowd: Crowd
+        self,
+        who: NDArray[np.int64],
+        at: NDArray[np.int64],
+        clearance: NDArray[np.float64],
+        crowd: Crowd,
     ) -> NDArray[np.bool_]:
-        """(n,) whether each and the one who goes first do not fit through its opening together."""
+        """(n,) whether each and the one who goes first do not fit through its opening together,
+        with a clearance in metres."""
         line = self._mouths[at, :4]
         width = np.hypot(line[:, 2] - line[:, 0], line[:, 3] - line[:, 1])
-        too_narrow: NDArray[np.bool_] = width < 2.0 * (
-            crowd.core[who] + crowd.core[self._first[at]]
-        )
+        together = 2.0 * (crowd.core[who] + crowd.core[self._first[at]])
+        too_narrow: NDArray[np.bool_] = width < together + clearance
         return too_narrow
 
 
