@@ -106,30 +106,13 @@ def _lesser(builder: Any, value: Any, place: Any, other: Any, elsewhere: Any) ->
     return builder.select(less, other, value), builder.select(less, elsewhere, place)
 
 
-def _eight(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    """The vector of 8 numbers of the first argument that starts at the second."""
-    begin = vectors.start_of(context, builder, sig.args[0], args[0])
-    at = vectors.whole(context, builder, sig.args[1], args[1])
-    return vectors.load(builder, begin, at, LANES)
-
-
-def _plain_any_of(values: NDArray[np.float64], at: int) -> bool:
+@force_inlined()
+def any_of(values: NDArray[np.float64], at: int) -> bool:
+    """Whether any of the 8 numbers starting at ``at`` is not 0."""
     found = False
     for lane in range(LANES):
         found |= values[at + lane] != 0.0
     return found
-
-
-@with_twin(_plain_any_of)
-def any_of(typingctx, values, at):
-    """Whether any of the 8 numbers starting at ``at`` is not 0."""
-
-    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        value = _eight(context, builder, sig, args)
-        some = builder.fcmp_unordered("!=", value, vectors.same(DOUBLE, LANES, 0.0))
-        return builder.icmp_unsigned("!=", vectors.bits_of(builder, some), ir.Constant(LONG, 0))
-
-    return types.boolean(values, at), codegen
 
 
 def _plain_no_more_than(values: NDArray[np.float64], at: int, most: float) -> int:
@@ -145,7 +128,9 @@ def no_more_than(typingctx, values, at, most):
     """Mask of the 8 numbers starting at ``at`` that are at most a limit, or not finite."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        value = _eight(context, builder, sig, args)
+        begin = vectors.start_of(context, builder, sig.args[0], args[0])
+        at = vectors.whole(context, builder, sig.args[1], args[1])
+        value = vectors.load(builder, begin, at, LANES)
         little = builder.fcmp_unordered("<=", value, vectors.spread(builder, args[2], LANES))
         endless = builder.fcmp_ordered("==", value, vectors.same(DOUBLE, LANES, math.inf))
         return vectors.bits_of(builder, builder.or_(little, endless))

@@ -17,7 +17,7 @@ from numba.core import cgutils
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined
-from mesa_mobility.compiled.simd import SAMPLES, WIDE
+from mesa_mobility.compiled.simd import WIDE
 from mesa_mobility.compiled.twins import with_twin
 from mesa_mobility.compiled.vectors import (
     DOUBLE,
@@ -25,14 +25,11 @@ from mesa_mobility.compiled.vectors import (
     INT,
     LONG,
     across,
-    bits_of,
     less_of,
     load,
     load_three,
     more_of,
     same,
-    some_lanes,
-    spread,
     start_of,
     whole,
 )
@@ -109,9 +106,15 @@ def extent(typingctx, circles, at, row, n, dropped):
     return types.UniTuple(types.float64, 4)(circles, at, row, n, dropped), codegen
 
 
-def _plain_levels_within(
+@force_inlined()
+def levels_within(
     ahead: NDArray[np.float32], at: int, row: int, spans: NDArray[np.float32], apart: float
 ) -> int:
+    """Bits of the levels at which somebody is less than ``apart`` from a box.
+
+    ``ahead`` C-contiguous: x at the 16 samples from place ``at`` on, y ``row`` places farther on;
+    ``spans`` (4, levels), C-contiguous: least x and y, greatest x and y of the boxes.
+    """
     of, most = ahead.flat, np.float32(apart) * np.float32(apart)
     bits = 0
     for level in range(len(LEVELS)):
@@ -120,33 +123,3 @@ def _plain_levels_within(
         dy = _beyond(of[sample + row], spans[1, level], spans[3, level])
         bits |= int(dx * dx + dy * dy < most) << level
     return bits
-
-
-@with_twin(_plain_levels_within)
-def levels_within(typingctx, ahead, at, row, spans, apart):
-    """Bits of the levels at which somebody is less than ``apart`` from a box.
-
-    ``ahead`` C-contiguous: x at the 16 samples from place ``at`` on, y ``row`` places farther on;
-    ``spans`` (4, levels), C-contiguous: least x and y, greatest x and y of the boxes.
-    """
-
-    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        begin = start_of(context, builder, sig.args[0], args[0])
-        spans = start_of(context, builder, sig.args[3], args[3])
-        at, row = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
-        width = len(LEVELS)
-        apart = spread(builder, builder.fptrunc(args[4], FLOAT), width)
-        off2 = []
-        for k in range(2):
-            samples = load(builder, begin, builder.add(at, row) if k else at, SAMPLES)
-            place = some_lanes(builder, samples, LEVELS)
-            low, high = (
-                load(builder, spans, ir.Constant(LONG, width * end), width) for end in (k, k + 2)
-            )
-            off = more_of(builder, builder.fsub(low, place), builder.fsub(place, high))
-            off = more_of(builder, off, same(FLOAT, width, 0.0))
-            off2.append(builder.fmul(off, off))
-        near = builder.fcmp_ordered("<", builder.fadd(*off2), builder.fmul(apart, apart))
-        return bits_of(builder, near)
-
-    return types.int64(ahead, at, row, spans, types.float64), codegen

@@ -13,15 +13,13 @@ from numba import types
 from numba.core import cgutils
 from numpy.typing import NDArray
 
+from mesa_mobility.compiled.decorators import force_inlined
 from mesa_mobility.compiled.simd import LANES, SAMPLES
 from mesa_mobility.compiled.twins import with_twin
 from mesa_mobility.compiled.vectors import (
     DOUBLE,
-    FLOAT,
     LONG,
     load,
-    load_one,
-    same,
     spread,
     start_of,
     store,
@@ -89,7 +87,8 @@ def lanes_to_world(typingctx, lanes, group, ends, at, c, s, px, py, seconds):
     return types.void(lanes, group, ends, at, *[types.float64] * 5), codegen
 
 
-def _plain_samples_to_ego(
+@force_inlined()
+def samples_to_ego(
     paths: NDArray[np.float32],
     path: int,
     first: int,
@@ -102,20 +101,6 @@ def _plain_samples_to_ego(
     at: int,
     row: int,
 ) -> None:
-    target = to.flat
-    along, cosine, sine = np.float32(share), np.float32(c), np.float32(s)
-    from_x, from_y = np.float32(x), np.float32(y)
-    for k in range(SAMPLES):
-        here, there = min(first + k, SAMPLES - 1), min(first + k + 1, SAMPLES - 1)
-        px, py = paths[path, 0, here], paths[path, 1, here]
-        own_x = px + along * (paths[path, 0, there] - px)
-        own_y = py + along * (paths[path, 1, there] - py)
-        target[at + k] = from_x + (cosine * own_x - sine * own_y)
-        target[at + row + k] = from_y + (sine * own_x + cosine * own_y)
-
-
-@with_twin(_plain_samples_to_ego)
-def samples_to_ego(typingctx, paths, path, first, share, c, s, x, y, to, at, row):
     """Write where somebody on a path is at the sample times to come, 16 of them.
 
     Args:
@@ -132,34 +117,13 @@ def samples_to_ego(typingctx, paths, path, first, share, c, s, x, y, to, at, row
         at: place.
         row: places.
     """
-
-    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        begin = start_of(context, builder, sig.args[0], args[0])
-        target = start_of(context, builder, sig.args[8], args[8])
-        path, first = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
-        at, row = (whole(context, builder, sig.args[k], args[k]) for k in (9, 10))
-        share, c, s, x, y = (
-            spread(builder, builder.fptrunc(args[k], FLOAT), SAMPLES) for k in range(3, 8)
-        )
-        add, sub, mul = builder.fadd, builder.fsub, builder.fmul
-        # Where the samples end, those of the next row follow: the last one stands for them.
-        numbers = ir.Constant(ir.VectorType(LONG, SAMPLES), list(range(SAMPLES)))
-        beyond = builder.add(spread(builder, first, SAMPLES), numbers)
-        ended = builder.icmp_signed(">=", beyond, same(LONG, SAMPLES, SAMPLES - 1))
-        own = []
-        for k in range(2):
-            of = builder.mul(path, ir.Constant(LONG, 3 * SAMPLES))
-            of = builder.add(of, ir.Constant(LONG, SAMPLES * k))
-            end = load_one(builder, begin, builder.add(of, ir.Constant(LONG, SAMPLES - 1)))
-            of = builder.add(of, first)
-            here = load(builder, begin, of, SAMPLES)
-            there = load(builder, begin, builder.add(of, ir.Constant(LONG, 1)), SAMPLES)
-            between = add(here, mul(share, sub(there, here)))
-            own.append(builder.select(ended, spread(builder, end, SAMPLES), between))
-        store(builder, add(x, sub(mul(c, own[0]), mul(s, own[1]))), target, at)
-        place = builder.add(at, row)
-        store(builder, add(y, add(mul(s, own[0]), mul(c, own[1]))), target, place)
-        return context.get_dummy_value()
-
-    given = [types.float64] * 5
-    return types.void(paths, path, first, *given, to, at, row), codegen
+    target = to.flat
+    along, cosine, sine = np.float32(share), np.float32(c), np.float32(s)
+    from_x, from_y = np.float32(x), np.float32(y)
+    for k in range(SAMPLES):
+        here, there = min(first + k, SAMPLES - 1), min(first + k + 1, SAMPLES - 1)
+        px, py = paths[path, 0, here], paths[path, 1, here]
+        own_x = px + along * (paths[path, 0, there] - px)
+        own_y = py + along * (paths[path, 1, there] - py)
+        target[at + k] = from_x + (cosine * own_x - sine * own_y)
+        target[at + row + k] = from_y + (sine * own_x + cosine * own_y)

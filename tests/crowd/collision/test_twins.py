@@ -9,7 +9,6 @@ from mesa_mobility.compiled import simd
 from mesa_mobility.compiled.simd import LANES, SAMPLES, WIDE
 from mesa_mobility.crowd.collision import simd_boxes, simd_tests, simd_transforms, walls
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS
-from mesa_mobility.crowd.options.table import LEVELS
 
 _dropped_within = njit(simd_tests._plain_drop_within)
 _bits_within = njit(simd_tests._plain_places_within)
@@ -17,9 +16,6 @@ _dropped_beside = njit(walls._plain_drop_beside)
 _bits_beside = njit(walls._plain_places_beside)
 _path_off2 = njit(walls._plain_path_off2)
 _lay = njit(simd_transforms._plain_lanes_to_world)
-_sample = njit(simd_transforms._plain_samples_to_ego)
-_levels = njit(simd_boxes._plain_levels_within)
-_any = njit(simd._plain_any_of)
 _little = njit(simd._plain_no_more_than)
 _extent = njit(simd_boxes._plain_extent)
 _near = njit(simd_tests._plain_places_near)
@@ -113,33 +109,8 @@ def test_where_options_end(seed, group, at, angle):
 
 
 @njit
-def _ahead_by_hand(paths, path, first, share, c, s, x, y, to, spans, apart):
-    simd_transforms.samples_to_ego(paths, path, first, share, c, s, x, y, to, SAMPLES, 2 * SAMPLES)
-    return simd_boxes.levels_within(to, SAMPLES, 2 * SAMPLES, spans, apart)
-
-
-@given(seeds, st.integers(0, 15), st.floats(0.0, 1.0), st.floats(-4.0, 4.0), st.floats(0.0, 1.0))
-@settings(deadline=None)
-def test_where_somebody_will_be(seed, first, share, angle, apart):
-    rng = np.random.default_rng(seed)
-    paths = rng.uniform(-2.0, 2.0, (2, 3, SAMPLES)).astype(np.float32)
-    spans = np.sort(rng.uniform(-2.0, 2.0, (4, len(LEVELS))).astype(np.float32), axis=0)
-    one, other = (
-        np.zeros((2, 2, 2 * SAMPLES), np.float32),
-        np.zeros((2, 2, 2 * SAMPLES), np.float32),
-    )
-    turned = share, np.cos(angle), np.sin(angle), 0.5, -0.25
-    bits = _ahead_by_hand(paths, 1, first, *turned, one, spans, apart)
-    _sample(paths, 1, first, *turned, other, SAMPLES, 2 * SAMPLES)
-    assert (one == other).all()
-    assert other.any()
-    assert bits == _levels(other, SAMPLES, 2 * SAMPLES, spans, apart)
-
-
-@njit
 def _eight_by_hand(values, others, at, most, x, y):
     return (
-        simd.any_of(values, at),
         simd.no_more_than(values, at, most),
         simd_tests.numbers_between(values, at, x, y),
         simd_tests.places_near(values, others, at, x, y, most),
@@ -158,7 +129,6 @@ eight = st.lists(
 def test_what_holds_for_eight_numbers(values, others, at, most, x, y):
     values, others = np.array(values), np.array(others)
     assert _eight_by_hand(values, others, at, most, x, y) == (
-        _any(values, at),
         _little(values, at, most),
         _between(values, at, x, y),
         _near(values, others, at, x, y, most),
