@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from importlib.metadata import Distribution, EntryPoint, entry_points
 
 from mesa_mobility.errors import ModelError
@@ -74,6 +75,9 @@ def behaviors() -> dict[str, Plugin]:
     return _installed(BEHAVIORS)
 
 
+# Looking for what is installed opens a file of each package: without a cache, the terms of a preset
+# would take half the time of a run of 30 people.
+@cache
 def load_model(name: str) -> type:
     """The class of a model.
 
@@ -83,6 +87,7 @@ def load_model(name: str) -> type:
     return _find(name, models(), "model").load()
 
 
+@cache
 def load_behavior(name: str) -> type:
     """The class of a behaviour.
 
