@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.anticipation import turn_aside
 from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
-from mesa_mobility.crowd.tactics.giving_way import WIDE, Precedence
+from mesa_mobility.crowd.tactics.giving_way.precedence import WIDE, Precedence
 from mesa_mobility.crowd.tactics.impatience import back_off, perturb_targets
 from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_adaptation import adapt_speeds

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesa_mobility import PedestrianModel, PedestrianType
-from mesa_mobility.crowd.tactics.giving_way import (
+from mesa_mobility.crowd.tactics.giving_way.openings import (
     at_a_jamb,
     axis_points,
     mouths_ahead,

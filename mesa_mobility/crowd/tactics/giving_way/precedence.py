@@ -8,7 +8,8 @@ people who are about to enter an opening too narrow for two of them, the one who
 has the right to go first.  The others keep the width of a body clear of the opening until it is
 through.  One that is up against a jamb first goes back to the middle, since it cannot step
 aside either.  Where two just fit, they go together until they hold each other up.  People on foot
-without crutches neither wait nor are waited for.
+without crutches neither wait nor are waited for.  But whoever is behind one that is held up in the
+opening makes room for it (``making_room.py``).
 """
 
 from __future__ import annotations
@@ -21,6 +22,16 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.giving_way.making_room import ROOM, steps_aside
+from mesa_mobility.crowd.tactics.giving_way.openings import (
+    BACKING,
+    NOBODY,
+    at_a_jamb,
+    axis_points,
+    clear_of,
+    mouths_ahead,
+    wait_clear,
+)
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import narrow_mouths
 
@@ -37,32 +48,15 @@ CLEARANCE = 0.15
 With less they mostly do, but may wedge each other in: then one goes first after all.
 """
 
-REACH = 4.0
-"""Metres before an opening at which wide people heed it: the longest movement, 3 m, and room to
-stop."""
-
-BESIDE_JAMB = 0.35
-"""Metres by which the way of a person going by an opening may miss it: half a wide body."""
-
-AT_JAMB = 0.05
-"""Metres from a jamb within which somebody is up against it."""
-
-SECONDS_TO_STOP = 1.5
-"""Time in which those who wait come to a halt: the longest movement."""
-
-BACKING = 0.8
-"""Highest speed of those who make room, m/s."""
-
 GETTING_NEARER = 0.25
 """Metres that the one who goes first must come nearer for it to count as progress."""
 
 STUCK = 3.0
-"""Seconds without progress after which one that is up against a jamb goes back."""
+"""Seconds without progress after which others make room, and one that is up against a jamb goes
+back."""
 
 PATIENT = 10.0
 """Seconds without progress after which somebody else goes first."""
-
-NOBODY = -1
 
 
 class Precedence(Saved):
@@ -124,9 +118,6 @@ class Precedence(Saved):
             points: (n, 2) their targets, metres.
             speeds: (n,) their preferred speeds, m/s.
         """
-        mine = np.flatnonzero(crowd.core[rows] > WIDE)
-        if len(mine) == 0:
-            return points, speeds
         if self._version != self._plan.version:
             self._look_for_openings()
             self._at = np.full(len(crowd.core), NOBODY, dtype=np.int64)
@@ -138,9 +129,30 @@ class Precedence(Saved):
         if len(self._at) < len(crowd.core):
             more = np.full(len(crowd.core) - len(self._at), NOBODY, dtype=np.int64)
             self._at = np.append(self._at, more)
+        wanted, wanted_speeds = self._let_first(rows, inside, elapsed, crowd, points, speeds)
+        held_up = self._held_up(inside, elapsed, crowd)
+        if held_up.any():
+            return self._make_room(
+                held_up, rows, inside, elapsed, crowd, points, wanted, wanted_speeds
+            )
+        return wanted, wanted_speeds
+
+    def _let_first(
+        self,
+        rows: NDArray[np.int64],
+        inside: NDArray[np.int64],
+        elapsed: float,
+        crowd: Crowd,
+        points: NDArray[np.float64],
+        speeds: NDArray[np.float64],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Targets and speeds of deciding people of whom the wide ones let others go first."""
+        mine = np.flatnonzero(crowd.core[rows] > WIDE)
+        if len(mine) == 0:
+            return points, speeds
         who = rows[mine]
         places = np.column_stack([crowd.x[who], crowd.y[who]])
-        radii = crowd.core[who] * self._stretch[crowd.type_index[who]]
+        radii = self._radii(who, crowd)
         self._at[who] = mouths_ahead(self._mouths, places, points[mine], radii)
         heeding = inside[(crowd.core[inside] > WIDE) & (self._at[inside] != NOBODY)]
         for mouth in np.unique(self._at[who]).tolist():
@@ -180,6 +192,73 @@ class Precedence(Saved):
         self._first[mouth], self._nearest[mouth] = coming[best], ways[best]
         self._since[mouth] = elapsed
 
+    def _held_up(
+        self, inside: NDArray[np.int64], elapsed: float, crowd: Crowd
+    ) -> NDArray[np.bool_]:
+        """(m,) in which openings the one who goes first is, and makes no progress."""
+        first = self._first
+        there = np.isin(first, inside) & (self._at[first] == np.arange(len(first)))
+        line = self._mouths[:, :4]
+        way = np.hypot(
+            crowd.x[first] - (line[:, 0] + line[:, 2]) / 2.0,
+            crowd.y[first] - (line[:, 1] + line[:, 3]) / 2.0,
+        )
+        width = np.hypot(line[:, 2] - line[:, 0], line[:, 3] - line[:, 1])
+        there &= way < clear_of(width, self._radii(first, crowd))
+        held_up: NDArray[np.bool_] = there & (elapsed - self._since > STUCK)
+        return held_up
+
+    def _make_room(
+        self,
+        held_up: NDArray[np.bool_],
+        rows: NDArray[np.int64],
+        inside: NDArray[np.int64],
+        elapsed: float,
+        crowd: Crowd,
+        routes: NDArray[np.float64],
+        points: NDArray[np.float64],
+        speeds: NDArray[np.float64],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Targets and speeds of deciding people of whom those make room who are behind somebody
+        held up.
+
+        Args:
+            held_up: (m,) the openings in which somebody is.
+            rows: (n,) the pedestrians.
+            inside: rows of everybody inside.
+            elapsed: seconds.
+            crowd: the crowd; making room does not count towards impatience.
+            routes: (n, 2) targets of their routes, metres.
+            points: (n, 2) their targets, metres.
+            speeds: (n,) their preferred speeds, m/s.
+        """
+        places = np.column_stack([crowd.x[rows], crowd.y[rows]])
+        at = mouths_ahead(self._mouths, places, routes, self._radii(rows, crowd))
+        first = self._first[at]
+        stuck = np.column_stack([crowd.x[first], crowd.y[first]])
+        middle = (self._mouths[at, :2] + self._mouths[at, 2:4]) / 2.0
+        gap = np.hypot(*(places - stuck).T) - crowd.core[rows] - crowd.core[first]
+        behind = np.hypot(*(places - middle).T) > np.hypot(*(stuck - middle).T)
+        makes = (at != NOBODY) & held_up[at] & (rows != first) & behind & (gap < ROOM)
+        who = rows[makes]
+        if len(who) == 0:
+            return points, speeds
+        ends, can = steps_aside(
+            self._plan, places[makes], self._radii(who, crowd), stuck[makes],
+            np.column_stack([crowd.x[inside], crowd.y[inside]]), self._radii(inside, crowd),
+        )  # fmt: skip
+        points, speeds = points.copy(), speeds.copy()
+        own = np.flatnonzero(makes)
+        points[own[can]] = ends[can]
+        speeds[own] = np.where(can, np.minimum(crowd.agenda["speed"][who], BACKING), 0.0)
+        crowd.agenda["since"][who[self._stretch[crowd.type_index[who]] == 1.0]] = elapsed
+        return points, speeds
+
+    def _radii(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
+        """(n,) of the circles that hold the bodies of people, metres."""
+        radii: NDArray[np.float64] = crowd.core[rows] * self._stretch[crowd.type_index[rows]]
+        return radii
+
     def _too_narrow(
         self,
         who: NDArray[np.int64],
@@ -194,100 +273,3 @@ class Precedence(Saved):
         together = 2.0 * (crowd.core[who] + crowd.core[self._first[at]])
         too_narrow: NDArray[np.bool_] = width < together + clearance
         return too_narrow
-
-
-def mouths_ahead(
-    mouths: NDArray[np.float64],
-    places: NDArray[np.float64],
-    points: NDArray[np.float64],
-    radii: NDArray[np.float64],
-) -> NDArray[np.int64]:
-    """(n,) the nearest mouth within reach that each is about to enter, or -1.
-
-    Its straight way to its target leads through the mouth, or ends right before it: there routes
-    bend into an opening.
-
-    Args:
-        mouths: (m, 6) as ``narrow_mouths`` gives them.
-        places: (n, 2) where they are, metres.
-        points: (n, 2) their targets, metres.
-        radii: (n,) of the circles that hold their bodies, metres.
-    """
-    start, inward = mouths[:, :2], mouths[:, 4:]
-    along = mouths[:, 2:4] - start
-    width = np.hypot(along[:, 0], along[:, 1])
-    along = along / width[:, None]
-    off = ((places[:, None] - start) * inward).sum(axis=2)
-    off_target = ((points[:, None] - start) * inward).sum(axis=2)
-    outside = off < 0.0
-    through = outside & (off_target > 0.0)
-    share = off / np.where(through, off - off_target, 1.0)
-    crossing = places[:, None] + np.where(through, share, 0.0)[:, :, None] * (
-        points[:, None] - places[:, None]
-    )
-    lateral = ((crossing - start) * along).sum(axis=2)
-    through &= (lateral >= -BESIDE_JAMB) & (lateral <= width + BESIDE_JAMB)
-    middle = (start + mouths[:, 2:4]) / 2.0
-    before = np.hypot(*(points[:, None] - middle).transpose(2, 0, 1))
-    stays = (points == places).all(axis=1)
-    before_it = (before < clear_of(width, radii[:, None])) & outside & ~stays[:, None]
-    way = np.hypot(*(places[:, None] - middle).transpose(2, 0, 1))
-    way = np.where(through | before_it, way, np.inf)
-    nearest = way.argmin(axis=1)
-    found: NDArray[np.int64] = np.where(
-        way[np.arange(len(places)), nearest] <= REACH, nearest, NOBODY
-    )
-    return found
-
-
-def clear_of(width: NDArray[np.float64], radii: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Metres from the middle of a mouth that a body's width beside it reaches to."""
-    return width / 2.0 + 2.0 * radii
-
-
-def at_a_jamb(
-    mouths: NDArray[np.float64], places: NDArray[np.float64], cores: NDArray[np.float64]
-) -> NDArray[np.bool_]:
-    """(n,) whether each is up against a jamb of the mouth that it is at, and cannot go on."""
-    lines = mouths[:, :4].reshape(-1, 2, 2)
-    to_jamb = np.hypot(*(lines - places[:, None]).transpose(2, 0, 1)).min(axis=1)
-    along = lines[:, 1] - lines[:, 0]
-    width = np.hypot(along[:, 0], along[:, 1])
-    aside = ((places - lines.mean(axis=1)) * along).sum(axis=1) / width
-    against: NDArray[np.bool_] = (to_jamb < cores + AT_JAMB) & (abs(aside) > width / 2.0 - cores)
-    return against
-
-
-def axis_points(mouths: NDArray[np.float64], radii: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n, 2) where people may turn into the mouth that each is at: a body before its middle."""
-    points: NDArray[np.float64] = (mouths[:, :2] + mouths[:, 2:4]) / 2.0 - 2.0 * radii[
-        :, None
-    ] * mouths[:, 4:]
-    return points
-
-
-def wait_clear(
-    mouths: NDArray[np.float64],
-    places: NDArray[np.float64],
-    radii: NDArray[np.float64],
-    points: NDArray[np.float64],
-    speeds: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Targets and speeds of people who keep a body's width clear of the mouth that each is at.
-
-    Those who are nearer go away from it. The others stop half a body before, so that those who go
-    away have room.
-    """
-    from_mouth = places - (mouths[:, :2] + mouths[:, 2:4]) / 2.0
-    way = np.hypot(from_mouth[:, 0], from_mouth[:, 1])
-    width = np.hypot(mouths[:, 2] - mouths[:, 0], mouths[:, 3] - mouths[:, 1])
-    free = way - clear_of(width, radii)
-    away = from_mouth / np.maximum(way, 1e-9)[:, None]
-    left = np.maximum(free - radii, 0.0)
-    on = points - places
-    on *= np.minimum(1.0, left / np.maximum(np.hypot(on[:, 0], on[:, 1]), 1e-9))[:, None]
-    too_near = free < 0.0
-    return (
-        places + np.where(too_near[:, None], 2.0 * away, on),
-        np.where(too_near, np.minimum(speeds, BACKING), np.minimum(speeds, left / SECONDS_TO_STOP)),
-    )

@@ -1,0 +1,1 @@
+"""Wide people at openings too narrow for two of them."""
