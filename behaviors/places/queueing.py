@@ -129,6 +129,8 @@ class Queueing(Tactic):
                 if crowd.active[row] and self._counter_of(row) == number
             ]  # fmt: skip
             who = np.flatnonzero([each == number for each in bound])
+            # Two may come to an empty counter at once, and the second one step up to it first.
+            self._lines[number].sort(key=lambda row: not self._is_served(row))
             if len(who):
                 self._line_up(counter, self._lines[number], who, deciding, desired)
         self._standing.intersection_update(row for line in self._lines for row in line)

@@ -27,12 +27,18 @@ AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the las
 @app.command("run")
 def run(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="The experiment in TOML.", parser=some_path)
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="The experiment in TOML, or in JSON as reports print it.",
+            parser=some_path,
+        ),
     ],
     store: Annotated[
         str | None,
         typer.Option(
-            metavar="STORE", help="Folder or URL; by default the file's name without .toml."
+            metavar="STORE",
+            help="Folder or URL; by default the file's name without .toml or .json.",
         ),
     ] = None,
     workers: Annotated[

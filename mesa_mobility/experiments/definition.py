@@ -1,7 +1,8 @@
-"""Experiments as files: TOML that people write, and the JSON that a store keeps."""
+"""Experiments as files: TOML that people write, and the JSON that stores keep and reports print."""
 
 from __future__ import annotations
 
+import json
 import os
 import tomllib
 from collections.abc import Callable, Mapping
@@ -30,23 +31,26 @@ _DESIGNS: dict[str, Callable[[Any], Design]] = {
 
 
 def read_experiment(path: str | os.PathLike[str]) -> Experiment:
-    """Read an experiment from a TOML file.
+    """Read an experiment from a file: TOML, or JSON as reports print it if its name ends so.
 
-    A model in a Python file is looked for beside the TOML file.
+    A model in a Python file is looked for beside this file.
 
     Raises:
-        ModelError: no such file, not TOML, or not an experiment.
+        ModelError: no such file, neither TOML nor JSON, or not an experiment.
     """
     file = Path(path)
+    form, loads = ("JSON", json.loads) if file.suffix == ".json" else ("TOML", tomllib.loads)
     try:
-        values = tomllib.loads(file.read_text(encoding="utf-8"))
+        values = loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise ModelError(f"{file}: no such file, expected an experiment in TOML") from None
+        raise ModelError(f"{file}: no such file, expected an experiment in {form}") from None
     except OSError as error:
         raise ModelError(f"{file}: cannot be read: {error.strerror or error}") from error
     # Beside its own error the reader lets through those of numbers and nesting without end.
     except (ValueError, RecursionError) as error:
-        raise ModelError(f"{file}: is not TOML: {' '.join(str(error).split())}") from error
+        raise ModelError(f"{file}: is not {form}: {' '.join(str(error).split())}") from error
+    if not isinstance(values, dict):
+        raise ModelError(f"{file}: is not an experiment, expected an object in JSON")
     model = values.get("model")
     if isinstance(model, str) and is_model_file(model):
         values["model"] = os.fspath(file.parent / model)

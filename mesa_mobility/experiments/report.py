@@ -200,7 +200,7 @@ def _repeat(page: Page, definition: dict[str, Any]) -> None:
         [[each["began"], each["executor"], each["versions"].get("mesa-mobility", "-")]
          for each in definition["sessions"]],
     )  # fmt: skip
-    page.json("The experiment, to be run again", definition["experiment"])
+    page.json("The experiment, to be run again from a .json file", definition["experiment"])
 
 
 def _picture(frame: pd.DataFrame, figure: str, names: list[str]) -> bytes:

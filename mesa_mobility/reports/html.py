@@ -23,6 +23,7 @@ h1 { font-size: 1.7rem; } h2 { font-size: 1.2rem; margin-top: 2rem; }
 table { border-collapse: collapse; font-size: 0.9rem; }
 th, td { text-align: left; vertical-align: top; padding: 0.25rem 0.8rem 0.25rem 0;
   border-bottom: 1px solid #ddd; overflow-wrap: anywhere; }
+th, td:first-child { overflow-wrap: break-word; }
 img { max-width: 100%; } pre { background: #f5f5f5; padding: 0.8rem; white-space: pre-wrap; }
 .pass { color: #1a7f37; } .fail { color: #b42318; font-weight: 600; }
 @media print { body { margin: 0; max-width: none; font-size: 10pt; }
@@ -109,9 +110,9 @@ class Page:
 
 
 def picture(figure: Figure) -> bytes:
-    """A figure of Matplotlib as PNG."""
+    """A figure of Matplotlib as PNG, without blank margins."""
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png")
+    figure.savefig(buffer, format="png", bbox_inches="tight")
     return buffer.getvalue()
 
 

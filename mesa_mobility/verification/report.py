@@ -96,5 +96,6 @@ def _test(page: Page, entry: Entry, outcome: Outcome) -> None:
     ]
     page.table(f"{entry.id}: {entry.what}", ["", ""], [row for row in rows if row[1]])
     for case, drawing in outcome.drawings[:_MOST_PICTURES]:
+        people = "1 person" if drawing.people == 1 else f"{drawing.people} people"
         some = "" if len(drawing.ways) == drawing.people else f", {len(drawing.ways)} drawn"
-        page.picture("", picture(draw(drawing)), f"{case}: {drawing.people} people{some}")
+        page.picture("", picture(draw(drawing)), f"{case}: {people}{some}")

@@ -14,6 +14,7 @@ from mesa_mobility.experiments.definition import (
     read_experiment,
     to_definition,
 )
+from mesa_mobility.results.files import json_text
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "experiments" / "doorway.toml"
 NUMBERS = st.floats(0.001, 1e6)
@@ -100,6 +101,24 @@ def test_files_that_are_no_experiment(text, message, tmp_path):
     assert str(caught.value).startswith(f"{path}: ")
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_what_a_report_prints_is_read_from_a_json_file(tmp_path):
+    experiment = Experiment("doorway", Grid({"pedestrians": [2, 3]}), replications=2, seed=5)
+    path = tmp_path / "again.json"
+    path.write_text(json_text(to_definition(experiment), indent=1))
+    assert read_experiment(path) == experiment
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [("{", "is not JSON: "), ("[" * 100_000, "is not JSON: "), ("[1]", "expected an object")],
+)
+def test_json_that_is_no_experiment(text, message, tmp_path):
+    path = tmp_path / "e.json"
+    path.write_text(text)
+    with pytest.raises(ModelError, match=message):
+        read_experiment(path)
 
 
 def test_no_such_file(tmp_path):

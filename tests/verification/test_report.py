@@ -1,12 +1,15 @@
 """The report of the standards' tests, from outcomes made by hand."""
 
+import base64
 import re
+import struct
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.reports.html import Page
 from mesa_mobility.results import Trajectories
 from mesa_mobility.verification import Outcome, catalogue
 from mesa_mobility.verification.drawings import collect, draw, first_run_drawn
@@ -94,3 +97,36 @@ def test_the_page_of_a_comparison(tmp_path):
     assert "<td>share</td><td>0.5</td><td>-</td><td>reported</td>" in text
     assert f"Source: {drawn.source}." in text
     assert text.count("data:image/png;base64,") == 1
+
+
+def test_one_person_is_no_people_and_a_long_floor_has_no_blank_around_it(tmp_path):
+    with first_run_drawn() as found:
+        collect(tracks(1, 20), np.array([[0.0, 0.0, 40.0, 0.0], [0.0, 2.0, 40.0, 2.0]]))
+    page = tmp_path / "report.html"
+    passed = outcome("pass", drawings=[("walk(speed 1.33)", found[0])])
+    write_report(catalogue(), {"rimea-01": passed}, page)
+    text = page.read_text(encoding="utf-8")
+    assert "<p>walk(speed 1.33): 1 person</p>" in text
+    png = base64.b64decode(re.search(r"base64,([^\"]+)", text)[1])
+    width, height = struct.unpack(">II", png[16:24])
+    # 40 m by 2 m, and the labels of the axes.
+    assert height < 0.25 * width
+
+
+def test_a_label_beside_a_long_text_is_not_broken_within_a_word(
+    tmp_path, playwright, browser_program
+):
+    page = Page("Report")
+    page.table("", ["", ""], [["measured, medians", 40 * "of everything " + 500 * "a"]])
+    page.write(tmp_path / "report.html")
+    browser = playwright.chromium.launch(executable_path=browser_program, args=["--no-sandbox"])
+    shown = browser.new_page(viewport={"width": 700, "height": 500})
+    shown.goto((tmp_path / "report.html").as_uri())
+    lines = shown.evaluate("""() => {
+      const cell = document.querySelector("tbody td").firstChild, range = new Range();
+      range.setStart(cell, 0);
+      range.setEnd(cell, "measured,".length);
+      return range.getClientRects().length;
+    }""")
+    browser.close()
+    assert lines == 1

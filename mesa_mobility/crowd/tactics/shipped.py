@@ -20,7 +20,8 @@ from mesa_mobility.crowd.tactics.speed_rules import apply_speed_rules
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
 from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.crowd.tactics.turns import Turns
-from mesa_mobility.crowd.tactics.visits.stays import Stays
+from mesa_mobility.crowd.tactics.visits.journeys import Journeys
+from mesa_mobility.crowd.tactics.visits.slowing import slow_down
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -47,27 +48,37 @@ class SpreadAtCorners(_OfTheCrowd):
         desired.points = spread_at_corners(deciding, desired.targets, self._crowd)
 
 
-class StayAtPlaces(Tactic):
-    """People who have arrived at a place of their route walk to where they stand there."""
+class StayAtPlaces(_OfTheCrowd):
+    """People slow down before a place of their route at which they stay, and walk to where they
+    stand there."""
 
     name = "visits"
 
-    _stays: Stays
+    _journeys: Journeys
 
     def bind(self, model: PedestrianModel) -> None:
-        """Keep who stays where."""
-        self._stays = model.journeys.stays
+        """Keep who goes where, and who stays."""
+        super().bind(model)
+        self._journeys = model.journeys
 
     def state(self) -> dict[str, Any]:
-        """Nothing: the stays are the model's."""
+        """Nothing: the journeys are the model's."""
         return {}
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
-        """Send those who are on the way to a spot there."""
-        who, spots = self._stays.spots(deciding.pedestrians)
-        if len(who) and not desired.newcomers:
+        """Send those who have arrived to their spot, and slow down those who come near theirs."""
+        rows = deciding.pedestrians
+        bound = np.flatnonzero(self._journeys.to_stay(rows, self._crowd))
+        if desired.newcomers or not len(bound):
+            return
+        remaining = desired.targets.distances.copy()
+        who, spots = self._journeys.stays.spots(rows)
+        if len(who):
             desired.points = desired.points.copy()
             desired.points[who] = spots
+            remaining[who] = np.hypot(*(spots - deciding.positions[who]).T)
+        desired.speeds = desired.speeds.copy()
+        desired.speeds[bound] = slow_down(desired.speeds[bound], remaining[bound])
 
 
 class SlowInZones(Tactic):

@@ -7,7 +7,6 @@ cost nothing.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,19 +14,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.state.environment import Environment
-from mesa_mobility.crowd.state.paths import waypoint
-from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.tactics.visits.crossings import find_crossings
 from mesa_mobility.crowd.tactics.visits.place import Place
 from mesa_mobility.crowd.tactics.visits.stays import Stays
 from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
-from mesa_mobility.floorplan.routing.route_graph import IN_LINE
-from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
 
 
 @dataclass(frozen=True)
@@ -157,6 +153,15 @@ class Journeys(Saved):
         over = crossed >= len(journey.stops) and not journey.loop
         return None if over else journey.stops[crossed % len(journey.stops)]
 
+    def to_stay(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.bool_]:
+        """(n,) whether each in ``rows`` is bound for a place at which it stays, or is there."""
+        if not self._places:
+            return np.zeros(len(rows), dtype=bool)
+        numbers = self._place_of[self._now(rows, crowd)]
+        stays = np.array([place.visit.stay != 0.0 for _, _, place in self._places])
+        found: NDArray[np.bool_] = (numbers >= 0) & stays[numbers]
+        return found
+
     def exits(self, number: int) -> tuple[str, ...]:
         """Names of the exits at the end of the journey with this number; none if it is a loop."""
         journey = self._known[number - 1]
@@ -229,7 +234,7 @@ class Journeys(Saved):
         while len(on):
             lines = self._lines[self._now(on, crowd)]
             when = np.full(len(on), np.inf)
-            _find_crossings(on, lines, frame, agenda["checked"][on], table, crowd.records, when)
+            find_crossings(on, lines, frame, agenda["checked"][on], table, crowd.records, when)
             over = np.isfinite(when)
             agenda["checked"][on] = np.where(over, when, frame)
             if len(stayed):
@@ -255,43 +260,3 @@ class Journeys(Saved):
                 if self.stays.over(row, number, place, frame, crowd, rng):
                     over.append(row)
         return np.array(over, dtype=np.int64)
-
-
-@entry_point()
-def _find_crossings(
-    rows: NDArray[np.int64],
-    lines: NDArray[np.float64],
-    frame: int,
-    since: NDArray[np.float64],
-    table: OptionTable,
-    state: CrowdState,
-    when: NDArray[np.float64],
-) -> None:
-    """Write the frame at which people first crossed their line after ``since``, if they have."""
-    for a in range(len(rows)):
-        i = rows[a]
-        cx, cy, dx, dy = lines[a]
-        vx, vy = dx - cx, dy - cy
-        bx, by = state.from_x[i], state.from_y[i]
-        for k in range(state.knots[i] - 1):
-            ax, ay = bx, by
-            bx, by = waypoint(state, table, i, k + 1)
-            begin = state.start[i] + k * state.spacing[i]
-            if begin + state.spacing[i] <= since[a] or begin >= frame:
-                continue
-            ux, uy = bx - ax, by - ay
-            det = ux * vy - uy * vx
-            if det == 0.0:
-                continue
-            wx, wy = cx - ax, cy - ay
-            u = (wx * vy - wy * vx) / det
-            v = (wx * uy - wy * ux) / det
-            t = begin + u * state.spacing[i]
-            if 0.0 <= u <= 1.0 and 0.0 <= v <= 1.0 and since[a] < t <= frame:
-                when[a] = t
-                break
-        # The router treats people this near to the line as past it.
-        if math.isinf(when[a]) and since[a] < frame:
-            d2 = point_segment_distance2(state.x[i], state.y[i], cx, cy, dx, dy)
-            if d2 <= IN_LINE * IN_LINE:
-                when[a] = frame
