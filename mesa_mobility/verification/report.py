@@ -37,8 +37,8 @@ def write_report(
     page = Page("Verification of mesa-mobility")
     verdicts = [outcome.verdict for outcome in outcomes.values()]
     page.text(
-        f"{verdicts.count('pass')} tests passed, {verdicts.count('fail')} failed, "
-        f"{verdicts.count('cap')} exceed a design cap that measured crowds exceed too. Every test "
+        f"Passed: {verdicts.count('pass')}. Failed: {verdicts.count('fail')}. Over a design cap "
+        f"that measured crowds exceed too: {verdicts.count('cap')}. Every test "
         "runs with the default preset; overlaps of bodies and steps through walls are counted on "
         "the recorded tracks, and a single one fails the test."
     )

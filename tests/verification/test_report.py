@@ -58,7 +58,7 @@ def test_the_page_has_criterion_source_figures_picture_verdict_and_versions(tmp_
     write_report(entries, dict(zip(names, verdicts, strict=True)), page)
     text = page.read_text(encoding="utf-8")
     assert not re.search(r"(?:src|href)=\"(?!data:)", text)
-    assert "1 tests passed, 1 failed, 1 exceed a design cap" in text
+    assert "Passed: 1. Failed: 1. Over a design cap that measured crowds exceed too: 1." in text
     assert "<h2>rimea-01: one person walks along a corridor at its own speed</h2>" in text
     assert f"<td>source</td><td>{entries['rimea-01'].source}</td>" in text
     assert "travel time over 40 m in [26, 34] s" in text
