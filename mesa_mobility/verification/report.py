@@ -54,12 +54,13 @@ def write_report(
 
 def computed_with(page: Page, seeds: int) -> None:
     """Add what the runs of a standard's tests were computed with."""
+    written = datetime.now(UTC).isoformat(timespec="minutes")
     add_versions(
         page,
         versions(),
         {"map able_bodied": sha256_of(shipped_map_path("able_bodied"))},
         machine(),
-        f"Seeds 1 to {seeds}. Written {datetime.now(UTC).isoformat(timespec='minutes')}.",
+        f"{f'Seeds 1 to {seeds}' if seeds > 1 else 'Seed 1'}. Written {written}.",
     )
 
 
