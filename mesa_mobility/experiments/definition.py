@@ -33,7 +33,8 @@ _DESIGNS: dict[str, Callable[[Any], Design]] = {
 def read_experiment(path: str | os.PathLike[str]) -> Experiment:
     """Read an experiment from a file: TOML, or JSON as reports print it if its name ends so.
 
-    A model in a Python file is looked for beside this file.
+    A model in a Python file is looked for beside this file, and is known by its whole path, so that
+    the definition means the same elsewhere.
 
     Raises:
         ModelError: no such file, neither TOML nor JSON, or not an experiment.
@@ -53,7 +54,7 @@ def read_experiment(path: str | os.PathLike[str]) -> Experiment:
         raise ModelError(f"{file}: is not an experiment, expected an object in JSON")
     model = values.get("model")
     if isinstance(model, str) and is_model_file(model):
-        values["model"] = os.fspath(file.parent / model)
+        values["model"] = os.fspath((file.parent / model).absolute())
     try:
         return from_definition(values)
     except ModelError as error:

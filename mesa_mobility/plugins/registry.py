@@ -75,19 +75,15 @@ def behaviors() -> dict[str, Plugin]:
     return _installed(BEHAVIORS)
 
 
-# Looking for what is installed opens a file of each package: without a cache, the terms of a preset
-# would take half the time of a run of 30 people.
-@cache
 def load_model(name: str) -> type:
     """The class of a model.
 
     Raises:
         ModelError: no model of that name (the message lists what is installed), or it is broken.
     """
-    return _find(name, models(), "model").load()
+    return _find(name, MODELS).load()
 
 
-@cache
 def load_behavior(name: str) -> type:
     """The class of a behaviour.
 
@@ -95,7 +91,7 @@ def load_behavior(name: str) -> type:
         ModelError: no behaviour of that name (the message lists what is installed), or it is
             broken.
     """
-    return _find(name, behaviors(), "behavior").load()
+    return _find(name, BEHAVIORS).load()
 
 
 def _installed(group: str) -> dict[str, Plugin]:
@@ -116,12 +112,16 @@ def _installed(group: str) -> dict[str, Plugin]:
     return plugins
 
 
-def _find(name: str, plugins: Mapping[str, Plugin], kind: str) -> Plugin:
+# Looking for what is installed opens a file of each package: without a cache, the terms of a preset
+# would take a third of the time of a run of 30 people. What is not found is looked for again.
+@cache
+def _find(name: str, group: str) -> Plugin:
+    plugins = _installed(group)
     if name in plugins:
         return plugins[name]
     installed = ", ".join(plugins) or "none"
     raise ModelError(
-        f"unknown {kind} {name!r}{did_you_mean(name, plugins)}; installed: {installed}"
+        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, plugins)}; installed: {installed}"
     )
 
 

@@ -2,13 +2,14 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from mesa_mobility.cli import main
+from mesa_mobility.plugins.registry import _find
 from tests.fixtures.walker import walker_bvh
 
 PLUGIN = Path(__file__).parents[1] / "fixtures" / "plugin" / "corridor_plugin.py"
@@ -33,7 +34,7 @@ class Outcome:
 
 
 @pytest.fixture
-def install(tmp_path, monkeypatch) -> Callable[[str, str], None]:
+def install(tmp_path, monkeypatch) -> Iterator[Callable[[str, str], None]]:
     """Installs a package of a given name that offers entry points."""
 
     def make(package: str, entry_points: str) -> None:
@@ -46,7 +47,10 @@ def install(tmp_path, monkeypatch) -> Callable[[str, str], None]:
         (metadata / "entry_points.txt").write_text(entry_points)
         monkeypatch.syspath_prepend(str(folder))
 
-    return make
+    # What is installed does not change while a process runs, but here it does.
+    _find.cache_clear()
+    yield make
+    _find.cache_clear()
 
 
 @pytest.fixture

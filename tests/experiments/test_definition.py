@@ -110,6 +110,18 @@ def test_what_a_report_prints_is_read_from_a_json_file(tmp_path):
     assert read_experiment(path) == experiment
 
 
+def test_a_model_in_a_file_is_found_again_from_any_folder(tmp_path, monkeypatch):
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "model.py").write_text("")
+    (tmp_path / "sub" / "e.toml").write_text('model = "model.py"\nreplications = 1\n')
+    monkeypatch.chdir(tmp_path)
+    experiment = read_experiment("sub/e.toml")
+    assert experiment.model == str(tmp_path / "sub" / "model.py")
+    path = tmp_path / "sub" / "again.json"
+    path.write_text(json_text(to_definition(experiment), indent=1))
+    assert read_experiment("sub/again.json") == experiment
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [("{", "is not JSON: "), ("[" * 100_000, "is not JSON: "), ("[1]", "expected an object")],

@@ -159,6 +159,23 @@ def test_models_of_long_batches_leave_the_memory_of_a_worker(own_process, tmp_pa
         gc.enable()
 
 
+def test_what_outlives_a_batch_is_freed_once_it_is_garbage():
+    class Kept:
+        def __init__(self):
+            self.itself = self
+
+    kept = Kept()
+    alive = weakref.ref(kept)
+    try:
+        batches._collect()
+        del kept
+        for _ in range(20):
+            batches._collect()
+    finally:
+        gc.unfreeze()
+    assert alive() is None
+
+
 SOURCE = """
 import mesa
 

@@ -28,6 +28,16 @@ def test_a_plug_in_is_found_and_loaded():
 
 
 @pytest.mark.usefixtures("plugins")
+def test_what_is_installed_is_looked_through_once_a_name(monkeypatch):
+    looked, entry_points = [], registry.entry_points
+    monkeypatch.setattr(
+        registry, "entry_points", lambda group: looked.append(group) or entry_points(group=group)
+    )
+    assert registry.load_model("corridor") is registry.load_model("corridor")
+    assert looked == [registry.MODELS]
+
+
+@pytest.mark.usefixtures("plugins")
 def test_names_come_in_alphabetical_order():
     names = list(registry.models())
     assert names == sorted(names)

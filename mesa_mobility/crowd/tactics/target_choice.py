@@ -103,8 +103,9 @@ class TargetChoice(Plugin):
 
         Returns:
             ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,) in metres; people
-            decide in rising order of distance.  ``gates`` (n,) and ``corners`` (n, 2) are as
-            ``site.targets`` gives them, or -1 and None.
+            decide in rising order of distance, and those on the way to a visit slow down by it.
+            ``gates`` (n,) and ``corners`` (n, 2) are as ``site.targets`` gives them, or -1 and
+            None.
         """
 
 

@@ -18,6 +18,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,11 @@ DEATHS = 2
 _WORTH_COLLECTING = 2.0
 """Seconds of runs after which a tenth of a second for the collection of garbage is little."""
 
+_OF_EVERYTHING = 20
+"""One collection of so many goes through all objects: some of those that were left over by an
+earlier one may be garbage since."""
+
+_collections = count()
 _one_at_a_time = threading.Lock()
 
 
@@ -89,13 +95,22 @@ def run_batch(setup: Setup, batch: Batch) -> Finished:
         journal.remove()
         finished = _finished(rows)
         if setup.may_end and finished.wall_s >= _WORTH_COLLECTING:
-            # Models and their agents know each other. Python finds few objects in them, however
-            # large their arrays are, and would let hundreds of models wait.
-            gc.collect()
-            # What is left stays: the next collection need not go through it. Dask's profile of
-            # an hour is millions of dictionaries.
-            gc.freeze()
+            _collect()
         return finished
+
+
+def _collect() -> None:
+    """Free the models of a batch.
+
+    They and their agents know each other. Python finds few objects in them, however large their
+    arrays are, and would let hundreds of models wait.
+    """
+    if next(_collections) % _OF_EVERYTHING == 0:
+        gc.unfreeze()
+    gc.collect()
+    # The next collections need not go through what is left: Dask's profile of an hour is millions
+    # of dictionaries.
+    gc.freeze()
 
 
 class Journal:

@@ -1,11 +1,14 @@
 """Others make room for a wide person who is held up in an opening."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, MobilityMap, PedestrianModel, PedestrianType
 from mesa_mobility.crowd.tactics.giving_way.making_room import steps_aside
+from mesa_mobility.crowd.tactics.giving_way.precedence import Precedence
 from mesa_mobility.mobility import shipped_map_path
 from mesa_mobility.results import check_safety
 from mesa_mobility.results.trajectories import Trajectories
@@ -68,7 +71,7 @@ def crowd(plan, kinds, rng=1):
 
 def place(model, people, kind):
     x, y, heading = np.array(people).T
-    model.add_pedestrians(
+    return model.add_pedestrians(
         np.column_stack([x, y]), headings=np.deg2rad(heading), exits=["east"], type_index=kind
     )
 
@@ -139,3 +142,50 @@ def test_one_on_crutches_beside_a_wall_gets_loose():
     model = crowd(two_rooms(1.0, 0.2), ["crutches"], rng=3)
     place(model, AT_THE_WALL, 0)
     assert_all_get_out(model, 60)
+
+
+def heeded(waits_until=0, speed=1.33):
+    """Target and speed of somebody on foot behind a wheelchair, 5 s after it came to a door.
+
+    The wheelchair at (9.5, 4.0) does not move; the other is at (8.6, 4.0).
+    """
+    agenda = {
+        "since": np.zeros(2), "speed": np.array([1.0, 1.33]), "waits_until": np.zeros(2, np.int32)
+    }  # fmt: skip
+    people = SimpleNamespace(
+        core=np.array([0.35, 0.15]), x=np.array([9.5, 8.6]), y=np.array([4.0, 4.0]),
+        type_index=np.array([0, 1]), agenda=agenda,
+    )  # fmt: skip
+    who, beyond = np.array([0, 1]), np.array([[12.0, 4.0], [12.0, 4.0]])
+    precedence = Precedence(two_rooms(1.0, 0.2), 0.35, np.ones(2))
+    precedence.heed(who, who, 0.0, people, beyond, np.array([1.0, speed]))
+    agenda["waits_until"][0] = waits_until
+    points, speeds = precedence.heed(who, who, 5.0, people, beyond, np.array([1.0, speed]))
+    return points[1].tolist(), speeds[1]
+
+
+def test_whoever_is_behind_somebody_held_up_goes_back():
+    assert heeded() == ([pytest.approx(8.2), 4.0], pytest.approx(0.8))
+
+
+def test_nobody_makes_room_for_somebody_who_waits():
+    """At 5 s, frame 150, the wheelchair waits until frame 1,200."""
+    assert heeded(waits_until=1200) == ([12.0, 4.0], 1.33)
+
+
+def test_who_makes_room_is_no_faster_than_a_speed_zone_allows():
+    assert heeded(speed=0.2) == ([pytest.approx(8.2), 4.0], 0.2)
+
+
+def test_who_is_to_stand_by_a_speed_rule_does_not_make_room():
+    assert heeded(speed=0.0) == ([12.0, 4.0], 0.0)
+
+
+def test_people_on_foot_pass_a_wheelchair_that_waits_beside_a_door():
+    """All 12 are through after 14 s without the wheelchair; it waits for 40 s."""
+    model = crowd(two_rooms(1.0, 0.2), ["wheelchair_manual", None])
+    [chair] = place(model, [(9.55, 5.0, 0.0)], 0)
+    chair.wait(40.0)
+    place(model, [(x, y, 0.0) for x in (4.5, 3.7) for y in (1.5, 2.5, 3.5, 4.5, 5.5, 6.5)], 1)
+    model.run(max_seconds=20)
+    assert (model.crowd.x[1:][model.crowd.active[1:]] < 10.0).sum() == 0

@@ -50,6 +50,11 @@ def steps_aside(
     Returns:
         (n, 2) ends of the steps, metres; their own places for those who cannot. (n,) who can.
     """
+    far = float(radii.max() + their_radii.max()) + SWAY + STEP
+    near_by = ((others > places.min(axis=0) - far) & (others < places.max(axis=0) + far)).all(
+        axis=1
+    )
+    others, their_radii = others[near_by], their_radii[near_by]
     away = places - stuck
     angles = np.arctan2(away[:, 1], away[:, 0])[:, None] + _TURNS
     ways = np.stack([np.cos(angles), np.sin(angles)], axis=2)

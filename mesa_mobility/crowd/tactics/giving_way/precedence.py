@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.giving_way.making_room import ROOM, steps_aside
 from mesa_mobility.crowd.tactics.giving_way.openings import (
@@ -32,6 +33,7 @@ from mesa_mobility.crowd.tactics.giving_way.openings import (
     mouths_ahead,
     wait_clear,
 )
+from mesa_mobility.crowd.tactics.waiting import waiting
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import narrow_mouths
 
@@ -129,13 +131,27 @@ class Precedence(Saved):
         if len(self._at) < len(crowd.core):
             more = np.full(len(crowd.core) - len(self._at), NOBODY, dtype=np.int64)
             self._at = np.append(self._at, more)
-        wanted, wanted_speeds = self._let_first(rows, inside, elapsed, crowd, points, speeds)
+        self._look_where_they_go(rows, round(elapsed / FRAME_SECONDS), crowd, points)
+        desired = self._let_first(rows, inside, elapsed, crowd, points, speeds)
         held_up = self._held_up(inside, elapsed, crowd)
         if held_up.any():
-            return self._make_room(
-                held_up, rows, inside, elapsed, crowd, points, wanted, wanted_speeds
-            )
-        return wanted, wanted_speeds
+            given = points, speeds
+            return self._make_room(held_up, rows, inside, elapsed, crowd, given, desired)
+        return desired
+
+    def _look_where_they_go(
+        self, rows: NDArray[np.int64], frame: int, crowd: Crowd, points: NDArray[np.float64]
+    ) -> None:
+        """Note which opening each wide one is about to enter: none for those who wait."""
+        mine = np.flatnonzero(crowd.core[rows] > WIDE)
+        who = rows[mine]
+        if len(who) == 0:
+            return
+        places = np.column_stack([crowd.x[who], crowd.y[who]])
+        at = mouths_ahead(self._mouths, places, points[mine], self._radii(who, crowd))
+        waits = waiting(who, frame, crowd)
+        self._at[who] = np.where(waits, NOBODY, at)
+        self._first[np.isin(self._first, who[waits])] = NOBODY
 
     def _let_first(
         self,
@@ -153,7 +169,6 @@ class Precedence(Saved):
         who = rows[mine]
         places = np.column_stack([crowd.x[who], crowd.y[who]])
         radii = self._radii(who, crowd)
-        self._at[who] = mouths_ahead(self._mouths, places, points[mine], radii)
         heeding = inside[(crowd.core[inside] > WIDE) & (self._at[inside] != NOBODY)]
         for mouth in np.unique(self._at[who]).tolist():
             if mouth != NOBODY:
@@ -215,12 +230,11 @@ class Precedence(Saved):
         inside: NDArray[np.int64],
         elapsed: float,
         crowd: Crowd,
-        routes: NDArray[np.float64],
-        points: NDArray[np.float64],
-        speeds: NDArray[np.float64],
+        given: tuple[NDArray[np.float64], NDArray[np.float64]],
+        desired: tuple[NDArray[np.float64], NDArray[np.float64]],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Targets and speeds of deciding people of whom those make room who are behind somebody
-        held up.
+        held up. Whom another tactic lets stand stays.
 
         Args:
             held_up: (m,) the openings in which somebody is.
@@ -228,10 +242,11 @@ class Precedence(Saved):
             inside: rows of everybody inside.
             elapsed: seconds.
             crowd: the crowd; making room does not count towards impatience.
-            routes: (n, 2) targets of their routes, metres.
-            points: (n, 2) their targets, metres.
-            speeds: (n,) their preferred speeds, m/s.
+            given: targets (n, 2) in metres and speeds (n,) in m/s of their routes.
+            desired: targets and speeds so far.
         """
+        routes, most = given
+        points, speeds = desired
         places = np.column_stack([crowd.x[rows], crowd.y[rows]])
         at = mouths_ahead(self._mouths, places, routes, self._radii(rows, crowd))
         first = self._first[at]
@@ -240,17 +255,17 @@ class Precedence(Saved):
         gap = np.hypot(*(places - stuck).T) - crowd.core[rows] - crowd.core[first]
         behind = np.hypot(*(places - middle).T) > np.hypot(*(stuck - middle).T)
         makes = (at != NOBODY) & held_up[at] & (rows != first) & behind & (gap < ROOM)
-        who = rows[makes]
+        own = np.flatnonzero(makes & (most > 0.0))
+        who = rows[own]
         if len(who) == 0:
-            return points, speeds
+            return desired
         ends, can = steps_aside(
-            self._plan, places[makes], self._radii(who, crowd), stuck[makes],
+            self._plan, places[own], self._radii(who, crowd), stuck[own],
             np.column_stack([crowd.x[inside], crowd.y[inside]]), self._radii(inside, crowd),
         )  # fmt: skip
         points, speeds = points.copy(), speeds.copy()
-        own = np.flatnonzero(makes)
         points[own[can]] = ends[can]
-        speeds[own] = np.where(can, np.minimum(crowd.agenda["speed"][who], BACKING), 0.0)
+        speeds[own] = np.where(can, np.minimum(most[own], BACKING), 0.0)
         crowd.agenda["since"][who[self._stretch[crowd.type_index[who]] == 1.0]] = elapsed
         return points, speeds
 

@@ -157,9 +157,7 @@ class Journeys(Saved):
         """(n,) whether each in ``rows`` is bound for a place at which it stays, or is there."""
         if not self._places:
             return np.zeros(len(rows), dtype=bool)
-        numbers = self._place_of[self._now(rows, crowd)]
-        stays = np.array([place.visit.stay != 0.0 for _, _, place in self._places])
-        found: NDArray[np.bool_] = (numbers >= 0) & stays[numbers]
+        found: NDArray[np.bool_] = self._to_stay[self._now(rows, crowd)]
         return found
 
     def exits(self, number: int) -> tuple[str, ...]:
@@ -182,10 +180,13 @@ class Journeys(Saved):
         self._lines = np.concatenate([each.lines for each in known])
         # Index of the place at the end of each leg, -1 for gates and exits.
         self._place_of = np.full(len(self._legs), -1, dtype=np.int64)
+        # Whether people stay at the end of each leg.
+        self._to_stay = np.zeros(len(self._legs), dtype=bool)
         for journey, first in zip(known, self._firsts.tolist(), strict=True):
             for k, stop in enumerate(journey.stops):
                 if isinstance(stop, Visit):
                     self._place_of[first + k] = self._place(stop, journey.body)
+                    self._to_stay[first + k] = stop.stay != 0.0
 
     def _place(self, visit: Visit, body: int) -> int:
         """Index of a place for people of one core radius."""

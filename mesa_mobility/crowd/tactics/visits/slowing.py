@@ -25,5 +25,7 @@ def slow_down(speeds: NDArray[np.float64], remaining: NDArray[np.float64]) -> ND
         speeds: (n,) full speeds, m/s.
         remaining: (n,) metres to where each is to stand.
     """
-    allowed = np.sqrt(2.0 * speeds / STOPPING * np.maximum(remaining, 0.0))
-    return np.minimum(speeds, allowed)
+    braking = speeds * STOPPING / 2.0
+    slower = np.sqrt(2.0 * speeds / STOPPING * np.clip(remaining, 0.0, braking))
+    found: NDArray[np.float64] = np.where(remaining < braking, np.minimum(speeds, slower), speeds)
+    return found

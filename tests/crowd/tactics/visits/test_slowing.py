@@ -25,6 +25,10 @@ def test_speeds_fall_with_the_root_of_the_way_that_remains():
     )
 
 
+def test_whoever_stands_keeps_standing_where_a_place_has_no_way():
+    assert slow_down(np.array([0.0]), np.array([np.inf])).tolist() == [0.0]
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_nobody_walks_past_the_point_at_which_it_is_to_stand(seed):
     model = model_of(hall(), shipped_map(), rng=seed, frames_per_step=1)
