@@ -83,7 +83,7 @@ def test_the_report_of_a_test_has_all_that_authorities_ask_for(command, tmp_path
     assert f"travel time s {measured['travel time s']:.4g}" in text
     assert '<td>verdict</td><td><span class="pass">pass</span></td>' in text
     assert text.count("data:image/png;base64,") == 1
-    assert ": 1 people" in text
+    assert ": 1 person" in text
     assert re.search(r"<td>mesa-mobility</td><td>\d", text)
     assert re.search(r"<td>map able_bodied</td><td>sha256 [0-9a-f]{64}", text)
 
