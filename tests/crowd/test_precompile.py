@@ -6,7 +6,7 @@ from mesa_mobility.models import Doorway
 from mesa_mobility.crowd import precompile
 from mesa_mobility.crowd.planning import decision, decision_order, grid
 from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
-from mesa_mobility.crowd.tactics import impatience, turns
+from mesa_mobility.crowd.tactics import anticipation, impatience, speed_adaptation, turns
 
 FUNCTIONS = [
     decision.decide,
@@ -19,6 +19,8 @@ FUNCTIONS = [
     departed.merge,
     impatience.pick,
     impatience.turn,
+    anticipation._turn_aside,
+    speed_adaptation._adapt_speeds,
     turns.find_mouths,
     turns.give_turns,
     aggregates._look_over,
