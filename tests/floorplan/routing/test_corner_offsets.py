@@ -91,7 +91,12 @@ def test_a_door_is_waited_for_where_it_is(place, area):
     assert point.tolist() == alone.tolist()
 
 
-@given(x=st.floats(0.5, 19.5), y=st.floats(20.5, 49.5), area=st.floats(0.0, 500.0, allow_nan=False))
+# An area that vanishes when it is divided by a distance counts as none, and nobody passes abreast.
+@given(
+    x=st.floats(0.5, 19.5),
+    y=st.floats(20.5, 49.5),
+    area=st.floats(0.0, 500.0, allow_subnormal=False),
+)
 @settings(deadline=None, max_examples=60)
 def test_what_is_aimed_at_is_in_view_and_the_more_the_farther_out(x, y, area):
     near, far = (aims(HALLS, (x, y), a)[1] for a in (area, 2.0 * area))
