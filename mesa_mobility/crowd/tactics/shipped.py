@@ -166,7 +166,7 @@ class GiveWay(_OfTheCrowd):
         """Let wide people wait clear of openings where another goes first."""
         if self._precedence is not None and not desired.newcomers:
             desired.points, desired.speeds = self._precedence.heed(
-                deciding.pedestrians, deciding.inside.pedestrians, deciding.elapsed, self._crowd,
+                deciding.pedestrians, deciding.inside.pedestrians, deciding.frame, self._crowd,
                 desired.points, desired.speeds,
             )  # fmt: skip
 

@@ -24,6 +24,18 @@ BACKING = 0.8
 NOBODY = -1
 
 
+def middles(mouths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, 2) points in the middle of mouths, metres."""
+    found: NDArray[np.float64] = (mouths[:, :2] + mouths[:, 2:4]) / 2.0
+    return found
+
+
+def widths(mouths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m,) widths of mouths, metres."""
+    found: NDArray[np.float64] = np.hypot(mouths[:, 2] - mouths[:, 0], mouths[:, 3] - mouths[:, 1])
+    return found
+
+
 def mouths_ahead(
     mouths: NDArray[np.float64],
     places: NDArray[np.float64],
@@ -42,9 +54,8 @@ def mouths_ahead(
         radii: (n,) of the circles that hold their bodies, metres.
     """
     start, inward = mouths[:, :2], mouths[:, 4:]
-    along = mouths[:, 2:4] - start
-    width = np.hypot(along[:, 0], along[:, 1])
-    along = along / width[:, None]
+    width = widths(mouths)
+    along = (mouths[:, 2:4] - start) / width[:, None]
     off = ((places[:, None] - start) * inward).sum(axis=2)
     off_target = ((points[:, None] - start) * inward).sum(axis=2)
     outside = off < 0.0
@@ -55,7 +66,7 @@ def mouths_ahead(
     )
     lateral = ((crossing - start) * along).sum(axis=2)
     through &= (lateral >= -BESIDE_JAMB) & (lateral <= width + BESIDE_JAMB)
-    middle = (start + mouths[:, 2:4]) / 2.0
+    middle = middles(mouths)
     before = np.hypot(*(points[:, None] - middle).transpose(2, 0, 1))
     stays = (points == places).all(axis=1)
     before_it = (before < clear_of(width, radii[:, None])) & outside & ~stays[:, None]
@@ -79,18 +90,15 @@ def at_a_jamb(
     """(n,) whether each is up against a jamb of the mouth that it is at, and cannot go on."""
     lines = mouths[:, :4].reshape(-1, 2, 2)
     to_jamb = np.hypot(*(lines - places[:, None]).transpose(2, 0, 1)).min(axis=1)
-    along = lines[:, 1] - lines[:, 0]
-    width = np.hypot(along[:, 0], along[:, 1])
-    aside = ((places - lines.mean(axis=1)) * along).sum(axis=1) / width
+    width = widths(mouths)
+    aside = ((places - middles(mouths)) * (lines[:, 1] - lines[:, 0])).sum(axis=1) / width
     against: NDArray[np.bool_] = (to_jamb < cores + AT_JAMB) & (abs(aside) > width / 2.0 - cores)
     return against
 
 
 def axis_points(mouths: NDArray[np.float64], radii: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n, 2) where people may turn into the mouth that each is at: a body before its middle."""
-    points: NDArray[np.float64] = (mouths[:, :2] + mouths[:, 2:4]) / 2.0 - 2.0 * radii[
-        :, None
-    ] * mouths[:, 4:]
+    points: NDArray[np.float64] = middles(mouths) - 2.0 * radii[:, None] * mouths[:, 4:]
     return points
 
 
@@ -106,10 +114,9 @@ def wait_clear(
     Those who are nearer go away from it. The others stop half a body before, so that those who go
     away have room.
     """
-    from_mouth = places - (mouths[:, :2] + mouths[:, 2:4]) / 2.0
+    from_mouth = places - middles(mouths)
     way = np.hypot(from_mouth[:, 0], from_mouth[:, 1])
-    width = np.hypot(mouths[:, 2] - mouths[:, 0], mouths[:, 3] - mouths[:, 1])
-    free = way - clear_of(width, radii)
+    free = way - clear_of(widths(mouths), radii)
     away = from_mouth / np.maximum(way, 1e-9)[:, None]
     left = np.maximum(free - radii, 0.0)
     on = points - places

@@ -30,8 +30,10 @@ from mesa_mobility.crowd.tactics.giving_way.openings import (
     at_a_jamb,
     axis_points,
     clear_of,
+    middles,
     mouths_ahead,
     wait_clear,
+    widths,
 )
 from mesa_mobility.crowd.tactics.waiting import waiting
 from mesa_mobility.floorplan import FloorPlan
@@ -98,14 +100,13 @@ class Precedence(Saved):
     def _look_for_openings(self) -> None:
         self._version = self._plan.version
         mouths = narrow_mouths(self._plan, 4.0 * self._widest + CLEARANCE)
-        wide_enough = np.hypot(*(mouths[:, 2:4] - mouths[:, :2]).T) > 2.0 * WIDE
-        self._mouths = mouths[wide_enough]
+        self._mouths = mouths[widths(mouths) > 2.0 * WIDE]
 
     def heed(
         self,
         rows: NDArray[np.int64],
         inside: NDArray[np.int64],
-        elapsed: float,
+        frame: int,
         crowd: Crowd,
         points: NDArray[np.float64],
         speeds: NDArray[np.float64],
@@ -115,7 +116,7 @@ class Precedence(Saved):
         Args:
             rows: (n,) the pedestrians.
             inside: rows of everybody inside.
-            elapsed: seconds.
+            frame: now.
             crowd: the crowd; waiting does not count towards impatience.
             points: (n, 2) their targets, metres.
             speeds: (n,) their preferred speeds, m/s.
@@ -131,49 +132,41 @@ class Precedence(Saved):
         if len(self._at) < len(crowd.core):
             more = np.full(len(crowd.core) - len(self._at), NOBODY, dtype=np.int64)
             self._at = np.append(self._at, more)
-        self._look_where_they_go(rows, round(elapsed / FRAME_SECONDS), crowd, points)
-        desired = self._let_first(rows, inside, elapsed, crowd, points, speeds)
+        desired = self._let_first(rows, inside, frame, crowd, points, speeds)
+        elapsed = frame * FRAME_SECONDS
         held_up = self._held_up(inside, elapsed, crowd)
         if held_up.any():
             given = points, speeds
             return self._make_room(held_up, rows, inside, elapsed, crowd, given, desired)
         return desired
 
-    def _look_where_they_go(
-        self, rows: NDArray[np.int64], frame: int, crowd: Crowd, points: NDArray[np.float64]
-    ) -> None:
-        """Note which opening each wide one is about to enter: none for those who wait."""
-        mine = np.flatnonzero(crowd.core[rows] > WIDE)
-        who = rows[mine]
-        if len(who) == 0:
-            return
-        places = np.column_stack([crowd.x[who], crowd.y[who]])
-        at = mouths_ahead(self._mouths, places, points[mine], self._radii(who, crowd))
-        waits = waiting(who, frame, crowd)
-        self._at[who] = np.where(waits, NOBODY, at)
-        self._first[np.isin(self._first, who[waits])] = NOBODY
-
     def _let_first(
         self,
         rows: NDArray[np.int64],
         inside: NDArray[np.int64],
-        elapsed: float,
+        frame: int,
         crowd: Crowd,
         points: NDArray[np.float64],
         speeds: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Targets and speeds of deciding people of whom the wide ones let others go first."""
+        """Targets and speeds of deciding people of whom the wide ones let others go first.
+
+        Those who wait for something else are about to enter no opening.
+        """
         mine = np.flatnonzero(crowd.core[rows] > WIDE)
         if len(mine) == 0:
             return points, speeds
-        who = rows[mine]
+        who, elapsed = rows[mine], frame * FRAME_SECONDS
         places = np.column_stack([crowd.x[who], crowd.y[who]])
         radii = self._radii(who, crowd)
+        stays = waiting(who, frame, crowd)
+        at = mouths_ahead(self._mouths, places, points[mine], radii)
+        self._at[who] = at = np.where(stays, NOBODY, at)
+        self._first[np.isin(self._first, who[stays])] = NOBODY
         heeding = inside[(crowd.core[inside] > WIDE) & (self._at[inside] != NOBODY)]
-        for mouth in np.unique(self._at[who]).tolist():
+        for mouth in np.unique(at).tolist():
             if mouth != NOBODY:
                 self._choose(mouth, heeding[self._at[heeding] == mouth], elapsed, crowd)
-        at = self._at[who]
         held_up = elapsed - self._since[at] > STUCK
         waits = (at != NOBODY) & (self._first[at] != who)
         waits &= self._too_narrow(who, at, np.where(held_up, CLEARANCE, 0.0), crowd)
@@ -184,9 +177,7 @@ class Precedence(Saved):
         points, speeds = points.copy(), speeds.copy()
         points[mine[stuck]] = axis_points(self._mouths[at[stuck]], radii[stuck])
         own = mine[waits]
-        # Long bodies beside one another may have to back off, those who wait as well.
-        patient = waits & (self._stretch[crowd.type_index[who]] == 1.0)
-        crowd.agenda["since"][who[patient]] = elapsed
+        self._keep_patient(who[waits], elapsed, crowd)
         points[own], speeds[own] = wait_clear(
             self._mouths[at[waits]], places[waits], radii[waits], points[own], speeds[own]
         )
@@ -213,13 +204,9 @@ class Precedence(Saved):
         """(m,) in which openings the one who goes first is, and makes no progress."""
         first = self._first
         there = np.isin(first, inside) & (self._at[first] == np.arange(len(first)))
-        line = self._mouths[:, :4]
-        way = np.hypot(
-            crowd.x[first] - (line[:, 0] + line[:, 2]) / 2.0,
-            crowd.y[first] - (line[:, 1] + line[:, 3]) / 2.0,
-        )
-        width = np.hypot(line[:, 2] - line[:, 0], line[:, 3] - line[:, 1])
-        there &= way < clear_of(width, self._radii(first, crowd))
+        places = np.column_stack([crowd.x[first], crowd.y[first]])
+        way = np.hypot(*(places - middles(self._mouths)).T)
+        there &= way < clear_of(widths(self._mouths), self._radii(first, crowd))
         held_up: NDArray[np.bool_] = there & (elapsed - self._since > STUCK)
         return held_up
 
@@ -251,7 +238,7 @@ class Precedence(Saved):
         at = mouths_ahead(self._mouths, places, routes, self._radii(rows, crowd))
         first = self._first[at]
         stuck = np.column_stack([crowd.x[first], crowd.y[first]])
-        middle = (self._mouths[at, :2] + self._mouths[at, 2:4]) / 2.0
+        middle = middles(self._mouths[at])
         gap = np.hypot(*(places - stuck).T) - crowd.core[rows] - crowd.core[first]
         behind = np.hypot(*(places - middle).T) > np.hypot(*(stuck - middle).T)
         makes = (at != NOBODY) & held_up[at] & (rows != first) & behind & (gap < ROOM)
@@ -266,8 +253,14 @@ class Precedence(Saved):
         points, speeds = points.copy(), speeds.copy()
         points[own[can]] = ends[can]
         speeds[own] = np.where(can, np.minimum(most[own], BACKING), 0.0)
-        crowd.agenda["since"][who[self._stretch[crowd.type_index[who]] == 1.0]] = elapsed
+        self._keep_patient(who, elapsed, crowd)
         return points, speeds
+
+    def _keep_patient(self, rows: NDArray[np.int64], elapsed: float, crowd: Crowd) -> None:
+        """Let people wait without getting impatient."""
+        # Long bodies beside one another may have to back off, those who wait as well.
+        round_ones = self._stretch[crowd.type_index[rows]] == 1.0
+        crowd.agenda["since"][rows[round_ones]] = elapsed
 
     def _radii(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
         """(n,) of the circles that hold the bodies of people, metres."""
@@ -283,8 +276,6 @@ class Precedence(Saved):
     ) -> NDArray[np.bool_]:
         """(n,) whether each and the one who goes first do not fit through its opening together,
         with a clearance in metres."""
-        line = self._mouths[at, :4]
-        width = np.hypot(line[:, 2] - line[:, 0], line[:, 3] - line[:, 1])
         together = 2.0 * (crowd.core[who] + crowd.core[self._first[at]])
-        too_narrow: NDArray[np.bool_] = width < together + clearance
+        too_narrow: NDArray[np.bool_] = widths(self._mouths[at]) < together + clearance
         return too_narrow
