@@ -15,7 +15,7 @@ class NarrowCorridor(PedestrianModel):
             parts.append(box(18, 4.4, 22, 5.4))
         exits = [Exit("west", (0, 1), (0, 7)), Exit("east", (40, 1), (40, 7))]
         super().__init__(FloorPlan(union_all(parts), exits=exits), rng=rng)
-        self.tactics.append(Yielding())
+        self.add_tactic(Yielding())
         self.add_pedestrians([(16 - 0.6 * k, 4) for k in range(5)], headings=0.0, exits=["east"])
         self.add_pedestrians([(24 + 0.6 * k, 4) for k in range(3)], headings=3.14, exits=["west"])
 
