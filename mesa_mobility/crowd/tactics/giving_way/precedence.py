@@ -185,8 +185,8 @@ class Precedence(Saved):
 
     def _choose(self, mouth: int, coming: NDArray[np.int64], elapsed: float, crowd: Crowd) -> None:
         """Say who of those ``coming`` goes first: as before, or the nearest."""
-        ax, ay, bx, by = self._mouths[mouth, :4]
-        ways = np.hypot(crowd.x[coming] - (ax + bx) / 2.0, crowd.y[coming] - (ay + by) / 2.0)
+        places = np.column_stack([crowd.x[coming], crowd.y[coming]])
+        ways = np.hypot(*(places - middles(self._mouths[[mouth]])).T)
         now = np.flatnonzero(coming == self._first[mouth])
         if len(now) and ways[now[0]] < self._nearest[mouth] - GETTING_NEARER:
             self._nearest[mouth], self._since[mouth] = ways[now[0]], elapsed
