@@ -11,7 +11,7 @@ from mesa_mobility.capture import Recording
 from mesa_mobility.capture.transforms import MIRRORED
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import clusters as clustering
-from mesa_mobility.mobility import edits, paths
+from mesa_mobility.mobility import edits, paths, thinning
 from mesa_mobility.mobility import graph as graphs
 from mesa_mobility.mobility.borrowing import missing
 from mesa_mobility.mobility.clusters import Clusters, cluster_poses
@@ -194,6 +194,7 @@ def _build_parameters(
         "edits": {
             "turns_deg_in_45_frames": list(edits.TURNS_DEG),
             "strides": list(edits.STRIDES),
+            "cell": [round(float(size), 6) for size in thinning.EDIT_CELL],
             "options": int((options.edits > 0).sum()),
         },
     }

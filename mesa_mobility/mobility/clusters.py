@@ -26,7 +26,7 @@ from mesa_mobility.mobility.graph import MotionGraph
 STANDING = 0
 """Number of the standing cluster."""
 
-POSES_PER_CLUSTER = 100
+POSES_PER_CLUSTER = 150
 """Poses for each cluster where no number of clusters is asked for.
 
 Clusters of a few poses share no options; of many, they join poses that look different.

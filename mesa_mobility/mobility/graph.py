@@ -111,15 +111,8 @@ class MotionGraph:
         return graph
 
 
-def motion_graph(
-    poses: PoseTable, threshold: float = THRESHOLD, stretch: int = STRETCH
-) -> MotionGraph:
+def motion_graph(poses: PoseTable) -> MotionGraph:
     """Build and prune the motion graph of a pose table.
-
-    Args:
-        poses: the poses.
-        threshold: distance in feature units from which on there is no transition.
-        stretch: frames of a clip among which only the best match is kept.
 
     Raises:
         MapError: the recordings are too short or too unlike each other to be joined.
@@ -136,8 +129,8 @@ def motion_graph(
         )
     columns = np.ascontiguousarray(poses.features.T)
     match, distance = _best_matches(
-        columns, poses.clip, poses.first, np.float32(threshold * threshold), MIN_SEPARATION,
-        stretch, MAX_TRANSITIONS,
+        columns, poses.clip, poses.first, np.float32(THRESHOLD * THRESHOLD), MIN_SEPARATION,
+        STRETCH, MAX_TRANSITIONS,
     )  # fmt: skip
     row, rank = np.nonzero(match >= 0)
     look_alike = match[row, rank].astype(np.int64)
@@ -145,7 +138,7 @@ def motion_graph(
     successor = np.concatenate([natural + 1, look_alike + 1])
     via = np.concatenate([natural, look_alike])
     cost = np.concatenate(
-        [np.full(len(natural), NATURAL_COST), np.sqrt(distance[row, rank]) / threshold]
+        [np.full(len(natural), NATURAL_COST), np.sqrt(distance[row, rank]) / THRESHOLD]
     )
     order = np.lexsort((cost, source))
     source, successor, via, cost = source[order], successor[order], via[order], cost[order]

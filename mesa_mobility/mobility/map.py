@@ -58,7 +58,7 @@ class MobilityMap:
         >>> from mesa_mobility import MobilityMap
         >>> able_bodied = MobilityMap.load()
         >>> able_bodied.n_clusters, able_bodied.n_options
-        (350, 204652)
+        (157, 316175)
         >>> first, after = able_bodied.offsets[able_bodied.standing :][:2]
         >>> sorted(set(able_bodied.durations[first:after].tolist()))
         [12, 24, 45]

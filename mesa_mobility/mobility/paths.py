@@ -26,7 +26,14 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.compiled.threads import THREADS
 from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit
-from mesa_mobility.mobility.thinning import BUDGET, DURATIONS, ClusterOptions, merge, with_edits
+from mesa_mobility.mobility.thinning import (
+    BUDGET,
+    DURATIONS,
+    ClusterOptions,
+    edit_copies,
+    merge,
+    with_copies,
+)
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.clusters import Clusters
@@ -38,8 +45,12 @@ TRANSITION_PENALTY = 1.0
 MOST_JUMPS = int(BUDGET / TRANSITION_PENALTY)
 """Transitions that a path within the budget has at most."""
 
-CELL = (0.10, 0.10, np.deg2rad(15.0))
-"""Cell of thinning: metres, metres, radians of the end point and end heading."""
+CELL = (0.08, 0.08, np.deg2rad(30.0))
+"""Cell of thinning: metres, metres, radians of the end point and end heading.
+
+Places matter more than headings: of two options of the same end, people hardly tell apart those
+that differ by less than 30 degrees, and the heading can be changed in the next movement.
+"""
 
 _CHUNK = 48
 
@@ -135,10 +146,11 @@ def joined(
             recordings.
         edits: how recorded options are edited to fill further cells.
     """
-    each = [None if own is None else with_edits(own, edits) for own in recorded]
+    each = [None if own is None else with_copies(own, edits) for own in recorded]
     counts = [0 if own is None else len(own.layers) for own in each]
     columns = zip(*(own for own in each if own is not None), strict=True)
     all_ = ClusterOptions(*(np.concatenate(column) for column in columns))
+    edit_copies(all_, edits)
     return ReachableOptions(
         offsets=np.concatenate([[0], np.cumsum(counts)]),
         durations=np.array(DURATIONS, dtype=np.int16)[all_.layers],

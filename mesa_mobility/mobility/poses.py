@@ -105,15 +105,12 @@ class PoseTable:
 def pose_table(
     recordings: Sequence[Recording],
     progress: Callable[[int, int], None] | None = None,
-    *,
-    motion_step: float = MOTION_STEP,
 ) -> PoseTable:
     """Compute the pose table of recordings at 30 Hz.
 
     Args:
         recordings: clips of at least two frames each.
         progress: called as ``progress(done, total)`` after each clip.
-        motion_step: metres and radians that motion is rounded to; 0 for as it is.
 
     Raises:
         MapError: no recording, or one that is not at 30 Hz.
@@ -127,7 +124,7 @@ def pose_table(
             raise MapError(
                 f"{recording.name}: frame rate {recording.frame_rate:g}, expected {FRAME_RATE:g} Hz"
             )
-        parts.append(_clip_poses(recording, motion_step))
+        parts.append(_clip_poses(recording))
         if progress is not None:
             progress(done, len(recordings))
     counts = np.array([len(p[0]) for p in parts])
@@ -147,7 +144,7 @@ def pose_table(
     )
 
 
-def _clip_poses(recording: Recording, motion_step: float) -> tuple[NDArray[np.float64], ...]:
+def _clip_poses(recording: Recording) -> tuple[NDArray[np.float64], ...]:
     # Imported here, since reading a map imports this module but does not need them.
     from scipy.ndimage import gaussian_filter1d
 
@@ -180,8 +177,7 @@ def _clip_poses(recording: Recording, motion_step: float) -> tuple[NDArray[np.fl
     step = np.zeros((len(root), 3))
     step[:-1, :2] = _rotate(np.diff(root, axis=0), -facing[:-1])
     step[:-1, 2] = np.diff(facing)
-    if motion_step:
-        step = np.rint(step / motion_step) * motion_step
+    step = np.rint(step / MOTION_STEP) * MOTION_STEP
 
     velocity = np.gradient(root, axis=0) * FRAME_RATE
     smooth = SPEED_SMOOTHING * FRAME_RATE

@@ -1,8 +1,7 @@
 """The recorded poses along each option of a map that has been built before.
 
 A map's file holds paths over the floor and no poses. Its options are computed anew from the same
-recordings with the settings in its metadata, this time with the poses on the way, and compared with
-the map's.
+recordings, this time with the poses on the way, and compared with the map's.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from mesa_mobility.mobility.paths import (
     ReachableOptions,
     reachable_options,
 )
-from mesa_mobility.mobility.poses import MOTION_STEP, PoseTable, pose_table
+from mesa_mobility.mobility.poses import PoseTable, pose_table
 from mesa_mobility.mobility.storing.families import OptionFamilies
 from mesa_mobility.mobility.storing.steps import quantise_paths
 
@@ -53,7 +52,7 @@ def retrace(
     """Find the poses along each option of a map.
 
     Args:
-        map_: the map, built by this version or one before.
+        map_: the map, built with the settings of this version.
         recordings: those that it was built from, prepared in the same way and order.
         progress: called as ``progress(stage, done, total)``.
 
@@ -67,21 +66,19 @@ def retrace(
     settings = map_.metadata.get("build")
     if not isinstance(settings, dict):
         raise MapError("the map's metadata do not say how it was built, which its poses need")
-    older = "threshold_ratio" in settings  # before options were edited or borrowed
-    poses = pose_table(recordings, report("poses"), motion_step=0.0 if older else MOTION_STEP)
-    graph = motion_graph(poses, *_transitions(settings, poses))
+    poses = pose_table(recordings, report("poses"))
+    graph = motion_graph(poses)
     if progress is not None:
         progress("motion graph", len(poses), len(poses))
     asked = settings.get("clusters_asked", map_.n_clusters)
     grouped = cluster_poses(graph, asked, report("clusters"))
     options = reachable_options(graph, grouped, progress=report("options"))
-    labels, strides = grouped.labels, np.ones(1)
-    if not older:
-        families = OptionFamilies.of(poses.step, grouped, options, map_.metadata)
-        options = families.options()
-        strides = np.array([1.0, *(edit.stride for edit in families.edits())])
-        if missing(options, grouped):
-            options, grouped = borrow(options, grouped, MobilityMap.load())
+    labels = grouped.labels
+    families = OptionFamilies.of(poses.step, grouped, options, map_.metadata)
+    options = families.options()
+    strides = np.array([1.0, *(edit.stride for edit in families.edits())])
+    if missing(options, grouped):
+        options, grouped = borrow(options, grouped, MobilityMap.load())
     _check_same(map_, options)
     # The first option of a map is the stand, which the builder adds.
     chains = chains_of(options, len(poses))
@@ -106,19 +103,6 @@ def chains_of(options: ReachableOptions, poses: int) -> NDArray[np.int32]:
     return chains
 
 
-def _transitions(settings: dict, poses: PoseTable) -> tuple[float, int]:
-    """Threshold and stretch of the transitions that a map was built with."""
-    if "threshold_ratio" not in settings:
-        return float(settings["transition_threshold"]), int(settings["match_every_frames"])
-    # Older maps: a multiple of the median distance of consecutive poses, the best of each clip.
-    last = np.zeros(len(poses), dtype=bool)
-    last[poses.first[1:] - 1] = True
-    rows = np.flatnonzero(~last)
-    gaps = np.linalg.norm(poses.features[rows + 1] - poses.features[rows], axis=1)
-    threshold = float(settings["threshold_ratio"]) * float(np.median(gaps))
-    return threshold, int(np.diff(poses.first).max())
-
-
 def _check_same(map_: MobilityMap, options: ReachableOptions) -> None:
     same = map_.n_options == 1 + len(options.durations)
     if same:
@@ -130,5 +114,6 @@ def _check_same(map_: MobilityMap, options: ReachableOptions) -> None:
     if not same:
         raise MapError(
             f"the recordings give {1 + len(options.durations)} options that differ from the "
-            f"map's {map_.n_options}: expected the recordings that it was built from"
+            f"map's {map_.n_options}: expected the recordings that it was built from, and a map "
+            "built by this version"
         )

@@ -1,4 +1,4 @@
-"""Options of one cluster, thinned: the cheapest of each cell, and edited ones where none ends."""
+"""Options of one cluster, thinned: the cheapest of each cell, and edited copies where none ends."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
-from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit, edit_paths, rotations
+from mesa_mobility.mobility.edits import Edit, edit_paths, rotations
 
 DURATIONS = (12, 24, 45)
 """Option durations in frames; 45 frames, 1.5 s, is the paper's time step."""
@@ -53,55 +53,52 @@ def merge(parts: list[tuple[NDArray, ...]]) -> ClusterOptions:
     )
 
 
-def with_edits(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOptions:
-    """Add the cheapest edited copy in each cell that no recorded option ends in."""
+def with_copies(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOptions:
+    """Add copies of the longest options, the cheapest in each cell that no recorded one ends in.
+
+    Each has the number of its edit; its path is still that of the original.
+
+    Recordings leave gaps among the places that a body can be in after 1.5 s.  Shorter options lie
+    close to each other as recorded; edited ones would add hardly a place and cost time in each
+    decision.
+    """
     if not edits:
         return recorded
-    # Paths are edited in full only where they are kept: of some twenty copies, one.
-    turned = np.array([rotations(edit, recorded.paths.shape[1]) for edit in edits])
-    copies = _cheapest_copies(
-        recorded.layers,
-        recorded.costs,
-        recorded.paths,
-        _samples(recorded),
+    longest = recorded.taken(np.flatnonzero(recorded.layers == len(DURATIONS) - 1))
+    turned = np.array([rotations(edit, longest.paths.shape[1]) for edit in edits])
+    rows, by, cells, costs = _cheapest_copies(
+        longest.costs,
+        longest.paths,
         np.array([edit.cost for edit in edits]),
         np.array([edit.turn_rate for edit in edits]),
         turned,
         BUDGET,
         np.array(EDIT_CELL),
     )
-    rows, by, cells, costs = copies
-    order = np.lexsort((cells, recorded.layers[rows]))
-    rows, by = rows[order], by[order]
-    added = recorded.taken(rows)._replace(
-        cells=cells[order],
-        costs=costs[order],
-        paths=np.zeros((len(rows), *recorded.paths.shape[1:]), dtype=np.float32),
-        edits=(by + 1).astype(np.int16),
+    order = np.argsort(cells)
+    added = longest.taken(rows[order])._replace(
+        cells=cells[order], costs=costs[order], edits=(by[order] + 1).astype(np.int16)
     )
-    present = np.arange(recorded.paths.shape[1]) < _samples(added)[:, None]
-    for number, edit in enumerate(edits):
-        own = np.flatnonzero(by == number)
-        bent = edit_paths(recorded.paths[rows[own]], edit).astype(np.float32)
-        added.paths[own] = np.where(present[own, :, None], bent, np.float32(0.0))
-    both = _joined((recorded, added))
-    return both.taken(np.argsort(both.layers, kind="stable"))
+    # The longest come last.
+    return _joined((recorded, added))
+
+
+def edit_copies(options: ClusterOptions, edits: Sequence[Edit]) -> None:
+    """Edit the paths of those options that have the number of an edit."""
+    # In full only where they are kept, of some twenty copies one; all of an edit at once.
+    for number, edit in enumerate(edits, start=1):
+        own = np.flatnonzero(options.edits == number)
+        options.paths[own] = edit_paths(options.paths[own], edit)
 
 
 def _joined(parts: Iterable[ClusterOptions]) -> ClusterOptions:
     return ClusterOptions(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def _samples(options: ClusterOptions) -> NDArray[np.int64]:
-    return np.array(DURATIONS)[options.layers] // SAMPLE_EVERY
-
-
 @kept(nogil=True)
 def _cheapest_copies(
-    layers: NDArray[np.int64],
     costs: NDArray[np.float32],
     paths: NDArray[np.float32],
-    samples: NDArray[np.int64],
     edit_costs: NDArray[np.float64],
     turn_rates: NDArray[np.float64],
     turned: NDArray[np.float64],
@@ -114,8 +111,9 @@ def _cheapest_copies(
     Among copies of the same cost, the first edit counts, and of one edit the first option.
     """
     headings = round(2.0 * np.pi / cell[2])
+    last = paths.shape[1] - 1
     size = 64
-    while size < 2 * (len(layers) * (len(edit_costs) + 1)):
+    while size < 2 * (len(costs) * (len(edit_costs) + 1)):
         size *= 2
     keys = np.full(size, -1, np.int64)
     row_of = np.empty(size, np.int64)
@@ -123,23 +121,23 @@ def _cheapest_copies(
     cost_of = np.empty(size, np.float32)
     used = 0
     for edit in range(-1, len(edit_costs)):
-        for row in range(len(layers)):
+        for row in range(len(costs)):
             cost = costs[row]
-            x, y, heading = 0.0, 0.0, np.float64(paths[row, samples[row] - 1, 2])
+            x, y, heading = 0.0, 0.0, np.float64(paths[row, last, 2])
             if edit < 0:
-                x = np.float64(paths[row, samples[row] - 1, 0])
-                y = np.float64(paths[row, samples[row] - 1, 1])
+                x = np.float64(paths[row, last, 0])
+                y = np.float64(paths[row, last, 1])
             else:
                 if cost + edit_costs[edit] > budget:
                     continue
                 cost = np.float32(cost + edit_costs[edit])
                 before_x, before_y = 0.0, 0.0
-                for s in range(samples[row]):
+                for s in range(last + 1):
                     dx, dy = paths[row, s, 0] - before_x, paths[row, s, 1] - before_y
                     before_x, before_y = np.float64(paths[row, s, 0]), np.float64(paths[row, s, 1])
                     x += turned[edit, s, 0] * dx - turned[edit, s, 1] * dy
                     y += turned[edit, s, 1] * dx + turned[edit, s, 0] * dy
-                heading += turn_rates[edit] * samples[row]
+                heading += turn_rates[edit] * (last + 1)
                 # Ends are compared as they will be stored.
                 x, y = np.float64(np.float32(x)), np.float64(np.float32(y))
                 heading = np.float64(np.float32(heading))
@@ -147,7 +145,7 @@ def _cheapest_copies(
             iy = np.int64(np.floor(y / cell[1] + 0.5))
             ih = np.int64(np.floor(heading / cell[2] + 0.5)) % headings
             # Nobody gets 4,096 cells far.
-            key = ((layers[row] * 8192 + ix + 4096) * 8192 + iy + 4096) * 64 + ih
+            key = ((ix + 4096) * 8192 + iy + 4096) * 64 + ih
             slot = (key * 0x9E3779B1 >> 15) & (size - 1)
             while keys[slot] >= 0 and keys[slot] != key:
                 slot = (slot + 1) & (size - 1)

@@ -65,7 +65,7 @@ def test_one_cluster_is_refused(graph):
 def test_the_number_of_clusters_is_in_proportion_to_the_poses():
     graph = motion_graph(random_poses(np.random.default_rng(2), clips=10, length=60))
     assert 500 < graph.kept.sum() < 600
-    assert len(cluster_poses(graph)) == 5  # one for 100 poses
+    assert len(cluster_poses(graph)) == 3  # one for 150 poses
 
 
 def test_where_nobody_stands_the_standing_cluster_is_empty():

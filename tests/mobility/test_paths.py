@@ -6,7 +6,7 @@ import pytest
 from mesa_mobility.mobility import cluster_poses, motion_graph, reachable_options
 from tests.fixtures.poses import random_poses
 
-BUDGET, PENALTY, CELL = 3.3, 1.0, (0.10, 0.10, np.deg2rad(15.0))
+BUDGET, PENALTY, CELL = 3.3, 1.0, (0.08, 0.08, np.deg2rad(30.0))
 
 
 def least_costs(graph, source, frames):
@@ -32,7 +32,7 @@ def least_costs(graph, source, frames):
 
 
 def cell_of(x, y, h):
-    turn = int(np.floor(h / CELL[2] + 0.5)) % 24
+    turn = int(np.floor(h / CELL[2] + 0.5)) % 12
     return int(np.floor(x / CELL[0] + 0.5)), int(np.floor(y / CELL[1] + 0.5)), turn
 
 

@@ -43,7 +43,7 @@ def bootstrap(
         str, typer.Option("--type", metavar="NAME", help="Pedestrian type: rows to take.")
     ] = "able_bodied",
     clusters: Annotated[
-        int | None, typer.Option(min=2, help="How many clusters of poses (one for 100).")
+        int | None, typer.Option(min=2, help="How many clusters of poses (one for 150).")
     ] = None,
     as_json: AsJson = False,
 ) -> None:

@@ -57,7 +57,7 @@ def build(
         typer.Option("--type", metavar="NAME", help="Pedestrian type: rows to take (able_bodied)."),
     ] = None,
     clusters: Annotated[
-        int | None, typer.Option(min=2, help="How many clusters of poses (one for 100).")
+        int | None, typer.Option(min=2, help="How many clusters of poses (one for 150).")
     ] = None,
     mirrored: Annotated[
         bool | None,

@@ -14,8 +14,13 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, Parts
 from mesa_mobility.mobility import MobilityMap
-from mesa_mobility.mobility.paths import CELL
 from mesa_mobility.mobility.poses import STANDING_SPEED, STANDING_TURN_RATE
+
+CELL = (0.10, 0.10, np.deg2rad(15.0))
+"""Cell of thinning: metres, metres, radians of the end point and end heading.
+
+Headings are closer than among the options of a map: in a queue, turning is most of what people do.
+"""
 
 
 def with_shortened(

@@ -39,7 +39,8 @@ def compensate_speed(
 
     Returns:
         (n,) m/s, within ``MOST / MAKES_UP`` of ``speeds``; unchanged for those who could not walk
-        freely or want to stand.
+        freely or want to stand.  Whoever makes up for an error may be faster or slower than
+        preferred by as much, and still walks freely.
     """
     kept = np.empty(len(rows))
     _keep_pace(rows, speeds, crowd.records, crowd.agenda, kept)
@@ -59,8 +60,10 @@ def _keep_pace(
         seconds = (state[i].end - state[i].start) * FRAME_SECONDS
         walked = math.hypot(state[i].to_x - state[i].from_x, state[i].to_y - state[i].from_y)
         short = agenda[i]["desired_speed"] * seconds - walked
-        behind = 0.0
-        if state[i].option > NO_OPTION and abs(short) <= FREELY * seconds:
+        behind, correction = 0.0, agenda[i]["behind"] / MAKES_UP
+        least = (min(correction, 0.0) - FREELY) * seconds
+        most = (max(correction, 0.0) + FREELY) * seconds
+        if state[i].option > NO_OPTION and least <= -short <= most:
             behind = min(max(agenda[i]["behind"] + short, -MOST), MOST)
         agenda[i]["behind"], agenda[i]["desired_speed"] = behind, speeds[k]
         kept[k] = max(speeds[k] + behind / MAKES_UP, 0.0) if speeds[k] > 0.0 else speeds[k]

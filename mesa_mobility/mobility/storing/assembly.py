@@ -37,7 +37,7 @@ def assemble(
     if missing(options, clusters):
         options, clusters = borrow(options, clusters, lender())
     samples = options.durations.astype(np.int64) // SAMPLE_EVERY
-    present = np.arange(options.paths.shape[1]) < samples[:, None]
+    present = np.flatnonzero(np.arange(options.paths.shape[1]) < samples[:, None])
     # The stand comes first among the options of the standing cluster, which is the first cluster.
     stand = STAND_FRAMES // SAMPLE_EVERY
     offsets = options.offsets + 1
@@ -47,9 +47,13 @@ def assemble(
         "durations": np.concatenate([[STAND_FRAMES], options.durations]).astype(np.int16),
         "costs": quantise_costs(np.concatenate([[0.0], options.costs])),
         "path_offsets": np.concatenate([[0, stand], stand + np.cumsum(samples)]).astype(np.int64),
-        "paths": quantise_paths(np.concatenate([np.zeros((stand, 3)), options.paths[present]])),
+        "paths": quantise_paths(
+            np.concatenate(
+                [np.zeros((stand, 3), np.float32), options.paths.reshape(-1, 3)[present]]
+            )
+        ),
         "path_clusters": np.concatenate(
-            [np.full(stand, STANDING), options.path_clusters[present]]
+            [np.full(stand, STANDING), options.path_clusters.reshape(-1)[present]]
         ).astype(np.uint16),
         "mean_poses": clusters.mean_joints,
         "centres": clusters.centres,

@@ -29,8 +29,8 @@ from mesa_mobility.mobility.storing.layouts import FAMILIES
 from mesa_mobility.mobility.storing.steps import COST_STEP, quantise_costs
 from mesa_mobility.mobility.thinning import DURATIONS, ClusterOptions
 
-FORMAT_VERSION = 2
-
+# It also stands for the rule by which edited options follow from a file that does not hold them.
+FORMAT_VERSION = 3
 
 _NO_CLUSTER = np.iinfo(np.uint16).max
 

@@ -21,7 +21,14 @@ def speeds_of(n=4000, **metadata):
 def test_without_a_word_in_the_metadata_they_are_those_of_adults():
     adults = Clipped(Normal(1.34, 0.26), 0.6, 2.0)
     assert PedestrianType(mobility_map=strider()).preferred_speed == adults
-    assert PedestrianType(mobility_map=shipped_map()).preferred_speed == adults
+
+
+def test_recorded_adults_walk_as_published_ones_do():
+    """Their steady speed is 1.339 m/s; Weidmann's adults prefer 1.34."""
+    assert shipped_map().metadata["walking_speed_m_s"]["p75"] == 1.339
+    kind = PedestrianType(mobility_map=shipped_map())
+    drawn = kind.draw_speeds(4000, np.random.default_rng(1))
+    assert drawn == pytest.approx(speeds_of(), rel=0.001)
 
 
 def test_published_speeds_of_adults_are_the_same():

@@ -144,16 +144,31 @@ def test_one_on_crutches_beside_a_wall_gets_loose():
     assert_all_get_out(model, 60)
 
 
-def heeded(waits_until=0, speed=1.33):
-    """Target and speed of somebody on foot behind a wheelchair, 5 s after it came to a door.
+# People on crutches like the stones of an arch: two at the door's edge and one behind them.
+ARCH = [
+    (9.778, 4.686, 264), (9.389, 4.478, 351), (8.965, 4.355, 357), (9.444, 4.973, 313),
+    (9.002, 4.979, 318), (8.524, 4.384, 3), (9.374, 5.409, 284), (8.577, 4.865, 334),
+    (8.721, 5.318, 350), (9.472, 5.839, 279), (9.007, 5.653, 305), (8.141, 4.933, 346),
+]  # fmt: skip
 
-    The wheelchair at (9.5, 4.0) does not move; the other is at (8.6, 4.0).
+
+@pytest.mark.thorough
+def test_three_on_crutches_make_no_arch_in_a_door_of_120_centimetres():
+    model = crowd(two_rooms(1.2, 0.2), ["crutches"])
+    place(model, ARCH, 0)
+    assert_all_get_out(model, 60)
+
+
+def heeded(waits_until=0, speed=1.33, chair=9.5, core=0.15):
+    """Target and speed of somebody behind a wheelchair, 5 s after it came to a door.
+
+    The wheelchair at (``chair``, 4.0) does not move; the other is 0.9 m behind it.
     """
     agenda = {
         "since": np.zeros(2), "speed": np.array([1.0, 1.33]), "waits_until": np.zeros(2, np.int32)
     }  # fmt: skip
     people = SimpleNamespace(
-        core=np.array([0.35, 0.15]), x=np.array([9.5, 8.6]), y=np.array([4.0, 4.0]),
+        core=np.array([0.35, core]), x=np.array([chair, chair - 0.9]), y=np.array([4.0, 4.0]),
         type_index=np.array([0, 1]), agenda=agenda,
     )  # fmt: skip
     who, beyond = np.array([0, 1]), np.array([[12.0, 4.0], [12.0, 4.0]])
@@ -166,6 +181,12 @@ def heeded(waits_until=0, speed=1.33):
 
 def test_whoever_is_behind_somebody_held_up_goes_back():
     assert heeded() == ([pytest.approx(8.2), 4.0], pytest.approx(0.8))
+
+
+def test_before_a_door_wide_people_go_back_and_people_on_foot_queue():
+    """Half a door of 1 m and a wide body before its middle, 1.2 m, a wheelchair is not in it."""
+    assert heeded(chair=8.5) == ([12.0, 4.0], 1.33)
+    assert heeded(chair=8.5, core=0.35) == ([pytest.approx(7.2), 4.0], pytest.approx(0.8))
 
 
 def test_nobody_makes_room_for_somebody_who_waits():

@@ -24,15 +24,13 @@ def shipped():
 def test_the_shipped_map_is_complete(shipped):
     info = shipped.info()
     assert info["pedestrian_type"] == "able_bodied"
-    assert info["clusters"] == 350
+    assert info["clusters"] == 157
     assert info["poses_per_cluster"]["min"] >= 1
     assert info["build"]["share_in_component"] > 0.92
     assert set(info["options_by_frames"]) == {"12", "24", "45"}
-    assert shipped_map_path("able_bodied").stat().st_size <= 12e6
+    assert shipped_map_path("able_bodied").stat().st_size <= 1.2e6
     assert info["command"].startswith("mesa-mobility map build ")
-    # The settings that it was built with; maps built today have others.
-    assert info["build"]["threshold_ratio"] == 1.4
-    assert "edits" not in info["build"]
+    assert 0.4 < info["build"]["edits"]["options"] / info["options"] < 0.6
 
 
 def test_the_shipped_map_says_where_it_comes_from(shipped):
@@ -49,7 +47,7 @@ def test_the_shipped_map_says_where_it_comes_from(shipped):
 def test_walking_options_look_like_walking(shipped):
     long = shipped.durations == 45
     reach = np.hypot(*shipped.end_points[long].T)
-    assert np.percentile(reach, 99) < 3.3  # nobody walks faster than about 2.2 m/s
+    assert np.percentile(reach, 99) < 3.45  # few steps are faster than about 2.3 m/s
     assert reach.max() > 2.2
     samples = np.diff(shipped.path_offsets)
     steps = np.diff(shipped.paths[:, :2], axis=0)

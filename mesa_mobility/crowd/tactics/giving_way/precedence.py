@@ -9,7 +9,7 @@ has the right to go first.  The others keep the width of a body clear of the ope
 through.  One that is up against a jamb first goes back to the middle, since it cannot step
 aside either.  Where two just fit, they go together until they hold each other up.  People on foot
 without crutches neither wait nor are waited for.  But whoever is behind one that is held up in the
-opening makes room for it (``making_room.py``).
+opening makes room for it (``making_room.py``); those who wait do so wherever the first is held up.
 """
 
 from __future__ import annotations
@@ -46,8 +46,12 @@ People on foot, with a cane or with a walking frame slip past one another; those
 in wheelchairs do not.
 """
 
+ABREAST = 3
+"""Wide bodies that wedge each other in side by side at most: wider openings than for so many make
+no arch of them."""
+
 CLEARANCE = 0.15
-"""Metres between two wide bodies and the jambs with which they get through side by side.
+"""Metres between wide bodies and the jambs with which they get through side by side.
 
 With less they mostly do, but may wedge each other in: then one goes first after all.
 """
@@ -99,7 +103,14 @@ class Precedence(Saved):
 
     def _look_for_openings(self) -> None:
         self._version = self._plan.version
-        mouths = narrow_mouths(self._plan, 4.0 * self._widest + CLEARANCE)
+        # A corridor for three may lead to a door for two, which has a mouth of its own.
+        mouths = np.concatenate(
+            [
+                narrow_mouths(self._plan, 2.0 * abreast * self._widest + CLEARANCE)
+                for abreast in range(2, ABREAST + 1)
+            ]
+        )
+        mouths = np.unique(mouths, axis=0)
         self._mouths = mouths[widths(mouths) > 2.0 * WIDE]
 
     def heed(
@@ -134,10 +145,10 @@ class Precedence(Saved):
             self._at = np.append(self._at, more)
         desired = self._let_first(rows, inside, frame, crowd, points, speeds)
         elapsed = frame * FRAME_SECONDS
-        held_up = self._held_up(inside, elapsed, crowd)
+        held_up, in_it = self._held_up(inside, elapsed, crowd)
         if held_up.any():
             given = points, speeds
-            return self._make_room(held_up, rows, inside, elapsed, crowd, given, desired)
+            return self._make_room(held_up, in_it, rows, inside, elapsed, crowd, given, desired)
         return desired
 
     def _let_first(
@@ -200,19 +211,20 @@ class Precedence(Saved):
 
     def _held_up(
         self, inside: NDArray[np.int64], elapsed: float, crowd: Crowd
-    ) -> NDArray[np.bool_]:
-        """(m,) in which openings the one who goes first is, and makes no progress."""
+    ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """(m,) at which openings the one who goes first makes no progress; (m,) whether it is in
+        the opening."""
         first = self._first
         there = np.isin(first, inside) & (self._at[first] == np.arange(len(first)))
         places = np.column_stack([crowd.x[first], crowd.y[first]])
         way = np.hypot(*(places - middles(self._mouths)).T)
-        there &= way < clear_of(widths(self._mouths), self._radii(first, crowd))
-        held_up: NDArray[np.bool_] = there & (elapsed - self._since > STUCK)
-        return held_up
+        held_up = there & (elapsed - self._since > STUCK)
+        return held_up, way < clear_of(widths(self._mouths), self._radii(first, crowd))
 
     def _make_room(
         self,
         held_up: NDArray[np.bool_],
+        in_it: NDArray[np.bool_],
         rows: NDArray[np.int64],
         inside: NDArray[np.int64],
         elapsed: float,
@@ -223,8 +235,12 @@ class Precedence(Saved):
         """Targets and speeds of deciding people of whom those make room who are behind somebody
         held up. Whom another tactic lets stand stays.
 
+        People on foot make room for somebody in the opening; before it they queue, as it does.
+        Wide people make room before it, too: it may be them for whom it cannot go on.
+
         Args:
-            held_up: (m,) the openings in which somebody is.
+            held_up: (m,) at which openings somebody is.
+            in_it: (m,) whether it is in the opening.
             rows: (n,) the pedestrians.
             inside: rows of everybody inside.
             elapsed: seconds.
@@ -242,6 +258,7 @@ class Precedence(Saved):
         gap = np.hypot(*(places - stuck).T) - crowd.core[rows] - crowd.core[first]
         behind = np.hypot(*(places - middle).T) > np.hypot(*(stuck - middle).T)
         makes = (at != NOBODY) & held_up[at] & (rows != first) & behind & (gap < ROOM)
+        makes &= in_it[at] | (crowd.core[rows] > WIDE)
         own = np.flatnonzero(makes & (most > 0.0))
         who = rows[own]
         if len(who) == 0:
