@@ -170,8 +170,9 @@ def test_live_client(capsys: pytest.CaptureFixture[str]) -> None:
 
     assert first == "Doorway: 60 people"
     x, y, later_x, later_y = numbers(r"(\d+\.\d)", moved)
-    # 1.2 m/s for 3 s less the first steps, straight up the hall.
+    # 1.2 m/s for 3 s less the first steps, up the hall.  Before it is steered it may have begun to
+    # walk to an exit, for 1.5 s at most.
     assert (x, y) == (12.0, 1.0)
     assert abs(later_x - 12.0) < 1.0
-    assert 2.2 < later_y - y < 3.9
+    assert 1.6 < later_y - y < 3.9
     assert error == "there is no gate or exit 'no such door'; there are 'first door', 'second door'"
