@@ -110,6 +110,11 @@ class MobilityMap:
         return str(self.metadata["pedestrian_type"])
 
     @property
+    def on_wheels(self) -> bool:
+        """Whether its options are motion primitives of wheels, which do not slip to the side."""
+        return "turn_rates" in self.metadata.get("build", {})
+
+    @property
     def end_points(self) -> NDArray[np.float32]:
         """(m, 2) mobility points: where each option ends."""
         return self.paths[self.path_offsets[1:] - 1, :2]

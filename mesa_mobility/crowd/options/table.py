@@ -80,8 +80,8 @@ class OptionTable(NamedTuple):
 class Parts(NamedTuple):
     """Options of a map, whole or shortened.
 
-    Fields: ``rows`` (n,) rows of the map; ``share`` (n,) of the option's ground and turn;
-    ``clusters`` (n,) at the end.
+    Fields: ``rows`` (n,) rows of the map; ``share`` (n,) of the option's ground, and on foot of its
+    turn; ``clusters`` (n,) at the end.
     """
 
     rows: NDArray[np.int64]
@@ -97,7 +97,8 @@ def sampled(mobility_map: MobilityMap, parts: Parts, samples: Sequence[int]) -> 
     """(n, samples, 3) x, y, heading of options, whole or shortened, at samples from 1 on.
 
     A shortened option covers a share of the ground and of the turn; with a share of 0 it turns on
-    the spot.
+    the spot.  On wheels it turns as the whole one does: with a share of the turn as well, wheels
+    would slip to the side.
     """
     first = mobility_map.path_offsets[parts.rows, None]
     last = mobility_map.path_offsets[parts.rows + 1, None] - 1
@@ -105,7 +106,8 @@ def sampled(mobility_map: MobilityMap, parts: Parts, samples: Sequence[int]) -> 
         np.minimum(first + np.array(samples, dtype=np.int64) - 1, last), axis=0
     )
     share = parts.share.astype(np.float32)
-    of_turn = np.where(share > 0.0, share, np.float32(1.0))
+    turns_whole = (share == 0.0) | mobility_map.on_wheels
+    of_turn = np.where(turns_whole, np.float32(1.0), share)
     places *= np.stack([share, share, of_turn], axis=1)[:, None]
     return places
 

@@ -17,8 +17,12 @@ from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import NO_OPTION, Crowd, CrowdState
 
-FREELY = 0.1
-"""A walker within this much of its preferred speed walks freely, m/s."""
+SLOWER, FASTER = 0.1, 0.2
+"""A walker at most so much slower or faster than its preferred speed walks freely, m/s.
+
+Slower is somebody held up.  Faster is mostly somebody whose recordings lack the speed: movements
+of people with a limp, sped up to those of a cane, leave some speeds out.
+"""
 
 MOST = 0.25
 """Greatest distance error that is kept, metres."""
@@ -61,8 +65,8 @@ def _keep_pace(
         walked = math.hypot(state[i].to_x - state[i].from_x, state[i].to_y - state[i].from_y)
         short = agenda[i]["desired_speed"] * seconds - walked
         behind, correction = 0.0, agenda[i]["behind"] / MAKES_UP
-        least = (min(correction, 0.0) - FREELY) * seconds
-        most = (max(correction, 0.0) + FREELY) * seconds
+        least = (min(correction, 0.0) - SLOWER) * seconds
+        most = (max(correction, 0.0) + FASTER) * seconds
         if state[i].option > NO_OPTION and least <= -short <= most:
             behind = min(max(agenda[i]["behind"] + short, -MOST), MOST)
         agenda[i]["behind"], agenda[i]["desired_speed"] = behind, speeds[k]

@@ -1,4 +1,4 @@
-"""A slow and larger person at the mouth of a passage (NIST 2.10, ISO 7)."""
+"""A slow and larger person at the mouth of a passage (NIST 2.10, which is test 7 of ISO 20414)."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ people who are about to enter an opening too narrow for two of them, the one who
 has the right to go first.  The others keep the width of a body clear of the opening until it is
 through.  One that is up against a jamb first goes back to the middle, since it cannot step
 aside either.  Where two just fit, they go together until they hold each other up.  People on foot
-without crutches neither wait nor are waited for.  But whoever is behind one that is held up in the
+or with a cane neither wait nor are waited for.  But whoever is behind one that is held up in the
 opening makes room for it (``making_room.py``); those who wait do so wherever the first is held up.
 """
 
@@ -39,11 +39,11 @@ from mesa_mobility.crowd.tactics.waiting import waiting
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import narrow_mouths
 
-WIDE = 0.2
+WIDE = 0.18
 """Core radius in metres above which a body is wide.
 
-People on foot, with a cane or with a walking frame slip past one another; those on crutches and
-in wheelchairs do not.
+People on foot and with a cane slip past one another; those with walking frames, on crutches and in
+wheelchairs do not.
 """
 
 ABREAST = 3
