@@ -161,10 +161,14 @@ def _below(error: str, description: str) -> dict[str, Any]:
     """What stands below a field: what is wrong, or else what it is for."""
     return {
         "error": bool(error),
-        "messages": [error or description] if error or description else [],
+        "messages": _messages(error, description),
         "hide_details": "auto",
         "dense": True,
     }
+
+
+def _messages(error: str, description: str) -> list[str]:
+    return [error or description] if error or description else []
 
 
 @solara.component
@@ -187,6 +191,17 @@ def Choice(
     )
 
 
+@solara.component_vue("text_field.vue")
+def _TextField(
+    text: str,
+    label: str,
+    says: str,
+    error: bool,
+    messages: list[str],
+    event_done: Callable[[str], None],
+) -> None: ...
+
+
 @solara.component
 def TextField(
     label: str,
@@ -198,24 +213,16 @@ def TextField(
 ) -> None:
     """A field that reports its text on Enter, or when it loses the focus.
 
-    Text that is being typed survives when the page is rendered again.
+    Text that is being typed stays in the browser until then.
     """
-    draft, set_draft = solara.use_state(text)
-    solara.use_effect(lambda: set_draft(text), [text])
-    field = solara.v.TextField(
+    _TextField(
+        text=text,
         label=label,
-        v_model=draft,
-        on_v_model=set_draft,
-        class_="mb-1",
-        attributes={"aria-label": says or label},
-        **_below(error, description),
+        says=says or label,
+        error=bool(error),
+        messages=_messages(error, description),
+        event_done=change,
     )
-
-    def done(widget: Any, event: str, data: Any) -> None:
-        change(str(widget.v_model))
-
-    solara.v.use_event(field, "blur", done)
-    solara.v.use_event(field, "keyup.enter", done)
 
 
 @solara.component

@@ -61,6 +61,9 @@ def serve(
     """
     listening = listen(host, port)
     os.environ.update(SETTINGS)
+    # It concerns pages in frames, which this one is not.  Libraries change the filters for a while
+    # in the thread below; one that is added meanwhile is lost.
+    warnings.filterwarnings("ignore", "Cookies with samesite=none", UserWarning)
     loaded: Future[type[PedestrianModel]] = Future()
     serving = threading.Event()
     threading.Thread(
@@ -78,8 +81,6 @@ def serve(
     port = listening.getsockname()[1]
     ready(f"http://{address_of(host, port)}/{f'?token={token}' if token else ''}")
 
-    # It concerns pages in frames, which this one is not.
-    warnings.filterwarnings("ignore", "Cookies with samesite=none", UserWarning)
     import uvicorn
     from solara.server.starlette import app
 

@@ -42,18 +42,6 @@ SILENT: set[str] = set()
 """Servers that have not shown a page yet, by address."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """A page on a busy machine loses a keystroke now and then, of what is typed in no time at all.
-
-    A test of the default run in which that happens is run once more; the report says so.
-    """
-    for item in items:
-        here = item.path.parent == Path(__file__).parent
-        in_browser = "browser" in getattr(item, "fixturenames", ())
-        if here and in_browser and item.get_closest_marker("slow") is None:
-            item.add_marker(pytest.mark.flaky(reruns=1))
-
-
 @pytest.fixture(scope="session")
 def browser(playwright: Any, browser_program: str) -> Iterator[Any]:
     """Chromium, driven by Playwright; tests are skipped where Solara is missing."""

@@ -1,4 +1,4 @@
-"""Clicks on a crowd whose place another has taken before they arrive."""
+"""Clicks and texts that arrive when what they were meant for has changed."""
 
 import time
 
@@ -6,8 +6,10 @@ import pytest
 
 pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
 
+import solara
 from mesa_mobility.models import Doorway, StraightWalk
 
+from mesa_mobility.dashboard.forms import TextField
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.session import Session
 
@@ -62,3 +64,14 @@ def test_doors_and_obstacles_of_another_floor_stay_as_they_are(replaced):
     stepped(session)
     assert session.floor.value is floor
     assert session.problem.value == ""
+
+
+def test_a_field_reports_the_text_that_its_event_brings():
+    """Not the text that the server knows of, which is an older one while the page is busy."""
+    reported = []
+    field = TextField("weight", "1", reported.append, says="weight of headway")
+    box, context = solara.render(field, handle_error=False)
+    (widget,) = box.children
+    widget._handle_custom_msg({"event": "done", "data": "2.5"}, [])
+    context.close()
+    assert reported == ["2.5"]

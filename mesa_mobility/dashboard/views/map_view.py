@@ -187,7 +187,10 @@ def _Provenance(mobility_map: MobilityMap) -> None:
     clips = mobility_map.metadata.get("provenance", [])
     for line in mobility_map.metadata.get("acknowledgements", []):
         solara.Text(line, style={"display": "block", "font-size": "13px"})
-    with solara.Details(f"Recordings and licences: {len(clips)} clips"):
+    with (
+        solara.Div(attributes={"title": "The recordings behind the map, and their licences"}),
+        solara.Details(f"Recordings and licences: {len(clips)} clips"),
+    ):
         columns = ("clip", "subject", "description", "poses", "mirrored", "licence", "source")
         head = "".join(f"<th>{name}</th>" for name in columns)
         rows = "".join(

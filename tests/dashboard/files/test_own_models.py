@@ -21,6 +21,9 @@ class Room(PedestrianModel):
         super().__init__(plan, mobility_map=mobility_map, rng=rng)
         self.add_pedestrians(plan.random_points(pedestrians, self.rng, spacing=0.5, clearance=0.3))
 """
+LONG = "import time\n" + PLAIN.replace(
+    "        plan =", "        time.sleep(40.0 if pedestrians > 100_000 else 0.0)\n        plan ="
+)
 PAGE = "from mesa_mobility.dashboard import Dashboard\nfrom my_models import Room\n\n"
 PAGE += "page = Dashboard(Room)\n"
 VIZ = (
@@ -172,17 +175,20 @@ def test_a_crowd_of_millions_is_refused_and_a_large_one_asked_about(tab, open_ta
 
 
 @pytest.mark.slow
-def test_a_model_that_takes_long_can_be_cancelled_and_other_tabs_go_on(tab, open_tab):
-    other = open_tab()
-    tab.choose("model", "straight_walk")
-    inside(tab, 50)
+def test_a_model_that_takes_long_can_be_cancelled_and_other_tabs_go_on(
+    start_dashboard, open_tab, tmp_path
+):
+    (tmp_path / "room.py").write_text(LONG)
+    address = start_dashboard("room.py", cwd=tmp_path).address
+    tab, other = open_tab(address), open_tab(address)
+    inside(tab, 40)
     tab.set("pedestrians", "1000000")
     tab.button("Make it").click()
     tab.button("Cancel").wait_for()
     other.step(3)
     tab.button("Cancel").click()
     tab.page.locator(".mm-status", has_text="ready").wait_for()
-    assert tab.shown()["inside"] == 50
+    assert tab.shown()["inside"] == 40
     tab.step(2)
 
 
