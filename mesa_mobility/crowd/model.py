@@ -171,7 +171,7 @@ class PedestrianModel(mesa.Model):
         self.recorder = Recorder() if record else None
         self.decisions = DecisionRecorder() if record == "decisions" else None
         self.watch: Watch | None = None
-        self.space = space_of(floor_plan, scene.repertoire.reach, self.random)
+        self.space = space_of(floor_plan, float(scene.repertoire.reach.max()), self.random)
         self.population = People(scene, self.space, pedestrian_class)
         self.sources = Sources(scene)
         self.statistics = Statistics(self)

@@ -150,11 +150,12 @@ def compile_decisions() -> None:
     )
     first = np.zeros(1, dtype=np.int64)
     standing = np.zeros(1, dtype=np.int32)
+    metre = np.ones(1)
     repertoire = Repertoire(
-        (), table, make_groups(table, boxes(table.path)), standing, first, standing, 1.0, 1.0
+        (), table, make_groups(table, boxes(table.path)), standing, first, standing, metre, metre
     )
     decisions = DecisionScheduler(
-        repertoire, Rules(1.0, True, standing, first), least_core=1.0, types=[""]
+        repertoire, Rules(1.0, metre[None], True, standing, first), least_core=1.0, types=[""]
     )
     nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
     moment = Moment(0, np.random.default_rng(0))

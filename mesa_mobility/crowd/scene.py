@@ -74,8 +74,9 @@ def make_scene(
     table = known.table._replace(shapes=shapes_of([each.shape for each in types]))
     known = replace(known, table=table)
     widths = [each.half_width for each in types]
-    largest = max(each.bounding_radius for each in types)
-    environment = Environment(plan, reach=known.reach + largest + 0.02, core_radii=widths)
+    radii = np.array([each.bounding_radius for each in types])
+    reach, extent, largest = known.reach.max(), known.extent.max(), radii.max()
+    environment = Environment(plan, reach=float(reach + largest) + 0.02, core_radii=widths)
     return Scene(
         plan=plan,
         types=types,
@@ -83,7 +84,12 @@ def make_scene(
         preset=preset,
         repertoire=known,
         rules=Rules(
-            search_radius=known.reach + known.extent + 2.0 * largest + 0.01,
+            search_radius=float(reach + extent + 2.0 * largest) + 0.01,
+            # One range for all would let people heed others from farther away as soon as a faster
+            # type might walk there as well.
+            interaction_ranges=np.add.outer(known.reach, known.extent)
+            + np.add.outer(radii, radii)
+            + 0.01,
             hard_bodies=preset.hard_bodies,
             standing=known.standing,
             first_option=known.first_option,

@@ -55,7 +55,8 @@ class Candidates:
         types: (b,) index of the pedestrian type in ``model.pedestrian_types``.
         neighbour_offsets: (b + 1,) neighbours of pedestrian i are rows
             ``neighbour_offsets[i]:neighbour_offsets[i + 1]`` of the arrays below.
-        neighbours: (q,) rows of the neighbours in the crowd.
+        neighbours: (q,) rows of the neighbours in the crowd: people whom a movement of each, of
+            the longest of their types, can bring together.
         neighbour_positions: (q, 2) metres.
         neighbour_velocities: (q, 2) mean velocity of their movement under way, m/s.
         neighbour_directions: (q, 2) unit vector to their target; (0, 0) at the target.

@@ -26,8 +26,8 @@ class Repertoire:
         first_cluster: (types,) number of each type's first cluster.
         first_option: (types,) row of each type's first option.
         standing: (types,) number of each type's standing cluster.
-        reach: greatest distance of an option from its start, metres.
-        extent: upper bound of the distance between two points of one option, metres.
+        reach: by type, greatest distance of an option from its start, metres.
+        extent: by type, upper bound of the distance between two points of one option, metres.
     """
 
     capabilities: tuple[Capability, ...]
@@ -36,8 +36,8 @@ class Repertoire:
     first_cluster: NDArray[np.int32]
     first_option: NDArray[np.int64]
     standing: NDArray[np.int32]
-    reach: float
-    extent: float
+    reach: NDArray[np.float64]
+    extent: NDArray[np.float64]
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Repertoire:
         """Itself: models share it, and its arrays are aligned for compiled functions."""
@@ -80,6 +80,8 @@ def repertoire(
         first_cluster=clusters.astype(np.int32),
         first_option=options.astype(np.int64),
         standing=standing.astype(np.int32),
-        reach=max(each.longest_reach for each in capabilities),
-        extent=float(np.hypot(*(spanned[:, 2:] - spanned[:, :2]).T).max()),
+        reach=np.array([each.longest_reach for each in capabilities]),
+        extent=np.maximum.reduceat(np.hypot(*(spanned[:, 2:] - spanned[:, :2]).T), options).astype(
+            np.float64
+        ),
     )

@@ -28,7 +28,13 @@ from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
     select_relevant,
 )
 from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
-from mesa_mobility.crowd.planning.grid import cover_in, neighbours_within, place_in
+from mesa_mobility.crowd.planning.grid import (
+    cover_in,
+    farthest_range,
+    keep_interacting,
+    neighbours_within,
+    place_in,
+)
 from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Rules, Workspace
 from mesa_mobility.crowd.state.clearances import MARGIN
@@ -134,16 +140,20 @@ def _decide_one(
     overhang = overhang_of(i, table, state)
     me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core, overhang)
     others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
-    count = neighbours_within(
-        grid, moving, x, y, place, rules.search_radius, work.near, others, sweeps
-    )
-    near = work.near[:count]
+    ranges = rules.interaction_ranges
+    n_near, count = neighbours_within(
+        grid, moving, x, y, place, rules.search_radius, farthest_range(i, ranges, state), work.near,
+        sweeps, work.interacting, others,
+    )  # fmt: skip
+    if len(ranges) > 1:
+        count = keep_interacting(i, count, ranges, state, work.interacting, others)
+    near = work.near[:n_near]
     route, lead = state.route[i], others[LEAD]
     for a in range(count):
         lead[a] = route - lead[a]
     for row in range(FIELDS, len(others)):
         for a in range(count):
-            others[row, a] = terms.fields[near[a], row - FIELDS]
+            others[row, a] = terms.fields[work.interacting[a], row - FIELDS]
     fill_lane(count, others)
     farthest = table.farthest[cluster]
     reach = wall_reach(farthest, core + overhang)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import entry_point, force_inlined, internal
+from mesa_mobility.compiled.decorators import entry_point, force_inlined, inlined, internal
 from mesa_mobility.compiled.simd import LANES, bits_set, compress
 from mesa_mobility.compiled.threads import by_blocks
 from mesa_mobility.crowd.collision.discs import overhang_of
@@ -97,11 +97,13 @@ def neighbours_within(
     py: float,
     own: int,
     radius: float,
+    interaction_range: float,
     near: NDArray[np.int64],
-    others: NDArray[np.float64],
     sweeps: NDArray[np.float64],
-) -> int:
-    """Copy the data of people within ``radius`` of (px, py), except for the one at index ``own``.
+    interacting: NDArray[np.int64],
+    others: NDArray[np.float64],
+) -> tuple[int, int]:
+    """Copy the data of people around (px, py), except for the one at index ``own``.
 
     They are those that ``people_within`` finds, read 8 at a time.
 
@@ -110,16 +112,19 @@ def neighbours_within(
         moving: (8, people) as of ``headways``.
         px, py: metres.
         own: grid index of the person left out.
-        radius: metres.
-        near: gets their rows.
-        others: gets the rows that cost terms read.
+        radius: metres within which people may get in the way.
+        interaction_range: metres within which they count in cost terms, at most ``radius``.
+        near: gets the rows of those within ``radius``.
         sweeps: gets the circles around their paths.
+        interacting: gets the rows of those within ``interaction_range``.
+        others: gets what cost terms read of them.
 
     Returns:
-        Their number; each array must have room for everybody and 8 more.
+        The number of those near and of those interacting; each array must have room for everybody
+        and 8 more.
     """
     cx0, cx1, cy0, cy1 = cells_within(grid, px, py, radius)
-    count = 0
+    found, count = 0, 0
     for cy in range(cy0, cy1 + 1):
         last = grid.offsets[cy * grid.nx + cx1 + 1]
         for at in range(grid.offsets[cy * grid.nx + cx0], last, LANES):
@@ -127,13 +132,57 @@ def neighbours_within(
             bits &= (1 << min(last - at, LANES)) - 1
             if at <= own < at + LANES:
                 bits &= ~(1 << (own - at))
+            compress(moving, COVERED, at, bits, sweeps, 0, found, 3)
+            compress(grid.people, 0, at, bits, near, 0, found, 1)
+            found += bits_set(bits)
+            bits &= places_near(grid.x, grid.y, at, px, py, interaction_range)
             compress(grid.x, 0, at, bits, others, 0, count, 1)
             compress(grid.y, 0, at, bits, others, 1, count, 1)
             compress(moving, 0, at, bits, others, 2, count, COVERED)
-            compress(moving, COVERED, at, bits, sweeps, 0, count, 3)
-            compress(grid.people, 0, at, bits, near, 0, count, 1)
+            compress(grid.people, 0, at, bits, interacting, 0, count, 1)
             count += bits_set(bits)
-    return count
+    return found, count
+
+
+@inlined()
+def farthest_range(i: int, ranges: NDArray[np.float64], state: CrowdState) -> float:
+    """Metres within which somebody of any type may count in the cost terms of i."""
+    farthest = 0.0
+    for kind in range(len(ranges)):
+        farthest = max(farthest, ranges[state.type_index[i], kind])
+    return farthest
+
+
+@inlined()
+def interact(i: int, j: int, ranges: NDArray[np.float64], state: CrowdState) -> bool:
+    """Whether j counts in the cost terms of i; ``ranges`` are those of ``Rules``."""
+    dx, dy = state.x[j] - state.x[i], state.y[j] - state.y[i]
+    range_ = ranges[state.type_index[i], state.type_index[j]]
+    return bool(dx * dx + dy * dy <= range_ * range_)
+
+
+@internal()
+def keep_interacting(
+    i: int,
+    count: int,
+    ranges: NDArray[np.float64],
+    state: CrowdState,
+    interacting: NDArray[np.int64],
+    others: NDArray[np.float64],
+) -> int:
+    """Keep those of the first ``count`` neighbours who count for i, by their types.
+
+    ``interacting`` and ``others`` are those that ``neighbours_within`` writes.  Returns their
+    number.
+    """
+    kept = 0
+    for a in range(count):
+        j = interacting[a]
+        interacting[kept] = j
+        for row in range(2 + COVERED):
+            others[row, kept] = others[row, a]
+        kept += int(interact(i, j, ranges, state))
+    return kept
 
 
 @internal()

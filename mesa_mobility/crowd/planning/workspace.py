@@ -50,10 +50,11 @@ class Workspace(NamedTuple):
     """Scratch arrays of one thread, reused from decision to decision.
 
     Attributes:
-        near: rows of the neighbours.
+        near: rows of the people near.
+        interacting: rows of the neighbours, those of them who count in cost terms.
         unsure: rows of people left to the exact test.
         others: the neighbours as pair terms see them; rows as in ``costs.layout``.
-        sweeps: (3, n) circles around their paths.
+        sweeps: (3, n) circles around the paths of the people near.
         foremost: the neighbours who are likely to cost most.
         marks: for each of ``foremost``, bits of the pair terms that it matters to.
         some: the marked columns of ``foremost``.
@@ -81,6 +82,7 @@ class Workspace(NamedTuple):
     """
 
     near: NDArray[np.int64]
+    interacting: NDArray[np.int64]
     unsure: NDArray[np.int64]
     others: NDArray[np.float64]
     sweeps: NDArray[np.float64]
@@ -118,6 +120,7 @@ def make_workspace(
     lanes = LANES * groups
     return Workspace(
         near=np.empty(people + LANES, np.int64),
+        interacting=np.empty(people + LANES, np.int64),
         unsure=np.empty(people, np.int64),
         others=np.empty((FIELDS + fields, people + LANES)),
         sweeps=np.empty((3, people + LANES)),
@@ -157,13 +160,17 @@ class Rules(NamedTuple):
     """Constants of the model.
 
     Attributes:
-        search_radius: radius in metres within which people are neighbours.
+        search_radius: metres within which people may get in each other's way.
+        interaction_ranges: (types, types) metres within which somebody of a type counts in the
+            cost terms of somebody of another, by the type of who decides and that of the other:
+            whether a movement of each can bring them together.
         hard_bodies: whether bodies may not overlap.
         standing: by pedestrian type, its standing cluster.
         first_option: by pedestrian type, its first row in the table.
     """
 
     search_radius: float
+    interaction_ranges: NDArray[np.float64]
     hard_bodies: bool
     standing: NDArray[np.int32]
     first_option: NDArray[np.int64]

@@ -69,19 +69,19 @@ def test_options_name_rows_of_the_persons_own_capability(whole):
 
 def test_a_batch_of_several_people(whole):
     model = model_of(corridor(), [strider(), statues()], preset=whole)
-    walker, statue = put(model, 2.0, 1.0), put(model, 4.0, 3.0, type_index=1)
+    walker, statue = put(model, 2.0, 1.0), put(model, 3.0, 2.5, type_index=1)
     batch = model.candidates(np.array([statue.row, walker.row]))
     assert batch.owner.tolist() == [0, 1, 1, 1, 1]
     assert batch.offsets.tolist() == [0, 1, 5]
     assert batch.types.tolist() == [1, 0]
-    np.testing.assert_allclose(batch.points[:, 0], [4.0, 2.0, 2.5, 3.0, 3.875])
+    np.testing.assert_allclose(batch.points[:, 0], [3.0, 2.0, 2.5, 3.0, 3.875])
     assert batch.neighbours.tolist() == [walker.row, statue.row]
     assert batch.neighbour_offsets.tolist() == [0, 1, 2]
 
 
 def test_neighbours_come_with_the_mean_velocity_of_their_movement():
     model = model_of(corridor(), [strider(), statues()])
-    statue = put(model, 4.0, 3.0, type_index=1)
+    statue = put(model, 3.5, 2.0, type_index=1)
     walker = put(model, 2.0, 1.0, preferred_speeds=[1.25])
     advance(model, 10)
     options = statue.movement_options()
@@ -168,6 +168,16 @@ def test_neighbours_reach_as_far_as_two_options_and_two_cores():
     me = put(model, 10.0, 2.0)
     near, _far = put(model, 14.04, 2.0), put(model, 5.8, 2.0)
     assert me.movement_options().neighbours.tolist() == [near.row]
+
+
+def test_who_cannot_come_together_within_a_movement_are_no_neighbours():
+    # A walker gets 1.875 m, a statue nowhere; cores of 0.15 m: 2.185 m whoever of them decides.
+    model = model_of(corridor(), [strider(), statues()])
+    walker = put(model, 10.0, 2.0)
+    near, far = put(model, 12.18, 2.0, type_index=1), put(model, 7.81, 2.0, type_index=1)
+    assert walker.movement_options().neighbours.tolist() == [near.row]
+    assert near.movement_options().neighbours.tolist() == [walker.row]
+    assert far.movement_options().neighbours.tolist() == []
 
 
 def test_pairs_of_options_and_neighbours():

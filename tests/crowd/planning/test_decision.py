@@ -135,7 +135,7 @@ def test_interference_turns_away_from_a_neighbour(side):
     # The left one is a hair nearer to the target when nobody is about.
     model = model_of(corridor(), [make_map([[stand(), left, right]]), statues()],
                      behaviors=[TargetDistance(), Interference()])  # fmt: skip
-    put(model, 5.0 + 1.6, 2.0 + side * 1.15, type_index=1)
+    put(model, 5.0 + 1.4, 2.0 + side * 1.0, type_index=1)
     person = put(model, 5.0, 2.0)
     advance(model, 45)
     assert np.sign(person.position[1] - 2.0) == -side

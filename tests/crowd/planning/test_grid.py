@@ -30,8 +30,10 @@ def _cover(moving, at, i, table, state):
 
 
 @njit
-def _within(grid, moving, x, y, own, radius, near, others, sweeps):
-    return neighbours_within(grid, moving, x, y, own, radius, near, others, sweeps)
+def _within(grid, moving, x, y, own, radius, range_, near, sweeps, interacting, others):
+    return neighbours_within(
+        grid, moving, x, y, own, radius, range_, near, sweeps, interacting, others
+    )
 
 
 @pytest.fixture
@@ -78,17 +80,23 @@ def test_what_somebody_covers_is_kept_up_to_date(crowd):
     assert (kept == before).all()
 
 
-@pytest.mark.parametrize("radius", [0.5, 3.0, 30.0])
-def test_neighbours_are_copied_in_the_order_of_the_grid(crowd, radius):
+@pytest.mark.parametrize(("radius", "range_"), [(0.5, 0.5), (3.0, 2.0), (30.0, 4.0)])
+def test_neighbours_are_copied_in_the_order_of_the_grid(crowd, radius, range_):
     grid = build_grid(np.arange(50), crowd.x, crowd.y)
     kept = headways(grid, TABLE, crowd.records)
-    near, others, sweeps = np.zeros(58, dtype=np.int64), np.zeros((8, 58)), np.zeros((3, 58))
+    near, interacting = np.zeros((2, 58), dtype=np.int64)
+    others, sweeps = np.zeros((8, 58)), np.zeros((3, 58))
     for i in range(0, 50, 7):
         own = int(np.flatnonzero(grid.people == i)[0])
-        count = _within(grid, kept, crowd.x[i], crowd.y[i], own, radius, near, others, sweeps)
+        found, count = _within(
+            grid, kept, crowd.x[i], crowd.y[i], own, radius, range_, near, sweeps, interacting,
+            others,
+        )  # fmt: skip
         away = np.hypot(grid.x - crowd.x[i], grid.y - crowd.y[i])
         expected = np.flatnonzero((away <= radius) & (grid.people != i))
-        assert near[:count].tolist() == grid.people[expected].tolist()
+        assert near[:found].tolist() == grid.people[expected].tolist()
+        assert (sweeps[:, :found] == kept[COVERED:, expected]).all()
+        expected = np.flatnonzero((away <= range_) & (grid.people != i))
+        assert interacting[:count].tolist() == grid.people[expected].tolist()
         assert (others[:2, :count] == [grid.x[expected], grid.y[expected]]).all()
         assert (others[2 : 2 + COVERED, :count] == kept[:COVERED, expected]).all()
-        assert (sweeps[:, :count] == kept[COVERED:, expected]).all()

@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.compiled.decorators import internal, kept
 from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
-from mesa_mobility.crowd.planning.grid import people_within
+from mesa_mobility.crowd.planning.grid import farthest_range, interact, people_within
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
@@ -25,7 +25,7 @@ def pairs_of(
     """(len(rows),) options of each pedestrian times its neighbours: the size of its pair arrays."""
     clusters = state.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]
-    offsets, _ = _all_neighbours(rows, grid, state.x, state.y, rules.search_radius)
+    offsets, _ = _all_neighbours(rows, grid, state.records, rules.interaction_ranges)
     return counts * np.maximum(np.diff(offsets), 1)
 
 
@@ -48,7 +48,7 @@ def make_candidates(
     )
     x, y, heading = _lay_ends(rows, owner, options, table, state.records)
     neighbour_offsets, neighbours = _all_neighbours(
-        rows, grid, state.x, state.y, rules.search_radius
+        rows, grid, state.records, rules.interaction_ranges
     )
     wall_offsets, walls = _all_walls(rows, table, around, state.records)
     durations = table.options.frames[options] * FRAME_SECONDS
@@ -127,23 +127,35 @@ def _lay_ends(
 
 @kept()
 def _all_neighbours(
-    rows: NDArray[np.int64],
-    grid: Grid,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    radius: float,
+    rows: NDArray[np.int64], grid: Grid, state: CrowdState, ranges: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     found = np.empty(len(grid.people), np.int64)
     offsets = np.zeros(len(rows) + 1, np.int64)
     for d in range(len(rows)):
-        offsets[d + 1] = offsets[d] + people_within(
-            grid, x[rows[d]], y[rows[d]], rows[d], radius, found
-        )
+        offsets[d + 1] = offsets[d] + _neighbours(rows[d], grid, state, ranges, found)
     everyone = np.empty(offsets[-1], np.int64)
     for d in range(len(rows)):
-        count = people_within(grid, x[rows[d]], y[rows[d]], rows[d], radius, found)
-        everyone[offsets[d] : offsets[d + 1]] = grid.people[found[:count]]
+        count = _neighbours(rows[d], grid, state, ranges, found)
+        everyone[offsets[d] : offsets[d + 1]] = found[:count]
     return offsets, everyone
+
+
+@internal()
+def _neighbours(
+    i: int,
+    grid: Grid,
+    state: CrowdState,
+    ranges: NDArray[np.float64],
+    found: NDArray[np.int64],
+) -> int:
+    """Write the rows of the people who count for i.  Returns their number."""
+    farthest = farthest_range(i, ranges, state)
+    count, kept = people_within(grid, state.x[i], state.y[i], i, farthest, found), 0
+    for a in range(count):
+        j = grid.people[found[a]]
+        found[kept] = j
+        kept += int(interact(i, j, ranges, state))
+    return kept
 
 
 @kept()

@@ -102,7 +102,7 @@ def test_groups_are_left_out_by_the_bound_for_people_who_are_near(term, side):
     right = [straight(1.49, 45, towards=-way, to=0) for way in ways]
     maps = [make_map([[stand(), *left, *right]]), statues()]
     model = model_of(corridor(), maps, behaviors=[TargetDistance(), term])
-    put(model, 6.8, 1.6, type_index=1)
+    put(model, 6.75, 1.6, type_index=1)
     person = put(model, 5.0, 2.0)
     advance(model, 45)
     assert np.sign(person.position[1] - 2.0) == side
