@@ -43,8 +43,11 @@ def watch(address: str) -> None:
     with connect(address) as socket:
         scene = json.loads(socket.recv())
         print(f"{scene['model']}: {len(scene['people']['person'])} people")
+        # The clock stands still meanwhile, so nobody sets off for an exit before it is steered.
+        tell(socket, "pause")
         [person] = tell(socket, "add", positions=[[12.0, 1.0]], heading=1.57)["people"]
         tell(socket, "steer", person=person, velocity=[0.0, 1.2])
+        tell(socket, "resume")
         frames = (positions(message) for message in socket if isinstance(message, bytes))
         start = next(frames)[person]
         for _ in range(90):
