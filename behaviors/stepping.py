@@ -2,11 +2,22 @@
 
 import math
 
+from numba import njit
+
 from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
 from mesa_mobility.errors import ModelError
 
 STANDS = 0.01
 """A person who covers no more ground than this in a movement stands, metres."""
+
+LONGEST = 1.5
+"""The longest movement, seconds."""
+
+
+@njit(error_model="numpy")
+def _length(preferred: float, length: float) -> float:
+    # Those who want to stand have no step of their own.
+    return min(length, LONGEST * preferred) if preferred > 0.0 else length
 
 
 @option_kernel
@@ -15,7 +26,7 @@ def _stepping(
     tx: float, ty: float, preferred: float, p: tuple[float, ...],
 ) -> float:  # fmt: skip
     ground = speed * duration
-    return max(1.0 - ground * (1.0 / p[0]), 0.0) if ground > STANDS else 0.0
+    return max(1.0 - ground / _length(preferred, p[0]), 0.0) if ground > STANDS else 0.0
 
 
 @bound_kernel
@@ -24,8 +35,8 @@ def _stepping_bound(
     slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
     p: tuple[float, ...],
 ) -> float:  # fmt: skip
-    farthest = fastest * duration
-    return max(1.0 - farthest * (1.0 / p[0]), 0.0) if slowest * duration > STANDS else 0.0
+    least = max(1.0 - fastest * duration / _length(preferred, p[0]), 0.0)
+    return least if slowest * duration > STANDS else 0.0
 
 
 class Stepping(CompiledTerm):
@@ -36,9 +47,13 @@ class Stepping(CompiledTerm):
     a queue wait until there is room for one that is, and stand quietly until then. Of those who
     walk anyway it favours no option.
 
+    Slow people make short steps: for somebody who wants to cover less than ``length`` in the
+    longest movement, 1.5 s, l is what they want to cover.  With the full length, people who want
+    less than 0.2 m/s would stand for ever.
+
     Args:
         weight: factor in the sum.
-        length: l, metres from which on a step is worth its effort.
+        length: l of people who are not slow, metres from which on a step is worth its effort.
 
     Raises:
         ModelError: a length that is not finite and positive.

@@ -17,9 +17,9 @@ from mesa_mobility.floorplan.checks import read_polygon
 class SpeedZone:
     """Part of the floor where people walk at a share of their preferred speed.
 
-    The factor holds for decisions taken in the zone, its edge included, and for the whole movement
-    decided on. So it takes effect up to 1.5 s after people come in, and ends up to 1.5 s after they
-    leave. Where zones overlap, their factors multiply.
+    A movement is decided on as a whole: one that leads into a zone or out of it has the mean speed
+    of its way. So people slow down at most 1.5 s before a zone, speed up at most 1.5 s before its
+    end, and come to its far side when they should. Where zones overlap, their factors multiply.
 
     Args:
         polygon: shapely or WKT, metres.

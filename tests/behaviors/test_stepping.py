@@ -4,7 +4,7 @@ import pytest
 from mesa_mobility.behaviors import Stepping
 
 from mesa_mobility.errors import ModelError
-from tests.fixtures.options import Ending, one_option
+from tests.fixtures.options import Chooser, Ending, candidates, one_option
 
 
 @pytest.mark.parametrize(
@@ -16,6 +16,30 @@ from tests.fixtures.options import Ending, one_option
 def test_a_step_costs_what_it_is_short_of_one_that_is_worth_it(metres, seconds, expected):
     option = one_option(Ending(displacement=metres, duration=seconds), target=(20.0, 0.0))
     assert Stepping(length=0.4).cost(option) == pytest.approx([expected], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("speed", "metres", "seconds", "expected"),
+    # Who wants 0.1 m/s covers 0.15 m in 1.5 s; 0.2 m/s are 0.3 m, and 0.3 m/s more than 0.4 m.
+    [(0.1, 0.15, 1.5, 0.0), (0.1, 0.05, 0.4, 2 / 3), (0.2, 0.15, 0.4, 0.5), (0.3, 0.1, 0.4, 0.75),
+     (0.1, 0.0, 0.4, 0.0)],
+)  # fmt: skip
+def test_slow_people_make_short_steps(speed, metres, seconds, expected):
+    option = candidates(
+        Chooser(
+            [Ending(displacement=metres, duration=seconds)],
+            target=(20.0, 0.0),
+            preferred_speed=speed,
+        )
+    )
+    assert Stepping(length=0.4).cost(option) == pytest.approx([expected], abs=1e-6)
+
+
+def test_those_who_want_to_stand_have_no_step_of_their_own():
+    option = candidates(
+        Chooser([Ending(displacement=0.1)], target=(20.0, 0.0), preferred_speed=0.0)
+    )
+    assert Stepping(length=0.4).cost(option) == pytest.approx([0.75], abs=1e-6)
 
 
 @pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])

@@ -5,7 +5,7 @@ Helbing, Farkas and Vicsek (Nature 407, 2000) let the fluctuations of a person's
 with its nervousness, the share by which it falls short of its preferred speed.  Here, the target
 of a person that has made no progress for some seconds is now and then turned by a random angle.
 The angle grows with the time without progress.  People who have not set off, or who wait on
-purpose, stay patient.
+purpose, stay patient, and so do slow people who get on as fast as they want.
 
 A long body that stands aslant in an opening, or beside others, often can neither go on nor turn.
 When its person is impatient it backs off now and then, as drivers do.
@@ -30,6 +30,9 @@ ANOTHER_WAY = 2.0
 
 PATIENCE = 5.0
 """Seconds without progress until somebody grows impatient."""
+
+SLOW_PATIENCE = 2.0
+"""For slow people, how many times as long as the progress takes at the speed that they want."""
 
 RATE, MOST = 0.1, 0.5
 """Standard deviation of the angle: radians a second of impatience, and its maximum."""
@@ -115,7 +118,12 @@ def _impatient(
         ):
             agenda[i]["nearest"], agenda[i]["since"] = route, elapsed
         free = agenda[i]["waits_until"] * FRAME_SECONDS
-        overdue = elapsed - max(agenda[i]["since"], free) - PATIENCE
+        # Those who want to stand have no speed of their own, and those who wait are free later.
+        wanted = agenda[i]["desired_speed"]
+        patience = (
+            max(PATIENCE, SLOW_PATIENCE * GETTING_NEARER / wanted) if wanted > 0.0 else PATIENCE
+        )
+        overdue = elapsed - max(agenda[i]["since"], free) - patience
         if overdue > 0.0:
             who[count], spread[count] = i, min(RATE * overdue, MOST)
             count += 1

@@ -22,6 +22,12 @@ from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.crowd.tactics.turns import Turns
 from mesa_mobility.crowd.tactics.visits.journeys import Journeys
 from mesa_mobility.crowd.tactics.visits.slowing import slow_down
+from mesa_mobility.floorplan import FloorPlan
+
+LONGEST_S = 1.5
+"""The longest movement, seconds."""
+
+_PARTS = 15
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -87,10 +93,12 @@ class SlowInZones(Tactic):
     name = "speed_zones"
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
-        """Multiply speeds by the factors of the zones."""
+        """Multiply speeds by the mean factor on the way ahead."""
         plan = deciding.site.plan
         if plan.zones:
-            desired.speeds = desired.speeds * plan.speed_factors(deciding.positions)
+            desired.speeds = desired.speeds * _mean_factors(
+                plan, deciding.positions, desired.points, desired.speeds
+            )
 
 
 class FollowSpeedRules(Tactic):
@@ -245,6 +253,35 @@ class Impatience(_OfTheCrowd):
             changed, desired.speeds = True, crowd.preferred[rows]
         if changed:
             desired.points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
+
+
+def _mean_factors(
+    plan: FloorPlan,
+    positions: NDArray[np.float64],
+    points: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """(n,) mean factor of the speed zones over the next ``LONGEST_S``, straight towards ``points``.
+
+    A movement that leads into a zone or out of it is decided on as a whole. With the factor where
+    it starts alone, people would be up to a movement late in slowing down, and in speeding up.
+
+    Args:
+        plan: the floor plan.
+        positions: (n, 2) where people are, metres.
+        points: (n, 2) where they want to go, metres.
+        speeds: (n,) how fast they walk where there is no zone, m/s.
+    """
+    way = points - positions
+    way /= np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    # The way that is covered without zones, in equal parts; each takes 1 / factor of its time.
+    middles = (np.arange(_PARTS) + 0.5) / _PARTS * LONGEST_S
+    ahead = positions[:, None] + way[:, None] * (speeds[:, None] * middles)[:, :, None]
+    factors = plan.speed_factors(ahead).reshape(-1, _PARTS)
+    ends = np.cumsum(1.0 / factors, axis=1)
+    passed = np.clip((_PARTS - (ends - 1.0 / factors)) * factors, 0.0, 1.0)
+    found: NDArray[np.float64] = passed.mean(axis=1)
+    return found
 
 
 def _stretch(kind: PedestrianType) -> float:

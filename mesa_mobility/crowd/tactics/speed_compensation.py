@@ -62,12 +62,16 @@ def _keep_pace(
     for k in range(len(rows)):
         i = rows[k]
         seconds = (state[i].end - state[i].start) * FRAME_SECONDS
-        walked = math.hypot(state[i].to_x - state[i].from_x, state[i].to_y - state[i].from_y)
+        x, y = state[i].to_x - state[i].from_x, state[i].to_y - state[i].from_y
+        tx, ty = state[i].target_x - state[i].from_x, state[i].target_y - state[i].from_y
+        walked, away = math.hypot(x, y), math.hypot(tx, ty)
+        if walked < away:
+            walked = (x * tx + y * ty) / away
         short = agenda[i]["desired_speed"] * seconds - walked
         behind, correction = 0.0, agenda[i]["behind"] / MAKES_UP
         least = (min(correction, 0.0) - SLOWER) * seconds
         most = (max(correction, 0.0) + FASTER) * seconds
         if state[i].option > NO_OPTION and least <= -short <= most:
-            behind = min(max(agenda[i]["behind"] + short, -MOST), MOST)
+            behind = min(max(agenda[i]["behind"] + short, min(-MOST, short)), MOST)
         agenda[i]["behind"], agenda[i]["desired_speed"] = behind, speeds[k]
         kept[k] = max(speeds[k] + behind / MAKES_UP, 0.0) if speeds[k] > 0.0 else speeds[k]

@@ -66,6 +66,15 @@ def test_patience_counts_from_the_first_target():
     assert not untouched(crowd, 100.1 + PATIENCE)
 
 
+def test_slow_people_stay_patient_while_they_get_on_as_fast_as_they_want():
+    # At 0.02 m/s, 0.25 m take 12.5 s.
+    crowd = people()
+    crowd.agenda["desired_speed"] = 0.02
+    assert untouched(crowd, 0.0)
+    assert untouched(crowd, 2.0 * 12.5)
+    assert not untouched(crowd, 2.0 * 12.5 + 0.1)
+
+
 def spread(impatient: float, n: int = 100_000) -> float:
     """Standard deviation of the angle after seconds of impatience, from the mean of its cosine."""
     rng = np.random.default_rng(7)

@@ -1,6 +1,5 @@
-"""Slower in some places: at a share of the preferred speed for decisions taken there."""
+"""Slower in some places: at a share of the preferred speed."""
 
-import numpy as np
 import pytest
 from shapely import box
 
@@ -15,24 +14,38 @@ def strip(*zones: SpeedZone) -> FloorPlan:
     return FloorPlan(box(0, 0, 40, 2), exits=[Exit("out", (40, 0), (40, 2))], zones=zones)
 
 
-def two_speeds():
-    """Walking 0.5 m or 0.25 m each 12 frames: 1.25 or 0.625 m/s."""
-    on = (straight(0.5, 12), straight(0.25, 12))
-    return make_map([(stand(), *on), (*on, stand())])
+def wanted_at(x: float, *zones: SpeedZone, speed: float = 1.25) -> float:
+    """Speed that somebody wants who walks towards +x and decides at ``x``."""
+    on = straight(0.5, 12)
+    model = model_of(strip(*zones), make_map([(stand(), on), (on, stand())]))
+    person = put(model, x, 1.0, preferred_speeds=[speed])
+    advance(model, 1)
+    assert person.preferred_speed == speed
+    return float(model.crowd.preferred[0])
 
 
-def test_the_factor_holds_for_decisions_taken_in_the_zone_its_edge_included():
-    model = model_of(strip(SpeedZone(box(3, 0, 5, 2), 0.5)), two_speeds())
-    person = put(model, 2.0, 1.0, preferred_speeds=[1.25])
-    ends = []
-    for _ in range(14):
-        advance(model, 12)
-        ends.append(float(person.position[0]))
-    # Half a metre up to the edge at 3, a quarter from there to the edge at 5, both of which
-    # belong to the zone, then half a metre again.
-    expected = [2.5, 3.0, *np.arange(3.25, 5.3, 0.25), 5.75, 6.25, 6.75]
-    assert ends == pytest.approx(expected[:14], abs=1e-5)
-    assert person.preferred_speed == 1.25
+@pytest.mark.parametrize(
+    ("x", "expected"),
+    [
+        (6.0, 0.625),  # inside for more than 1.5 s
+        (0.5, 1.25),  # the zone is 2.5 m away, and 1.5 s lead 1.875 m far
+        # 1 m takes 0.8 s, and 0.7 s at 0.625 m/s are 0.4375 m.
+        (2.0, 1.4375 / 1.5),
+        # 0.5 m at 0.625 m/s take 0.8 s, and 0.7 s at 1.25 m/s are 0.875 m.
+        (9.5, 1.375 / 1.5),
+        (10.1, 1.25),
+    ],
+)
+def test_a_movement_has_the_mean_speed_of_the_way_ahead(x, expected):
+    # To a fifteenth of the way that is looked at.
+    found = wanted_at(x, SpeedZone(box(3, 0, 10, 2), 0.5))
+    assert found == pytest.approx(expected, abs=1.25 / 15 / 2)
+
+
+def test_a_way_through_a_narrow_zone_takes_what_each_part_of_it_takes():
+    # 0.5 m at 1.25 m/s, 0.25 m at 0.25 m/s, 0.1 s left at 1.25 m/s: 0.4 + 1.0 + 0.1 s.
+    found = wanted_at(2.0, SpeedZone(box(2.5, 0, 2.75, 2), 0.2))
+    assert found == pytest.approx(0.875 / 1.5, abs=0.04)
 
 
 def test_where_zones_overlap_their_factors_multiply():
