@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon, box, union_all
 
+from mesa_mobility.distributions import TruncatedNormal
+
 Line = tuple[tuple[float, float], tuple[float, float]]
 
 
@@ -36,8 +38,8 @@ class Scenario:
 
 
 def walkers(n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """(n,) preferred speeds: N(1.34, 0.26) m/s clipped to 0.6-2.0."""
-    return np.clip(rng.normal(1.34, 0.26, n), 0.6, 2.0)
+    """(n,) preferred speeds: 1.34 +- 0.26 m/s within 0.6 and 2.0."""
+    return TruncatedNormal(1.34, 0.26, 0.6, 2.0).draw(n, rng)
 
 
 def shaken(

@@ -19,7 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.distributions import TruncatedNormal
 from mesa_mobility.distributions.base import strata
+from mesa_mobility.distributions.truncation import normal_quantile
 from mesa_mobility.errors import ModelError
 
 if TYPE_CHECKING:
@@ -30,6 +32,9 @@ ROUNDING = 1e-6
 
 WITHIN = 3.0
 """Standard deviations from the mean beyond which nobody is drawn: 0.3 % of a normal curve."""
+
+OFF_CURVE = TruncatedNormal(0.0, 1.0, -WITHIN, WITHIN)
+"""How many standard deviations somebody is faster than the mean of their age."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,14 +181,15 @@ def walking_speed(
     """Free walking speed of people of these ages, m/s.
 
     Mean and standard deviation are those of Weidmann (1993), as RiMEA shows them in its test 7,
-    linear between the ages given there; speeds are normal about the mean, cut off at three
-    deviations and at what bodies can do. How far the people given are from their mean is drawn in
-    strata, as from any `Distribution`.
+    linear between the ages given there; speeds are normal about the mean within three deviations
+    of it (`OFF_CURVE`). How far the people given are from their mean is drawn in strata, as from
+    any `Distribution`.
 
     Args:
         ages: (n,) years, 3 to 80.
         rng: drawn from.
-        fastest: speed beyond which nobody is drawn, m/s.
+        fastest: speed beyond which nobody is drawn, m/s. The speeds of the others stay as likely
+            as they were, so that the mean of those ages whose curve reaches it is lower.
 
     Raises:
         ModelError: an age that the curve does not have, or ``fastest`` below a mean of the curve.
@@ -192,13 +198,12 @@ def walking_speed(
     age, mean, sd = _weidmann()
     if years.ndim != 1 or not ((years >= age[0]) & (years <= age[-1])).all():
         raise ModelError(f"ages: expected a row of {age[0]:g} to {age[-1]:g} years")
-    from scipy.stats import truncnorm  # takes a second to load
-
     means, deviations = np.interp(years, age, mean), np.interp(years, age, sd)
     if not (fastest >= means).all():
         raise ModelError(f"fastest: {fastest} m/s, expected at least the mean, {means.max():.2f}")
     most = np.minimum((fastest - means) / deviations, WITHIN)
-    off = truncnorm.ppf(strata(len(years), rng), -WITHIN, most)
+    uncut = OFF_CURVE.uncut
+    off = normal_quantile(uncut.mean, uncut.sd, -WITHIN, most, strata(len(years), rng))
     return np.minimum(means + deviations * off, fastest)  # for rounding
 
 

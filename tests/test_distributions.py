@@ -1,6 +1,7 @@
 """Distributions against their closed forms, and the texts that they are read from."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -9,17 +10,18 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from mesa_mobility.distributions import (
-    Clipped,
     Constant,
     Empirical,
     Gamma,
     LogNormal,
     Normal,
+    TruncatedNormal,
     Uniform,
     Weibull,
     parse,
 )
 from mesa_mobility.errors import ModelError
+from tests.fixtures.speeds import normal_within
 
 MANY = 20_000
 
@@ -92,20 +94,49 @@ def test_imo_response_times_by_day_are_cut_off_at_300_s():
     assert np.mean(x < math.exp(3.44)) == pytest.approx(0.5 / 0.9920, abs=0.012)
 
 
-def test_a_cut_normal_has_no_lumps_at_its_bounds_and_a_clipped_one_has():
-    # Beyond one deviation on one side lie 15.87 %.
-    cut, clipped = Normal(0.0, 1.0, -1.0, 1.0), Clipped(Normal(0.0, 1.0), -1.0, 1.0)
-    for distribution, lump in ((cut, 0.0), (clipped, 0.1587)):
-        x = drawn(distribution)
-        assert x.min() >= -1.0
-        assert x.max() <= 1.0
-        assert np.mean(x == -1.0) == pytest.approx(lump, abs=0.01)
-        assert np.mean(x == 1.0) == pytest.approx(lump, abs=0.01)
+@pytest.mark.parametrize(
+    "given", [(1.34, 0.26, 0.6, 2.0), (0.69, 0.35, 0.05, 1.4), (0.57, 0.19, 0.05, 0.83)]
+)
+def test_a_truncated_normal_has_the_mean_and_deviation_that_are_given(given):
+    x = drawn(TruncatedNormal(*given))
+    assert stats.kstest(x, normal_within(*given).cdf).pvalue > 0.01
+    # Draws in strata hardly miss them.
+    assert (x.mean(), x.std()) == pytest.approx(given[:2], abs=1e-4)
+    assert x.min() > given[2]
+    assert x.max() < given[3]
+
+
+@given(
+    low=st.floats(-5.0, 5.0),
+    below=st.floats(0.1, 5.0),
+    above=st.floats(0.1, 5.0),
+    share=st.floats(0.02, 0.99),
+)
+def test_any_truncated_normal_that_can_be_is_found(low, below, above, share):
+    mean, high = low + below, low + below + above
+    with pytest.raises(ModelError, match="an sd of at most") as refused:
+        TruncatedNormal(mean, 10.0, low, high)
+    most = float(re.search(r"at most ([\d.e+-]+)", str(refused.value))[1])
+    # Nothing is wider than half at either bound, nor narrower than even between the nearer ones.
+    assert min(below, above) / 3**0.5 * 0.998 < most < math.sqrt(below * above)
+    made = TruncatedNormal(mean, share * most, low, high)
+    middles = made.quantile((np.arange(20_000) + 0.5) / 20_000)
+    assert middles.mean() == pytest.approx(mean, abs=1e-3 * most)
+    assert middles.std() == pytest.approx(share * most, rel=2e-3)
+
+
+def test_a_cut_normal_has_no_lumps_at_its_bounds():
+    x = drawn(Normal(0.0, 1.0, -1.0, 1.0))
+    # One deviation either side holds 68.27 %; the middle of that, from -0.5 to 0.5, 38.29 %.
+    assert np.mean(abs(x) < 0.5) == pytest.approx(0.3829 / 0.6827, abs=1e-3)
+    assert -1.0 < x.min() < -0.999
+    assert 0.999 < x.max() < 1.0
 
 
 def test_a_cut_far_out_in_the_tail_is_drawn_all_the_same():
     x = drawn(Normal(0.0, 1.0, 12.0, 13.0), n=100)
     assert ((x >= 12.0) & (x <= 13.0)).all()
+    assert stats.kstest(x, stats.truncnorm(12.0, 13.0).cdf).pvalue > 0.01
 
 
 def test_measured_values_are_drawn_alike():
@@ -135,6 +166,7 @@ def test_measured_values_from_a_file(tmp_path):
         ("LogNormal( 3.95,0.84 , 0, 300 )", LogNormal(3.95, 0.84, 0.0, 300.0)),
         ("uniform(10,100)", Uniform(10.0, 100.0)),
         ("normal(1.2, 0.2)", Normal(1.2, 0.2)),
+        ("truncatednormal(1.2, 0.2, 0.6, 2)", TruncatedNormal(1.2, 0.2, 0.6, 2.0)),
         ("weibull(139.285, 1.195)", Weibull(139.285, 1.195)),
         ("gamma(1.291, 103.901)", Gamma(1.291, 103.901)),
         ("constant(5)", Constant(5.0)),
@@ -177,8 +209,11 @@ def test_texts_without_numbers_are_refused_in_one_line(text):
         lambda: LogNormal(0.0, 0.0),
         lambda: LogNormal(0.0, 1.0, -1.0),
         lambda: Weibull(math.nan, 1.0),
-        lambda: Clipped(3.0, 0.0, 1.0),
-        lambda: Clipped(Constant(3.0), 1.0, 0.0),
+        lambda: TruncatedNormal(1.0, 0.0, 0.0, 2.0),
+        lambda: TruncatedNormal(2.0, 0.1, 0.0, 2.0),
+        lambda: TruncatedNormal(1.0, 0.6, 0.0, 2.0),
+        lambda: TruncatedNormal(1.0, math.nan, 0.0, 2.0),
+        lambda: TruncatedNormal(1.0, 0.2, 2.0, 0.0),
         lambda: Empirical([]),
         lambda: Empirical([[1.0]]),
         lambda: Empirical([math.nan]),

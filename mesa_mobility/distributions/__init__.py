@@ -8,24 +8,24 @@ many. SciPy is loaded when the first one is drawn.
 from mesa_mobility.distributions.base import Distribution
 from mesa_mobility.distributions.empirical import Empirical
 from mesa_mobility.distributions.parametric import (
-    Clipped,
     Constant,
     Gamma,
     LogNormal,
     Normal,
+    TruncatedNormal,
     Uniform,
     Weibull,
 )
 from mesa_mobility.distributions.texts import parse
 
 __all__ = [
-    "Clipped",
     "Constant",
     "Distribution",
     "Empirical",
     "Gamma",
     "LogNormal",
     "Normal",
+    "TruncatedNormal",
     "Uniform",
     "Weibull",
     "parse",

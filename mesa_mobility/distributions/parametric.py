@@ -11,6 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.distributions.base import Distribution
+from mesa_mobility.distributions.truncation import (
+    normal_before_cut,
+    normal_quantile,
+    widest,
+)
 from mesa_mobility.errors import ModelError
 
 
@@ -78,28 +83,45 @@ class Normal(Distribution):
 
     def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n,) values below which these shares lie."""
-        return _normal(self.mean, self.sd, self.low, self.high, share)
+        return normal_quantile(self.mean, self.sd, self.low, self.high, share)
 
 
 @dataclass(frozen=True)
-class Clipped(Distribution):
-    """Another distribution whose values beyond ``low`` and ``high`` count as these bounds.
+class TruncatedNormal(Distribution):
+    """The normal distribution within ``low`` and ``high`` that has this mean and deviation there.
+
+    Published figures are those of people who were measured, none of whom was beyond the bounds:
+    ``mean`` and ``sd`` are what is left after the cut, where those of ``Normal`` are before it.
 
     Raises:
-        ModelError: bounds in the wrong order, or something else than a distribution.
+        ModelError: not finite, a deviation that is not positive, a mean outside the bounds, or a
+            deviation that no normal distribution has within them; the message says which has.
     """
 
-    of: Distribution
+    mean: float
+    sd: float
     low: float
     high: float
 
     def __post_init__(self) -> None:
-        _check(self, isinstance(self.of, Distribution), "a distribution")
-        _check(self, _ordered(self.low, self.high), "low <= high")
+        _check(self, _finite(self.mean, self.sd) and self.sd > 0.0, "a finite mean and sd > 0")
+        _check(self, _ordered(self.low, self.high) and self.low < self.mean < self.high,
+               "low < mean < high")  # fmt: skip
+        most = widest(self.mean, self.low, self.high)
+        # The widest of all is no normal distribution, but exponential.
+        _check(
+            self, self.sd <= 0.999 * most, f"an sd of at most {0.999 * most:.4g} in these bounds"
+        )
+
+    @property
+    def uncut(self) -> Normal:
+        """The distribution as ``Normal`` gives it, by mean and deviation before the cut."""
+        mean, sd = normal_before_cut(self.mean, self.sd, self.low, self.high)
+        return Normal(mean, sd, self.low, self.high)
 
     def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n,) values below which these shares lie."""
-        return np.clip(self.of.quantile(share), self.low, self.high)
+        return self.uncut.quantile(share)
 
 
 @dataclass(frozen=True)
@@ -125,7 +147,7 @@ class LogNormal(Distribution):
     def quantile(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n,) values below which these shares lie."""
         low = math.log(self.low) if self.low > 0.0 else -math.inf
-        values = np.exp(_normal(self.mu, self.sigma, low, math.log(self.high), share))
+        values = np.exp(normal_quantile(self.mu, self.sigma, low, math.log(self.high), share))
         return np.clip(values, self.low, self.high)  # for the rounding of exp
 
 
@@ -168,21 +190,6 @@ class Gamma(Distribution):
 
         values: NDArray[np.float64] = self.scale * gammaincinv(self.shape, share)
         return values
-
-
-def _normal(
-    mean: float, sd: float, low: float, high: float, share: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    values: NDArray[np.float64]
-    if sd == 0.0 or (low == -math.inf and high == math.inf):
-        from scipy.special import ndtri
-
-        values = mean + sd * ndtri(share)
-        return values
-    from scipy.stats import truncnorm
-
-    values = truncnorm.ppf(share, (low - mean) / sd, (high - mean) / sd, mean, sd)
-    return np.clip(values, low, high)  # for rounding
 
 
 def _finite(*values: float) -> bool:

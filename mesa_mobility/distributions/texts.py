@@ -13,13 +13,15 @@ from mesa_mobility.distributions.parametric import (
     Gamma,
     LogNormal,
     Normal,
+    TruncatedNormal,
     Uniform,
     Weibull,
 )
 from mesa_mobility.errors import ModelError
 
 _BY_NAME: dict[str, type[Any]] = {
-    kind.__name__.lower(): kind for kind in (Constant, Uniform, Normal, LogNormal, Weibull, Gamma)
+    kind.__name__.lower(): kind
+    for kind in (Constant, Uniform, Normal, TruncatedNormal, LogNormal, Weibull, Gamma)
 }
 
 FORMS = "a number, " + ", ".join(

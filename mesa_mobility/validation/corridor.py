@@ -15,7 +15,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mesa_mobility.crowd.people.free_speeds import ADULTS
-from mesa_mobility.distributions import Normal
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict, case
@@ -28,7 +27,7 @@ DENSITIES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
 AT_DENSITIES = (0.5, 1.125, 1.625, 2.125, 3.125)
 """Densities at which the speed must lie within the reference, persons/m2: bins of it."""
 WIDTH = 1.8
-RECORDED = replace(ADULTS, of=Normal(1.55, 0.18))
+RECORDED = replace(ADULTS, mean=1.55, sd=0.18)
 """Free speeds in the recorded corridors, m/s (HERMES, 42 students: Liao et al.
 2014), in the range that the default preset has."""
 AS_RECORDED = "speeds as recorded"

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import stats
 
 from mesa_mobility.distributions import Uniform
-from mesa_mobility.populations import WITHIN
+from mesa_mobility.populations import OFF_CURVE, WITHIN
 from mesa_mobility.verification import judging
 from mesa_mobility.verification.cases import Figures, case
 from mesa_mobility.verification.checks import (
@@ -93,14 +93,16 @@ def speeds_by_age(seeds: Sequence[Sequence[Figures]]) -> Verdict:
     """People walk at their own speed, and speeds are distributed about the age curve as specified.
 
     The deviation from the curve in units of its standard deviation is normal, cut off where
-    ``walking_speed`` truncates it: at three below, and at the highest assigned speed.
+    ``walking_speed`` truncates it: at three below, and at three above or the highest assigned
+    speed.
     """
     walked, assigned, deviation, most = (
         np.array([v for (run,) in seeds for v in run[name]], dtype=np.float64)
         for name in ("walked_mps", "assigned_mps", "deviation", "most")
     )
     arrived = np.isfinite(walked)
-    rank = stats.truncnorm.cdf(deviation[arrived], -WITHIN, most[arrived])
+    sd = OFF_CURVE.uncut.sd
+    rank = stats.truncnorm.cdf(deviation[arrived] / sd, -WITHIN / sd, most[arrived] / sd)
     p_value = float(stats.kstest(rank, stats.uniform.cdf).pvalue)
     return Verdict(
         (

@@ -7,21 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from mesa_mobility.distributions import Clipped, Distribution, Normal
-from mesa_mobility.errors import MapError
+from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.distributions import Constant, Distribution, TruncatedNormal
+from mesa_mobility.errors import MapError, ModelError
 from mesa_mobility.mobility import MobilityMap
 
 MEAN, DEVIATION = 1.34, 0.26
 LEAST, MOST = 0.6, 2.0
-ADULTS = Clipped(Normal(MEAN, DEVIATION), LEAST, MOST)
+ADULTS = TruncatedNormal(MEAN, DEVIATION, LEAST, MOST)
 """Weidmann (1993): 1.34 +- 0.26 m/s, within the range of recordings of walking adults."""
 
 STEADY = "p75"
 """Quantile of recorded speeds that stands for a steady walk: clips are full of starts and turns."""
 
-SLOWEST = 0.25
-"""Least preferred speed of a type, as a share of its mean. Where published deviations are half the
-mean, a normal curve reaches people who do not move."""
+SLOWEST = 0.05
+"""Least preferred speed of a type, m/s: the slowest at which people get anywhere. Where published
+deviations are half the mean, a normal curve reaches people who do not move."""
 
 
 def free_speeds(mobility_map: MobilityMap) -> Distribution:
@@ -29,15 +30,19 @@ def free_speeds(mobility_map: MobilityMap) -> Distribution:
 
     By the map's metadata, in this order:
 
-    1. ``preferred_speed_m_s``: ``mean`` and ``standard_deviation`` of a published source, cut off
-       as many deviations from the mean as those of adults are, and below a quarter of it. No
-       preferred speed exceeds the ``p95`` of ``walking_speed_m_s``, if there is one.
-    2. ``walking_speed_m_s``: quantiles of the recorded speeds. The distribution is that of adults,
-       scaled to the steady walk that was recorded.
-    3. Neither: that of adults.
+    1. ``preferred_speed_m_s``: ``mean`` and ``standard_deviation`` of a published source.
+    2. ``walking_speed_m_s``: quantiles of the recorded speeds. Mean and deviation are those of
+       adults, scaled to the steady walk that was recorded.
+    3. Neither: those of adults.
+
+    The distribution is normal, with this mean and deviation within its bounds. These lie as many
+    deviations from the mean as those of adults do, but not below ``SLOWEST``, nor beyond what the
+    fastest option of the map reaches. Where the fastest option is too slow for any distribution
+    with this mean and deviation, it is no bound: people then walk as fast as they can.
 
     Raises:
-        MapError: the metadata hold something else than speeds.
+        MapError: the metadata hold something else than speeds, or a deviation that is too large for
+            positive speeds with this mean.
     """
     metadata = mobility_map.metadata
     recorded = _numbers(mobility_map, "walking_speed_m_s", metadata.get("walking_speed_m_s"))
@@ -45,21 +50,30 @@ def free_speeds(mobility_map: MobilityMap) -> Distribution:
     if published:
         if "mean" not in published:
             raise _not_speeds(mobility_map, "preferred_speed_m_s", "a mean")
-        return _about(published["mean"], published.get("standard_deviation", 0.0),
-                      recorded.get("p95", np.inf))  # fmt: skip
+        return _about(published["mean"], published.get("standard_deviation", 0.0), mobility_map)
     if STEADY in recorded:
         factor = recorded[STEADY] / MEAN
-        return Clipped(Normal(MEAN * factor, DEVIATION * factor), LEAST * factor, MOST * factor)
+        return _about(MEAN * factor, DEVIATION * factor, mobility_map)
     return ADULTS
 
 
-def _about(mean: float, deviation: float, fastest: float) -> Distribution:
-    """A normal distribution with the bounds of ``free_speeds``, m/s."""
-    if (mean, deviation) == (MEAN, DEVIATION):
-        return ADULTS
-    least = max(mean + deviation * (LEAST - MEAN) / DEVIATION, SLOWEST * mean)
-    most = min(mean + deviation * (MOST - MEAN) / DEVIATION, max(fastest, mean))
-    return Clipped(Normal(mean, deviation), least, most)
+def _about(mean: float, deviation: float, mobility_map: MobilityMap) -> Distribution:
+    """A normal distribution within the bounds of ``free_speeds``, m/s."""
+    if deviation == 0.0:
+        return Constant(mean)
+    steps = np.hypot(*mobility_map.end_points.T)
+    fastest = float((steps / mobility_map.durations).max()) * FRAMES_A_SECOND
+    # Those whose mean is near the least are slower still.
+    least = max(mean - deviation * (MEAN - LEAST) / DEVIATION, min(SLOWEST, mean / 4.0))
+    most = mean + deviation * (MOST - MEAN) / DEVIATION
+    try:
+        return TruncatedNormal(mean, deviation, least, min(most, fastest))
+    except ModelError:
+        pass
+    try:
+        return TruncatedNormal(mean, deviation, least, most)
+    except ModelError as error:
+        raise MapError(f"{_where(mobility_map, 'preferred_speed_m_s')}, {error}") from None
 
 
 def _numbers(mobility_map: MobilityMap, key: str, value: Any) -> dict[str, float]:
@@ -82,6 +96,8 @@ def _numbers(mobility_map: MobilityMap, key: str, value: Any) -> dict[str, float
 
 
 def _not_speeds(mobility_map: MobilityMap, key: str, expected: str) -> MapError:
-    return MapError(
-        f"mobility map of {mobility_map.pedestrian_type!r}: metadata {key!r}, expected {expected}"
-    )
+    return MapError(f"{_where(mobility_map, key)}, expected {expected}")
+
+
+def _where(mobility_map: MobilityMap, key: str) -> str:
+    return f"mobility map of {mobility_map.pedestrian_type!r}: metadata {key!r}"

@@ -76,14 +76,14 @@ def test_core_radius_is_the_maps_or_sixteen_centimetres(in_map, radius):
     assert kind.name == "made by hand"
 
 
-def test_preferred_speeds_are_normal_and_clipped():
+def test_preferred_speeds_are_normal_within_bounds():
     kind = PedestrianType(mobility_map=strider())
     speeds = kind.draw_speeds(20_000, np.random.default_rng(1))
-    # Weidmann: 1.34 +- 0.26 m/s; clipping at 0.6 and 2.0 cuts off 0.8 % in all.
-    assert speeds.mean() == pytest.approx(1.34, abs=0.01)
-    assert speeds.std() == pytest.approx(0.26, abs=0.01)
-    assert speeds.min() == 0.6
-    assert speeds.max() == 2.0
+    # Weidmann: 1.34 +- 0.26 m/s, within 0.6 and 2.0.
+    assert speeds.mean() == pytest.approx(1.34, abs=0.001)
+    assert speeds.std() == pytest.approx(0.26, abs=0.001)
+    assert speeds.min() > 0.6
+    assert speeds.max() < 2.0
 
 
 @pytest.mark.parametrize(

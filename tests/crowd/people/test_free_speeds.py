@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import norm
+from scipy import stats
 
 from mesa_mobility import PedestrianType
-from mesa_mobility.distributions import Clipped, Normal
+from mesa_mobility.distributions import TruncatedNormal
 from mesa_mobility.errors import MapError
-from tests.fixtures.maps import shipped_map, strider
+from tests.fixtures.maps import make_map, shipped_map, stand, straight, strider
+from tests.fixtures.speeds import normal_within
 
 
 def speeds_of(n=4000, **metadata):
@@ -19,7 +20,7 @@ def speeds_of(n=4000, **metadata):
 
 
 def test_without_a_word_in_the_metadata_they_are_those_of_adults():
-    adults = Clipped(Normal(1.34, 0.26), 0.6, 2.0)
+    adults = TruncatedNormal(1.34, 0.26, 0.6, 2.0)
     assert PedestrianType(mobility_map=strider()).preferred_speed == adults
 
 
@@ -40,25 +41,65 @@ def test_a_published_mean_and_deviation():
     speeds = speeds_of(preferred_speed_m_s={"mean": 0.94, "standard_deviation": 0.30})
     # Cut at 0.74 / 0.26 and 0.66 / 0.26 deviations, as 0.6 and 2.0 m/s cut the speeds of adults.
     low, high = 0.94 - 0.30 * 0.74 / 0.26, 0.94 + 0.30 * 0.66 / 0.26
-    assert speeds.min() >= max(low, 0.235) - 1e-12
-    assert speeds.max() <= high + 1e-12
-    assert speeds.mean() == pytest.approx(0.94, abs=0.01)
-    assert speeds.std() == pytest.approx(0.30, abs=0.015)
+    assert low < speeds.min() < low + 0.01
+    assert high - 0.01 < speeds.max() < high
+    assert speeds.mean() == pytest.approx(0.94, abs=0.001)
+    assert speeds.std() == pytest.approx(0.30, abs=0.001)
+
+
+SHIPPED = {
+    # Weidmann's adults, scaled to the steady walk that was recorded where no source states a speed.
+    "able_bodied": (1.339, 1.339 * 0.26 / 1.34), "slow": (0.572, 0.572 * 0.26 / 1.34),
+    "limping_left": (0.573, 0.573 * 0.26 / 1.34), "limping_right": (0.573, 0.573 * 0.26 / 1.34),
+    "child": (1.13, 0.22), "older_adult": (1.23, 0.20), "wheelchair_powered": (0.89, 0.22),
+    # Boyce, Shields and Silcock 1999.
+    "cane": (0.81, 0.38), "crutches": (0.94, 0.30), "walking_frame": (0.57, 0.29),
+    "wheelchair_manual": (0.69, 0.35), "wheelchair_assisted": (1.30, 0.34),
+}  # fmt: skip
+FASTEST_OPTIONS = {"walking_frame": 1.2322, "wheelchair_manual": 1.4, "wheelchair_assisted": 2.0}
+"""Where they are slower than 0.66 / 0.26 deviations above the mean, m/s."""
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_speeds_of_shipped_types_keep_mean_and_deviation_of_their_source(name):
+    mean, sd = SHIPPED[name]
+    kind, n = PedestrianType.named(name), 4000
+    low = max(mean - sd * 0.74 / 0.26, 0.05)
+    high = FASTEST_OPTIONS.get(name, mean + sd * 0.66 / 0.26)
+    drawn = kind.draw_speeds(n, np.random.default_rng(3))
+    assert stats.kstest(drawn, normal_within(mean, sd, low, high).cdf).pvalue > 0.01
+    assert drawn.mean() == pytest.approx(mean, abs=4 * sd / n**0.5)
+    assert drawn.std() == pytest.approx(sd, abs=4 * sd / (2 * n) ** 0.5)
+    assert low < drawn.min()
+    assert drawn.max() < high + 1e-4
+    assert len(np.unique(drawn)) == n
 
 
 def test_where_the_deviation_is_half_the_mean_nobody_stands_still():
     speeds = speeds_of(preferred_speed_m_s={"mean": 0.57, "standard_deviation": 0.29})
-    assert speeds.min() == pytest.approx(0.1425)
-    # All that lies below a quarter of the mean, 1.474 deviations under it, counts as that.
-    lifted = 0.29 * (norm.pdf(1.474) - 1.474 * norm.sf(1.474))
-    assert speeds.mean() == pytest.approx(0.57 + lifted, abs=0.003)
+    assert 0.05 < speeds.min() < 0.052
+    assert speeds.mean() == pytest.approx(0.57, abs=0.001)
 
 
-def test_nobody_prefers_to_walk_faster_than_was_recorded():
-    recorded = {"p5": 0.2, "p75": 0.8, "p95": 1.1}
-    published = {"mean": 0.81, "standard_deviation": 0.38, "source": "a book"}
-    speeds = speeds_of(preferred_speed_m_s=published, walking_speed_m_s=recorded)
-    assert speeds.max() == 1.1
+def can_walk(fastest, mean, sd):
+    """A type with options of 12 frames at a speed, m/s."""
+    on = straight(fastest * 0.4, 12)
+    map_ = make_map([(stand(), on), (on, stand())])
+    published = {"preferred_speed_m_s": {"mean": mean, "standard_deviation": sd}}
+    return PedestrianType(mobility_map=replace(map_, metadata={**map_.metadata, **published}))
+
+
+def test_nobody_prefers_to_walk_faster_than_the_fastest_option():
+    speeds = can_walk(1.2, 0.81, 0.25).preferred_speed
+    assert speeds.high == pytest.approx(1.2, abs=1e-6)
+    assert (speeds.mean, speeds.sd) == (0.81, 0.25)
+
+
+@pytest.mark.parametrize("fastest", [0.7, 0.9])
+def test_options_too_slow_for_the_source_are_no_bound(fastest):
+    speeds = can_walk(fastest, 0.81, 0.25).preferred_speed
+    assert speeds.high == pytest.approx(0.81 + 0.25 * 0.66 / 0.26)
+    assert (speeds.mean, speeds.sd) == (0.81, 0.25)
 
 
 def test_one_published_speed_alone():
@@ -76,6 +117,7 @@ def test_recorded_speeds_scale_those_of_adults():
     [
         ({"preferred_speed_m_s": {"mean": -1.0}}, "preferred_speed_m_s"),
         ({"preferred_speed_m_s": {"standard_deviation": 0.2}}, "preferred_speed_m_s.*a mean"),
+        ({"preferred_speed_m_s": {"mean": 0.5, "standard_deviation": 0.6}}, "made by.*at most"),
         ({"preferred_speed_m_s": 1.2}, "preferred_speed_m_s.*an object"),
         ({"preferred_speed_m_s": {"mean": [1.0]}}, "preferred_speed_m_s.*'mean'"),
         ({"walking_speed_m_s": {"p75": 1e9}}, "walking_speed_m_s.*'p75'"),
