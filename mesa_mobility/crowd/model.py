@@ -22,6 +22,7 @@ from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
 from mesa_mobility.crowd.insertion import adding
 from mesa_mobility.crowd.insertion.inflow import Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
+from mesa_mobility.crowd.mesa_clock import set_clock, tell_time
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
@@ -31,9 +32,10 @@ from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder, movements_under_way
+from mesa_mobility.crowd.reporters import REPORTERS, add_agent_reporter, add_reporter
 from mesa_mobility.crowd.space import space_of
 from mesa_mobility.crowd.stall import StallWatch, stall_reason
-from mesa_mobility.crowd.statistics import REPORTERS, Statistics
+from mesa_mobility.crowd.statistics import Statistics
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
@@ -86,6 +88,7 @@ class PedestrianModel(mesa.Model):
             be removed, replaced and added to at run time.
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
+        time: ``elapsed``, and between two steps the time of Mesa's events, seconds.
         stalled: whether for a minute nobody has left and people have come no nearer to an exit;
             ``stall_reason`` says why.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
@@ -167,7 +170,7 @@ class PedestrianModel(mesa.Model):
         self.tactics: list[Tactic] = self.rules.make_tactics()
         self.target_choice = target_choice or self.rules.make_target_choice()
         self.frames_per_step = frames_per_step
-        self.frame = 0
+        self.frame, self.time = 0, 0.0
         self.recorder = Recorder() if record else None
         self.decisions = DecisionRecorder() if record == "decisions" else None
         self.watch: Watch | None = None
@@ -180,6 +183,7 @@ class PedestrianModel(mesa.Model):
         self._stall_watch, self.stalled = StallWatch(), False
         add_occupants(floor_plan, self.population)
         self.datacollector = DataCollector(model_reporters=REPORTERS)
+        set_clock(self)
         self.framework_attributes = frozenset({*vars(self), "framework_attributes"})
 
     @property
@@ -255,6 +259,8 @@ class PedestrianModel(mesa.Model):
     add_pedestrians = adding.add_pedestrians
     add_source = adding.add_source
     person_data = describe_people
+    add_reporter = add_reporter
+    add_agent_reporter = add_agent_reporter
     save = save_model
     __deepcopy__ = copy_model
     __reduce_ex__ = refuse_to_pickle
@@ -280,15 +286,26 @@ class PedestrianModel(mesa.Model):
         self.tactics.insert(at, tactic)
 
     def step(self) -> None:
-        """Advance ``frames_per_step`` frames."""
+        """Advance ``frames_per_step`` frames.
+
+        Before anybody moves, agents of other classes than ``Pedestrian`` take their ``step``, so
+        that people heed what these do; then people take theirs.
+        """
+        tell_time(self)
+        for kind, agents in list(self.agents_by_type.items()):
+            if not issubclass(kind, Pedestrian):
+                for agent in list(agents):
+                    if agent in agents:  # others may have removed it
+                        agent.step()
         if self._agents_step:
             for agent in list(self.space.active_agents):
                 if self.crowd.active[agent.row]:  # others may have removed it
                     agent.step()
-        people, end = self.population, self.frame + self.frames_per_step
+        people, end, before = self.population, self.frame + self.frames_per_step, self.inside
         while self.frame < end:
             self.dynamics.advance(end)
-            if len(people.present) == 0 and not self.sources.expecting:
+            tell_time(self)
+            if before and len(people.present) == 0 and not self.sources.expecting:
                 break  # the last person has left: the step ends here
         people.take_out_inactive()
         people.look_over(self.frame)

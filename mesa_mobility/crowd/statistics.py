@@ -10,14 +10,6 @@ from mesa_mobility.crowd.state.advance import Moved
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
 
-REPORTERS: dict[str, Any] = {
-    "elapsed": "elapsed",
-    "inside": "inside",
-    "mean_speed": lambda model: model.statistics.mean_speed,
-    "fallback_time_share": lambda model: model.statistics.fallback_time_share,
-}
-"""What a model's ``DataCollector`` collects after each step."""
-
 
 class Statistics(Saved):
     """Figures of a model, kept while it runs.

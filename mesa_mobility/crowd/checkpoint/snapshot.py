@@ -11,7 +11,6 @@ import hashlib
 import inspect
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -27,6 +26,7 @@ from mesa_mobility.crowd.checkpoint.behaviours import (
 from mesa_mobility.crowd.checkpoint.people import pack_people, restore_attributes
 from mesa_mobility.crowd.checkpoint.plain import NotPlain, Packer, Unpacker
 from mesa_mobility.crowd.hooks import Plugin, scheduled_events
+from mesa_mobility.crowd.mesa_clock import set_clock
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.mapfile import shipped_map_path
@@ -62,7 +62,7 @@ def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
     _refuse_functions(model)
     arguments, missing = _pack_arguments(model, packer)
     state = {
-        "counters": {name: getattr(model, name) for name in (*_COUNTERS, *_time(model))},
+        "counters": {name: getattr(model, name) for name in _COUNTERS},
         "random": [model.rng.bit_generator.state, model.random.getstate()],
         "parts": {name: part.state() for name, part in model.parts().items()},
         "collected": _collected(model),
@@ -143,11 +143,8 @@ def _load(
     counters = unpacker.unpack(content["counters"])
     for name, value in counters.items():
         setattr(model, name, value)
-    steps = getattr(model, "_default_schedule", None)
-    if steps is not None:  # a newer Mesa has scheduled the first step for the time 1
-        steps.stop()
-        steps.schedule = replace(steps.schedule, start=model.time + 1.0)
-        steps.start()
+    model.time = model.elapsed
+    set_clock(model)
     for name, part in parts.items():
         part.restore(states[name])
     model.population.make_agents(
@@ -263,11 +260,6 @@ def _refuse_functions(model: PedestrianModel) -> None:
         raise ModelError(f"{kind}: scheduled events cannot be saved; expected none to come")
 
 
-def _time(model: PedestrianModel) -> tuple[str, ...]:
-    """Newer versions of Mesa keep the time as well."""
-    return ("time",) if isinstance(getattr(model, "time", None), int | float) else ()
-
-
 _COLLECTED = ("model_vars", "_agent_records", "tables")
 
 
@@ -281,6 +273,13 @@ def _restore_collected(model: PedestrianModel, saved: Mapping[str, Any]) -> None
         there = getattr(model.datacollector, name)
         there.clear()
         there.update(saved[name])
+    # Functions are not in the file: columns that were added go on once they are added again.
+    for name in saved["model_vars"].keys() - model.datacollector.model_reporters.keys():
+        model.datacollector.model_reporters[name] = _nothing
+
+
+def _nothing(model: PedestrianModel) -> None:
+    """What is collected in a column whose function is missing."""
 
 
 def _class_of(kind: type[Model], name: str) -> type[Model]:

@@ -1,11 +1,10 @@
-"""Agents of one's own: a class, fields, plans changed at run time, Mesa's sets and events."""
+"""Agents of one's own: a class, fields, plans changed at run time, Mesa's sets and other agents."""
 
 import copy
 
 import numpy as np
 import pytest
-from mesa import DataCollector
-from mesa.experimental.devs import ABMSimulator
+from mesa import Agent, DataCollector
 
 from mesa_mobility import FloorPlan, Gate, Pedestrian, PedestrianModel, Source
 from mesa_mobility.errors import FloorPlanError, ModelError
@@ -254,22 +253,26 @@ def test_joining_a_group_brings_its_speed_rule():
         first.group = 1.5
 
 
+class Alarm(Agent):
+    """Sounds after a second."""
+
+    def step(self):
+        self.model.alarm = self.model.time > 1.0 - 1e-9
+
+
 def test_a_fire_alarm_after_a_second():
     model = guests()
     model.agents.do("wait", until=lambda: model.alarm)
     model.alarm = False
-
-    def sound():  # Mesa keeps a weak reference to it
-        model.alarm = True
-
-    simulator = ABMSimulator()
-    simulator.setup(model)
-    simulator.schedule_event_absolute(sound, 10)
-    simulator.run_until(9)
-    before = [person.position[0] for person in model.agents]
+    Alarm(model)
+    people = model.agents_by_type[Guest]
+    for _ in range(10):
+        model.step()
+    before = [person.position[0] for person in people]
     assert before == [1.0, 2.0, 3.0]
-    simulator.run_until(30)
-    assert all(person.position[0] > x + 0.5 for person, x in zip(model.agents, before, strict=True))
+    for _ in range(20):
+        model.step()
+    assert all(person.position[0] > x + 0.5 for person, x in zip(people, before, strict=True))
 
 
 def test_rows_of_a_base_model_stay_as_they_are():
