@@ -1,11 +1,11 @@
 """Keeping a distance to those ahead."""
 
 import math
+from typing import Annotated
 
 from mesa_mobility.behaviors.stepping import STANDS
 
-from mesa_mobility import CompiledTerm, pair_kernel
-from mesa_mobility.errors import ModelError
+from mesa_mobility import CompiledTerm, Range, pair_kernel
 
 
 @pair_kernel
@@ -61,7 +61,7 @@ class Headway(CompiledTerm):
         softness: s, m/s.
 
     Raises:
-        ModelError: a number that is not finite and positive.
+        ModelError: a number out of range.
     """
 
     name = "headway"
@@ -71,20 +71,12 @@ class Headway(CompiledTerm):
     def __init__(
         self,
         weight: float | None = None,
-        distance: float = 0.36,
-        time: float = 1.2,
-        width: float = 0.35,
-        softness: float = 0.15,
+        distance: Annotated[float, Range(0.0, unit="m", above=True)] = 0.36,
+        time: Annotated[float, Range(0.0, unit="s", above=True)] = 1.2,
+        width: Annotated[float, Range(0.0, unit="m", above=True)] = 0.35,
+        softness: Annotated[float, Range(0.0, unit="m/s", above=True)] = 0.15,
     ) -> None:
         super().__init__(weight)
-        for name, value in (
-            ("distance", distance),
-            ("time", time),
-            ("width", width),
-            ("softness", softness),
-        ):
-            if not (math.isfinite(value) and value > 0.0):
-                raise ModelError(f"headway: {name} is {value}, expected more than 0")
         self.distance = distance
         self.time = time
         self.width = width

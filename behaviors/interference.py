@@ -1,9 +1,9 @@
 """Keeping away from neighbours: equation (2)."""
 
 import math
+from typing import Annotated
 
-from mesa_mobility import CompiledTerm, pair_kernel
-from mesa_mobility.errors import ModelError
+from mesa_mobility import CompiledTerm, Range, pair_kernel
 
 
 @pair_kernel
@@ -56,12 +56,13 @@ class Interference(CompiledTerm):
     name = "interference"
     kernel = _interference
 
-    def __init__(self, weight: float | None = None, a: float = 10.5, b: float = 0.09) -> None:
+    def __init__(
+        self,
+        weight: float | None = None,
+        a: Annotated[float, Range(0.0)] = 10.5,
+        b: Annotated[float, Range(0.0, unit="s", above=True)] = 0.09,
+    ) -> None:
         super().__init__(weight)
-        if not (math.isfinite(a) and a >= 0.0):
-            raise ModelError(f"interference: a is {a}, expected 0 or more")
-        if not (math.isfinite(b) and b > 0.0):
-            raise ModelError(f"interference: b is {b}, expected more than 0 s")
         self.a = a
         self.b = b
 

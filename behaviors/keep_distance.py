@@ -1,9 +1,9 @@
 """Keeping apart from everybody who is not of one's own group."""
 
 import math
+from typing import Annotated
 
-from mesa_mobility import CompiledTerm, pair_kernel
-from mesa_mobility.errors import ModelError
+from mesa_mobility import CompiledTerm, Range, pair_kernel
 
 
 @pair_kernel(fields=("group",))
@@ -40,10 +40,12 @@ class KeepDistance(CompiledTerm):
     default_weight = 2.0
     kernel = _keep_distance
 
-    def __init__(self, weight: float | None = None, distance: float = 1.5) -> None:
+    def __init__(
+        self,
+        weight: float | None = None,
+        distance: Annotated[float, Range(0.0, unit="m", above=True)] = 1.5,
+    ) -> None:
         super().__init__(weight)
-        if not (math.isfinite(distance) and distance > 0.0):
-            raise ModelError(f"keep_distance: distance is {distance}, expected more than 0")
         self.distance = distance
 
     def parameters(self) -> tuple[float, ...]:

@@ -1,8 +1,9 @@
 """Keeping out of the way of others: the right of way."""
 
 import math
+from typing import Annotated
 
-from mesa_mobility import CompiledTerm, pair_kernel
+from mesa_mobility import CompiledTerm, Range, pair_kernel
 from mesa_mobility.errors import ModelError
 
 # Cosine of the least angle between the ways of two people who come towards each other, 120 degrees:
@@ -71,26 +72,23 @@ class RightOfWay(CompiledTerm):
     def __init__(
         self,
         weight: float | None = None,
-        width: float = 0.4,
-        bias: float = 0.1,
-        ahead: float = 0.5,
-        beside: float = 0.5,
+        width: Annotated[float, Range(0.0, unit="m", above=True)] = 0.4,
+        bias: Annotated[float, Range(-100.0, 100.0, "m")] = 0.1,
+        ahead: Annotated[float, Range(0.0, unit="m")] = 0.5,
+        beside: Annotated[float, Range(0.0)] = 0.5,
     ) -> None:
         super().__init__(weight)
-        numbers = {"width": width, "bias": bias, "ahead": ahead, "beside": beside}
-        for name, value in numbers.items():
-            if not math.isfinite(value):
-                raise ModelError(f"right_of_way: {name} is {value}, expected a finite number")
-        if width <= abs(bias):
-            raise ModelError(f"right_of_way: width is {width}, expected more than the bias, {bias}")
-        if ahead < 0.0:
-            raise ModelError(f"right_of_way: ahead is {ahead}, expected 0 m or more")
-        if beside < 0.0:
-            raise ModelError(f"right_of_way: beside is {beside}, expected 0 or more")
         self.width = width
         self.bias = bias
         self.ahead = ahead
         self.beside = beside
+
+    def check_settings(self) -> None:
+        """Raise ModelError unless the way is wider than people keep to a side of it."""
+        if self.width <= abs(self.bias):
+            raise ModelError(
+                f"right_of_way: width {self.width} m, expected more than the bias, {self.bias} m"
+            )
 
     def parameters(self) -> tuple[float, ...]:
         """``(width, bias, ahead, beside)``."""

@@ -1,11 +1,11 @@
 """Keeping room to walk on: not to end a movement facing a wall."""
 
 import math
+from typing import Annotated
 
 from mesa_mobility.behaviors.stepping import STANDS
 
-from mesa_mobility import CompiledTerm, wall_kernel
-from mesa_mobility.errors import ModelError
+from mesa_mobility import CompiledTerm, Range, wall_kernel
 
 
 @wall_kernel
@@ -68,11 +68,13 @@ class RoomAhead(CompiledTerm):
     default_weight = 3.0
     kernel = _room_ahead
 
-    def __init__(self, weight: float | None = None, time: float = 1.0, least: float = 0.5) -> None:
+    def __init__(
+        self,
+        weight: float | None = None,
+        time: Annotated[float, Range(0.0, unit="s", above=True)] = 1.0,
+        least: Annotated[float, Range(0.0, unit="m/s", above=True)] = 0.5,
+    ) -> None:
         super().__init__(weight)
-        for name, value in (("time", time), ("least", least)):
-            if not (math.isfinite(value) and value > 0.0):
-                raise ModelError(f"room_ahead: {name} is {value}, expected more than 0")
         self.time = time
         self.least = least
 

@@ -1,9 +1,9 @@
 """Walking where one faces: not sideways or backwards."""
 
 import math
+from typing import Annotated
 
-from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
-from mesa_mobility.errors import ModelError
+from mesa_mobility import CompiledTerm, Range, bound_kernel, option_kernel
 
 
 @option_kernel
@@ -60,10 +60,10 @@ class Sideways(CompiledTerm):
     kernel = _sideways
     bound = _sideways_bound
 
-    def __init__(self, weight: float | None = None, backwards: float = 1.0) -> None:
+    def __init__(
+        self, weight: float | None = None, backwards: Annotated[float, Range(0.0)] = 1.0
+    ) -> None:
         super().__init__(weight)
-        if not (math.isfinite(backwards) and backwards >= 0.0):
-            raise ModelError(f"sideways: backwards is {backwards}, expected 0 or more")
         self.backwards = backwards
 
     def parameters(self) -> tuple[float, ...]:

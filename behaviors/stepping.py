@@ -1,11 +1,10 @@
 """Waiting for room for a step instead of shuffling."""
 
-import math
+from typing import Annotated
 
 from numba import njit
 
-from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
-from mesa_mobility.errors import ModelError
+from mesa_mobility import CompiledTerm, Range, bound_kernel, option_kernel
 
 STANDS = 0.01
 """A person who covers no more ground than this in a movement stands, metres."""
@@ -56,7 +55,7 @@ class Stepping(CompiledTerm):
         length: l of people who are not slow, metres from which on a step is worth its effort.
 
     Raises:
-        ModelError: a length that is not finite and positive.
+        ModelError: a length out of range.
     """
 
     name = "stepping"
@@ -64,10 +63,12 @@ class Stepping(CompiledTerm):
     kernel = _stepping
     bound = _stepping_bound
 
-    def __init__(self, weight: float | None = None, length: float = 0.4) -> None:
+    def __init__(
+        self,
+        weight: float | None = None,
+        length: Annotated[float, Range(0.0, unit="m", above=True)] = 0.4,
+    ) -> None:
         super().__init__(weight)
-        if not (math.isfinite(length) and length > 0.0):
-            raise ModelError(f"stepping: length is {length}, expected more than 0")
         self.length = length
 
     def parameters(self) -> tuple[float, ...]:

@@ -1,9 +1,9 @@
 """Speed and velocity of an option: as fast as possible, as preferred, or as before."""
 
 import math
+from typing import Annotated
 
-from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
-from mesa_mobility.errors import ModelError
+from mesa_mobility import CompiledTerm, Range, bound_kernel, option_kernel
 
 
 @option_kernel
@@ -154,10 +154,10 @@ class VelocityChange(CompiledTerm):
     Args:
         weight: factor in the sum.
         walking: speed from which on the difference counts in full, m/s.
-        turning: 1 or more.
+        turning: how much more the difference across the way counts than that along it.
 
     Raises:
-        ModelError: a number that is not finite or out of range.
+        ModelError: a number out of range.
     """
 
     name = "velocity_change"
@@ -166,13 +166,12 @@ class VelocityChange(CompiledTerm):
     bound = _velocity_change_bound
 
     def __init__(
-        self, weight: float | None = None, walking: float = 0.6, turning: float = 1.5
+        self,
+        weight: float | None = None,
+        walking: Annotated[float, Range(0.0, unit="m/s", above=True)] = 0.6,
+        turning: Annotated[float, Range(1.0)] = 1.5,
     ) -> None:
         super().__init__(weight)
-        if not (math.isfinite(walking) and walking > 0.0):
-            raise ModelError(f"velocity_change: walking is {walking}, expected more than 0")
-        if not (math.isfinite(turning) and turning >= 1.0):
-            raise ModelError(f"velocity_change: turning is {turning}, expected 1 or more")
         self.walking = walking
         self.turning = turning
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from mesa_mobility.behaviors.corridors import Corridor, find_corridors
 from mesa_mobility.behaviors.negotiation import OFF, Negotiation, Party, agree, courses_of
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, PedestrianModel, Tactic
-from mesa_mobility.errors import ModelError
+from mesa_mobility import Deciding, Desired, PedestrianModel, Range, Tactic
 from mesa_mobility.floorplan import lines_of_sight
 
 REACH = 3.0
@@ -79,10 +78,11 @@ class Yielding(Tactic):
 
     name = "yielding"
 
-    def __init__(self, sight: float = 6.0, room: float = 0.6) -> None:
-        for what, metres in (("sight", sight), ("room", room)):
-            if not 0.0 < metres < np.inf:
-                raise ModelError(f"{self.name}: {what} {metres}, expected more than 0 m")
+    def __init__(
+        self,
+        sight: Annotated[float, Range(0.0, unit="m", above=True)] = 6.0,
+        room: Annotated[float, Range(0.0, unit="m", above=True)] = 0.6,
+    ) -> None:
         self.sight, self.room = sight, room
         self._version = -1
         self._corridors: list[Corridor] = []

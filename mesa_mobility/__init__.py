@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from mesa_mobility.errors import MobilityError
     from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone, Targets
     from mesa_mobility.mobility import MobilityMap, MotionGraph
-    from mesa_mobility.plugins.annotations import Files, Range
+    from mesa_mobility.plugins.annotations import Files, ListOf, Range
     from mesa_mobility.results import Trajectories
 
 _ROOMS = {
@@ -53,6 +53,7 @@ _ROOMS = {
     "Files": "plugins.annotations",
     "FloorPlan": "floorplan",
     "Gate": "floorplan",
+    "ListOf": "plugins.annotations",
     "MobilityError": "errors",
     "MobilityMap": "mobility",
     "MotionGraph": "mobility",
@@ -90,6 +91,7 @@ __all__ = [
     "Files",
     "FloorPlan",
     "Gate",
+    "ListOf",
     "MobilityError",
     "MobilityMap",
     "MotionGraph",

@@ -12,13 +12,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from numbers import Real
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.distributions import TruncatedNormal
 from mesa_mobility.distributions.base import strata
 from mesa_mobility.distributions.truncation import normal_quantile
@@ -69,7 +69,7 @@ class Population:
                 '{"able_bodied": 0.9, "child": 0.1}'
             )
         for kind, share in self.shares.items():
-            if isinstance(share, bool) or not isinstance(share, Real) or not 0.0 <= share <= 1.0:
+            if not (is_number(share) and 0.0 <= share <= 1.0):
                 raise ModelError(
                     f"population: the share of {_name(kind)!r} is {share!r}, expected 0 to 1"
                 )

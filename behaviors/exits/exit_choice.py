@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, TargetChoice, Targets
+from mesa_mobility import Deciding, Range, TargetChoice, Targets
 from mesa_mobility.errors import ModelError
 
 UNDECIDED = -1
@@ -53,9 +54,9 @@ class ExitChoice(TargetChoice):
         ModelError: an interval that is not positive.
     """
 
-    def __init__(self, interval: float = 2.0) -> None:
-        if not interval > 0.0:
-            raise ModelError(f"{self.name}: interval {interval}, expected more than 0 s")
+    def __init__(
+        self, interval: Annotated[float, Range(0.0, unit="s", above=True, endless=True)] = 2.0
+    ) -> None:
         self.interval = interval
         self._chosen = np.empty(0, dtype=np.int64)
         self._thought = np.empty(0)

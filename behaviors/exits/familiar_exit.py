@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Annotated
 
 import numpy as np
 from mesa_mobility.behaviors.exits.exit_choice import Choosing
 from mesa_mobility.behaviors.exits.random_utility import RandomUtility
 from numpy.typing import NDArray
 
-from mesa_mobility import FloorPlan, Pedestrian
+from mesa_mobility import FloorPlan, ListOf, Pedestrian, Range
 from mesa_mobility.errors import ModelError
 
 
@@ -35,16 +36,14 @@ class FamiliarExit(RandomUtility):
 
     def __init__(
         self,
-        familiar: Iterable[str] = (),
-        affiliation: float = 15.0,
+        familiar: Annotated[Iterable[str], ListOf(str)] = (),
+        affiliation: Annotated[float, Range(0.0, unit="m")] = 15.0,
         scale: float = 2.0,
         interval: float = 2.0,
     ) -> None:
         super().__init__(scale, interval)
-        if not 0.0 <= affiliation < np.inf:
-            raise ModelError(f"{self.name}: affiliation {affiliation}, expected 0 m or more")
         self.affiliation = affiliation
-        self.familiar = _names(familiar)
+        self.familiar = familiar
         self._known = np.empty((0, 0), dtype=np.bool_)
 
     def know(self, people: Iterable[Pedestrian], exits: Iterable[str]) -> None:
@@ -69,7 +68,7 @@ class FamiliarExit(RandomUtility):
         """Have rows for everybody up to this one."""
         more = row + 1 - len(self._known)
         if more > 0:
-            new = np.tile(self._mask(self.familiar, plan), (more, 1))
+            new = np.tile(self._mask(frozenset(self.familiar), plan), (more, 1))
             self._known = np.concatenate([self._known.reshape(-1, new.shape[1]), new])
 
     def _mask(self, names: frozenset[str], plan: FloorPlan) -> NDArray[np.bool_]:

@@ -1,10 +1,12 @@
 """Leaving by the exit with the shortest expected time."""
 
+from typing import Annotated
+
 import numpy as np
 from mesa_mobility.behaviors.exits.exit_choice import Choosing, ExitChoice
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.errors import ModelError
+from mesa_mobility import Range
 
 
 def people_a_second(width: ArrayLike) -> NDArray[np.float64]:
@@ -38,10 +40,10 @@ class QuickestExit(ExitChoice):
 
     name = "quickest_exit"
 
-    def __init__(self, interval: float = 2.0, patience: float = 0.1) -> None:
+    def __init__(
+        self, interval: float = 2.0, patience: Annotated[float, Range(0.0, 1.0, below=True)] = 0.1
+    ) -> None:
         super().__init__(interval)
-        if not 0.0 <= patience < 1.0:
-            raise ModelError(f"{self.name}: patience {patience}, expected 0 to 1")
         self.patience = patience
 
     def choose(self, choosing: Choosing) -> NDArray[np.int64]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from typing import Annotated
 
 import numpy as np
 from mesa_mobility.behaviors.exits.exit_choice import Choosing, ExitChoice
 from numpy.typing import NDArray
 
+from mesa_mobility import Range
 from mesa_mobility.errors import ModelError
 
 
@@ -26,10 +28,10 @@ class RandomUtility(ExitChoice):
         ModelError: a parameter out of range.
     """
 
-    def __init__(self, scale: float = 2.0, interval: float = 2.0) -> None:
+    def __init__(
+        self, scale: Annotated[float, Range(0.0, unit="m")] = 2.0, interval: float = 2.0
+    ) -> None:
         super().__init__(interval)
-        if not 0.0 <= scale < np.inf:
-            raise ModelError(f"{self.name}: scale {scale}, expected 0 m or more")
         self.scale = scale
         self._tastes: NDArray[np.float64] = np.empty((0, 0))
 

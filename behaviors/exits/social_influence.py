@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from mesa_mobility.behaviors.exits.exit_choice import Choosing
 from mesa_mobility.behaviors.exits.random_utility import RandomUtility
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from mesa_mobility.errors import ModelError
+from mesa_mobility import Range
 from mesa_mobility.floorplan import lines_of_sight
 
 
@@ -34,16 +36,12 @@ class SocialInfluence(RandomUtility):
 
     def __init__(
         self,
-        influence: float = 5.0,
-        sight: float = 15.0,
+        influence: Annotated[float, Range(0.0, unit="m")] = 5.0,
+        sight: Annotated[float, Range(0.0, unit="m", above=True)] = 15.0,
         scale: float = 2.0,
         interval: float = 2.0,
     ) -> None:
         super().__init__(scale, interval)
-        if not 0.0 <= influence < np.inf:
-            raise ModelError(f"{self.name}: influence {influence}, expected 0 m or more")
-        if not 0.0 < sight < np.inf:
-            raise ModelError(f"{self.name}: sight {sight}, expected more than 0 m")
         self.influence = influence
         self.sight = sight
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, Pedestrian, PedestrianModel, Tactic
+from mesa_mobility import Deciding, Desired, Pedestrian, PedestrianModel, Range, Tactic
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import lines_of_sight
 
@@ -56,9 +56,7 @@ class Following(Tactic):
 
     _model: PedestrianModel
 
-    def __init__(self, distance: float = 1.5) -> None:
-        if not 0.0 < distance < math.inf:
-            raise ModelError(f"{self.name}: distance {distance}, expected more than 0 m")
+    def __init__(self, distance: Annotated[float, Range(0.0, unit="m", above=True)] = 1.5) -> None:
         self.distance = distance
         self._leaders: dict[int, int] = {}
         self._trails: dict[int, NDArray[np.float64]] = {}
@@ -69,7 +67,7 @@ class Following(Tactic):
 
     def state(self) -> dict[str, Any]:
         """Who follows whom, and where leaders have walked."""
-        return {"_leaders": self._leaders, "_trails": self._trails}
+        return {**self.settings(), "_leaders": self._leaders, "_trails": self._trails}
 
     def follow(self, people: Iterable[Pedestrian], leader: Pedestrian | None) -> None:
         """Let people follow a leader from their next decision on, or nobody any more.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, PedestrianModel, Tactic
-from mesa_mobility.errors import ModelError
+from mesa_mobility import Deciding, Desired, PedestrianModel, Range, Tactic
 from mesa_mobility.floorplan import lines_of_sight
 
 # Largest group that walks in one row; those of larger ones are seen to fall apart.
@@ -58,12 +57,12 @@ class WalkingAbreast(Tactic):
 
     _model: PedestrianModel
 
-    def __init__(self, distance: float = 0.75, behind: float = 0.15, slower: float = 0.04) -> None:
-        if not 0.0 < distance < math.inf:
-            raise ModelError(f"{self.name}: distance {distance}, expected more than 0 m")
-        for what, value in (("behind", behind), ("slower", slower)):
-            if not 0.0 <= value < math.inf:
-                raise ModelError(f"{self.name}: {what} {value}, expected 0 or more")
+    def __init__(
+        self,
+        distance: Annotated[float, Range(0.0, unit="m", above=True)] = 0.75,
+        behind: Annotated[float, Range(0.0, unit="m")] = 0.15,
+        slower: Annotated[float, Range(0.0, unit="m/s")] = 0.04,
+    ) -> None:
         self.distance, self.behind, self.slower = distance, behind, slower
 
     def bind(self, model: PedestrianModel) -> None:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, PedestrianModel, Tactic, Visit
+from mesa_mobility import Deciding, Desired, ListOf, PedestrianModel, Range, Tactic, Visit
 from mesa_mobility.distributions import Distribution
-from mesa_mobility.errors import FloorPlanError, ModelError
+from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.plugins.settings import check_fields
 
 # Metres from its place within which somebody counts as one who looks.
 _LOOKS = 0.5
@@ -40,17 +40,12 @@ class Attraction:
 
     place: Any
     stay: float | Distribution
-    share: float = 0.0
-    influence: float = 0.0
-    distance: float = 5.0
+    share: Annotated[float, Range(0.0, 1.0)] = 0.0
+    influence: Annotated[float, Range(0.0)] = 0.0
+    distance: Annotated[float, Range(0.0, unit="m", above=True)] = 5.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.share <= 1.0:
-            raise ModelError(f"attraction: share {self.share}, expected 0 to 1")
-        if not 0.0 <= self.influence < math.inf:
-            raise ModelError(f"attraction: influence {self.influence}, expected 0 or more")
-        if not 0.0 < self.distance < math.inf:
-            raise ModelError(f"attraction: distance {self.distance}, expected more than 0 m")
+        check_fields(self, "attraction")
         Visit(self.place, stay=self.stay)  # refuses what is no place or no time
 
     @cached_property
@@ -94,8 +89,10 @@ class Attractions(Tactic):
 
     _model: PedestrianModel
 
-    def __init__(self, attractions: Iterable[Attraction] = ()) -> None:
-        self.attractions = tuple(attractions)
+    def __init__(
+        self, attractions: Annotated[Iterable[Attraction], ListOf(Attraction, once=True)] = ()
+    ) -> None:
+        self.attractions: tuple[Attraction, ...] = attractions  # type: ignore[assignment]
         self._passed = np.zeros((0, len(self.attractions)), dtype=np.bool_)
         self._stopped: list[list[int]] = [[] for _ in self.attractions]
 

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, PedestrianModel, Tactic, Visit
+from mesa_mobility import Deciding, Desired, ListOf, PedestrianModel, Range, Tactic, Visit
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.plugins.output import numbers_in
+from mesa_mobility.plugins.settings import check_fields
 
 # Radius of the place where people are served, metres, and the least distance in the line: only
 # one person is there at a time.
@@ -47,19 +48,15 @@ class Counter:
 
     line: Sequence[tuple[float, float]]
     service: float | Distribution
-    spacing: float = 0.6
+    spacing: Annotated[float, Range(_CLOSEST, unit="m")] = 0.6
 
     def __post_init__(self) -> None:
-        try:
-            points = np.asarray(self.line, dtype=np.float64)
-        except (TypeError, ValueError):
-            points = np.empty(0)
+        points = numbers_in("counter: line", self.line, "two points (x, y) or more")
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
             raise ModelError(f"counter: line {self.line!r:.80}, expected two points (x, y) or more")
         if not np.isfinite(points).all() or not np.diff(points, axis=0).any(axis=1).all():
             raise ModelError(f"counter: line {self.line!r:.80}, expected finite, different points")
-        if not _CLOSEST <= self.spacing < math.inf:
-            raise ModelError(f"counter: spacing {self.spacing}, expected {_CLOSEST} m or more")
+        check_fields(self, "counter")
         object.__setattr__(self, "line", tuple(map(tuple, points.tolist())))
         Visit(self.line[0], stay=self.service)  # refuses what is no time
 
@@ -97,8 +94,8 @@ class Queueing(Tactic):
 
     _model: PedestrianModel
 
-    def __init__(self, counters: Iterable[Counter] = ()) -> None:
-        self.counters = list(counters)
+    def __init__(self, counters: Annotated[Iterable[Counter], ListOf(Counter)] = ()) -> None:
+        self.counters: list[Counter] = counters  # type: ignore[assignment]
         self._lines: list[list[int]] = []
         self._standing: set[int] = set()
 

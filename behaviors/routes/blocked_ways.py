@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, FloorPlan, TargetChoice, Targets
-from mesa_mobility.errors import ModelError
+from mesa_mobility import Deciding, FloorPlan, Range, TargetChoice, Targets
 from mesa_mobility.floorplan import Router, lines_of_sight
 
 # Metres before a closed gate, which is a wall, that must be in sight.
@@ -36,9 +35,7 @@ class BlockedWays(TargetChoice):
 
     name = "blocked_ways"
 
-    def __init__(self, sight: float = 15.0) -> None:
-        if not 0.0 < sight < np.inf:
-            raise ModelError(f"{self.name}: sight {sight}, expected more than 0 m")
+    def __init__(self, sight: Annotated[float, Range(0.0, unit="m", above=True)] = 15.0) -> None:
         self.sight = sight
         self._seen: dict[str, NDArray[np.bool_]] = {}
         self._routers: dict[tuple[tuple[str, ...], float], Router] = {}

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from bisect import bisect, insort
 from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from mesa_mobility.behaviors.routes.network import Network
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, RouteChoice
-from mesa_mobility.errors import ModelError
+from mesa_mobility import Deciding, Range, RouteChoice
 
 
 class CongestionRouting(RouteChoice):
@@ -38,17 +37,17 @@ class CongestionRouting(RouteChoice):
 
     name = "congestion_routing"
 
-    def __init__(self, interval: float = 2.0, patience: float = 0.1) -> None:
+    def __init__(
+        self, interval: float = 2.0, patience: Annotated[float, Range(0.0, 1.0, below=True)] = 0.1
+    ) -> None:
         super().__init__(interval)
-        if not 0.0 <= patience < 1.0:
-            raise ModelError(f"{self.name}: patience {patience}, expected 0 to 1")
         self.patience = patience
         self._under_way: set[int] = set()
         self._network: Network | None = None
 
     def state(self) -> dict[str, Any]:
         """Who thinks again when; the network follows from the floor plan."""
-        return {"_again": self._again, "_under_way": self._under_way}
+        return {**self.settings(), "_again": self._again, "_under_way": self._under_way}
 
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> list[Sequence[str] | None]:
         """The gates of the quickest way; those who gain too little go on as before."""

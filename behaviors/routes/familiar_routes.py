@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Pedestrian, RouteChoice
+from mesa_mobility import Deciding, ListOf, Pedestrian, Range, RouteChoice
 from mesa_mobility.errors import ModelError
 
 
@@ -30,17 +30,19 @@ class FamiliarRoutes(RouteChoice):
 
     name = "familiar_routes"
 
-    def __init__(self, came: Sequence[str] = (), share: float = 0.75) -> None:
+    def __init__(
+        self,
+        came: Annotated[Sequence[str], ListOf(str)] = (),
+        share: Annotated[float, Range(0.0, 1.0)] = 0.75,
+    ) -> None:
         super().__init__()
-        if not 0.0 <= share <= 1.0:
-            raise ModelError(f"{self.name}: share {share}, expected 0 to 1")
         self.share = share
-        self.came = _names(came)
+        self.came = came
         self._known: dict[int, tuple[str, ...]] = {}
 
     def state(self) -> dict[str, Any]:
         """Who knows which way."""
-        return {"_again": self._again, "_known": self._known}
+        return {**self.settings(), "_again": self._again, "_known": self._known}
 
     def know(self, people: Iterable[Pedestrian], came: Sequence[str]) -> None:
         """Set the gates by which some have come in, in order; they choose again at their next

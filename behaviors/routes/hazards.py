@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility import Deciding, FloorPlan, TargetChoice, Targets
+from mesa_mobility import Deciding, FloorPlan, ListOf, Range, TargetChoice, Targets
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.plugins.settings import check_fields
 
 # Metres by which an area grows until ways round it are searched for anew, and metres between the
 # places at its edge to which people in it may walk.
@@ -44,8 +45,8 @@ class Hazard:
     """
 
     area: Any
-    speed: float = 0.0
-    begins: float = 0.0
+    speed: Annotated[float, Range(0.0, unit="m/s")] = 0.0
+    begins: Annotated[float, Range(0.0, unit="s")] = 0.0
     within: BaseGeometry | None = None
 
     def __post_init__(self) -> None:
@@ -67,9 +68,7 @@ class Hazard:
             ):
                 given = getattr(self, what)
                 raise ModelError(f"hazard: {what} {given!r:.80}, expected a valid shapely Polygon")
-        for what, value in (("speed", self.speed), ("begins", self.begins)):
-            if not 0.0 <= value < math.inf:
-                raise ModelError(f"hazard: {what} {value}, expected 0 or more")
+        check_fields(self, "hazard")
         object.__setattr__(self, "area", area)
 
     def at(self, elapsed: float) -> BaseGeometry | None:
@@ -103,10 +102,12 @@ class Hazards(TargetChoice):
 
     name = "hazards"
 
-    def __init__(self, hazards: Iterable[Hazard] = (), margin: float = 1.0) -> None:
-        if not 0.0 <= margin < math.inf:
-            raise ModelError(f"{self.name}: margin {margin}, expected 0 m or more")
-        self.hazards = list(hazards)
+    def __init__(
+        self,
+        hazards: Annotated[Iterable[Hazard], ListOf(Hazard)] = (),
+        margin: Annotated[float, Range(0.0, unit="m")] = 1.0,
+    ) -> None:
+        self.hazards: list[Hazard] = hazards  # type: ignore[assignment]
         self.margin = margin
         self._enclosed: set[int] = set()
         self._floors: dict[tuple[int, float, tuple[float | None, ...]], _Floor] = {}
@@ -118,7 +119,7 @@ class Hazards(TargetChoice):
 
     def state(self) -> dict[str, Any]:
         """Who is enclosed; hazards are given again, and routes follow from them."""
-        return {"_enclosed": self._enclosed}
+        return {**self.settings(), "_enclosed": self._enclosed}
 
     def targets(self, deciding: Deciding) -> Targets:
         """Targets on the shortest ways clear of hazards."""

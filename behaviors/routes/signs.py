@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, PedestrianModel, RouteChoice
+from mesa_mobility import Deciding, ListOf, PedestrianModel, Range, RouteChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.plugins.output import numbers_in
+from mesa_mobility.plugins.settings import check_fields
 
 # Metres in front of a sign, which hangs on a wall, that must be in sight.
 _BEFORE = 0.1
@@ -35,19 +37,17 @@ class Sign:
     """
 
     position: tuple[float, float]
-    facing: float
+    facing: Annotated[float, Range(-1e6, 1e6, "rad")]
     gates: Sequence[str]
-    distance: float = 30.0
+    distance: Annotated[float, Range(0.0, unit="m", above=True)] = 30.0
 
     def __post_init__(self) -> None:
-        if len(self.position) != 2 or not np.isfinite([*self.position, self.facing]).all():
-            raise ModelError(
-                f"sign: position {self.position} and facing {self.facing}, expected finite numbers"
-            )
+        place = numbers_in("sign: position", self.position, "(x, y) in metres")
+        if place.shape != (2,) or not np.isfinite(place).all():
+            raise ModelError(f"sign: position {self.position!r:.80}, expected (x, y) in metres")
         if isinstance(self.gates, str) or not len(self.gates):
             raise ModelError(f"sign: gates {self.gates!r}, expected a list of names of gates")
-        if not 0.0 < self.distance < np.inf:
-            raise ModelError(f"sign: distance {self.distance}, expected more than 0 m")
+        check_fields(self, "sign")
 
     def legible(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """(n,) whether it can be read from (n, 2) points, metres, if nothing hides it."""
@@ -82,16 +82,13 @@ class Signs(RouteChoice):
 
     def __init__(
         self,
-        signs: Iterable[Sign] = (),
-        noticed: float = 0.38,
-        followed: float = 0.97,
+        signs: Annotated[Iterable[Sign], ListOf(Sign, once=True)] = (),
+        noticed: Annotated[float, Range(0.0, 1.0)] = 0.38,
+        followed: Annotated[float, Range(0.0, 1.0)] = 0.97,
         interval: float = 0.5,
     ) -> None:
         super().__init__(interval)
-        for what, share in (("noticed", noticed), ("followed", followed)):
-            if not 0.0 <= share <= 1.0:
-                raise ModelError(f"{self.name}: {what} {share}, expected 0 to 1")
-        self.signs = tuple(signs)
+        self.signs: tuple[Sign, ...] = signs  # type: ignore[assignment]
         self.noticed, self.followed = noticed, followed
         # The last column is for those who have come in: newcomers face nowhere yet.
         self._passed = np.zeros((0, len(self.signs) + 1), dtype=np.bool_)
@@ -105,7 +102,7 @@ class Signs(RouteChoice):
 
     def state(self) -> dict[str, Any]:
         """Who has passed which sign."""
-        return {"_again": self._again, "_passed": self._passed}
+        return {**self.settings(), "_again": self._again, "_passed": self._passed}
 
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> list[Sequence[str] | None]:
         """The gates of the first sign in the list that somebody notices now and follows."""

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any, cast
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
+from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.people.pedestrian import Pedestrian, check_pedestrian_class
 from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.presets import Preset, read_preset
 from mesa_mobility.crowd.scene import Scene, make_scene
 from mesa_mobility.crowd.state.fields import read_fields
+from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
+from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.plugins.settings import being_made, has_attribute, near_miss
 from mesa_mobility.populations import Population
 
 
@@ -41,9 +49,51 @@ def read_scene(
     return make_scene(floor_plan, types, rules, shares=shares, fields=kinds)
 
 
+_LISTS: dict[str, type[Plugin]] = {
+    "terms": CostTerm, "speed_rules": SpeedRule, "tactics": Tactic
+}  # fmt: skip
+
+SETTABLE = (*_LISTS, "target_choice", "frames_per_step", "watch")
+"""What users set of a model."""
+
+
+def checked_attribute(model: object, name: str, value: Any) -> Any:
+    """What a model takes for one of its attributes.
+
+    Subclasses of models, and scripts, keep what they like in attributes of their own, so that only
+    misspellings of those in ``SETTABLE`` are refused, and not in a constructor.
+
+    Raises:
+        ModelError: another value than expected, or a misspelt name.
+    """
+    if name in _LISTS:
+        if isinstance(value, str | Plugin) or not isinstance(value, Iterable):
+            raise ModelError(f"{name}: got {value!r:.80}, expected a list")
+        value = value if isinstance(value, list) and name in vars(model) else list(value)
+        check_behaviours(name, value, _LISTS[name])
+    elif name == "target_choice":
+        check_behaviours(name, [value], TargetChoice)
+    elif name == "frames_per_step":
+        check_frames_per_step(value)
+    elif name not in SETTABLE and not being_made(model) and not has_attribute(model, name):
+        meant = near_miss(name, SETTABLE)
+        if meant is not None:
+            raise ModelError(
+                f"{type(model).__name__}: no attribute {name!r}, did you mean {meant!r}? One of "
+                f"your own is set in the constructor, or declared in the class"
+            )
+    return value
+
+
+def check_seconds(name: str, seconds: object) -> None:
+    """Raise ModelError unless this is a time, 0 or more; it may be endless."""
+    if not is_number(seconds) or cast("float", seconds) < 0.0:
+        raise ModelError(f"{name}: got {seconds!r:.60}, expected seconds, 0 or more")
+
+
 def check_frames_per_step(frames: object) -> None:
     """Raise ModelError unless a step can advance so many frames."""
-    if not isinstance(frames, int) or frames < 1:
+    if not isinstance(frames, int) or isinstance(frames, bool) or frames < 1:
         raise ModelError(f"frames_per_step: got {frames!r}, expected 1, 2, 3 or more")
 
 

@@ -7,6 +7,9 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins.parameters import Parameter
+from mesa_mobility.plugins.registry import did_you_mean
+from mesa_mobility.plugins.settings import being_made, checked, declared, has_attribute, making
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -44,14 +47,104 @@ class Saved:
             setattr(self, name, state[name])
 
 
+_MAKING = ("__init__", "__post_init__", "bind", "restore")
+"""Methods in which a behaviour may take on new attributes."""
+
+
 class Plugin(ABC):
-    """What all behaviours have in common: a name, and three hooks that may be overridden.
+    """What all behaviours have in common: a name, settings, and three hooks to override.
+
+    A setting is a parameter of the constructor with a ``Range``, and the attribute of its name::
+
+        def __init__(self, time: Annotated[float, Range(0.1, 10, "s")] = 1.2) -> None:
+            self.time = time
+
+    It is checked whenever it is set. Once a behaviour is made, it takes on no other attributes than
+    it has, its class annotates, or it gets in ``bind``; names that begin with _ are free.
 
     Attributes:
         name: unique name, as it is registered and shown.
     """
 
     name: ClassVar[str]
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        for method in _MAKING:
+            if method in vars(cls):
+                setattr(cls, method, making(vars(cls)[method]))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        # Values are plain attributes, so that to read one costs nothing.
+        if name[:1] != "_":
+            setting = declared(type(self)).get(name)
+            if setting is not None:
+                self._set(setting, value)
+                return
+            if not (being_made(self) or has_attribute(self, name)):
+                raise ModelError(self._unknown(name))
+        object.__setattr__(self, name, value)
+
+    def _set(self, setting: Parameter, value: Any) -> None:
+        name, made = setting.name, not being_made(self)
+        if made and setting.entries is not None and setting.entries.once:
+            raise ModelError(f"{self._called}: {name} is set by the constructor alone")
+        try:
+            value = checked(setting, value)
+        except ModelError as error:
+            raise ModelError(f"{self._called}: {error}") from None
+        before = getattr(self, name, value)
+        object.__setattr__(self, name, value)
+        if made:
+            try:
+                self.check_settings()
+            except ModelError:
+                object.__setattr__(self, name, before)
+                raise
+
+    @property
+    def _called(self) -> str:
+        """The name, or that of the class: a behaviour without a name is refused later."""
+        return str(getattr(self, "name", type(self).__name__))
+
+    def _unknown(self, name: str) -> str:
+        kind = type(self)
+        properties = [each for each in dir(kind) if isinstance(getattr(kind, each), property)]
+        named = dict.fromkeys([*declared(kind), *vars(self), *properties])
+        known = [each for each in named if each[0] != "_"]
+        meant = did_you_mean(name, dict.fromkeys(known)) or f", it has {', '.join(known) or 'none'}"
+        return f"{self._called}: no setting {name!r}{meant}"
+
+    def settings(self) -> dict[str, Any]:
+        """Numbers and names that are settings, as they are now, for ``state``.
+
+        Lists of objects are left out: whoever makes the behaviour anew gives them again.
+        """
+        return {
+            name: getattr(self, name)
+            for name, each in declared(type(self)).items()
+            if hasattr(self, name) and (each.entries is None or each.entries.kind is str)
+        }
+
+    def check_settings(self) -> None:  # noqa: B027
+        """Raise ModelError where settings, each in its range, do not fit together.
+
+        Called when a behaviour has been made, and whenever a setting has changed.
+        """
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(self._told())})"
+
+    def _told(self) -> list[str]:
+        """The settings that differ from their defaults, as NAME=VALUE."""
+        told = []
+        for name, setting in declared(type(self)).items():
+            value = getattr(self, name, setting.default)
+            if setting.entries is not None and setting.entries.kind is not str:
+                told += [f"{name}=[{len(value)} {setting.entries.kind.__name__}]"] * bool(value)
+            elif value != setting.default and (value or setting.entries is None):
+                told.append(f"{name}={value!r:.60}")
+        return told
 
     def bind(self, model: PedestrianModel) -> None:  # noqa: B027
         """Called once by each model before it uses the behaviour.
@@ -68,16 +161,18 @@ class Plugin(ABC):
         """
         return dict(vars(self))
 
+    @making
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given, in this process or another."""
-        vars(self).update(state)
+        for name, value in state.items():
+            setattr(self, name, value)
 
 
 def check_behaviours(what: str, given: Iterable[object], kind: type[Plugin]) -> None:
     """Raise ModelError unless all are behaviours of a kind, with names."""
     for each in given:
         if not isinstance(each, kind):
-            text = f"{each!r:.80}"
+            text = f"the class {each.__name__}" if isinstance(each, type) else f"{each!r:.80}"
             raise ModelError(f"{what}: got {text}, expected an object of a {kind.__name__}")
         name = getattr(each, "name", None)
         if not (isinstance(name, str) and name):

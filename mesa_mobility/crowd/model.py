@@ -12,13 +12,19 @@ import numpy as np
 from mesa.datacollection import DataCollector
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.arguments import check_frames_per_step, check_record, read_scene
+from mesa_mobility.crowd.arguments import (
+    SETTABLE,
+    check_record,
+    check_seconds,
+    checked_attribute,
+    read_scene,
+)
 from mesa_mobility.crowd.checkpoint.copying import copy_model, refuse_to_pickle
 from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
-from mesa_mobility.crowd.hooks import Plugin, Saved, scheduled_events
+from mesa_mobility.crowd.hooks import Plugin, Saved, check_behaviours, scheduled_events
 from mesa_mobility.crowd.insertion import adding
 from mesa_mobility.crowd.insertion.inflow import Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
@@ -45,6 +51,7 @@ from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.occupants import add_occupants
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.plugins.seeds import seed_of
+from mesa_mobility.plugins.settings import making
 from mesa_mobility.populations import Population
 
 
@@ -130,6 +137,12 @@ class PedestrianModel(mesa.Model):
         model.made_with = args, keywords
         return model
 
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        if "__init__" in vars(cls):
+            cls.__init__ = making(cls.__init__)  # type: ignore[method-assign]
+
+    @making
     def __init__(
         self,
         floor_plan: FloorPlan,
@@ -148,7 +161,7 @@ class PedestrianModel(mesa.Model):
     ) -> None:
         super().__init__(rng=seed_of(rng))
         self.events_at_first = scheduled_events(self)
-        check_frames_per_step(frames_per_step)
+        self.frames_per_step = frames_per_step
         check_record(record)
         self._scene = scene = read_scene(
             floor_plan,
@@ -163,13 +176,11 @@ class PedestrianModel(mesa.Model):
         self.floor_plan, self.pedestrian_types = floor_plan, scene.types
         self._agents_step = pedestrian_class.step is not mesa.Agent.step
         self.crowd, self.journeys = scene.crowd, scene.journeys
-        self.terms: list[CostTerm] = list(
-            self.rules.make_terms() if behaviors is None else behaviors
-        )
+        given: Any = self.rules.make_terms() if behaviors is None else behaviors
+        self.terms: list[CostTerm] = given
         self.speed_rules: list[SpeedRule] = []
         self.tactics: list[Tactic] = self.rules.make_tactics()
         self.target_choice = target_choice or self.rules.make_target_choice()
-        self.frames_per_step = frames_per_step
         self.frame, self.time = 0, 0.0
         self.recorder = Recorder() if record else None
         self.decisions = DecisionRecorder() if record == "decisions" else None
@@ -185,6 +196,17 @@ class PedestrianModel(mesa.Model):
         self.datacollector = DataCollector(model_reporters=REPORTERS)
         set_clock(self)
         self.framework_attributes = frozenset({*vars(self), "framework_attributes"})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in SETTABLE or not (name[:1] == "_" or name in self.__dict__):
+            value = checked_attribute(self, name, value)
+        super().__setattr__(name, value)
+
+    def __repr__(self) -> str:
+        if "population" not in self.__dict__:
+            return f"<{type(self).__name__}, not made yet>"
+        people = f"{self.population.count} people, {self.inside} inside"
+        return f"<{type(self).__name__}: {people}, {self.elapsed:.1f} s>"
 
     @property
     def elapsed(self) -> float:
@@ -280,7 +302,12 @@ class PedestrianModel(mesa.Model):
         self.population.look_over(self.frame)
 
     def add_tactic(self, tactic: Tactic) -> None:
-        """Add a tactic behind the one that it names in ``after``, or else at the end."""
+        """Add a tactic behind the one that it names in ``after``, or else at the end.
+
+        Raises:
+            ModelError: it is no tactic, such as the class of one.
+        """
+        check_behaviours("add_tactic", [tactic], Tactic)
         names = [each.name for each in self.tactics]
         at = names.index(tactic.after) + 1 if tactic.after in names else len(names)
         self.tactics.insert(at, tactic)
@@ -328,8 +355,11 @@ class PedestrianModel(mesa.Model):
             progress: called as ``progress(elapsed, inside)`` each simulated second.
 
         Raises:
-            ModelError: ``max_seconds`` is missing where people go round or come for ever.
+            ModelError: ``max_seconds`` is no time, or is missing where people go round or come for
+                ever.
         """
+        if max_seconds is not None:
+            check_seconds("max_seconds", max_seconds)
         endless = self.journeys.endless(self.rows, self.crowd) or self.sources.endless
         if max_seconds is None and endless:
             raise ModelError("max_seconds: got none, but people go round or come for ever")

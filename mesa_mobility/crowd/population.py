@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.insertion.free_space import first_free
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
@@ -274,6 +275,8 @@ class Population(Saved):
             ModelError: the person has left, or a speed out of range.
         """
         self.check_inside(row)
+        if not is_number(speed):
+            raise ModelError(f"preferred_speed: got {speed!r:.60}, expected m/s, more than 0")
         given, crowd = Newcomers(preferred_speeds=speed), self._scene.crowd
         crowd.agenda["speed"][row] = given.draw_speeds(
             crowd.type_index[[row]].astype(np.int64), self._scene.types, np.random.default_rng(0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from numbers import Real
 from typing import Any
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.costs.terms import EXPECTED_WEIGHT, CostTerm, is_weight
 from mesa_mobility.crowd.tactics.shipped import (
     AdaptSpeed,
@@ -80,21 +80,21 @@ class Preset:
         if not isinstance(self.name, str) or not self.name:
             raise ModelError(f"preset: name {self.name!r}, expected a text")
         if not isinstance(self.terms, Mapping) or not all(
-            isinstance(weight, Real) and is_weight(float(weight)) for weight in self.terms.values()
+            is_weight(weight) for weight in self.terms.values()
         ):
             refuse("terms", self.terms, f"for the name of each {EXPECTED_WEIGHT}")
         # As they are read from JSON, too.
         object.__setattr__(self, "durations", tuple(self.durations))
         object.__setattr__(self, "shares", tuple(tuple(each) for each in self.shares))
         if not self.durations or not all(
-            isinstance(each, int) and each > 0 for each in self.durations
+            is_number(each) and isinstance(each, int) and each > 0 for each in self.durations
         ):
             refuse("durations", self.durations, "frames, 1 or more each")
         most = self.most_acceleration
-        if most is not None and not (isinstance(most, Real) and 0.0 < most < math.inf):
+        if most is not None and not (is_number(most) and 0.0 < most < math.inf):
             refuse("most_acceleration", most, "None, or m/s2, more than 0")
         for share in (each for some in self.shares for each in some):
-            if not (isinstance(share, Real) and 0.0 <= share < 1.0):
+            if not (is_number(share) and 0.0 <= share < 1.0):
                 refuse("share", share, "0 or more and less than 1")
 
     def numbers(self) -> dict[str, Any]:

@@ -153,7 +153,7 @@ def _Field(
         Choice(label, [str(each) for each in choices], text, change, description, error)
     else:
         TextField(label, text, change, error, description)
-        if parameter.range is not None:
+        if parameter.range is not None and parameter.range.high is not None:
             _Slider(parameter, label, text, change)
 
 
@@ -229,6 +229,7 @@ def TextField(
 def _Slider(parameter: Parameter, label: str, text: str, change: Callable[[str], None]) -> None:
     """A slider over a number's range, beside a field that takes other values, too."""
     assert parameter.range is not None
+    assert parameter.range.high is not None
     low, high = parameter.range.low, parameter.range.high
     whole = int in parameter.kinds
     step = 1 if whole else (high - low) / SLIDER_STEPS

@@ -146,4 +146,4 @@ def blamed(message: str, names: Iterable[str]) -> list[str]:
 def _known(parameter: Parameter) -> list[float]:
     """Numbers that the annotations say the parameter takes."""
     default = parameter.default if type(parameter.default) in (int, float) else 0.0
-    return [default, 0.0 if parameter.range is None else parameter.range.high]
+    return [default, (parameter.range.high if parameter.range else None) or 0.0]

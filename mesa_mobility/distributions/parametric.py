@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.distributions.base import Distribution
 from mesa_mobility.distributions.truncation import (
     normal_before_cut,
@@ -193,11 +193,11 @@ class Gamma(Distribution):
 
 
 def _finite(*values: float) -> bool:
-    return all(isinstance(value, Real) and math.isfinite(value) for value in values)
+    return all(is_number(value) and math.isfinite(value) for value in values)
 
 
 def _ordered(low: float, high: float) -> bool:
-    return isinstance(low, Real) and isinstance(high, Real) and bool(low <= high)
+    return is_number(low) and is_number(high) and bool(low <= high)
 
 
 def _check(of: Distribution, holds: bool, expected: str) -> None:

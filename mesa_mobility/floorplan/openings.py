@@ -55,6 +55,8 @@ class Opening:
 
     def _point(self, end: str, value: Sequence[float]) -> tuple[float, float]:
         try:
+            if any(isinstance(coordinate, str | bool) for coordinate in value):
+                raise TypeError
             x, y = (float(coordinate) for coordinate in value)
         except (TypeError, ValueError, OverflowError):
             raise FloorPlanError(

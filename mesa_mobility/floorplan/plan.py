@@ -87,6 +87,11 @@ class FloorPlan(Layout):
         self._take(FreeArea(self, polygons, cut_off))
         warn_of_other_units(self.walkable, self.openings())
 
+    def __repr__(self) -> str:
+        named = f" {self.name!r}" if self.name else ""
+        exits, gates = len(self.exits), len(self.gates)
+        return f"<FloorPlan{named}: {self.area:.0f} m2, exits: {exits}, gates: {gates}>"
+
     @classmethod
     def from_wkt(
         cls,

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely import Polygon
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.checks import read_polygon
 
@@ -37,8 +37,10 @@ class SpeedZone:
     def __post_init__(self) -> None:
         what = f"speed zone {self.name!r}" if self.name else "speed zone"
         object.__setattr__(self, "polygon", read_polygon(self.polygon, what))
-        if not (isinstance(self.factor, Real) and 0.0 < self.factor <= 1.0):
-            raise FloorPlanError(f"{what}: factor must be above 0, at most 1, found {self.factor}")
+        if not (is_number(self.factor) and 0.0 < self.factor <= 1.0):
+            raise FloorPlanError(
+                f"{what}: factor must be above 0, at most 1, found {self.factor!r}"
+            )
         shapely.prepare(self.polygon)
 
     @property

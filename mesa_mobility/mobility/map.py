@@ -169,6 +169,10 @@ class MobilityMap:
 
         write_map(self, path)
 
+    def __repr__(self) -> str:
+        has = f"{self.n_clusters} clusters, {self.n_options} options"
+        return f"<MobilityMap {self.pedestrian_type!r}: {has}>"
+
     @classmethod
     def load(cls, path: str | Path | None = None) -> MobilityMap:
         """Read a map file; without a path, the able-bodied map that ships.

@@ -1,4 +1,4 @@
-"""Checks of plug-ins' results, which become arrays for compiled functions."""
+"""Checks of arrays for compiled functions: results of plug-ins, and arguments."""
 
 from __future__ import annotations
 
@@ -39,6 +39,28 @@ def whole_numbers_given(
     if array.dtype.kind not in "iu" and array.size:
         raise ModelError(f"{giver}: gave {what} of type {array.dtype}, expected whole numbers")
     return np.asarray(array, dtype=np.int64, order="C")
+
+
+def numbers_in(what: str, values: Any, expected: str) -> NDArray[np.float64]:
+    """Numbers that a user gives, as a new array of float64.
+
+    NumPy turns texts, None and truth values into numbers in silence.
+
+    Args:
+        what: they are, as the message names it.
+        values: anything.
+        expected: what they should be.
+
+    Raises:
+        ModelError: values that are not numbers, or rows of unequal length.
+    """
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError):
+        array = np.array([None])
+    if array.dtype.kind not in "iuf":
+        raise ModelError(f"{what}: got {values!r:.80}, expected {expected}")
+    return array.astype(np.float64)
 
 
 def _array(giver: str, what: str, values: Any, shape: tuple[int, ...]) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""Values of `--set NAME=VALUE`, checked against a model's constructor."""
+"""Parameters of models and behaviours, as their constructors declare them; `--set NAME=VALUE`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 
 from mesa_mobility.distributions import Distribution, parse
 from mesa_mobility.errors import ModelError
-from mesa_mobility.plugins.annotations import Files, Range
+from mesa_mobility.plugins.annotations import Files, ListOf, Range
 from mesa_mobility.plugins.registry import did_you_mean
 
 # Parameters that have an option of their own, or are the command's business.
@@ -38,15 +38,16 @@ TRUE, FALSE = {"true", "yes", "on", "1"}, {"false", "no", "off", "0"}
 
 @dataclass(frozen=True)
 class Parameter:
-    """One keyword parameter of a model.
+    """One keyword parameter of a model, or one setting of a behaviour.
 
     Attributes:
         name: as in the constructor.
         kinds: the types it takes: int, float, bool, str, NoneType, Distribution, Path, or tuples
             of literal values.
         default: its default, or `inspect.Parameter.empty`.
-        range: what a slider offers, or None.
+        range: what a slider offers and a setting accepts, or None.
         files: which files a page offers, or None.
+        entries: what a list has, or None.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Parameter:
     default: Any
     range: Range | None = None
     files: Files | None = None
+    entries: ListOf | None = None
 
     def __str__(self) -> str:
         text = f"{self.name}: {_kinds_text(self.kinds)}"
@@ -88,16 +90,20 @@ def parameters(model: type) -> dict[str, Parameter]:
     for parameter in list(inspect.signature(model).parameters.values()):
         if parameter.kind not in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
             continue
-        annotation = _annotation(model, parameter)
-        if annotation in (inspect.Parameter.empty, Any):
-            kinds = _kinds_of_default(parameter.default)
-        else:
-            kinds = tuple(_kinds(annotation))
-        said = {type(each): each for each in _said(annotation)}
-        found[parameter.name] = Parameter(
-            parameter.name, kinds, parameter.default, said.get(Range), said.get(Files)
+        found[parameter.name] = parameter_of(
+            parameter.name, _annotation(model, parameter), parameter.default
         )
     return found
+
+
+def parameter_of(name: str, annotation: Any, default: Any) -> Parameter:
+    """The parameter that an evaluated annotation and a default declare."""
+    if annotation in (inspect.Parameter.empty, Any):
+        kinds = _kinds_of_default(default)
+    else:
+        kinds = tuple(_kinds(annotation))
+    said = {type(each): each for each in _said(annotation)}
+    return Parameter(name, kinds, default, said.get(Range), said.get(Files), said.get(ListOf))
 
 
 def descriptions(model: type) -> dict[str, str]:
@@ -163,13 +169,17 @@ def _listing(parameters: Mapping[str, Parameter]) -> str:
 
 
 def _annotation(model: type, parameter: inspect.Parameter) -> Any:
-    annotation = parameter.annotation
+    constructor: Any = inspect.getattr_static(model, "__init__")
+    return evaluated(parameter.annotation, getattr(inspect.unwrap(constructor), "__globals__", {}))
+
+
+def evaluated(annotation: Any, names: Mapping[str, Any]) -> Any:
+    """An annotation that may be text, with the names that it can use; `empty` where it is none."""
     if not isinstance(annotation, str):
         return annotation
     # A name imported for type checkers alone is unknown here; it stands for a type that no text
     # converts to, and the rest of the annotation counts.
-    constructor: Any = inspect.getattr_static(model, "__init__")
-    namespace = vars(builtins) | getattr(inspect.unwrap(constructor), "__globals__", {})
+    namespace = vars(builtins) | dict(names)
     try:
         return eval(annotation, {}, _Lenient(namespace))
     except Exception:

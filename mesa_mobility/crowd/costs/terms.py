@@ -10,11 +10,12 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.hooks import Plugin
 from mesa_mobility.errors import ModelError
@@ -23,9 +24,12 @@ MOST_WEIGHT = 1e9
 """Largest weight of a term, either way.  Beyond it no other term counts, and sums overflow."""
 
 
-def is_weight(value: float) -> bool:
-    """Whether the number can be the weight of a term."""
-    return bool(abs(value) <= MOST_WEIGHT)
+def is_weight(value: object) -> bool:
+    """Whether this can be the weight of a term.
+
+    A negative weight lets people seek what the term makes dear otherwise.
+    """
+    return is_number(value) and abs(cast("float", value)) <= MOST_WEIGHT
 
 
 EXPECTED_WEIGHT = f"a finite number, {MOST_WEIGHT:.0e} at most either way"
@@ -34,7 +38,7 @@ EXPECTED_WEIGHT = f"a finite number, {MOST_WEIGHT:.0e} at most either way"
 def _checked_weight(of: str, value: float) -> float:
     """The weight, or one error that names what it is of."""
     if not is_weight(value):
-        raise ModelError(f"weight of {of}: got {value}, expected {EXPECTED_WEIGHT}")
+        raise ModelError(f"weight of {of}: got {value!r:.60}, expected {EXPECTED_WEIGHT}")
     return float(value)
 
 
@@ -45,7 +49,8 @@ class CostTerm(Plugin):
 
     Attributes:
         name: unique name of the term, as it is registered and shown.
-        weight: factor of the term in the sum; may be changed while a model runs.
+        weight: factor of the term in the sum; may be changed while a model runs. A negative one
+            turns the term over: people seek what they would avoid.
         weight_by_type: factors for people of some types, as ``{"child": 0.0}``; 0 switches the
             term off for them.
         for_types: names of the types whose people alone have the term, as ``["child"]``; None, by
@@ -74,10 +79,9 @@ class CostTerm(Plugin):
     def __init__(self, weight: float | None = None) -> None:
         self.weight = self.default_weight if weight is None else weight
 
-    @property
-    def _called(self) -> str:
-        """The name, or that of the class: a term without a name is refused later."""
-        return getattr(self, "name", type(self).__name__)
+    def _told(self) -> list[str]:
+        weight = getattr(self, "_weight", self.default_weight)
+        return [f"weight={weight:g}", *super()._told()]
 
     @property
     def weight(self) -> float:
@@ -95,6 +99,11 @@ class CostTerm(Plugin):
 
     @weight_by_type.setter
     def weight_by_type(self, weights: Mapping[str, float]) -> None:
+        if not isinstance(weights, Mapping):
+            raise ModelError(
+                f"weight_by_type of {self._called!r}: got {weights!r:.60}, expected a weight for "
+                "each name of a type, such as {'child': 0.0}"
+            )
         self._by_type = {
             name: _checked_weight(f"{self._called!r} for {name!r}", value)
             for name, value in weights.items()
@@ -109,7 +118,12 @@ class CostTerm(Plugin):
     def for_types(self, names: Iterable[str] | None) -> None:
         if isinstance(names, str):
             raise ModelError(
-                f"for_types of {self.name!r}: got {names!r}, expected a list such as [{names!r}]"
+                f"for_types of {self._called!r}: got {names!r}, expected a list such as [{names!r}]"
+            )
+        if names is not None and not isinstance(names, Iterable):
+            raise ModelError(
+                f"for_types of {self._called!r}: got {names!r:.60}, expected a list of names of "
+                "types, or None"
             )
         self._for_types = None if names is None else tuple(dict.fromkeys(names))
 

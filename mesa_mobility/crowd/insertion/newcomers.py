@@ -17,7 +17,7 @@ from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.crowd.tactics.waiting import frames_of
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
-from mesa_mobility.plugins.output import numbers_given
+from mesa_mobility.plugins.output import numbers_given, numbers_in
 from mesa_mobility.populations import Population
 
 
@@ -161,12 +161,10 @@ def check_column(name: str, values: ArrayLike, n: int) -> NDArray[np.float64]:
     Raises:
         ModelError: another length, or not finite.
     """
-    try:
-        column = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ModelError(f"{name}: got {values!r}, expected {n} finite numbers") from None
+    column = numbers_in(name, values, f"{n} finite numbers")
     if column.shape not in ((n,), ()) or not np.isfinite(column).all():
-        raise ModelError(f"{name}: shape {column.shape}, expected {n} finite numbers")
+        got = f"got {values!r:.80}" if column.size == 1 else f"shape {column.shape}"
+        raise ModelError(f"{name}: {got}, expected {n} finite numbers")
     return np.broadcast_to(column, (n,))
 
 

@@ -17,6 +17,10 @@ from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
+from mesa_mobility.plugins.output import numbers_in
+
+MOST_TURNED = 1e6
+"""Largest heading that is accepted, radians either way: beyond it, digits of the angle are lost."""
 
 TOUCHING = 1e-6
 """Overlap with a wall that counts as rounding, metres."""
@@ -73,7 +77,7 @@ def place_newcomers(
         kinds = _suited(scene, points, kinds, ways, present, rng)
     speeds = new.draw_speeds(kinds, scene.types, rng)
     sets_off = frame + new.draw_waits(n, rng)
-    headings = None if new.headings is None else check_column("headings", new.headings, n)
+    headings = _check_headings(new, n)
     cores = new.draw_cores(kinds, scene.types, rng)
     fields = new.field_columns(n, scene.crowd)
     rows = np.arange(count, count + n, dtype=np.int64)
@@ -111,6 +115,20 @@ def place_newcomers(
     for name, values in fields.items():
         scene.crowd.fields[name][rows] = values
     return rows
+
+
+def _check_headings(new: Newcomers, n: int) -> NDArray[np.float64] | None:
+    """(n,) headings in radians, if they are given."""
+    if new.headings is None:
+        return None
+    headings = check_column("headings", new.headings, n)
+    off = np.abs(headings) > MOST_TURNED
+    if off.any():
+        raise ModelError(
+            f"headings: got {headings[off][0]:g}, expected radians, {MOST_TURNED:g} at most either "
+            "way"
+        )
+    return headings
 
 
 def _suited(
@@ -180,7 +198,7 @@ def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
     Raises:
         ModelError: the wrong shape, or positions off the floor.
     """
-    points = np.asarray(positions, dtype=np.float64)
+    points = numbers_in("positions", positions, "(n, 2) metres")
     if points.size == 0:
         points = points.reshape(0, 2)
     if points.ndim != 2 or points.shape[1] != 2:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
@@ -17,6 +17,7 @@ from mesa_mobility.crowd.tactics.visits.visit import Route
 from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins.output import numbers_in
 from mesa_mobility.populations import Population
 
 HIGHEST_RATE = 1000.0
@@ -68,13 +69,13 @@ class Source:
     def __post_init__(self) -> None:
         if (self.rate is None) == (self.times is None):
             raise ModelError("source: expected either a rate or times")
-        if self.rate is not None and not (_real(self.rate) and 0.0 < self.rate <= HIGHEST_RATE):
+        if self.rate is not None and not (is_number(self.rate) and 0.0 < self.rate <= HIGHEST_RATE):
             raise ModelError(
                 f"source: rate {self.rate!r}, expected more than 0 and at most {HIGHEST_RATE:g} "
                 "people a second"
             )
         if not (
-            _real(self.start) and _real(self.until) and 0.0 <= self.start <= LATEST
+            is_number(self.start) and is_number(self.until) and 0.0 <= self.start <= LATEST
             and self.start <= self.until
         ):  # fmt: skip
             raise ModelError(
@@ -82,14 +83,13 @@ class Source:
                 f"0 <= start <= until and a start of at most {LATEST:g} s"
             )
         if self.number is not None and not (
-            isinstance(self.number, int) and 0 <= self.number <= MOST_PEOPLE
+            is_number(self.number)
+            and isinstance(self.number, int)
+            and 0 <= self.number <= MOST_PEOPLE
         ):
             raise ModelError(f"source: number {self.number!r}, expected 0 to {MOST_PEOPLE} people")
         if self.times is not None:
-            try:
-                times = np.sort(np.asarray(self.times, dtype=np.float64))
-            except (TypeError, ValueError):
-                raise ModelError("source: times, expected a row of seconds") from None
+            times = np.sort(numbers_in("source: times", self.times, "a row of seconds"))
             if times.ndim != 1 or not ((times >= 0.0) & (times <= LATEST)).all():
                 raise ModelError(f"source: times, expected a row of seconds, 0 to {LATEST:g}")
             object.__setattr__(self, "times", times)
@@ -101,13 +101,15 @@ class Source:
         """Refuse at once what ``add_pedestrians`` would refuse at the first arrival."""
         speed, wait = self.preferred_speeds, self.pre_movement
         if not (speed is None or isinstance(speed, Distribution)) and not (
-            _real(speed) and 0.0 < speed <= FASTEST
+            is_number(speed) and 0.0 < speed <= FASTEST
         ):
             raise ModelError(
                 f"source: preferred_speeds {speed!r}, expected a distribution, or more than 0 and "
                 f"at most {FASTEST:g} m/s"
             )
-        if not isinstance(wait, Distribution) and not (_real(wait) and 0.0 <= wait <= LONGEST_WAIT):
+        if not isinstance(wait, Distribution) and not (
+            is_number(wait) and 0.0 <= wait <= LONGEST_WAIT
+        ):
             raise ModelError(
                 f"source: pre_movement {wait!r}, expected a distribution, or 0 to "
                 f"{LONGEST_WAIT:g} s"
@@ -130,7 +132,3 @@ class Source:
             type_index=type_index,
             fields=self.fields,
         )
-
-
-def _real(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)

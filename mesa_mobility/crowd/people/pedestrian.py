@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
@@ -19,6 +19,7 @@ from mesa_mobility.crowd.state.records import FALLBACK
 from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.crowd.tactics.waiting import waiting
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins.settings import has_attribute, near_miss
 
 if TYPE_CHECKING:
     from mesa_mobility.bodies import BodyMotion, PoseBank
@@ -42,6 +43,9 @@ class _Counters(WeakKeyDictionary[Any, _Counter]):
     def __getitem__(self, model: Any) -> _Counter:
         return self.setdefault(model, _Counter())
 
+
+_SETTABLE = ("exits", "group", "preferred_speed", "route")
+"""What users set of a person, beside the fields of the model."""
 
 _FOLLOWING = "agent_id_counter"
 """Where models of a newer Mesa keep the number of the next agent."""
@@ -106,7 +110,31 @@ class Pedestrian(ContinuousSpaceAgent):
             column = fields[name]
             column[self.row] = field_column(name, column.dtype, value, 1)[0]
         else:
+            if not (name in self.__dict__ or name[:1] == "_" or has_attribute(self, name)):
+                self._refuse_misspelt(name, fields)
             object.__setattr__(self, name, value)
+
+    def _refuse_misspelt(self, name: str, fields: Iterable[str]) -> None:
+        """Raise ModelError where a new attribute is a misspelling of one that can be set.
+
+        Agents may have attributes of their users' own, so that no other names are refused, and
+        none in a constructor.
+        """
+        meant, model = near_miss(name, (*_SETTABLE, *fields)), self.__dict__.get("model")
+        row = self.__dict__.get("row")
+        if meant is None or model is None or model.population.awaits(row):
+            return
+        raise ModelError(
+            f"pedestrian {row}: no attribute {name!r}, did you mean {meant!r}? One of your own is "
+            "set in the constructor, or declared in the class"
+        )
+
+    def __repr__(self) -> str:
+        called = f"{type(self).__name__} {self.__dict__.get('row', '')}".rstrip()
+        if "row" not in self.__dict__ or not self.model.crowd.active[self.row]:
+            return f"<{called}, not inside>"
+        x, y = self.position
+        return f"<{called} at ({x:.2f}, {y:.2f}), {self.speed:.2f} m/s>"
 
     @property
     def position(self) -> NDArray[np.float64]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from numbers import Real
 from pathlib import Path
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.options.shapes import ONE_DISC, Discs, check_discs, core_of
 from mesa_mobility.crowd.people.free_speeds import free_speeds
 from mesa_mobility.distributions.base import EXTREMES, Distribution
@@ -50,6 +50,10 @@ class PedestrianType:
             object.__setattr__(self, "name", self.mobility_map.pedestrian_type)
         if len(self.discs):
             object.__setattr__(self, "discs", check_discs(self.discs, self.name))
+        if not isinstance(self.core_radius, Distribution) and not is_number(self.core_radius):
+            raise ModelError(
+                f"type {self.name!r}: core_radius {self.core_radius!r:.60}, expected 0 to 1 m"
+            )
         if self.core_radius == 0.0:
             body = self.mobility_map.metadata.get("body", {})
             core = float(body.get("core_radius_m", CORE_RADIUS))
@@ -63,11 +67,17 @@ class PedestrianType:
             object.__setattr__(self, "preferred_speed", free_speeds(self.mobility_map))
         elif not isinstance(self.preferred_speed, Distribution):
             speed = self.preferred_speed
-            if not (isinstance(speed, Real) and 0.0 < speed < np.inf):
+            if not (is_number(speed) and 0.0 < speed < np.inf):
                 raise ModelError(
                     f"type {self.name!r}: preferred_speed {speed!r}, expected a distribution or "
                     "more than 0 m/s"
                 )
+
+    def __repr__(self) -> str:
+        told = [repr(self.name), repr(self.mobility_map)]
+        told += [f"{name}={getattr(self, name)!r}" for name in ("preferred_speed", "core_radius")]
+        told += [f"discs={list(self.discs)}"] * bool(len(self.discs))
+        return f"<PedestrianType {', '.join(told)}>"
 
     @classmethod
     def named(cls, name: str) -> Self:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import networkx as nx
 import numpy as np
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
+from mesa_mobility.plugins.annotations import Range
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -33,9 +34,9 @@ class RouteChoice(TargetChoice):
         ModelError: an interval that is not positive.
     """
 
-    def __init__(self, interval: float = math.inf) -> None:
-        if not interval > 0.0:
-            raise ModelError(f"{self.name}: interval {interval}, expected more than 0 s")
+    def __init__(
+        self, interval: Annotated[float, Range(0.0, unit="s", above=True, endless=True)] = math.inf
+    ) -> None:
         self.interval = interval
         self._again = np.empty(0)
 

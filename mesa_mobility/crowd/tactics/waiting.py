@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.errors import ModelError
@@ -81,6 +82,10 @@ class Waits:
             self._conditions[row] = until
             crowd.agenda["waits_until"][row] = _UNTIL_TOLD
         else:
+            if not is_number(seconds):
+                raise ModelError(
+                    f"wait: got {seconds!r:.60}, expected seconds, 0 to {LONGEST_WAIT:g}"
+                )
             self._conditions.pop(row, None)
             frames = frames_of(np.array([seconds], dtype=np.float64), "wait")
             crowd.agenda["waits_until"][row] = frame + frames[0]

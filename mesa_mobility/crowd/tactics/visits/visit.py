@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
 from typing import Any, TypeAlias
 
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan.checks import read_wkt
+from mesa_mobility.plugins.output import numbers_in
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Visit:
 
     def __post_init__(self) -> None:
         if not isinstance(self.stay, Distribution) and not (
-            isinstance(self.stay, Real) and 0.0 <= self.stay <= LONGEST_WAIT
+            is_number(self.stay) and 0.0 <= self.stay <= LONGEST_WAIT
         ):
             raise ModelError(
                 f"visit: stay {self.stay!r}, expected a distribution, or 0 to {LONGEST_WAIT:g} s"
@@ -71,8 +72,8 @@ def _read(place: Any) -> tuple[float, float] | BaseGeometry:
     if isinstance(given, BaseGeometry) and given.geom_type == "Point" and not given.is_empty:
         given = given.x, given.y
     try:
-        point = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
+        point = numbers_in("visit", given, "a point")
+    except ModelError:
         point = np.empty(0)
     if point.shape != (2,) or not np.isfinite(point).all():
         raise FloorPlanError(f"visit: place {place!r}, expected a point (x, y) or a polygon")
