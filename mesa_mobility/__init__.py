@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone, Targets
     from mesa_mobility.mobility import MobilityMap, MotionGraph
     from mesa_mobility.plugins.annotations import Files, ListOf, Range
+    from mesa_mobility.plugins.settings import check_fields
     from mesa_mobility.results import Trajectories
 
 _ROOMS = {
@@ -74,6 +75,7 @@ _ROOMS = {
     "__version__": "_version",
     "batch_run": "batch",
     "bound_kernel": "crowd",
+    "check_fields": "plugins.settings",
     "option_kernel": "crowd",
     "pair_bound_kernel": "crowd",
     "pair_kernel": "crowd",
@@ -112,6 +114,7 @@ __all__ = [
     "__version__",
     "batch_run",
     "bound_kernel",
+    "check_fields",
     "option_kernel",
     "pair_bound_kernel",
     "pair_kernel",

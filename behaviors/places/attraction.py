@@ -11,11 +11,19 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, ListOf, PedestrianModel, Range, Tactic, Visit
+from mesa_mobility import (
+    Deciding,
+    Desired,
+    ListOf,
+    PedestrianModel,
+    Range,
+    Tactic,
+    Visit,
+    check_fields,
+)
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import lines_of_sight
-from mesa_mobility.plugins.settings import check_fields
 
 # Metres from its place within which somebody counts as one who looks.
 _LOOKS = 0.5

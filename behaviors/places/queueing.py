@@ -11,12 +11,19 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, ListOf, PedestrianModel, Range, Tactic, Visit
+from mesa_mobility import (
+    Deciding,
+    Desired,
+    ListOf,
+    PedestrianModel,
+    Range,
+    Tactic,
+    Visit,
+    check_fields,
+)
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import lines_of_sight
-from mesa_mobility.plugins.output import numbers_in
-from mesa_mobility.plugins.settings import check_fields
 
 # Radius of the place where people are served, metres, and the least distance in the line: only
 # one person is there at a time.
@@ -51,13 +58,17 @@ class Counter:
     spacing: Annotated[float, Range(_CLOSEST, unit="m")] = 0.6
 
     def __post_init__(self) -> None:
-        points = numbers_in("counter: line", self.line, "two points (x, y) or more")
-        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
+        try:
+            points = np.asarray(self.line)
+        except ValueError:  # rows of unequal length
+            points = np.empty(0)
+        shape = points.shape if points.dtype.kind in "iuf" else ()
+        if len(shape) != 2 or shape[1] != 2 or shape[0] < 2:
             raise ModelError(f"counter: line {self.line!r:.80}, expected two points (x, y) or more")
         if not np.isfinite(points).all() or not np.diff(points, axis=0).any(axis=1).all():
             raise ModelError(f"counter: line {self.line!r:.80}, expected finite, different points")
         check_fields(self, "counter")
-        object.__setattr__(self, "line", tuple(map(tuple, points.tolist())))
+        object.__setattr__(self, "line", tuple(map(tuple, points.astype(np.float64).tolist())))
         Visit(self.line[0], stay=self.service)  # refuses what is no time
 
     @cached_property

@@ -12,10 +12,9 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility import Deciding, FloorPlan, ListOf, Range, TargetChoice, Targets
+from mesa_mobility import Deciding, FloorPlan, ListOf, Range, TargetChoice, Targets, check_fields
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import lines_of_sight
-from mesa_mobility.plugins.settings import check_fields
 
 # Metres by which an area grows until ways round it are searched for anew, and metres between the
 # places at its edge to which people in it may walk.

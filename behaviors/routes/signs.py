@@ -10,11 +10,9 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, ListOf, PedestrianModel, Range, RouteChoice
+from mesa_mobility import Deciding, ListOf, PedestrianModel, Range, RouteChoice, check_fields
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import lines_of_sight
-from mesa_mobility.plugins.output import numbers_in
-from mesa_mobility.plugins.settings import check_fields
 
 # Metres in front of a sign, which hangs on a wall, that must be in sight.
 _BEFORE = 0.1
@@ -42,8 +40,11 @@ class Sign:
     distance: Annotated[float, Range(0.0, unit="m", above=True)] = 30.0
 
     def __post_init__(self) -> None:
-        place = numbers_in("sign: position", self.position, "(x, y) in metres")
-        if place.shape != (2,) or not np.isfinite(place).all():
+        try:
+            place = np.asarray(self.position)
+        except ValueError:  # rows of unequal length
+            place = np.empty(0)
+        if place.dtype.kind not in "iuf" or place.shape != (2,) or not np.isfinite(place).all():
             raise ModelError(f"sign: position {self.position!r:.80}, expected (x, y) in metres")
         if isinstance(self.gates, str) or not len(self.gates):
             raise ModelError(f"sign: gates {self.gates!r}, expected a list of names of gates")

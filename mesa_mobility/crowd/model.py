@@ -205,7 +205,8 @@ class PedestrianModel(mesa.Model):
     def __repr__(self) -> str:
         if "population" not in self.__dict__:
             return f"<{type(self).__name__}, not made yet>"
-        people = f"{self.population.count} people, {self.inside} inside"
+        count = self.population.count
+        people = f"{count} {'person' if count == 1 else 'people'}, {self.inside} inside"
         return f"<{type(self).__name__}: {people}, {self.elapsed:.1f} s>"
 
     @property

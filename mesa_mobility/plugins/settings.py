@@ -122,9 +122,9 @@ def _number(value: Any, whole: bool) -> float | None:
 def _entries(parameter: Parameter, value: Any) -> list[Any] | tuple[Any, ...]:
     assert parameter.entries is not None
     kind = parameter.entries.kind
-    expected = f"a list of {kind.__name__} objects"
-    if kind is str:
-        expected = "a list of names" + (f" such as [{value!r}]" if isinstance(value, str) else "")
+    expected = _listed(kind)
+    if kind is str and isinstance(value, str):
+        expected += f" such as [{value!r}]"
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         raise ModelError(f"{parameter.name} {_shown(value)}, expected {expected}")
     entries = list(value)
@@ -132,6 +132,10 @@ def _entries(parameter: Parameter, value: Any) -> list[Any] | tuple[Any, ...]:
         if not isinstance(each, kind):
             raise ModelError(f"{parameter.name} has {_shown(each)}, expected {expected}")
     return tuple(entries) if parameter.entries.once else entries
+
+
+def _listed(kind: type) -> str:
+    return "a list of names" if kind is str else f"a list of {kind.__name__} objects"
 
 
 def _shown(value: Any) -> str:
@@ -218,6 +222,8 @@ def settings_text(kind: type) -> list[tuple[str, str, str, str]]:
     rows = []
     for name, parameter in declared(kind).items():
         default = "" if parameter.default is inspect.Parameter.empty else _shown(parameter.default)
-        takes = str(parameter.range or f"a list of {parameter.entries.kind.__name__}")  # type: ignore[union-attr]
+        takes = str(parameter.range)
+        if parameter.entries is not None:
+            takes = _listed(parameter.entries.kind)
         rows.append((name, default, takes, explained.get(name, "")))
     return rows

@@ -66,5 +66,5 @@ def test_people_are_farther_apart():
 
 @pytest.mark.parametrize("distance", [0.0, -1.0, float("nan"), float("inf")])
 def test_distances_that_are_refused(distance):
-    with pytest.raises(ModelError, match="keep_distance: distance is"):
+    with pytest.raises(ModelError, match="keep_distance: distance"):
         KeepDistance(distance=distance)

@@ -141,7 +141,7 @@ def test_default_numbers_are_used():
 @pytest.mark.parametrize("name", ["time", "least"])
 @pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])
 def test_numbers_out_of_range_are_refused_in_one_line(name, value):
-    says = rf"^room_ahead: {name} is .*expected more than 0$"
+    says = rf"^room_ahead: {name} .*expected more than 0 m?/?s$"
     with pytest.raises(ModelError, match=says) as caught:
         RoomAhead(**{name: value})
     assert "\n" not in str(caught.value)

@@ -44,6 +44,6 @@ def test_those_who_want_to_stand_have_no_step_of_their_own():
 
 @pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])
 def test_lengths_out_of_range_are_refused_in_one_line(value):
-    with pytest.raises(ModelError, match=r"^stepping: length is .*expected more than 0$") as caught:
+    with pytest.raises(ModelError, match=r"^stepping: length .*expected more than 0 m$") as caught:
         Stepping(length=value)
     assert "\n" not in str(caught.value)

@@ -208,7 +208,7 @@ def test_the_walking_speed_given_is_used():
 
 @pytest.mark.parametrize("walking", [0.0, -0.6, math.nan, math.inf])
 def test_a_walking_speed_out_of_range_is_refused_in_one_line(walking):
-    says = r"^velocity_change: walking is .*expected more than 0$"
+    says = r"^velocity_change: walking .*expected more than 0 m/s$"
     with pytest.raises(ModelError, match=says) as caught:
         VelocityChange(walking=walking)
     assert "\n" not in str(caught.value)
@@ -225,7 +225,7 @@ def test_a_turning_factor_of_one_counts_all_directions_alike():
 
 @pytest.mark.parametrize("turning", [0.0, 0.99, -2.0, math.nan, math.inf])
 def test_a_turning_factor_out_of_range_is_refused_in_one_line(turning):
-    with pytest.raises(ModelError, match=r"^velocity_change: turning is .*expected 1 or more$"):
+    with pytest.raises(ModelError, match=r"^velocity_change: turning .*expected 1 or more$"):
         VelocityChange(turning=turning)
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Candidates, CompiledTerm, CostTerm, pair_kernel
+from mesa_mobility import Candidates, CompiledTerm, CostTerm, Range, pair_kernel
 
 
 class KeepLeft(CostTerm):
@@ -55,7 +56,10 @@ class KeepAway(CompiledTerm):
     default_weight = 2.0
     kernel = _keep_away
 
-    def __init__(self, weight: float | None = None, distance: float = 1.5) -> None:
+    # A parameter with a range is a setting: it is checked here and whenever it is set.
+    def __init__(
+        self, weight: float | None = None, distance: Annotated[float, Range(0.0, 10.0, "m")] = 1.5
+    ) -> None:
         super().__init__(weight)
         self.distance = distance
 

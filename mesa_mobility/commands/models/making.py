@@ -26,7 +26,8 @@ Behaviors = Annotated[
     typer.Option(
         "--behavior",
         metavar="NAME[=WEIGHT]",
-        help="An installed behaviour to use besides the model's own; repeatable.",
+        help="An installed behaviour to use besides the model's own; repeatable. "
+        "`mesa-mobility behaviors NAME` lists its settings.",
     ),
 ]
 MapFile = Annotated[

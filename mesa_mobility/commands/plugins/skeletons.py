@@ -1,35 +1,50 @@
 """What `mesa-mobility new` writes; ``@name@``, ``@class@`` and ``@module@`` are placeholders."""
 
-BEHAVIOR = '''"""A cost term: people keep away from walls on their left."""
+BEHAVIOR = '''"""A cost term: people keep to the right of their way."""
+
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Candidates, CostTerm
+from mesa_mobility import Candidates, CostTerm, Range
 
 
 class @class@(CostTerm):
     """Options that lead to the left of the way to the target cost more.
 
-    Metres to the left of the straight way, 0 to its right. Change this to what you study.
+    Metres beyond ``free`` to the left of the straight way, 0 to its right. Change this to what you
+    study.
+
+    Args:
+        weight: factor in the sum.
+        free: metres to the left that cost nothing.
     """
 
     name = "@name@"
     default_weight = 0.5
 
+    def __init__(
+        self, weight: float | None = None, free: Annotated[float, Range(0.0, 2.0, "m")] = 0.0
+    ) -> None:
+        super().__init__(weight)
+        self.free = free  # checked against its range whenever it is set
+
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
-        """(n,) metres by which each option ends to the left of the way, at least 0."""
+        """(n,) metres beyond ``free`` by which each option ends to the left, at least 0."""
         way = candidates.targets - candidates.positions
         way = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9)
         step = candidates.points - candidates.positions[candidates.owner]
         ahead = way[candidates.owner]
-        return np.maximum(ahead[:, 0] * step[:, 1] - ahead[:, 1] * step[:, 0], 0.0)
+        left = ahead[:, 0] * step[:, 1] - ahead[:, 1] * step[:, 0]
+        return np.maximum(left - self.free, 0.0)
 '''
 
 BEHAVIOR_TEST = '''import numpy as np
+import pytest
 
 from @module@ import @class@
-from mesa_mobility import Exit, FloorPlan, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, MobilityError, PedestrianModel
 
 
 def corridor(weight):
@@ -50,6 +65,13 @@ def test_what_options_cost():
     # The way leads along +x: left of it is a larger y.
     left = options.points[:, 1] - 2.0
     np.testing.assert_allclose(cost, np.maximum(left, 0.0), atol=0.05 * np.abs(left).max())
+
+
+def test_settings_are_checked():
+    with pytest.raises(MobilityError, match="free -1.0, expected 0 to 2 m"):
+        @class@(free=-1.0)
+    with pytest.raises(MobilityError, match="did you mean 'free'"):
+        @class@().fre = 1.0
 
 
 def test_people_still_get_out():

@@ -15,7 +15,7 @@ class TermState:
 
     Attributes:
         name: of the term.
-        description: the first line of its docstring.
+        description: the first line of its docstring, and its settings.
         on: whether the model uses it.
         weight: its factor, used or not.
     """
@@ -99,7 +99,7 @@ class Behaviours:
         return tuple(
             TermState(
                 term.name,
-                (inspect.getdoc(type(term)) or "").partition("\n")[0],
+                _described(term),
                 term in model.terms,
                 term.weight,
             )
@@ -113,6 +113,13 @@ class Behaviours:
             model.terms.append(term)
         if not on and term in model.terms:
             model.terms.remove(term)
+
+
+def _described(term: CostTerm) -> str:
+    """What a term is, and its settings as they are."""
+    first = (inspect.getdoc(type(term)) or "").partition("\n")[0]
+    settings = ", ".join(f"{name} {value}" for name, value in CostTerm.settings(term).items())
+    return f"{first} ({settings})" if settings else first
 
 
 def _installed() -> list[CostTerm | TargetChoice]:

@@ -138,8 +138,8 @@ def test_it_goes_on_from_a_checkpoint(tmp_path):
     ("wrong", "text"),
     [
         ({"distance": 0.0}, "distance 0.0, expected more than 0 m"),
-        ({"behind": -0.1}, "behind -0.1, expected 0 or more"),
-        ({"slower": float("nan")}, "slower nan, expected 0 or more"),
+        ({"behind": -0.1}, "behind -0.1, expected 0 m or more"),
+        ({"slower": float("nan")}, "slower nan, expected 0 m/s or more"),
     ],
 )
 def test_numbers_out_of_range_are_refused(wrong, text):

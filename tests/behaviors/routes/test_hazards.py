@@ -149,7 +149,7 @@ def test_hazards_may_come_while_a_model_runs():
         ({"area": "POINT (1 2)"}, "hazard: area 'POINT"),
         ({"area": (1.0, math.nan)}, "hazard: area"),
         ({"area": shapely.LineString([(0, 0), (1, 1)])}, "expected a valid shapely Polygon"),
-        ({"speed": -1.0}, r"hazard: speed -1.0, expected 0 or more"),
+        ({"speed": -1.0}, r"hazard: speed -1.0, expected 0 m/s or more"),
         ({"begins": math.inf}, "hazard: begins inf"),
         ({"within": Point(1, 2)}, "hazard: within"),
     ],

@@ -75,7 +75,7 @@ def test_people_without_gates_go_the_shortest_way():
     plan = FloorPlan(box(0, 0, 10, 4), exits=[Exit("east", (10, 1), (10, 3))])
     model = model_of(plan, strider(), target_choice=CongestionRouting())
     assert put(model, 2.0, 2.0).route == ()
-    with pytest.raises(ModelError, match=r"patience 1\.0, expected 0 to 1"):
+    with pytest.raises(ModelError, match=r"patience 1\.0, expected 0 or more and less than 1"):
         CongestionRouting(patience=1.0)
 
 
@@ -128,7 +128,7 @@ def test_signs_that_lead_nowhere_are_refused():
                      target_choice=Signs([Sign((6, 4), 0.0, ["middle"])])), 2.0, 2.0)  # fmt: skip
     for wrong, text in (
         ({"gates": "low"}, "expected a list"),
-        ({"facing": math.nan}, "expected finite"),
+        ({"facing": math.nan}, "facing nan, expected"),
         ({"distance": 0.0}, "distance 0.0"),
     ):
         with pytest.raises(ModelError, match=text):
