@@ -122,8 +122,8 @@ def free_area(
     exits: Sequence[Exit],
     gates: Sequence[Gate],
     cut_off: bool,
-) -> BaseGeometry:
-    """Walkable area minus obstacles, without pockets that can hold nobody.
+) -> list[Polygon]:
+    """Pieces of the walkable area minus obstacles, without pockets that can hold nobody.
 
     Raises:
         FloorPlanError: nothing is left, or, unless pieces may be `cut_off`, a piece that is left
@@ -148,7 +148,7 @@ def free_area(
                 f"a piece of {piece.area:.2f} m² around ({spot.x:.2f}, {spot.y:.2f}) "
                 f"is disconnected from every {'exit' if exits else 'gate'}"
             )
-    return pieces[0] if len(pieces) == 1 else shapely.MultiPolygon(pieces)
+    return pieces
 
 
 def _touches(piece: Polygon, opening: Exit) -> bool:

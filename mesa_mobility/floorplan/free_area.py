@@ -13,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.floorplan import checks
 from mesa_mobility.floorplan.layout import Layout
 from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.outline import outline_of
 from mesa_mobility.floorplan.walls import boundaries
 
 Opening = TypeVar("Opening", bound=Gate | Exit)
@@ -30,7 +31,8 @@ class FreeArea:
         FloorPlanError: a piece of the area has no exit, and may not be cut off.
 
     Attributes:
-        geometry: a Polygon, or a MultiPolygon with an exit at each piece that is not cut off.
+        geometry: a Polygon, or a MultiPolygon with an exit at each piece that is not cut off; its
+            outline simplified.
         obstacles: by id.
         cut_off: whether they may cut pieces off.
         closed: names of the closed gates and exits.
@@ -43,6 +45,7 @@ class FreeArea:
         cut_off: bool = False,
     ) -> None:
         self._walkable, self._exits, self._gates = layout.walkable, layout.exits, layout.gates
+        self._simplify = layout.simplify
         self.cut_off = cut_off
         self.closed: frozenset[str] = frozenset()
         self._subtract(obstacles)
@@ -80,7 +83,10 @@ class FreeArea:
 
     def _subtract(self, obstacles: Mapping[int, Polygon]) -> None:
         self.obstacles = dict(obstacles)
-        self.geometry: BaseGeometry = checks.free_area(
+        pieces = checks.free_area(
             self._walkable, list(self.obstacles.values()), self._exits, self._gates, self.cut_off
+        )
+        self.geometry: BaseGeometry = outline_of(
+            pieces, self._simplify, [*self._exits, *self._gates]
         )
         shapely.prepare(self.geometry)

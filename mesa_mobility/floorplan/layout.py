@@ -9,6 +9,7 @@ from shapely import Polygon
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import checks, extent
 from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.outline import check_tolerance
 from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
 
 
@@ -21,6 +22,7 @@ class Layout:
         gates: lines to cross, inside the walkable area.
         zones: parts of the floor where people walk more slowly.
         name: for titles and files.
+        simplify: metres by which walls may recede to have fewer vertices.
 
     Raises:
         FloorPlanError: parts that ``FloorPlan`` refuses.
@@ -33,8 +35,10 @@ class Layout:
         gates: Iterable[Gate],
         zones: Iterable[SpeedZone],
         name: str,
+        simplify: float,
     ) -> None:
         self.name = name
+        self._simplify = check_tolerance(simplify)
         self._walkable = checks.read_polygon(walkable, "walkable area")
         extent.check_extent(self._walkable)
         self._exits = tuple(exits)
@@ -49,6 +53,11 @@ class Layout:
     def walkable(self) -> Polygon:
         """The walkable polygon as given, obstacles not subtracted."""
         return self._walkable
+
+    @property
+    def simplify(self) -> float:
+        """Metres by which walls of the free area may recede to have fewer vertices."""
+        return self._simplify
 
     @property
     def exits(self) -> tuple[Exit, ...]:

@@ -21,6 +21,7 @@ from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.free_area import FreeArea
 from mesa_mobility.floorplan.layout import Layout
 from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.outline import SIMPLIFY
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.walls.wall_index import WallIndex
 from mesa_mobility.floorplan.zones import SpeedZone
@@ -40,6 +41,9 @@ class FloorPlan(Layout):
         zones: parts of the floor where people walk more slowly.
         name: for titles and files.
         cut_off: whether obstacles may cut pieces off from every exit.
+        simplify: metres by which walls may recede where that leaves out vertices, at most 0.1;
+            0 keeps every vertex. The floor only grows, so no gap gets narrower; along exits and
+            gates, and in `walkable` and `obstacles`, nothing changes.
 
     Raises:
         FloorPlanError: geometry that is empty, not valid, not finite or in several pieces; a
@@ -75,8 +79,9 @@ class FloorPlan(Layout):
         zones: Iterable[SpeedZone] = (),
         name: str = "",
         cut_off: bool = False,
+        simplify: float = SIMPLIFY,
     ) -> None:
-        super().__init__(walkable, exits, gates, zones, name)
+        super().__init__(walkable, exits, gates, zones, name, simplify)
         self.version = 0
         polygons = {
             i: read_polygon(obstacle, f"obstacle {i}") for i, obstacle in enumerate(obstacles)
@@ -164,6 +169,7 @@ class FloorPlan(Layout):
                 zones=content.zones,
                 name=content.name,
                 cut_off=content.cut_off,
+                simplify=content.simplify,
             )
         except FloorPlanError as error:
             raise FloorPlanError(f"{where}: {error}") from None
@@ -178,7 +184,8 @@ class FloorPlan(Layout):
 
     @property
     def free(self) -> BaseGeometry:
-        """Walkable area minus obstacles: a Polygon, or a MultiPolygon, an exit at each piece."""
+        """Walkable area minus obstacles, its outline simplified: a Polygon, or a MultiPolygon, an
+        exit at each piece."""
         return self._area.geometry
 
     @property

@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.extent import check_coordinates
 from mesa_mobility.floorplan.openings import Exit, Gate, Opening
+from mesa_mobility.floorplan.outline import SIMPLIFY
 from mesa_mobility.floorplan.zones import SpeedZone
 
 KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
@@ -29,6 +30,7 @@ class Content:
     zones: list[SpeedZone] = field(default_factory=list)
     closed: list[str] = field(default_factory=list)
     cut_off: bool = False
+    simplify: float = SIMPLIFY
 
 
 def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
@@ -52,6 +54,7 @@ def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
     for kind, name, geometry, properties, at in found:
         if kind == "walkable":
             content.cut_off = _flag(properties, "cut_off", at)
+            content.simplify = properties.get("simplify", SIMPLIFY)
         elif kind == "obstacle":
             content.obstacles.append(geometry)
         elif kind in ("gate", "exit"):

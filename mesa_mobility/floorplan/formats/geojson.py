@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.formats.content import Content, content_of
+from mesa_mobility.floorplan.outline import SIMPLIFY
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -27,6 +28,8 @@ def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
     features = [_feature("walkable", plan.name, plan.walkable)]
     if plan.cut_off:
         features[0]["properties"]["cut_off"] = True
+    if plan.simplify != SIMPLIFY:
+        features[0]["properties"]["simplify"] = plan.simplify
     features += [
         _feature("obstacle", str(i), polygon) for i, polygon in enumerate(plan.obstacles.values())
     ]

@@ -5,8 +5,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.errors import GEOSException
+from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
+from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -128,12 +131,22 @@ def _narrow_floor(
     if len(gaps) == 0:
         return []
     lines = shapely.linestrings(gaps.reshape(-1, 2, 2))
-    cut = shapely.union_all([plan.free.boundary, *lines])
+    floor = smooth_floor(plan).floor
+    cut = _noded([floor.boundary, *lines])
     pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(cut)))
-    pieces = pieces[shapely.contains(plan.free, shapely.point_on_surface(pieces))]
+    pieces = pieces[shapely.contains(floor, shapely.point_on_surface(pieces))]
     room = shapely.buffer(pieces, -width / 2.0 - 10.0**-_DIGITS)
     narrow = shapely.union_all(pieces[shapely.is_empty(room)])
     return [part for part in shapely.get_parts(narrow) if isinstance(part, shapely.Polygon)]
+
+
+def _noded(lines: list[BaseGeometry]) -> BaseGeometry:
+    """Lines cut where they cross."""
+    try:
+        return shapely.union_all(lines)
+    except GEOSException:
+        # Crossings of lines at the smallest angles cannot be put in order but on a grid.
+        return shapely.union_all(lines, grid_size=10.0**-_DIGITS)
 
 
 def _holders(floors: list[shapely.Polygon], places: NDArray[np.float64]) -> NDArray[np.int64]:

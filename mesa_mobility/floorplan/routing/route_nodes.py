@@ -13,6 +13,7 @@ from mesa_mobility.floorplan.openings import Exit, Opening
 from mesa_mobility.floorplan.walls.boundaries import rings, turns
 from mesa_mobility.floorplan.walls.narrow_gaps import walls_near
 from mesa_mobility.floorplan.walls.sight import Sight
+from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 from mesa_mobility.floorplan.walls.wall_distances import wall_distances
 
 if TYPE_CHECKING:
@@ -148,7 +149,7 @@ def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> ND
 def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
     bases, offsets = _wall_ends(plan, clearance)
     beside = []
-    for ring in rings(plan.free.simplify(_SIMPLIFY * clearance)):
+    for ring in rings(smooth_floor(plan).floor.simplify(_SIMPLIFY * clearance)):
         for vertex, own, edges in _reflex(ring, clearance):
             bases += [vertex] * len(own)
             offsets += own

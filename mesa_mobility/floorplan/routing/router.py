@@ -24,7 +24,7 @@ from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, U
 from mesa_mobility.floorplan.routing.targets import Destination, Targets, is_point
 from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
-from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
+from mesa_mobility.floorplan.walls.narrow_gaps import closed_gaps
 from mesa_mobility.floorplan.walls.sight import Sight, sight_of
 
 if TYPE_CHECKING:
@@ -244,7 +244,7 @@ class Router:
         walls = plan.walls
         curtains = [
             opening_segments(plan.open_exits()),
-            narrow_gaps(plan, 2 * NODE_SHARE * self._clearance),
+            closed_gaps(plan, 2 * NODE_SHARE * self._clearance),
         ]
         self._sight: Sight = sight_of(walls, np.concatenate(curtains), self._clearance)
         points = [each for each in self._destinations if is_point(each)]

@@ -37,10 +37,13 @@ def turns(ring: NDArray[np.float64]) -> NDArray[np.float64]:
     )
 
 
-def cut_out(segments: NDArray[np.float64], openings: Iterable[Opening]) -> NDArray[np.float64]:
-    """The (m, 4) segments without the parts that lie along one of the openings."""
+def cut_out(
+    segments: NDArray[np.float64], openings: Iterable[Opening], off: float = EDGE_TOLERANCE
+) -> NDArray[np.float64]:
+    """The (m, 4) segments without the parts that lie along one of the openings, up to ``off``
+    metres from it."""
     for opening in openings:
-        segments = _cut_one(segments, opening)
+        segments = _cut_one(segments, opening, off)
     return segments
 
 
@@ -49,7 +52,9 @@ def opening_segments(openings: Iterable[Opening]) -> NDArray[np.float64]:
     return np.array([[*o.a, *o.b] for o in openings], dtype=np.float64).reshape(-1, 4)
 
 
-def _cut_one(segments: NDArray[np.float64], opening: Opening) -> NDArray[np.float64]:
+def _cut_one(
+    segments: NDArray[np.float64], opening: Opening, off: float
+) -> NDArray[np.float64]:
     origin = np.array(opening.a)
     along = (np.array(opening.b) - origin) / opening.length
     across = np.array([-along[1], along[0]])
@@ -59,7 +64,7 @@ def _cut_one(segments: NDArray[np.float64], opening: Opening) -> NDArray[np.floa
     # Jambs meet the opening at an angle and must keep their full length.
     parallel = np.abs(t[1] - t[0]) > 0.9 * lengths
     t_in, t_out = _inside(t, 0.0, opening.length)
-    s_in, s_out = _inside(s, -EDGE_TOLERANCE, EDGE_TOLERANCE)
+    s_in, s_out = _inside(s, -off, off)
     first, last = np.maximum(t_in, s_in), np.minimum(t_out, s_out)
     cut = parallel & (last > first)
     kept = [segments[~cut]]

@@ -8,29 +8,59 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan.walls.boundaries import opening_segments, rings, turns
+from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
 
+# A smooth wall may lie this much before or behind the real one (metres), so that gaps look wider.
+_OFF = 0.04
+
+# How far behind a smooth wall the real one may lie (metres).
+_POCKET = 0.2
+
 
 def narrow_gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
-    """(k, 4) segments across every gap of the free area that is narrower than `width` metres.
+    """(k, 4) segments across every gap of the smooth floor that is narrower than `width` metres.
 
-    A gap is narrowest between a reflex vertex of the free area, or a loose end of a wall, and the
+    A gap is narrowest between a reflex vertex of the floor, or a loose end of a wall, and the
     nearest point of another wall.
     """
+    smooth = smooth_floor(plan)
     ends = opening_segments([*plan.open_exits(), *plan.closed_gates()]).reshape(-1, 2)
-    vertices = [ring[turns(ring) < 0] for ring in rings(plan.free)]
-    bases = np.unique(np.concatenate([ends, *vertices]), axis=0)
-    found = [np.empty((0, 4))]
-    for base in shapely.points(bases):
-        across = shapely.shortest_line(base, walls_near(plan, base, width))
-        across = across[shapely.length(across) > 0]
-        # A line that only runs along or inside walls spans no gap.
-        middles = shapely.line_interpolate_point(across, 0.5, normalized=True)
-        open_floor = shapely.contains_properly(plan.free, middles)
-        found.append(shapely.get_coordinates(across[open_floor]).reshape(-1, 4))
-    return np.concatenate(found)
+    vertices = [ring[turns(ring) < 0] for ring in rings(smooth.floor)]
+    bases = shapely.points(np.unique(np.concatenate([ends, *vertices]), axis=0))
+    base, wall = smooth.tree.query(bases, predicate="dwithin", distance=width)
+    across = shapely.shortest_line(bases[base], smooth.walls[wall])
+    length = shapely.length(across)
+    across = across[(length > 0) & (length < width)]
+    # A line that only runs along or inside walls spans no gap.
+    middles = shapely.line_interpolate_point(across, 0.5, normalized=True)
+    across = across[shapely.contains_properly(smooth.floor, middles)]
+    return shapely.get_coordinates(across).reshape(-1, 4)
+
+
+def closed_gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
+    """(k, 4) segments across every gap of the free area that is narrower than `width` metres.
+
+    Where walls of the smooth floor are not the real ones, a gap is closed only if no place in it is
+    half the width from the real walls.
+    """
+    if smooth_floor(plan).is_exact:
+        return narrow_gaps(plan, width)
+    gaps = narrow_gaps(plan, width + _OFF)
+    step = gaps[:, 2:] - gaps[:, :2]
+    beyond = _POCKET * step / np.hypot(*step.T)[:, None]
+    whole = np.concatenate([gaps[:, :2] - beyond, gaps[:, 2:] + beyond], axis=1)
+    room = plan.free.buffer(-width / 2.0, quad_segs=32)
+    shapely.prepare(room)
+    lines = shapely.intersection(shapely.linestrings(whole.reshape(-1, 2, 2)), plan.free)
+    passable = np.zeros(len(gaps), dtype=np.bool_)
+    parts, number = shapely.get_parts(lines, return_index=True)
+    # What lies behind the walls at its ends is another place.
+    own = shapely.distance(parts, shapely.points((gaps[:, :2] + gaps[:, 2:]) / 2.0)[number]) == 0.0
+    passable[number[own & shapely.intersects(room, parts)]] = True
+    return gaps[~passable]
 
 
 def walls_near(plan: "FloorPlan", place: BaseGeometry, reach: float) -> NDArray[np.object_]:

@@ -1,0 +1,143 @@
+"""The free area as routes see it: walls with many small steps or waves are smooth.
+
+A diagonal wall drawn as steps of a raster has a corner at every step. Nobody walks round any of
+them, yet each would be a node of the route graph and an end of many gaps, and time grows with the
+square of their number. Between two such corners lies a pocket in which nobody has room. Here,
+where many pockets follow each other, they are filled, and vertices that then lie within a
+centimetre of a straight line are left out.
+
+The walls that people see, and that stop them, stay as they are: this floor only says where routes
+may bend and where gaps may be.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
+from mesa_mobility.floorplan.walls.boundaries import boundary_segments, cut_out, opening_segments
+from mesa_mobility.floorplan.walls.boundaries import rings as rings_of
+from mesa_mobility.floorplan.walls.boundaries import turns
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan.plan import FloorPlan
+
+ROOM = 0.16
+"""Half the width in metres of the narrowest gap that routes of an adult lead through. A pocket is
+filled if no place in it is this far from every wall."""
+
+_MOUTH = 1.2
+"""Widest pocket that is filled, metres: wider ones are rooms of two people's breadth."""
+
+_MANY = 8
+"""Pockets in a row from which on they are filled: fewer are corners of rooms, doors and columns."""
+
+_STRAIGHT = 0.01
+"""Vertices this near to a straight line between others are left out, metres."""
+
+_ROUNDS = 8
+"""How often pockets are looked for: filled ones may make up wider and shallower ones."""
+
+
+class SmoothFloor(NamedTuple):
+    """The free area without small pockets.
+
+    Fields: ``floor`` its polygon or polygons; ``walls`` (m,) its walls as shapely lines; ``tree`` of
+    them; ``is_exact`` whether it is the free area itself.
+    """
+
+    floor: BaseGeometry
+    walls: NDArray[np.object_]
+    tree: shapely.STRtree
+    is_exact: bool
+
+
+_CACHE: "WeakKeyDictionary[FloorPlan, tuple[int, SmoothFloor]]" = WeakKeyDictionary()
+
+
+def smooth_floor(plan: "FloorPlan") -> SmoothFloor:
+    """The smooth floor of a plan as it is now; kept until the plan changes."""
+    found = _CACHE.get(plan)
+    if found is None or found[0] != plan.version:
+        found = (plan.version, _make(plan))
+        _CACHE[plan] = found
+    return found[1]
+
+
+def _make(plan: "FloorPlan") -> SmoothFloor:
+    floor = _filled(plan)
+    exact = floor is plan.free
+    walls = plan.walls
+    if not exact:
+        shapely.prepare(floor)
+        # Its edge may lie a little farther from an exit than the outline's.
+        edge = cut_out(boundary_segments(floor), plan.open_exits(), EDGE_TOLERANCE + _STRAIGHT)
+        walls = np.concatenate([edge, opening_segments(plan.closed_gates())])
+    lines = shapely.linestrings(walls.reshape(-1, 2, 2))
+    return SmoothFloor(floor, lines, shapely.STRtree(lines), exact)
+
+
+def _filled(plan: "FloorPlan") -> BaseGeometry:
+    """The free area without pockets that follow each other; itself if there are none."""
+    free = floor = plan.free
+    room: BaseGeometry | None = None
+    openings = shapely.STRtree([each.line for each in plan.openings()])
+    ends: set[tuple[float, float]] = set()
+    for _ in range(_ROUNDS):
+        pockets, mouths = _pockets(floor, ends)
+        if len(pockets) == 0:
+            break
+        if room is None:
+            room = free.buffer(-ROOM, quad_segs=4)
+            shapely.prepare(room)
+        # A pocket with an exit or gate in it leads somewhere.
+        leads = openings.query(pockets, predicate="dwithin", distance=2 * EDGE_TOLERANCE)[0]
+        small = ~shapely.intersects(room, pockets)
+        small[leads] = False
+        small &= ends_in_row(small, mouths) if not ends else True
+        if not small.any():
+            break
+        ends.update(map(tuple, mouths[small].reshape(-1, 2).tolist()))
+        left = shapely.difference(floor, shapely.union_all(pockets[small]))
+        parts = [part for part in shapely.get_parts(left) if part.geom_type == "Polygon"]
+        floor = parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
+    return free if floor is free else floor.simplify(_STRAIGHT)
+
+
+def ends_in_row(small: NDArray[np.bool_], mouths: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(k,) which of (k, 4) mouths, in order along their rings, are among many that are ``small``."""
+    joined = np.zeros(len(small), dtype=np.bool_)
+    joined[1:] = small[1:] & small[:-1] & (mouths[1:, :2] == mouths[:-1, 2:]).all(axis=1)
+    row = np.cumsum(~joined)
+    return np.bincount(row)[row] >= _MANY
+
+
+def _pockets(
+    floor: BaseGeometry, ends: set[tuple[float, float]]
+) -> tuple[NDArray[np.object_], NDArray[np.float64]]:
+    """Areas between neighbouring corners that stick out into the floor, and their (k, 4) mouths.
+
+    With ``ends``, only those between two of these places.
+    """
+    pockets, mouths = [], []
+    for ring in rings_of(floor):
+        turn = turns(ring)
+        tips = np.flatnonzero(turn < 0.0)
+        if len(tips) < _MANY and not ends:
+            continue
+        closed = np.concatenate([ring, ring])
+        for tip, after in zip(tips.tolist(), np.append(tips[1:], tips[:1] + len(ring)).tolist()):
+            a, b = closed[tip], closed[after]
+            if after - tip < 2 or not 0.0 < np.hypot(*(b - a)) <= _MOUTH:
+                continue
+            if ends and not (tuple(a.tolist()) in ends and tuple(b.tolist()) in ends):
+                continue
+            pocket = shapely.Polygon(closed[tip : after + 1])
+            if pocket.is_valid and pocket.area > 0.0:
+                pockets.append(pocket)
+                mouths.append(np.concatenate([a, b]))
+    return np.array(pockets, dtype=object), np.array(mouths).reshape(-1, 4)
