@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.openings import Exit
+from mesa_mobility.floorplan.walls.smooth_floor import CLOSER, smooth_floor
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -26,7 +27,7 @@ def check_reachable(plan: "FloorPlan", points: ArrayLike, clearance: float) -> N
     closed = shapely.union_all([gate.line for gate in plan.closed_gates()]).buffer(clearance)
     # A body nearer to a wall than the clearance counts as at the nearest place that keeps it.
     # That place is never behind the wall, where such places are farther away.
-    leads_out, _ = _pieces(plan, clearance, plan.open_exits(), closed)
+    leads_out, _ = _pieces(plan, plan.free, clearance, plan.open_exits(), closed)
     away = shapely.distance(leads_out, shapely.points(xy))
     lost = ~(plan.contains(xy) & (away <= clearance + 1e-6))
     if lost.any():
@@ -49,7 +50,10 @@ def with_way_out(plan: "FloorPlan", region: BaseGeometry, radius: float) -> Base
     """
     if not plan.exits:
         return region
-    _, cut_off = _pieces(plan, radius, plan.exits, shapely.Polygon())
+    smooth = smooth_floor(plan)
+    # A smooth wall may lie a little before the real one, and close no gap by that.
+    passing = radius if smooth.is_exact else max(radius - CLOSER, 0.0)
+    _, cut_off = _pieces(plan, smooth.floor, passing, plan.exits, shapely.Polygon())
     if cut_off.is_empty:
         return region
     # Nearer to a wall than the radius a body counts as at the nearest place that keeps it.
@@ -58,17 +62,21 @@ def with_way_out(plan: "FloorPlan", region: BaseGeometry, radius: float) -> Base
 
 
 def _pieces(
-    plan: "FloorPlan", clearance: float, exits: Sequence[Exit], closed: BaseGeometry
+    plan: "FloorPlan",
+    floor: BaseGeometry,
+    clearance: float,
+    exits: Sequence[Exit],
+    closed: BaseGeometry,
 ) -> tuple[BaseGeometry, BaseGeometry]:
     """Places at which the centre of a body can be: with a way to one of the exits, and without."""
     # The exits are lengthened outwards into short corridors, so that shrinking the area by
     # the body leaves a piece touching the exit's line only where the body fits through it.
     doorways = [e.line.buffer(2 * clearance, cap_style="flat") for e in exits]
     outside = shapely.union_all(doorways).difference(plan.walkable)
-    room = shapely.union_all([plan.free, outside]).buffer(-clearance, quad_segs=32)
+    room = shapely.union_all([floor, outside]).buffer(-clearance, quad_segs=32)
     pieces = shapely.get_parts(room.difference(closed))
     lines = shapely.union_all([e.line for e in exits])
     leads_out = shapely.intersects(pieces, lines)
     # What lies in such a corridor is no place to be.
-    cut_off = [piece for piece in pieces[~leads_out] if piece.intersects(plan.free)]
+    cut_off = [piece for piece in pieces[~leads_out] if piece.intersects(floor)]
     return shapely.union_all(pieces[leads_out]), shapely.union_all(cut_off)

@@ -13,6 +13,7 @@ from mesa_mobility.floorplan.poisson_disk import lattice, throw
 from mesa_mobility.floorplan.reachability import with_way_out
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
 from mesa_mobility.floorplan.walls.sight import Sight, sight_of
+from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 from mesa_mobility.floorplan.walls.wall_distances import wall_distances
 
 if TYPE_CHECKING:
@@ -94,7 +95,8 @@ def _most(region: BaseGeometry, spacing: float) -> int:
 
 
 def _standing_region(plan: "FloorPlan", within: Polygon | None, clearance: float) -> BaseGeometry:
-    region = plan.free.buffer(-clearance, quad_segs=32)
+    # A smooth floor shrinks faster; `_fits` looks at the walls themselves.
+    region = smooth_floor(plan).floor.buffer(-clearance, quad_segs=32)
     # In one piece of at least this clearance every place has a way out, or none has.
     whole = clearance >= PASSING and region.geom_type == "Polygon"
     if within is not None:

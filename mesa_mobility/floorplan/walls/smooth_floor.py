@@ -22,6 +22,7 @@ from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
 from mesa_mobility.floorplan.walls.boundaries import boundary_segments, cut_out, opening_segments
 from mesa_mobility.floorplan.walls.boundaries import rings as rings_of
 from mesa_mobility.floorplan.walls.boundaries import turns
+from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan.plan import FloorPlan
@@ -38,6 +39,12 @@ _MANY = 8
 
 _STRAIGHT = 0.01
 """Vertices this near to a straight line between others are left out, metres."""
+
+CLOSER = 0.04
+"""Metres by which a gap of the smooth floor may be narrower than the real one, at each side."""
+
+_FEW = 64
+"""Corners of an outline up to which there are never too many."""
 
 _ROUNDS = 8
 """How often pockets are looked for: filled ones may make up wider and shallower ones."""
@@ -84,36 +91,57 @@ def _make(plan: "FloorPlan") -> SmoothFloor:
 def _filled(plan: "FloorPlan") -> BaseGeometry:
     """The free area without pockets that follow each other; itself if there are none."""
     free = floor = plan.free
-    room: BaseGeometry | None = None
     openings = shapely.STRtree([each.line for each in plan.openings()])
     ends: set[tuple[float, float]] = set()
     for _ in range(_ROUNDS):
         pockets, mouths = _pockets(floor, ends)
         if len(pockets) == 0:
             break
-        if room is None:
-            room = free.buffer(-ROOM, quad_segs=4)
-            shapely.prepare(room)
         # A pocket with an exit or gate in it leads somewhere.
         leads = openings.query(pockets, predicate="dwithin", distance=2 * EDGE_TOLERANCE)[0]
-        small = ~shapely.intersects(room, pockets)
+        small = ~_have_room(plan, mouths)
         small[leads] = False
-        small &= ends_in_row(small, mouths) if not ends else True
+        if not ends:
+            small &= _in_row(small, pockets, mouths)
+        small &= ~shapely.is_missing(pockets)
         if not small.any():
             break
         ends.update(map(tuple, mouths[small].reshape(-1, 2).tolist()))
         left = shapely.difference(floor, shapely.union_all(pockets[small]))
         parts = [part for part in shapely.get_parts(left) if part.geom_type == "Polygon"]
         floor = parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
-    return free if floor is free else floor.simplify(_STRAIGHT)
+    straight = floor.simplify(_STRAIGHT)
+    if floor is not free or 2 * _tips(straight) < _tips(free) > _FEW:
+        return straight
+    return free
 
 
-def ends_in_row(small: NDArray[np.bool_], mouths: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _tips(floor: BaseGeometry) -> int:
+    """Number of corners that stick out into the floor."""
+    return sum(int((turns(ring) < 0.0).sum()) for ring in rings_of(floor))
+
+
+def _have_room(plan: "FloorPlan", mouths: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(k,) whether there is a place ``ROOM`` from every wall in (k, 4) mouths of convex pockets.
+
+    If there is none in the mouth, there is none behind it to which a way leads.
+    """
+    shares = np.linspace(0.05, 0.95, 19)[:, None]
+    places = mouths[:, None, :2] + shares * (mouths[:, None, 2:] - mouths[:, None, :2])
+    away = distances_to_walls(plan, places.reshape(-1, 2), ROOM)
+    room: NDArray[np.bool_] = (away.reshape(len(mouths), len(shares)) >= ROOM).any(axis=1)
+    return room
+
+
+def _in_row(
+    small: NDArray[np.bool_], pockets: NDArray[np.object_], mouths: NDArray[np.float64]
+) -> NDArray[np.bool_]:
     """(k,) which of (k, 4) mouths, in order along their rings, are among many that are ``small``."""
     joined = np.zeros(len(small), dtype=np.bool_)
     joined[1:] = small[1:] & small[:-1] & (mouths[1:, :2] == mouths[:-1, 2:]).all(axis=1)
     row = np.cumsum(~joined)
-    return np.bincount(row)[row] >= _MANY
+    among: NDArray[np.bool_] = np.bincount(row, ~shapely.is_missing(pockets))[row] >= _MANY
+    return among
 
 
 def _pockets(
@@ -121,23 +149,24 @@ def _pockets(
 ) -> tuple[NDArray[np.object_], NDArray[np.float64]]:
     """Areas between neighbouring corners that stick out into the floor, and their (k, 4) mouths.
 
-    With ``ends``, only those between two of these places.
+    None stands for an area where a straight wall joins two corners. With ``ends``, only those
+    between two of these places.
     """
-    pockets, mouths = [], []
+    pockets: list[shapely.Polygon | None] = []
+    mouths = []
     for ring in rings_of(floor):
-        turn = turns(ring)
-        tips = np.flatnonzero(turn < 0.0)
+        tips = np.flatnonzero(turns(ring) < 0.0)
         if len(tips) < _MANY and not ends:
             continue
         closed = np.concatenate([ring, ring])
         for tip, after in zip(tips.tolist(), np.append(tips[1:], tips[:1] + len(ring)).tolist()):
             a, b = closed[tip], closed[after]
-            if after - tip < 2 or not 0.0 < np.hypot(*(b - a)) <= _MOUTH:
+            if not 0.0 < np.hypot(*(b - a)) <= _MOUTH:
                 continue
             if ends and not (tuple(a.tolist()) in ends and tuple(b.tolist()) in ends):
                 continue
-            pocket = shapely.Polygon(closed[tip : after + 1])
-            if pocket.is_valid and pocket.area > 0.0:
+            pocket = shapely.Polygon(closed[tip : after + 1]) if after - tip > 1 else None
+            if pocket is None or (pocket.is_valid and pocket.area > 0.0):
                 pockets.append(pocket)
                 mouths.append(np.concatenate([a, b]))
     return np.array(pockets, dtype=object), np.array(mouths).reshape(-1, 4)

@@ -174,8 +174,11 @@ class WallIndex:
         ids = np.array([*reused, *range(start, start + fresh)], dtype=np.int64)
         self._segments = np.concatenate([self._segments, np.full((fresh, 4), np.nan)])
         self._segments[ids] = rows
-        for i, box in zip(ids.tolist(), self._boxes(rows), strict=True):
-            self._tree.insert(i, tuple(box))
+        if len(rows) > len(self) // 2:  # a new tree takes less time
+            self._plant()
+        else:
+            for i, box in zip(ids.tolist(), self._boxes(rows), strict=True):
+                self._tree.insert(i, tuple(box))
         return ids
 
     def remove(self, indices: ArrayLike) -> None:
