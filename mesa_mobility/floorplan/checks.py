@@ -85,7 +85,8 @@ def check_exits(walkable: Polygon, exits: Sequence[Exit], gates: Sequence[Gate])
         raise FloorPlanError("the floor plan has no exit, and no gate that people could go to")
     edge = walkable.boundary
     near_edge = edge.buffer(EDGE_TOLERANCE)
-    for i, opening in enumerate(exits):
+    shapely.prepare(near_edge)
+    for opening in exits:
         if not isinstance(opening, Exit):
             raise FloorPlanError(f"exits must be Exit objects, found {type(opening).__name__}")
         if not near_edge.covers(opening.line):
@@ -96,10 +97,12 @@ def check_exits(walkable: Polygon, exits: Sequence[Exit], gates: Sequence[Gate])
                 f"exit {opening.name!r} is not on the edge of the walkable area: "
                 f"it is up to {away:.3f} m away, at most {EDGE_TOLERANCE} m is accepted"
             )
-        for other in exits[:i]:
-            band = other.line.buffer(EDGE_TOLERANCE, cap_style="flat")
-            if opening.line.intersection(band).length > 1.5 * EDGE_TOLERANCE:
-                raise FloorPlanError(f"exits {other.name!r} and {opening.name!r} overlap")
+    lines = [opening.line for opening in exits]
+    bands = shapely.buffer(lines, EDGE_TOLERANCE, cap_style="flat")
+    later, earlier = shapely.STRtree(bands).query(lines, predicate="intersects")
+    for i, k in sorted(zip(later.tolist(), earlier.tolist(), strict=True)):
+        if k < i and lines[i].intersection(bands[k]).length > 1.5 * EDGE_TOLERANCE:
+            raise FloorPlanError(f"exits {exits[k].name!r} and {exits[i].name!r} overlap")
 
 
 def check_gates(walkable: Polygon, gates: Iterable[Gate]) -> None:
@@ -139,7 +142,7 @@ def free_area(
         raise FloorPlanError("the obstacles leave no walkable area")
     for piece in [] if cut_off else pieces:
         if exits:
-            connected = any(_touches(piece, opening) for opening in exits)
+            connected = _touches_any(piece, exits)
         else:
             connected = any(piece.intersects(gate.line) for gate in gates)
         if not connected:
@@ -159,6 +162,9 @@ def _holds_somebody(piece: Polygon) -> bool:
     return not piece.buffer(-STANDING_ROOM).is_empty
 
 
-def _touches(piece: Polygon, opening: Exit) -> bool:
-    contact = piece.boundary.buffer(2 * EDGE_TOLERANCE).intersection(opening.line).length
-    return contact >= min(_CONTACT, opening.length / 2)
+def _touches_any(piece: Polygon, exits: Sequence[Exit]) -> bool:
+    near_edge = piece.boundary.buffer(2 * EDGE_TOLERANCE)
+    return any(
+        near_edge.intersection(opening.line).length >= min(_CONTACT, opening.length / 2)
+        for opening in exits
+    )

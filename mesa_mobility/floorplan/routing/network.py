@@ -29,8 +29,9 @@ def ways_of(plan: "FloorPlan", nodes: Nodes, walls: int, clearance: float, beyon
     """
     openings = plan.openings()
     curtains = np.full(len(openings), -1, dtype=np.int64)
+    number_of = {opening.name: number for number, opening in enumerate(openings)}
     for k, opening in enumerate(plan.open_exits()):
-        curtains[openings.index(opening)] = walls + k
+        curtains[number_of[opening.name]] = walls + k
     lines = opening_segments(openings)
     ends, passable = lines.copy(), np.zeros(len(openings), dtype=np.bool_)
     for number in np.unique(nodes.opening[nodes.opening >= 0]):

@@ -49,10 +49,11 @@ def _curtain(ways: Ways, node: int) -> int:
 
 
 @kept()
-def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> list[tuple[int, int]]:
-    """All directed edges (from, to) between nodes in view of each other, as a list of pairs."""
+def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> NDArray[np.int64]:
+    """(k, 2) all directed edges, from and to which node, between nodes in view of each other."""
     n = len(ways.kind)
-    edges = [(0, 0) for _ in range(0)]
+    edges = np.empty((max(64, n), 2), dtype=np.int64)
+    count = 0
     for i in range(n):
         if ways.kind[i] == EXIT:
             continue
@@ -68,11 +69,15 @@ def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> list[tuple[int,
             ax, ay = ways.xy[i]
             bx, by = ways.xy[j]
             if clear_line(sight, ax, ay, bx, by, clearance, np.inf, _curtain(ways, j)):
+                if count + 2 > len(edges):
+                    edges = np.concatenate((edges, np.empty_like(edges)))
                 if there:
-                    edges.append((i, j))
+                    edges[count, 0], edges[count, 1] = i, j
+                    count += 1
                 if back:
-                    edges.append((j, i))
-    return edges
+                    edges[count, 0], edges[count, 1] = j, i
+                    count += 1
+    return edges[:count].copy()
 
 
 @internal()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
 from mesa_mobility.floorplan.openings import Exit, Opening
@@ -71,10 +72,13 @@ def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
     kinds = [np.zeros(len(corners), np.int64)]
     points, normals = [corners], [np.zeros((len(corners), 2))]
     numbers = [np.full(len(corners), -1, dtype=np.int64)]
+    # An exit may lie a little outside the edge of the area.
+    room = plan.free.buffer(2 * EDGE_TOLERANCE)
+    shapely.prepare(room)
     for number, opening in enumerate(plan.openings()):
         if not plan.is_open(opening.name):
             continue
-        places = _places(plan, opening, clearance)
+        places = _places(plan, room, opening, clearance)
         directions = [outward(plan, opening)] if isinstance(opening, Exit) else _both_ways(opening)
         for direction in directions:
             kinds.append(
@@ -122,11 +126,11 @@ def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
     return [normal, -normal]
 
 
-def _places(plan: "FloorPlan", opening: Opening, clearance: float) -> NDArray[np.float64]:
-    """Points along the parts of a gate or exit that are clear of walls."""
+def _places(
+    plan: "FloorPlan", room: BaseGeometry, opening: Opening, clearance: float
+) -> NDArray[np.float64]:
+    """Points along the parts of a gate or exit that are clear of walls, and in the `room`."""
     near = shapely.union_all(walls_near(plan, opening.line, clearance))
-    # An exit may lie a little outside the edge of the area.
-    room = plan.free.buffer(2 * EDGE_TOLERANCE)
     places = [np.empty((0, 2))]
     for share in _SHARES:
         # Round ends are polygons inside the circle; the margin keeps the rest clear.

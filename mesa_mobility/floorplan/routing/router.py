@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 import networkx as nx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
 
 from mesa_mobility.compiled.threads import in_threads, shares
 from mesa_mobility.errors import FloorPlanError
@@ -65,6 +67,7 @@ class Router:
         self._lengths: NDArray[np.float64] = np.empty((0, 0))
         self._nexts: NDArray[np.int64] = np.empty((0, 0), dtype=np.int64)
         self._follow: dict[int, NDArray[np.int64]] = {}
+        self._graph: nx.DiGraph | None = None
         self._views: Views
         self._cache: NDArray[np.void]
         self._update()
@@ -83,6 +86,10 @@ class Router:
         every place in a gate is two nodes. Edges have their length as `weight`, metres.
         """
         self._update()
+        if self._graph is None:
+            self._graph = network(
+                self._nodes, self._edges, self._edge_lengths, self._plan.openings()
+            )
         return self._graph
 
     def destination(self, exit_names: Sequence[str] | None = None) -> int:
@@ -207,22 +214,21 @@ class Router:
         lengths = self.distances(destination)
         return float(lengths[self._nodes_of(self._destinations[start])].min(initial=np.inf))
 
-    def _nodes_of(self, destination: Destination) -> list[int]:
+    def _nodes_of(self, destination: Destination) -> NDArray[np.intp]:
         """The nodes at which routes to a destination end."""
         if is_point(destination):
             points = [each for each in self._destinations if is_point(each)]
-            return [len(self._ways.kind) - len(points) + points.index(destination)]
+            return np.array([len(self._ways.kind) - len(points) + points.index(destination)])
         names = set(destination or (e.name for e in self._plan.exits))
-        return [n for n, name in self._graph.nodes(data="opening") if name in names]
+        ours = [k for k, each in enumerate(self._plan.openings()) if each.name in names]
+        return np.flatnonzero(np.isin(self._nodes.opening, ours))
 
     def _shortest(self, destination: Destination) -> NDArray[np.float64]:
-        sources = set(self._nodes_of(destination))
-        result = np.full(self._graph.number_of_nodes(), np.inf)
-        if sources:
-            backwards = self._graph.reverse(copy=False)
-            for node, length in nx.multi_source_dijkstra_path_length(backwards, sources).items():
-                result[node] = length
-        return result
+        sources = self._nodes_of(destination)
+        if len(sources) == 0:
+            return np.full(len(self._nodes.kind), np.inf)
+        lengths: NDArray[np.float64] = dijkstra(self._backwards, indices=sources, min_only=True)
+        return lengths
 
     def _next_nodes(self, lengths: NDArray[np.float64]) -> NDArray[np.int64]:
         """(nodes,) the next node on the route from each, -1 at its end."""
@@ -250,11 +256,13 @@ class Router:
         points = [each for each in self._destinations if is_point(each)]
         nodes = with_points(find_nodes(plan, self._sight, self._clearance), points)
         self._ways = ways_of(plan, nodes, len(walls), self._clearance, self._beyond)
-        edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
-        self._edges = np.array(edges, dtype=np.int64).reshape(-1, 2)
+        self._edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
-        self._graph = network(nodes, self._edges, self._edge_lengths, plan.openings())
+        self._nodes, self._graph = nodes, None
+        shape = (len(nodes.kind), len(nodes.kind))
+        # From the ends of routes back to their starts.
+        self._backwards = csr_matrix((self._edge_lengths, self._edges.T[::-1]), shape=shape)
         self._views = no_views(plan.bounds, len(nodes.kind))
         self._cache = empty_cache()
         self._distances, self._follow = {}, {}
