@@ -105,6 +105,28 @@ def test_standers_who_turn_and_never_step_aside_borrow_steps_alone():
     assert missing(joined, clusters) == ()
 
 
+def test_steps_that_start_abruptly_do_not_count():
+    """A crowd's default rules leave such options out: runners have few others from standing."""
+    graph = motion_graph(random_poses(np.random.default_rng(4)))
+    clusters = cluster_poses(graph, 6)
+    options = reachable_options(graph, clusters)
+    standers = np.arange(options.offsets[1])
+    long = standers[options.durations[standers] == 45]
+    evenly = np.arange(1, 16) / 15.0
+    paths = options.paths.copy()
+    for row, turn in zip(long, (0.8, -0.8), strict=False):
+        paths[row] = 0.0
+        paths[row, :, 2] = turn * evenly
+    missed = {}
+    # By 0.4 m in 1.5 s, or in its last 0.3 s: at 1.3 m/s from rest.
+    for name, share in (("even", evenly), ("abrupt", np.maximum(0.0, np.arange(-11, 4) / 3.0))):
+        for row, end in zip(long[2:], ((0.0, 0.4), (0.0, -0.4), (-0.4, 0.0)), strict=False):
+            paths[row] = 0.0
+            paths[row, :, :2] = share[:, None] * end
+        missed[name] = missing(dataclasses.replace(options, paths=paths), clusters)
+    assert missed == {"even": (), "abrupt": ("steps aside and back",)}
+
+
 @pytest.mark.captures
 def test_a_walk_without_a_stop_becomes_a_map_that_traps_nobody(captures_dir):
     from mesa_mobility.capture import load_clips, read_manifest, trim

@@ -5,9 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mesa_mobility.crowd.options.accelerations import peak_accelerations
 from mesa_mobility.crowd.options.capability import Capability
+from mesa_mobility.crowd.presets import PRESETS
+from mesa_mobility.mobility.accelerations import GENTLE, peak_accelerations
 from tests.fixtures.maps import STANDING, make_map, shipped_map, stand, straight, through
+
+
+def peaks_of(map_):
+    return peak_accelerations(map_.durations, map_.path_offsets, map_.paths)
 
 
 def walk(metres, frames):
@@ -23,7 +28,7 @@ def uniform(rate, frames, start=0.0):
 
 
 def test_none_at_constant_velocity():
-    peaks = peak_accelerations(make_map([[stand(), walk(1.0, 24), walk(2.0, 45)]]))
+    peaks = peaks_of(make_map([[stand(), walk(1.0, 24), walk(2.0, 45)]]))
     np.testing.assert_allclose(peaks, 0.0, atol=1e-4)
 
 
@@ -31,7 +36,7 @@ def test_none_at_constant_velocity():
 @settings(deadline=None, max_examples=20)
 def test_uniform_acceleration_is_found_in_the_middle_of_a_long_option(rate, start):
     # Smoothing takes from either end, 0.75 s are two and a half standard deviations.
-    peaks = peak_accelerations(make_map([[stand(), uniform(rate, 45, start)]]))
+    peaks = peaks_of(make_map([[stand(), uniform(rate, 45, start)]]))
     assert peaks[1] == pytest.approx(rate, rel=0.05)
 
 
@@ -60,3 +65,7 @@ def test_most_options_of_the_map_that_ships_stay():
     share = len(gentle.table.options) / len(whole.table.options)
     assert 0.55 < share < 0.95
     assert np.diff(gentle.table.offsets).min() >= 1
+
+
+def test_a_map_is_built_for_what_the_default_preset_leaves_of_it():
+    assert PRESETS["default"].most_acceleration == GENTLE
