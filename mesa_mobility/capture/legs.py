@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -43,6 +44,10 @@ CONVENTIONS: tuple[tuple[str, Names, Names], ...] = (
 """Joint names by convention: (hip, knee, ankle, toe or its alternatives), left and right."""
 
 
+TOES = ("toe", "toes", "toebase", "forefoot", "ball")
+"""Names of the joint below the ankle in use elsewhere, without their side, in small letters."""
+
+
 @dataclass(frozen=True)
 class LegJoints:
     """Indices of (hip, knee, ankle, toe base) among the joints of a skeleton."""
@@ -55,7 +60,8 @@ def leg_joints(skeleton: Skeleton) -> LegJoints:
     """Find the legs of a skeleton by the names of its joints.
 
     Supports the names in CMU (BVH and ASF), ACCAD, Bandai-Namco, Mixamo and Xsens files. A prefix
-    before a colon, as in ``mixamorig:LeftLeg``, is ignored.
+    before a colon, as in ``mixamorig:LeftLeg``, is ignored. The joint below the ankle may also have
+    one of the names of :data:`TOES`, if it is the only one there that has.
 
     Raises:
         CaptureError: the names belong to no known convention, or the joints found do not hang
@@ -63,26 +69,60 @@ def leg_joints(skeleton: Skeleton) -> LegJoints:
     """
     plain = {_plain(name): j for j, name in enumerate(skeleton.names)}
     for _, left, right in CONVENTIONS:
-        legs = [_leg(names, plain) for names in (left, right)]
+        legs = [_leg(names, plain, skeleton) for names in (left, right)]
         if legs[0] is not None and legs[1] is not None:
             for leg in (legs[0], legs[1]):
                 _require_chain(skeleton, leg)
             return LegJoints(legs[0], legs[1])
+    raise CaptureError(_no_legs(plain, skeleton))
+
+
+def _leg(
+    names: Names, plain: dict[str, int], skeleton: Skeleton
+) -> tuple[int, int, int, int] | None:
+    hip, knee, ankle, toes = names
+    if not {hip, knee, ankle} <= plain.keys():
+        return None
+    named = [plain[name] for name in toes if name in plain]
+    below = [j for j in _children(skeleton, plain[ankle]) if _bare(skeleton.names[j]) in TOES]
+    if not named and len(below) != 1:
+        return None
+    return plain[hip], plain[knee], plain[ankle], (named or below)[0]
+
+
+def _no_legs(plain: dict[str, int], skeleton: Skeleton) -> str:
+    """What was found of the convention that comes nearest, and what was looked for."""
+    label, *sides = max(
+        CONVENTIONS, key=lambda each: sum(name in plain for side in each[1:] for name in side[:3])
+    )
+    found = [name for *names, _ in sides for name in names if name in plain]
+    if found:
+        missing = [name for *names, _ in sides for name in names if name not in plain]
+        for *_, ankle, toes in sides:
+            if ankle in plain and not any(name in plain for name in toes):
+                there = [skeleton.names[j] for j in _children(skeleton, plain[ankle])]
+                missing.append(
+                    f"one of {', '.join(toes)}, or a single joint below {ankle} that is called "
+                    f"{', '.join(TOES)} (there: {', '.join(there) or 'none'})"
+                )
+        return f"no legs: found {', '.join(found)} ({label}), but not {'; nor '.join(missing)}"
     expected = "; ".join(
-        f"{', '.join(left[:3])}, {left[3][0]} and the same of the right ({label})"
-        for label, left, _ in CONVENTIONS
+        f"{', '.join(left[:3])}, {left[3][0]} and the same of the right ({name})"
+        for name, left, _ in CONVENTIONS
     )
     names = ", ".join(skeleton.names)
     names = names if len(names) <= 500 else names[:497] + "..."
-    raise CaptureError(f"no legs among the joints {names}: expected {expected}")
+    return f"no legs among the joints {names}: expected {expected}"
 
 
-def _leg(names: Names, plain: dict[str, int]) -> tuple[int, int, int, int] | None:
-    hip, knee, ankle, toes = names
-    toe = next((plain[name] for name in toes if name in plain), None)
-    if toe is None or not {hip, knee, ankle} <= plain.keys():
-        return None
-    return plain[hip], plain[knee], plain[ankle], toe
+def _children(skeleton: Skeleton, joint: int) -> list[int]:
+    return np.flatnonzero(skeleton.parents == joint).tolist()
+
+
+def _bare(name: str) -> str:
+    """A name in small letters, without its side and what is no letter."""
+    word = re.sub(r"(?i)left|right|(?<![a-z])[lr](?![a-z])|[^a-z]", "", _plain(name)).lower()
+    return word[1:] if word[:1] in ("l", "r") and word[1:] in TOES else word
 
 
 def _require_chain(skeleton: Skeleton, leg: Iterable[int]) -> None:

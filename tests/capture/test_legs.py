@@ -63,8 +63,48 @@ def test_unknown_names_are_listed_with_the_known_ones():
 
 
 def test_one_leg_is_not_enough():
-    with pytest.raises(CaptureError, match="no legs among the joints"):
+    with pytest.raises(CaptureError) as error:
         leg_joints(skeleton("lfemur ltibia lfoot ltoes", "rfemur rtibia rfoot other"))
+    assert str(error.value) == (
+        "no legs: found lfemur, ltibia, lfoot, rfemur, rtibia, rfoot (CMU ASF), but not one of "
+        "rtoes, or a single joint below rfoot that is called toe, toes, toebase, forefoot, ball "
+        "(there: other)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [
+        ("LeftForeFoot", "RightForeFoot"),
+        ("L_Ball", "R_Ball"),
+        ("ball.L", "ball.R"),
+        ("lForefoot", "rForefoot"),
+        ("mixamorig:LeftToes", "mixamorig:RightToes"),
+    ],
+)
+def test_the_joint_below_the_ankle_has_many_names(left, right):
+    known = "{0}UpLeg {0}Leg {0}Foot {1}"
+    legs = leg_joints(skeleton(known.format("Left", left), known.format("Right", right)))
+    assert (legs.left, legs.right) == ((1, 2, 3, 4), (5, 6, 7, 8))
+
+
+def test_two_joints_that_could_be_the_toes_are_named():
+    parents = (-1, 0, 1, 2, 3, 3, 0, 6, 7, 8)
+    names = "Hips LeftUpLeg LeftLeg LeftFoot LeftToe1 LeftToe2 RightUpLeg RightLeg RightFoot RightToe"
+    with pytest.raises(CaptureError, match="but not one of LeftToeBase, LeftToe, or a single") as error:
+        leg_joints(Skeleton(names.split(), parents, np.zeros((10, 3))))
+    assert str(error.value).endswith("(there: LeftToe1, LeftToe2)")
+
+
+def test_a_joint_that_is_missing_is_named():
+    with pytest.raises(CaptureError) as error:
+        leg_joints(
+            skeleton("LeftUpLeg LeftShin LeftFoot LeftToe", "RightUpLeg RightLeg RightFoot RightToe")
+        )
+    assert str(error.value) == (
+        "no legs: found LeftUpLeg, LeftFoot, RightUpLeg, RightLeg, RightFoot (CMU and ACCAD BVH, "
+        "Mixamo), but not LeftLeg"
+    )
 
 
 def test_a_leg_must_hang_together():
