@@ -114,9 +114,8 @@ def chosen(rows: list[dict[str, Any]], neck: str, kind: str, share: float) -> li
 
 
 def interval(rows: list[dict[str, Any]], figure: str) -> tuple[float, float, float]:
-    """Mean of a figure over seeds, and the ends of its interval; nan where there is none."""
-    known = [row[figure] for row in rows if row[figure] is not None]
-    found = mean_interval(known, CONFIDENCE)
+    """Mean of a figure over seeds, and its interval's ends; nan where a seed did not reach it."""
+    found = mean_interval([np.inf if (v := row[figure]) is None else v for row in rows], CONFIDENCE)
     values = (found.value, found.low, found.high)
     return tuple(np.nan if each is None else each for each in values)  # type: ignore[return-value]
 
@@ -135,10 +134,12 @@ def table(rows: list[dict[str, Any]], seeds: int) -> str:
                 own = chosen(rows, neck, kind, share)
                 flow_, low, high = interval(own, "flow")
                 last, soon, late = interval(own, "egress_s")
+                # Where some seed leaves people inside, the column beside it says so.
+                time = "-" if np.isnan(last) else f"{last:.0f} ({soon:.0f} to {late:.0f})"
                 lines.append(
                     f"| {neck}, {width:g} m x {length:g} m | {name} | {100 * share:.0f} % "
                     f"| {flow_:.2f} ({low:.2f} to {high:.2f}) "
-                    f"| {last:.0f} ({soon:.0f} to {late:.0f}) "
+                    f"| {time} "
                     f"| {sum(row['inside'] for row in own)} of {PEOPLE * len(own)} |"
                 )
     overlaps, through = (sum(row[name] for row in rows) for name in ("overlaps", "wall_crossings"))

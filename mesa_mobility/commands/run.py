@@ -218,8 +218,13 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
 
 def _figures_of_type(each: dict[str, Any]) -> str:
     text = f"{each['left']} of {each['people']} out"
-    if each["left"]:
-        text += f", after {each['mean_egress_s']:.1f} s (mean), {each['p95_egress_s']:.1f} s (95 %)"
+    times = [
+        f"{each[key]:.1f} s ({words})"
+        for key, words in (("mean_egress_s", "mean"), ("p95_egress_s", "95 %"))
+        if not math.isnan(each[key])
+    ]
+    if times:
+        text += f", after {', '.join(times)}"
     return text + (
         "" if math.isnan(each["mean_speed_mps"]) else f", {each['mean_speed_mps']:.2f} m/s"
     )

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         mean_interval,
         quantile_interval,
     )
-    from mesa_mobility.experiments.report import write_report
+    from mesa_mobility.experiments.reporting.report import write_report
     from mesa_mobility.experiments.sensitivity import morris_screening, sobol_indices
     from mesa_mobility.experiments.sensitivity_designs import MorrisTrajectories, SaltelliSamples
     from mesa_mobility.experiments.store import Store, open_store
@@ -52,7 +52,7 @@ _MODULES = {
     "run_experiment": "driver",
     "sobol_indices": "sensitivity",
     "variance_components": "variance",
-    "write_report": "report",
+    "write_report": "reporting.report",
 }
 
 __all__ = [

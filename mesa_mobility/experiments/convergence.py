@@ -5,20 +5,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.experiments.intervals import (
-    Estimate,
-    check_confidence,
-    mean_interval,
-    quantile_interval,
-    runs_for_quantile,
-)
+from mesa_mobility.experiments.intervals import Estimate, check_confidence, runs_for_quantile
+from mesa_mobility.experiments.observed import estimate
 from mesa_mobility.experiments.points import check_whole
 
 _FIGURE = re.compile(r"(?P<how>mean|p[1-9]\d?) (?P<column>\w+)")
@@ -85,10 +80,7 @@ class Precision:
         if not self.figures and self.occupancy is None:
             raise ModelError("figures: got none, and no occupancy; expected one of them or more")
         for figure in self.figures:
-            if not (isinstance(figure, str) and _FIGURE.fullmatch(figure)):
-                raise ModelError(
-                    f'figure {figure!r}: expected one such as "mean egress_s" or "p95 egress_s"'
-                )
+            check_figure(figure)
         if not (isinstance(self.tolerance, int | float) and 0 < self.tolerance < 1):
             raise ModelError(f"tolerance is {self.tolerance!r}, expected a number between 0 and 1")
         check_confidence(self.confidence)
@@ -153,11 +145,13 @@ class Assessment:
             results are looked at.
         estimates: estimate and interval of each figure.
         met: whether each figure is known well enough; "occupancy" stands for the curve.
+        without_curve: runs that have not failed and have no curve of their own.
     """
 
     runs: int
     estimates: dict[str, Estimate]
     met: dict[str, bool]
+    without_curve: int = 0
 
     @property
     def enough(self) -> bool:
@@ -166,23 +160,32 @@ class Assessment:
 
     @property
     def hopeless(self) -> bool:
+        """Whether no run has some figure, or more runs make nothing known that is not."""
+        lost = {name for name, known in self.estimates.items() if known.hopeless}
+        if self.without_curve:
+            lost.add("occupancy")
+        unknown = {name for name, met in self.met.items() if not met}
+        return self.unseen or (bool(unknown) and unknown <= lost)
+
+    @property
+    def unseen(self) -> bool:
         """Whether no run has some figure, as where all of them fail."""
-        return any(known.value is None for known in self.estimates.values())
+        return any(known.runs == known.not_reached for known in self.estimates.values())
 
 
-def estimate(figure: str, values: NDArray[np.float64], confidence: float) -> Estimate:
-    """Estimate and interval of a figure such as "mean egress_s" from (n,) values."""
-    how = figure.split(" ")[0]
-    if how == "mean":
-        return mean_interval(values, confidence)
-    return quantile_interval(values, int(how[1:]) / 100, confidence)
+def check_figure(figure: Any) -> None:
+    """Raise ModelError unless a figure is the mean or a percentile of a column."""
+    if not (isinstance(figure, str) and _FIGURE.fullmatch(figure)):
+        raise ModelError(
+            f'figure {figure!r}: expected one such as "mean egress_s" or "p95 egress_s"'
+        )
 
 
 def assess(
     precision: Precision,
     runs: int,
     values: Mapping[str, NDArray[np.float64]],
-    curves: Sequence[Sequence[int]],
+    curves: Sequence[Sequence[int] | None],
 ) -> Assessment:
     """What the runs of a point tell.
 
@@ -196,8 +199,10 @@ def assess(
     Args:
         precision: what is asked for.
         runs: replications, failed ones included.
-        values: by column, (runs,) values in the order of replications; NaN where a run has none.
-        curves: people inside each second, by run in the same order.
+        values: by column, (runs,) values in the order of replications, as ``observed`` has them.
+        curves: people inside each second, by run in the same order, without those that failed; None
+            for a run that has none since it took too long. The mean curve of the others would be
+            that of the quick ones, so it is not known then.
     """
     estimates, met = {}, {}
     before = precision.look_before(runs)
@@ -210,11 +215,13 @@ def assess(
             if not _is_known(precision, sooner):
                 assert found.value is not None
                 half = precision.tolerance * abs(found.value)
-                found = Estimate(found.value, found.value - half, found.value + half)
+                found = replace(found, low=found.value - half, high=found.value + half)
         estimates[figure] = found
+    known = [curve for curve in curves if curve is not None]
+    without = len(curves) - len(known)
     if precision.occupancy is not None:
-        met["occupancy"] = converged(precision.occupancy, curves)
-    return Assessment(runs, estimates, met)
+        met["occupancy"] = not without and converged(precision.occupancy, known)
+    return Assessment(runs, estimates, met, without)
 
 
 def _is_known(precision: Precision, found: Estimate) -> bool:

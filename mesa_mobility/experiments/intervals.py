@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import ModelError
+from mesa_mobility.results.measures.times import quantile_of_times
 
 
 @dataclass(frozen=True)
@@ -16,14 +17,21 @@ class Estimate:
     """An estimate and its confidence interval; None where there are too few values for it.
 
     Attributes:
-        value: the estimate.
+        value: the estimate, or None where it is not given.
         low: lower end of the interval.
-        high: upper end of the interval.
+        high: upper end of the interval; either is infinite where it lies among the runs that have
+            not reached the figure.
+        runs: runs that the estimate is of.
+        not_reached: of them, those that have no value.
+        beyond: the greatest value reached, where the estimate lies among those not reached.
     """
 
     value: float | None
     low: float | None = None
     high: float | None = None
+    runs: int = 0
+    not_reached: int = 0
+    beyond: float | None = None
 
     @property
     def half_width(self) -> float | None:
@@ -32,30 +40,52 @@ class Estimate:
             return None
         return max(self.value - self.low, self.high - self.value)
 
+    @property
+    def hopeless(self) -> bool:
+        """Whether the estimate is not given, and will not be with more runs."""
+        return self.value is None and (self.beyond is None or self.low == math.inf)
+
+    def __str__(self) -> str:
+        """The estimate and its interval, or why it is not given."""
+        lacking = f"in {self.not_reached} of {self.runs}"
+        if self.beyond is not None:
+            return f"> {self.beyond:.4g}, not reached {lacking}"
+        if self.value is None:
+            return f"not given: {self.not_reached} of {self.runs} have none" if self.runs else "-"
+        text = f"{self.value:.4g}"
+        if self.low is not None and self.high is not None:
+            high = f"{self.high:.4g}" if math.isfinite(self.high) else "not reached"
+            text += f" ({self.low:.4g} to {high})"
+        return f"{text}, not reached {lacking}" if self.not_reached else text
+
 
 def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Estimate:
     """Mean of independent values, with the interval of Student's t.
 
     Args:
-        values: (n,) values; those that are not finite are left out.
+        values: (n,) values; nan are left out, infinite ones have not been reached.
         confidence: between 0 and 1.
 
     Returns:
-        The estimate; without an interval where there are fewer than two values.
+        The estimate; without an interval where there are fewer than two values. No mean is given
+        where some value has not been reached: that of the others would be too small.
 
     Raises:
         ModelError: a confidence out of range.
     """
     check_confidence(confidence)
-    known = _finite(values)
-    if len(known) < 2:
-        return Estimate(float(known[0]) if len(known) else None)
+    known = _known(values)
+    runs, not_reached = len(known), int(np.isinf(known).sum())
+    if not_reached or not runs:
+        return Estimate(None, runs=runs, not_reached=not_reached)
+    if runs == 1:
+        return Estimate(float(known[0]), runs=1)
     from scipy.special import stdtrit
 
     mean = float(known.mean())
-    error = float(known.std(ddof=1)) / math.sqrt(len(known))
-    half = float(stdtrit(len(known) - 1, (1 + confidence) / 2)) * error
-    return Estimate(mean, mean - half, mean + half)
+    error = float(known.std(ddof=1)) / math.sqrt(runs)
+    half = float(stdtrit(runs - 1, (1 + confidence) / 2)) * error
+    return Estimate(mean, mean - half, mean + half, runs)
 
 
 def quantile_interval(values: ArrayLike, q: float, confidence: float = 0.95) -> Estimate:
@@ -67,12 +97,14 @@ def quantile_interval(values: ArrayLike, q: float, confidence: float = 0.95) -> 
     Statistics, 3rd ed., 1999, section 3.2.
 
     Args:
-        values: (n,) values; those that are not finite are left out.
+        values: (n,) values; nan are left out, infinite ones have not been reached and are later
+            than all others (right-censored).
         q: between 0 and 1.
         confidence: between 0 and 1.
 
     Returns:
-        The estimate; without an interval where no pair of values has the confidence.
+        The estimate; without an interval where no pair of values has the confidence. No quantile
+        is given that lies among those not reached.
 
     Raises:
         ModelError: a quantile or a confidence out of range.
@@ -80,17 +112,20 @@ def quantile_interval(values: ArrayLike, q: float, confidence: float = 0.95) -> 
     check_confidence(confidence)
     if not 0 < q < 1:
         raise ModelError(f"quantile {q!r}, expected a number between 0 and 1")
-    known = np.sort(_finite(values))
-    if not len(known):
+    known = np.sort(_known(values))
+    runs, reached = len(known), int(np.isfinite(known).sum())
+    if not runs:
         return Estimate(None)
     from scipy.stats import binom
 
-    value = float(np.quantile(known, q))
-    n, half = len(known), (1 - confidence) / 2
-    low, high = int(binom.ppf(half, n, q)), int(binom.ppf(1 - half, n, q)) + 1
-    if low < 1 or high > n:
-        return Estimate(value)
-    return Estimate(value, float(known[low - 1]), float(known[high - 1]))
+    value = quantile_of_times(known, q)
+    beyond = float(known[reached - 1]) if value is None and reached else None
+    half = (1 - confidence) / 2
+    low, high = int(binom.ppf(half, runs, q)), int(binom.ppf(1 - half, runs, q)) + 1
+    found = Estimate(value, None, None, runs, runs - reached, beyond)
+    if low < 1 or high > runs:
+        return found
+    return replace(found, low=float(known[low - 1]), high=float(known[high - 1]))
 
 
 def runs_for_quantile(q: float, confidence: float) -> int:
@@ -104,6 +139,6 @@ def check_confidence(confidence: float) -> None:
         raise ModelError(f"confidence is {confidence!r}, expected a number between 0 and 1")
 
 
-def _finite(values: ArrayLike) -> NDArray[np.float64]:
+def _known(values: ArrayLike) -> NDArray[np.float64]:
     numbers = np.asarray(values, dtype=np.float64)
-    return numbers[np.isfinite(numbers)]
+    return numbers[~np.isnan(numbers)]

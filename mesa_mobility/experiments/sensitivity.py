@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError, ResultsError
+from mesa_mobility.experiments.observed import warn_of_failed
 from mesa_mobility.experiments.points import point_key
 from mesa_mobility.experiments.sensitivity_designs import (
     MorrisTrajectories,
@@ -24,7 +25,8 @@ def sobol_indices(store: Store, figure: str) -> dict[str, dict[str, float]]:
 
     Args:
         store: of an experiment whose design is ``SaltelliSamples``.
-        figure: a column of numbers; replications of a point count with their mean.
+        figure: a column of numbers; replications of a point count with their mean. Those that have
+            failed are left out, with a warning.
 
     Returns:
         For each parameter ``first`` (alone), ``total`` (with all its interactions) and the
@@ -55,7 +57,8 @@ def morris_screening(store: Store, figure: str) -> dict[str, dict[str, float]]:
 
     Args:
         store: of an experiment whose design is ``MorrisTrajectories``.
-        figure: a column of numbers; replications of a point count with their mean.
+        figure: a column of numbers; replications of a point count with their mean. Those that have
+            failed are left out, with a warning.
 
     Returns:
         For each parameter ``mean`` effect, ``mean_abs`` (the mean of its size) and ``sd``.
@@ -82,15 +85,19 @@ def morris_screening(store: Store, figure: str) -> dict[str, dict[str, float]]:
 def _values(store: Store, figure: str) -> NDArray[np.float64]:
     """(points,) mean of the figure over the replications of each point, in the design's order."""
     experiment = store.experiment()
-    means = store.means(figure)
-    values = np.array(
-        [means.get(point_key(experiment.point(i)), np.nan) for i in range(len(experiment.design))]
-    )
-    if missing := int(np.isnan(values).sum()):
+    found = store.estimates(f"mean {figure}")
+    means = [
+        found[key].value if (key := point_key(experiment.point(i))) in found else None
+        for i in range(len(experiment.design))
+    ]
+    known = [value for value in means if value is not None]
+    if len(known) < len(means):
         raise ResultsError(
-            f"{store}: {missing} of {len(values)} points have no {figure}, expected all of them"
+            f"{store}: {len(means) - len(known)} of {len(means)} points have no mean {figure}, as "
+            "runs are missing, failed or did not reach it; expected all of them"
         )
-    return values
+    warn_of_failed(store)
+    return np.array(known)
 
 
 def _by_parameter(names: Any, **columns: Any) -> dict[str, dict[str, float]]:

@@ -23,17 +23,28 @@ import pyarrow.compute
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError, ResultsError
-from mesa_mobility.experiments.convergence import Assessment, assess
+from mesa_mobility.experiments.convergence import Assessment, assess, check_figure
 from mesa_mobility.experiments.definition import (
     check_definition,
     from_definition,
     to_definition,
 )
 from mesa_mobility.experiments.experiment import Experiment
+from mesa_mobility.experiments.intervals import Estimate
+from mesa_mobility.experiments.observed import estimate, observed
 from mesa_mobility.experiments.points import point_key
 from mesa_mobility.experiments.session import check_goes_on, check_inputs
 from mesa_mobility.experiments.storing.locks import is_locked, locked
-from mesa_mobility.experiments.storing.rows import DONE, RUNS, SERIES, STATUSES, TRAJECTORIES, WORK
+from mesa_mobility.experiments.storing.rows import (
+    DONE,
+    FAILED,
+    RUNS,
+    SERIES,
+    STALLED,
+    STATUSES,
+    TRAJECTORIES,
+    WORK,
+)
 from mesa_mobility.experiments.storing.shards import Folder, joined, read_table, write_table
 from mesa_mobility.plugins.registry import did_you_mean
 
@@ -163,17 +174,29 @@ class Store:
             "running": self.is_locked(),
         }
 
-    def means(self, figure: str) -> dict[str, float]:
-        """Mean of a column of numbers over the finished replications of each point, by its key.
+    def estimates(self, figure: str, confidence: float = 0.95) -> dict[str, Estimate]:
+        """Estimate and interval of a figure over the replications of each point, by its key.
+
+        Runs that have stalled, timed out or ended with people inside count as later than all
+        others; those that have failed do not count.
+
+        Args:
+            figure: such as "mean egress_s" or "p95 egress_s".
+            confidence: of the intervals.
 
         Raises:
+            ModelError: the figure is none.
             ResultsError: no such column.
         """
-        frame = self.table(["point", figure]).to_pandas()
-        if figure not in frame:
-            raise ResultsError(f"{self}: has no column {figure}")
-        frame = frame[(frame["status"] == DONE) & frame[figure].notna()]
-        return {str(k): float(v) for k, v in frame.groupby("point")[figure].mean().items()}
+        check_figure(figure)
+        column = figure.split(" ")[1]
+        frame = self.table(["point", column]).to_pandas()
+        if column not in frame:
+            raise ResultsError(f"{self}: has no column {column}")
+        return {
+            str(key): estimate(figure, observed(of, column), confidence)
+            for key, of in frame.groupby("point")
+        }
 
     def assessments(self, experiment: Experiment | None = None) -> dict[str, Assessment]:
         """How well the figures of ``replications="auto"`` are known, by key of the point.
@@ -191,7 +214,7 @@ class Store:
         table = self.table(columns)
         if not table.num_rows:
             return {}
-        if DONE in pa.compute.unique(table["status"]).to_pylist():
+        if {DONE, STALLED} & {*pa.compute.unique(table["status"]).to_pylist()}:
             self._check_figures(precision.columns, table.schema)
         frame = table.to_pandas().sort_values(["point", "replication"])
         found = {}
@@ -201,14 +224,11 @@ class Store:
             whole = every["replication"].to_numpy() == np.arange(len(every))
             count = precision.last_look(len(every) if whole.all() else int(np.argmin(whole)))
             rows = every[:count]
-            done = rows[rows["status"] == DONE]
-            values = {
-                name: rows[name].where(rows["status"] == DONE).to_numpy(dtype=np.float64)
-                for name in precision.columns
-                if name in rows
-            }
-            curves = done["occupancy"].dropna() if "occupancy" in done else ()
-            found[str(key)] = assess(precision, count, values, list(curves))
+            values = {name: observed(rows, name) for name in precision.columns}
+            # That of a crowd that has stalled goes on with those who are stuck.
+            ended = rows[rows["status"] != FAILED]
+            curves = list(ended["occupancy"]) if "occupancy" in ended else [None] * len(ended)
+            found[str(key)] = assess(precision, count, values, curves)
         return found
 
     def _check_figures(self, columns: Sequence[str], schema: pa.Schema) -> None:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.experiments.intervals import Estimate, check_confidence
-from mesa_mobility.experiments.storing.rows import DONE
+from mesa_mobility.experiments.observed import observed, warn_of_failed
+from mesa_mobility.experiments.storing.rows import FAILED
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,8 +56,8 @@ def variance_components(
     899-905), for normal effects.
 
     Args:
-        store: of the experiment; runs that are done and have the figure count.
-        figure: a column of numbers.
+        store: of the experiment; runs that have failed are left out, with a warning.
+        figure: a column of numbers, which all other runs must have.
         levels: parameters from the outermost one inwards.
         confidence: of the intervals.
 
@@ -65,7 +66,8 @@ def variance_components(
 
     Raises:
         ModelError: no levels, or a confidence out of range.
-        ResultsError: no such column, or a level without two values within one of the level above.
+        ResultsError: no such column, runs that did not reach the figure, or a level without two
+            values within one of the level above.
     """
     if isinstance(levels, str) or not levels:
         raise ModelError(f"levels is {levels!r}, expected the names of one parameter or more")
@@ -74,7 +76,14 @@ def variance_components(
     for name in (*levels, figure):
         if name not in runs:
             raise ResultsError(f"{store}: has no column {name}")
-    runs = runs[(runs["status"] == DONE) & runs[figure].notna()]
+    runs = runs[runs["status"] != FAILED]
+    values = observed(runs, figure)
+    if lacking := int(np.isinf(values).sum()):
+        raise ResultsError(
+            f"{store}: {lacking} of {len(runs)} runs have no {figure}: they stalled, timed out or "
+            "ended with people inside; expected a figure that all have"
+        )
+    warn_of_failed(store)
     groups = _groups(runs, levels)
     counts = [len(np.unique(of)) for of in groups]
     for name, outer, inner in zip((*levels, CHANCE), counts[:-1], counts[1:], strict=True):
@@ -82,7 +91,6 @@ def variance_components(
             raise ResultsError(
                 f"{store}: {inner} groups of {name} in {outer} of the level above, expected more"
             )
-    values = runs[figure].to_numpy(dtype=np.float64)
     freedom = np.diff(counts)
     squares = np.diff([_square_of_means(values, of) for of in groups])
     expected = _expected(groups)

@@ -84,7 +84,7 @@ def test_points_of_which_every_run_fails_end_after_the_least(tmp_path):
     assert len(frame[frame.end == "well"]) == 30
     text = write_report(store).read_text(encoding="utf-8")
     assert "no run has a figure" in text
-    assert "4 of 34 runs have no y, and are in no mean" in text
+    assert "4 of 34 runs have failed, and count nowhere" in text
 
 
 @pytest.mark.parametrize("name", ["seed", "status", "worker", "types"])

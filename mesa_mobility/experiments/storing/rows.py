@@ -10,6 +10,9 @@ STATUSES = (DONE, FAILED, STALLED, TIMED_OUT)
 SERIES = {"types", "occupancy"}
 """Columns that hold lists."""
 
+COMPUTING = {"wall_s", "cpu_s"}
+"""Columns of seconds that a run took to compute, which one that stalls has as well."""
+
 Row: TypeAlias = dict[str, Any]
 
 RUNS = "runs"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import socket
 import time
 from collections.abc import Mapping
@@ -178,7 +177,7 @@ def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
 
 
 def _by_type(model: Any) -> Row:
-    """How long people of each type took, and the flow, from who has left when."""
+    """How long people of each type took, where all are out, and the flow of those who are."""
     crowd, count = model.crowd, model.population.count
     left = ~crowd.active[:count]
     seconds = crowd.active_frames[:count] / model.frame_rate
@@ -186,13 +185,15 @@ def _by_type(model: Any) -> Row:
     for number in sorted(set(crowd.type_index[:count].tolist())):
         of = crowd.type_index[:count] == number
         times = seconds[of & left]
+        # Of those who are out alone, the times of the slowest would be missing.
+        out = len(times) == int(of.sum())
         types.append(
             {
                 "type": int(number),
                 "people": int(of.sum()),
                 "left": len(times),
-                "mean_s": float(times.mean()) if len(times) else None,
-                "longest_s": float(times.max()) if len(times) else None,
+                "mean_s": float(times.mean()) if out else None,
+                "longest_s": float(times.max()) if out else None,
             }
         )
     times = seconds[left]
@@ -200,9 +201,8 @@ def _by_type(model: Any) -> Row:
     # Times inside are times of leaving where everybody has been there from the start.
     if len(times) > 1 and not len(model.sources) and times.max() > times.min():
         flow = (len(times) - 1) / float(times.max() - times.min())
-    mean = float(times.mean()) if len(times) else math.nan
     return {
         "types": types,
-        "mean_time_inside_s": None if math.isnan(mean) else mean,
+        "mean_time_inside_s": float(times.mean()) if count and left.all() else None,
         "flow_per_s": flow,
     }

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.measures.occupancy import occupancy
 from mesa_mobility.results.measures.speeds import mean_speed
+from mesa_mobility.results.measures.times import quantile_of_times
 from mesa_mobility.results.trajectories import Trajectories
 
 if TYPE_CHECKING:
@@ -27,8 +28,10 @@ def by_type(trajectories: Trajectories, key: str = "type") -> pd.DataFrame:
 
     Returns:
         A row for each type, by name: ``people``, ``left``; ``mean_egress_s`` and ``p95_egress_s``,
-        mean and 95th percentile of the seconds from a person's first frame to its leaving, of those
-        who left; ``mean_speed_mps``, as ``mean_speed`` has it. nan where there is nothing to count.
+        mean and 95th percentile of the seconds from a person's first frame to its leaving;
+        ``mean_speed_mps``, as ``mean_speed`` has it. Those still inside count as later than all
+        others: nan as the mean where there are any, nan as the percentile where it lies among
+        them. nan as well where there is nothing to count.
 
     Raises:
         ResultsError: the trajectories have no such data.
@@ -39,15 +42,16 @@ def by_type(trajectories: Trajectories, key: str = "type") -> pd.DataFrame:
     seconds = _egress_seconds(trajectories)
     for name, own in people_by(trajectories, key).items():
         times = seconds[own]
-        times = times[np.isfinite(times)]
+        left = int(np.isfinite(times).sum())
+        p95 = quantile_of_times(times, 0.95)
         speed = mean_speed(trajectories.of_people(own))
         rows.append(
             {
                 key: name,
                 "people": len(own),
-                "left": len(times),
-                "mean_egress_s": times.mean() if len(times) else np.nan,
-                "p95_egress_s": np.percentile(times, 95) if len(times) else np.nan,
+                "left": left,
+                "mean_egress_s": times.mean() if left == len(times) else np.nan,
+                "p95_egress_s": np.nan if p95 is None else p95,
                 "mean_speed_mps": np.nan if speed is None else speed,
             }
         )
@@ -83,8 +87,8 @@ def people_by(trajectories: Trajectories, key: str) -> dict[str, NDArray[np.int6
 
 
 def _egress_seconds(trajectories: Trajectories) -> NDArray[np.float64]:
-    """(m,) seconds from each person's first frame to its leaving; nan for those inside."""
+    """(m,) seconds from each person's first frame to its leaving; infinite for those inside."""
     left = trajectories.exit_frames
     first = np.zeros(len(left), dtype=np.int64)
     first[trajectories.person[::-1]] = trajectories.frame[::-1]
-    return np.where(left >= 0, (left - first) / trajectories.frame_rate, np.nan)
+    return np.where(left >= 0, (left - first) / trajectories.frame_rate, np.inf)

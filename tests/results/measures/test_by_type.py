@@ -53,6 +53,25 @@ def test_a_row_for_each_type(three):
     assert table["mean_speed_mps"].tolist() == pytest.approx([1.0, 2.0])
 
 
+def test_people_inside_count_as_later_than_all_others(walk):
+    """At 1 Hz: of 30 people, 28 are out after 0 to 27 s, and two never."""
+    tracks = {k: (0, [(0.1 * t, 1.0 + k) for t in range(k + 1)]) for k in range(28)}
+    tracks |= {k: (0, [(0.0, 1.0 + k)] * 40) for k in (28, 29)}
+    crowd = walk(
+        tracks, frame_rate=1.0, inside_at_end=np.array([28, 29]),
+        person_data={"type": np.array(["all"] * 30)},
+    )  # fmt: skip
+    [row] = by_type(crowd).to_dict("records")
+    assert (row["people"], row["left"]) == (30, 28)
+    # The 95th percentile lies between the 28th and the 29th, who has not left.
+    assert np.isnan(row["mean_egress_s"])
+    assert np.isnan(row["p95_egress_s"])
+    shorter = crowd.of_people(np.array([*range(28), 29]))
+    [row] = by_type(shorter).to_dict("records")
+    # Of 29 it lies between the 27th, after 26 s, and the 28th.
+    assert row["p95_egress_s"] == pytest.approx(26.0 + 0.95 * 28 - 26)
+
+
 def test_any_data_tell_people_apart(three):
     assert by_type(three, "group")["people"].to_dict() == {"": 1, "family": 2}
     with pytest.raises(

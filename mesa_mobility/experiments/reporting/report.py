@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.experiments.intervals import Estimate, mean_interval, quantile_interval
+from mesa_mobility.experiments.observed import estimate, is_time, observed
 from mesa_mobility.experiments.points import point_key
-from mesa_mobility.experiments.storing.rows import DONE, SERIES, STATUSES
+from mesa_mobility.experiments.reporting.pictures import picture_of, value_text
+from mesa_mobility.experiments.storing.rows import FAILED, SERIES, STALLED, STATUSES, TIMED_OUT
 from mesa_mobility.experiments.storing.shards import RUN_COLUMNS
-from mesa_mobility.reports.html import Page, picture
+from mesa_mobility.reports.html import Page
 from mesa_mobility.reports.versions import add_versions
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
     from mesa_mobility.experiments.convergence import Assessment
     from mesa_mobility.experiments.store import Store
@@ -29,6 +29,13 @@ _MOST_ROWS = 200
 
 _SHOWN = ("egress_s", "flow_per_s", "mean_speed_mps")
 """Figures that are shown where runs have them; else the first that they have."""
+
+_ESTIMATED = {
+    "mean": "mean and 95 % interval",
+    "p50": "median and interval",
+    "p95": "95th percentile and interval",
+}
+"""What is given of each figure, by how it is asked for."""
 
 
 def write_report(store: Store, path: str | os.PathLike[str] | None = None) -> Path:
@@ -62,7 +69,7 @@ def write_report(store: Store, path: str | os.PathLike[str] | None = None) -> Pa
     )  # fmt: skip
     _design(page, store, frame)
     for figure in shown:
-        page.picture(figure, _picture(frame, figure, list(experiment.design.column_types())))
+        page.picture(figure, picture_of(frame, figure, list(experiment.design.column_types())))
     _estimates(page, store, frame, shown)
     if experiment.replications == "auto":
         _convergence(page, store)
@@ -91,10 +98,10 @@ def _design(page: Page, store: Store, frame: pd.DataFrame) -> None:
         rows.append([name, value])
     for name in experiment.design.column_types():
         values = sorted(frame[name].dropna().unique().tolist())
-        listed = ", ".join(_text(value) for value in values[:12])
-        rows.append(
-            [name, listed if len(values) <= 12 else f"{_text(values[0])} to {_text(values[-1])}"]
-        )
+        listed = ", ".join(value_text(value) for value in values[:12])
+        if len(values) > 12:
+            listed = f"{value_text(values[0])} to {value_text(values[-1])}"
+        rows.append([name, listed])
     for name, unit in (("max_seconds", "simulated s"), ("time_limit", "s")):
         if getattr(experiment, name) is not None:
             rows.append([name, f"{getattr(experiment, name):g} {unit}"])
@@ -104,17 +111,16 @@ def _design(page: Page, store: Store, frame: pd.DataFrame) -> None:
 def _estimates(page: Page, store: Store, frame: pd.DataFrame, shown: list[str]) -> None:
     experiment = store.experiment()
     names = list(experiment.design.column_types())
-    done = frame[frame["status"] == DONE]
-    columns = [*names, "done"]
+    columns = [*names, "runs"]
     for figure in shown:
-        columns += [f"{figure}, mean and 95 % interval", f"{figure}, 95th percentile and interval"]
+        columns += [f"{figure}, {what}" for what in _ESTIMATED.values()]
     rows = []
-    for _, of in list(done.groupby("point", sort=False))[:_MOST_ROWS]:
-        row: list[Any] = [_text(of[name].iloc[0]) for name in names]
-        row.append(len(of))
+    for _, of in list(frame.groupby("point", sort=False))[:_MOST_ROWS]:
+        row: list[Any] = [value_text(of[name].iloc[0]) for name in names]
+        row.append(int((of["status"] != FAILED).sum()))
         for figure in shown:
-            values = of[figure].to_numpy(dtype=np.float64)
-            row += [_interval(mean_interval(values)), _interval(quantile_interval(values, 0.95))]
+            values = observed(of, figure)
+            row += [str(estimate(f"{how} {figure}", values)) for how in _ESTIMATED]
         rows.append(row)
     page.table(
         "Results by point", columns, rows,
@@ -122,13 +128,35 @@ def _estimates(page: Page, store: Store, frame: pd.DataFrame, shown: list[str]) 
         "which need about 72 runs for the 95th percentile; where there are fewer, none is given.",
     )  # fmt: skip
     for figure in shown:
-        if lacking := len(frame) - int(done[figure].notna().sum()):
-            page.text(
-                f"{lacking} of {len(frame)} runs have no {figure}, and are in no mean or "
-                "percentile of it: they have failed, stalled, or ended with people inside."
-            )
-    if done["point"].nunique() > _MOST_ROWS:
-        page.text(f"The first {_MOST_ROWS} of {done['point'].nunique()} points.")
+        if text := _lacking(frame, figure):
+            page.text(text)
+    if failed := int((frame["status"] == FAILED).sum()):
+        page.text(f"{failed} of {len(frame)} runs have failed, and count nowhere.")
+    if frame["point"].nunique() > _MOST_ROWS:
+        page.text(f"The first {_MOST_ROWS} of {frame['point'].nunique()} points.")
+
+
+def _lacking(frame: pd.DataFrame, figure: str) -> str:
+    """A sentence on the runs that did not reach a figure, and why; nothing where all did."""
+    runs = frame[frame["status"] != FAILED]
+    of = runs[np.isinf(observed(runs, figure))]
+    if not len(of):
+        return ""
+    counts = {
+        "stalled": int((of["status"] == STALLED).sum()),
+        "timed out": int((of["status"] == TIMED_OUT).sum()),
+    }
+    counts["ended without it"] = len(of) - sum(counts.values())
+    why = ", ".join(f"{count} {how}" for how, count in counts.items() if count)
+    count_as = (
+        "They count as later than all others: no percentile is given that lies among them, and"
+        if is_time(figure)
+        else "No percentile of its points is given, and"
+    )
+    return (
+        f"{figure}: not reached in {len(of)} of {len(runs)} runs ({why}). {count_as} no mean, "
+        "since that of the others would be taken for the mean of all."
+    )
 
 
 def _convergence(page: Page, store: Store) -> None:
@@ -145,12 +173,14 @@ def _convergence(page: Page, store: Store) -> None:
             end = "not finished"
         elif known.enough:
             end = "all reached"
-        elif known.hopeless:
+        elif known.unseen:
             end = "no run has a figure"
+        elif known.hopeless:
+            end = "runs that did not reach a figure"
         else:
             end = "maximum of runs" if known.runs >= precision.most else "not finished"
         rows.append(
-            [*[_text(value) for value in point.values()], known.runs, end,
+            [*[value_text(value) for value in point.values()], known.runs, end,
              *[_reached(name, known) for name in known.met]]
         )  # fmt: skip
     met = [*precision.figures, *(["occupancy"] if precision.occupancy else [])]
@@ -168,7 +198,9 @@ def _convergence(page: Page, store: Store) -> None:
 def _reached(name: str, known: Assessment) -> str:
     """Whether what is asked for is reached, with the interval where it is a figure."""
     said = "reached" if known.met[name] else "not reached"
-    return f"{_interval(known.estimates[name])} {said}" if name in known.estimates else said
+    if name in known.estimates:
+        return f"{known.estimates[name]}: {said}"
+    return f"{said}: {known.without_curve} runs timed out" if known.without_curve else said
 
 
 def _failures(page: Page, frame: pd.DataFrame) -> None:
@@ -203,50 +235,5 @@ def _repeat(page: Page, definition: dict[str, Any]) -> None:
     page.json("The experiment, to be run again from a .json file", definition["experiment"])
 
 
-def _picture(frame: pd.DataFrame, figure: str, names: list[str]) -> bytes:
-    """A figure against the parameters that vary, or its distribution where none does."""
-    from matplotlib.figure import Figure
-
-    done = frame[(frame["status"] == DONE) & frame[figure].notna()]
-    numeric = [n for n in names if done[n].nunique() > 1 and done[n].dtype.kind in "if"]
-    drawn: Figure = Figure(figsize=(6.4, 3.8), dpi=110, layout="constrained")
-    axes = drawn.subplots()
-    axes.grid(alpha=0.3)
-    if not numeric:
-        axes.hist(done[figure], bins="auto", color="#2166ac")
-        axes.set(xlabel=figure, ylabel="runs")
-        return picture(drawn)
-    numeric.sort(key=lambda name: -done[name].nunique())
-    along = numeric[0]
-    by = [n for n in names if n != along and 1 < done[n].nunique() <= 8]
-    for value, of in done.groupby(by[0]) if by else [(None, done)]:
-        known = [
-            (some[along].iloc[0], mean_interval(some[figure])) for _, some in of.groupby(along)
-        ]
-        across = [float(x) for x, _ in known]
-        middle = [each.value or 0.0 for _, each in known]
-        half = [each.half_width or 0.0 for _, each in known]
-        label = None if value is None else f"{by[0]} {_text(value)}"
-        axes.errorbar(across, middle, half, marker="o", capsize=3, label=label)
-    if by:
-        axes.legend(frameon=False, fontsize=8)
-    axes.set(xlabel=along, ylabel=f"{figure}, mean and 95 % interval")
-    return picture(drawn)
-
-
-def _interval(known: Estimate) -> str:
-    if known.value is None:
-        return "-"
-    if known.low is None or known.high is None:
-        return f"{known.value:.4g}"
-    return f"{known.value:.4g} ({known.low:.4g} to {known.high:.4g})"
-
-
 def _count(value: int | None) -> str:
     return "as many as it takes" if value is None else str(value)
-
-
-def _text(value: Any) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,1 @@
+"""The page that an experiment has found something on: tables and pictures."""
