@@ -11,10 +11,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from mesa_mobility.errors import ModelError
+from mesa_mobility.errors import MapError, ModelError
 from mesa_mobility.experiments.experiment import Experiment, model_class, model_name
 from mesa_mobility.plugins.model_files import is_model_file, path_and_name
-from mesa_mobility.reports.versions import machine, sha256_of, versions
+from mesa_mobility.plugins.parameters import parameters as parameters_of
+from mesa_mobility.populations import Population
+from mesa_mobility.reports.inputs import digest_of, given_files, given_population
+from mesa_mobility.reports.versions import machine, versions
 
 
 def session_of(experiment: Experiment, executor: Any) -> dict[str, Any]:
@@ -75,22 +78,28 @@ def _inputs(experiment: Experiment) -> dict[str, str]:
     """The sha256 of the files and the source that results depend on, by name."""
     from mesa_mobility.mobility.mapfile import shipped_map_path
 
-    files = {"map able_bodied": shipped_map_path("able_bodied")}
     name = model_name(experiment.model)
     kind = model_class(experiment.model)
+    taken = parameters_of(kind)
+    files: dict[str, Path] = {}
     sources = {}
     if is_model_file(name):
         files["model file"], _ = path_and_name(name)
     elif ":" in name:  # the others are of installed packages, which have versions
         with suppress(OSError, TypeError):  # of what has been typed at a prompt
             sources["source of the model"] = hashlib.sha256(_source(kind).encode()).hexdigest()
-    design = experiment.design
-    maps = {experiment.fixed.get("mobility_map")}
-    if "mobility_map" in design.column_types():
-        maps |= {design[index]["mobility_map"] for index in range(len(design))}
-    for path in sorted(str(each) for each in maps if isinstance(each, str)):
-        files[f"map {path}"] = Path(path)
-    return {label: sha256_of(file) for label, file in files.items()} | sources
+    maps = {"able_bodied"}
+    for index in range(len(experiment.design)):
+        point = experiment.point(index)
+        for given, path in given_files(taken, point).items():
+            files[f"{'map' if given == 'mobility_map' else given} {path}"] = path
+        with suppress(ModelError):  # which is an error of the runs
+            if population := given_population(taken, point):
+                maps |= {each for each in Population.of(population).shares if isinstance(each, str)}
+    for each in maps:
+        with suppress(MapError):
+            files[f"map {each}"] = shipped_map_path(each)
+    return {label: digest_of(files[label]) for label in sorted(files)} | sources
 
 
 def _source(kind: type) -> str:

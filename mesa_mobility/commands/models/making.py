@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import platform
 from collections.abc import Iterable
 from pathlib import Path
@@ -95,21 +94,14 @@ def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
     from importlib.metadata import version
 
     from mesa_mobility._version import __version__
+    from mesa_mobility.reports.inputs import map_files
 
     plain = (bool, int, float, str, type(None))
-    maps = {}
-    # Another package's model need not know types.
-    for kind in getattr(simulation, "pedestrian_types", ()):
-        path, digest = kind.mobility_map.file, None
-        if path is not None:
-            with path.open("rb") as file:
-                digest = hashlib.file_digest(file, "sha256").hexdigest()
-        maps[kind.name] = {"file": None if path is None else path.name, "sha256": digest}
     return {
         "parameters": {
             key: value if isinstance(value, plain) else str(value) for key, value in given.items()
         },
-        "maps": maps,
+        "maps": map_files(simulation),
         "mesa_mobility": __version__,
         "versions": {
             "python": platform.python_version(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections import Counter
 from pathlib import Path
@@ -36,6 +37,9 @@ _ESTIMATED = {
     "p95": "95th percentile and interval",
 }
 """What is given of each figure, by how it is asked for."""
+
+_MOST_SETS = 20
+"""Sets of inputs that are shown."""
 
 
 def write_report(store: Store, path: str | os.PathLike[str] | None = None) -> Path:
@@ -74,6 +78,7 @@ def write_report(store: Store, path: str | os.PathLike[str] | None = None) -> Pa
     if experiment.replications == "auto":
         _convergence(page, store)
     _failures(page, frame)
+    _inputs(page, frame)
     _repeat(page, definition)
     page.write(target)
     return target
@@ -220,6 +225,26 @@ def _failures(page: Page, frame: pd.DataFrame) -> None:
             for (status, error), count in errors.most_common(_MOST_ROWS)
         ],
     )
+
+
+def _inputs(page: Page, frame: pd.DataFrame) -> None:
+    """What runs used: once what all have in common, then each set of what differs."""
+    known = frame["inputs"].dropna() if "inputs" in frame else ()
+    sets = {text: json.loads(text) for text in dict.fromkeys(known)}
+    counts = Counter(known)
+    if not sets:
+        return
+    every = [dict.items(each) for each in sets.values()]
+    common = set(every[0]).intersection(*every[1:])
+    rows = [[len(known), *each] for each in sorted(common)]
+    for text, count in counts.most_common(_MOST_SETS):
+        rows += [[count, *each] for each in sorted(set(sets[text].items()) - common)]
+    note = "Of each set of inputs once, with the number of runs that used it."
+    if (more := len(sets) - _MOST_SETS) > 0:
+        note += f" {more} further sets differ from run to run; the column inputs has them."
+    if lacking := len(frame) - len(known):
+        note += f" {lacking} runs ended before their inputs were known, or are of another version."
+    page.table("Inputs of the runs", ["runs", "input", "which"], rows, note)
 
 
 def _repeat(page: Page, definition: dict[str, Any]) -> None:

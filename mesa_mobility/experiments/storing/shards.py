@@ -33,6 +33,7 @@ RUN_COLUMNS: dict[str, pa.DataType] = {
     "wall_s": pa.float64(),
     "cpu_s": pa.float64(),
     "worker": pa.string(),
+    "inputs": pa.string(),
 }
 """Columns of each row, whatever the model."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import socket
 import time
 from collections.abc import Mapping
@@ -15,6 +16,7 @@ from mesa_mobility.experiments.experiment import model_class
 from mesa_mobility.experiments.points import Point, point_key, run_name, seed_of_run
 from mesa_mobility.experiments.storing.rows import DONE, FAILED, SERIES, STALLED, TIMED_OUT, Row
 from mesa_mobility.plugins.parameters import parameters as parameters_of
+from mesa_mobility.reports.inputs import inputs_of
 
 _LONGEST_ERROR = 500
 
@@ -61,6 +63,7 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
     model = None
     try:
         model = _made(setup, point, row["seed"])
+        row["inputs"] = json.dumps(inputs_of(model, _class(setup.model)[1], point), sort_keys=True)
         _advance(model, setup, wall)
         row["status"] = STALLED if getattr(model, "stalled", False) else DONE
         row |= _figures(model, set(row), occupancy=setup.occupancy)
