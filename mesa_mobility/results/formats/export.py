@@ -1,10 +1,19 @@
-"""Trajectories in the forms that other tools of the field read."""
+"""Trajectories in the forms that other tools of the field read.
+
+The track of a person who leaves ends with the first frame beyond the exit. PedPy leaves out the
+movement into the last frame of a track, so nobody would cross the line of an exit. Exports for
+analysis therefore have ``BEYOND`` rows more: the person walks straight on, at the velocity of the
+step across the exit. They are made here and not recorded, so that no measure of our own takes
+anybody beyond an exit for somebody inside. Those whom a program takes out walk on as well: tracks
+do not tell them apart.
+"""
 
 from __future__ import annotations
 
 import os
 import sqlite3
 import zlib
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +30,8 @@ if TYPE_CHECKING:
     from mesa_mobility.results.trajectories import Trajectories
 
 JUPEDSIM_VERSION = 2
+BEYOND = 3
+"""Frames for which people walk on beyond the exit."""
 # Rows handed over together: bounds the Python objects alive at a time.
 CHUNK = 100_000
 
@@ -52,7 +63,10 @@ def to_pandas(trajectories: Trajectories) -> pd.DataFrame:
 
 
 def to_pedpy(trajectories: Trajectories) -> pedpy.TrajectoryData:
-    """The same rows as PedPy's `TrajectoryData` (columns id, frame, x, y in metres).
+    """As PedPy's `TrajectoryData` (columns id, frame, x, y in metres), with rows beyond the exits.
+
+    A person who left has ``BEYOND`` rows more than here, straight on at the velocity of the step
+    across the exit: N(t) at the line of an exit then counts everybody who left by it.
 
     Raises:
         ResultsError: PedPy is not installed, or there are no rows.
@@ -62,7 +76,7 @@ def to_pedpy(trajectories: Trajectories) -> pedpy.TrajectoryData:
         import pedpy
     except ImportError as error:
         raise ResultsError("PedPy is not installed: pip install pedpy") from error
-    _check_rows(trajectories)
+    trajectories = _walked_on(trajectories)
     data = pd.DataFrame(
         {
             "id": trajectories.person.astype(np.int64),
@@ -81,7 +95,8 @@ def write_jupedsim_sqlite(
 ) -> None:
     """Write a JuPedSim trajectory database, version 2, as its viewer, jupedsim and PedPy read it.
 
-    A table ``person_data`` beside JuPedSim's own has the type of each person and the like.
+    A table ``person_data`` beside JuPedSim's own has the type of each person and the like. People
+    who left walk on for ``BEYOND`` frames, as in ``to_pedpy``.
 
     Args:
         trajectories: the run; the direction that each person faces goes into ori_x, ori_y.
@@ -91,7 +106,7 @@ def write_jupedsim_sqlite(
     Raises:
         ResultsError: no rows, or the file cannot be written.
     """
-    _check_rows(trajectories)
+    trajectories = _walked_on(trajectories)
     wkt = shapely.to_wkt(walkable, rounding_precision=-1)
     # JuPedSim only matches this number between its tables; its own, Python's hash(), changes
     # from process to process.
@@ -160,12 +175,13 @@ def _insert_people(connection: sqlite3.Connection, trajectories: Trajectories) -
 def write_juelich_text(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
     """Write the text form of the Juelich data archive: lines of ID, frame, x, y, z in metres.
 
-    Coordinates are rounded to 0.1 mm and z is 0. PedPy and JPSreport read it.
+    Coordinates are rounded to 0.1 mm and z is 0. PedPy and JPSreport read it. People who left walk
+    on for ``BEYOND`` frames, as in ``to_pedpy``.
 
     Raises:
         ResultsError: no rows, or the file cannot be written.
     """
-    _check_rows(trajectories)
+    trajectories = _walked_on(trajectories)
     order = trajectories.by_person
     with (
         replacing(path, ResultsError) as temporary,
@@ -186,6 +202,38 @@ def write_juelich_text(trajectories: Trajectories, path: str | os.PathLike[str])
             )
 
 
-def _check_rows(trajectories: Trajectories) -> None:
+def _walked_on(trajectories: Trajectories) -> Trajectories:
+    """The rows, and those of people who walk on beyond an exit; for export alone.
+
+    Raises:
+        ResultsError: no rows.
+    """
     if not len(trajectories):
         raise ResultsError("there is nothing to export: the trajectories have no rows")
+    order = trajectories.by_person
+    before, after = order[:-1], order[1:]
+    person, frame = trajectories.person, trajectories.frame
+    # The last two rows of those who left; who has a single row has taken no step.
+    across = (person[before] == person[after]) & (frame[before] + 1 == frame[after])
+    across &= trajectories.exit_frames[person[after]] == frame[after]
+    before, after = np.repeat(before[across], BEYOND), np.repeat(after[across], BEYOND)
+    steps = np.tile(np.arange(1, BEYOND + 1, dtype=np.int32), int(across.sum()))
+    beyond: dict[str, Any] = {
+        "frame": frame[after] + steps,
+        "person": person[after],
+        "x": trajectories.x[after] + steps * (trajectories.x[after] - trajectories.x[before]),
+        "y": trajectories.y[after] + steps * (trajectories.y[after] - trajectories.y[before]),
+        "heading": trajectories.heading[after],
+    }
+    assert trajectories.last_frame is not None
+    columns: dict[str, Any] = {
+        name: np.concatenate([getattr(trajectories, name), beyond[name]]) for name in COLUMNS
+    }
+    return replace(
+        trajectories,
+        **columns,
+        last_frame=max(trajectories.last_frame, int(beyond["frame"].max(initial=0))),
+        inside_at_end=np.empty(0, dtype=np.int32),
+        fields={},
+        decisions=None,
+    )

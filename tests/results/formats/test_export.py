@@ -11,6 +11,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import (
     Trajectories,
     density,
+    occupancy,
     to_pedpy,
     write_juelich_text,
     write_jupedsim_sqlite,
@@ -28,12 +29,46 @@ def run(two_leave_one_stays):
     return two_leave_one_stays
 
 
+# Of two_leave_one_stays: persons 0 and 2 walk on at 1.1 m and 1.5 m a frame, person 1 is inside.
+BEYOND = [
+    (3, 0, 11.2, 2.0), (4, 0, 12.3, 2.0), (5, 0, 13.4, 2.0),
+    (5, 2, 12.0, 2.0), (6, 2, 13.5, 2.0), (7, 2, 15.0, 2.0),
+]  # fmt: skip
+
+
+def exported(run):
+    """(n, 4) rows of frame, person, x and y of an export, in this order."""
+    rows = np.vstack([np.column_stack((run.frame, run.person, run.x, run.y)), BEYOND])
+    return rows[np.lexsort((rows[:, 1], rows[:, 0]))]
+
+
+def test_everybody_who_leaves_crosses_the_line_of_the_exit(run, room, pedpy, tmp_path):
+    write_jupedsim_sqlite(run, tmp_path / "run.sqlite", room.free)
+    write_juelich_text(run, tmp_path / "run.txt")
+    line = pedpy.MeasurementLine([(10, 1), (10, 3)])
+    for data in (
+        run.to_pedpy(),
+        pedpy.load_trajectory_from_jupedsim_sqlite(trajectory_file=tmp_path / "run.sqlite"),
+        pedpy.load_trajectory(trajectory_file=tmp_path / "run.txt"),
+    ):
+        nt, crossed = pedpy.compute_n_t(traj_data=data, measurement_line=line)
+        assert crossed[["id", "frame"]].to_numpy().tolist() == [[0, 2], [2, 4]]
+        assert nt.cumulative_pedestrians.max() == 2
+    # Whatever is measured here has nobody beyond an exit.
+    assert occupancy(run, every=0.5) == [[0.0, 2], [0.5, 3], [1.0, 2], [1.5, 2], [2.0, 1]]
+
+
+def test_a_person_of_a_single_row_does_not_walk_on(walk):
+    run = walk({0: (2, [(1.0, 1.0)])}, inside_at_end=np.empty(0, dtype=int), last_frame=4)
+    assert len(export._walked_on(run)) == 1
+
+
 def test_pedpy_gets_every_row(run, pedpy):
     data = run.to_pedpy()
     assert isinstance(data, pedpy.TrajectoryData)
     assert data.frame_rate == 2.0
     rows = data.data[["frame", "id", "x", "y"]].to_numpy().tolist()
-    assert rows == np.column_stack((run.frame, run.person, run.x, run.y)).tolist()
+    assert np.array(rows) == pytest.approx(exported(run))
 
 
 def test_pedpy_measures_the_same_density(run, pedpy):
@@ -44,7 +79,9 @@ def test_pedpy_measures_the_same_density(run, pedpy):
     ours = density(run, box, every=0.5)
     # Frame by frame: 0 at 8; 0 at 9; 2 at 8; 2 at 9; nobody.  10 m2.
     assert [value for _, value in ours] == [0.1, 0.1, 0.1, 0.1, 0.0]
-    assert theirs["density"].tolist() == [value for _, value in ours]
+    # The rows beyond the exit change nothing within the floor.
+    assert theirs["density"].tolist()[:5] == [value for _, value in ours]
+    assert set(theirs["density"].tolist()[5:]) == {0.0}
 
 
 def test_without_pedpy_it_says_how_to_get_it(run, monkeypatch):
@@ -58,9 +95,7 @@ def test_jupedsim_database_reads_in_pedpy(run, room, pedpy, tmp_path):
     write_jupedsim_sqlite(run, path, room.free)
     data = pedpy.load_trajectory_from_jupedsim_sqlite(trajectory_file=path)
     assert data.frame_rate == 2.0
-    assert data.data[["frame", "id", "x", "y"]].to_numpy().tolist() == (
-        np.column_stack((run.frame, run.person, run.x, run.y)).tolist()
-    )
+    assert data.data[["frame", "id", "x", "y"]].to_numpy() == pytest.approx(exported(run))
     area = pedpy.load_walkable_area_from_jupedsim_sqlite(trajectory_file=path)
     assert area.polygon.equals(room.free)
     assert area.polygon.area == pytest.approx(39.0)
@@ -98,9 +133,9 @@ def test_juelich_text_reads_in_pedpy(run, pedpy, tmp_path):
     write_juelich_text(run, path)
     data = pedpy.load_trajectory(trajectory_file=path)
     assert data.frame_rate == 2.0
-    order = np.lexsort((run.frame, run.person))
-    assert data.data[["id", "frame", "x", "y"]].to_numpy().tolist() == (
-        np.column_stack((run.person, run.frame, run.x, run.y))[order].tolist()
+    rows = exported(run)
+    assert data.data[["frame", "id", "x", "y"]].to_numpy() == pytest.approx(
+        rows[np.lexsort((rows[:, 0], rows[:, 1]))]
     )
 
 
