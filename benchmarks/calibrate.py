@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from mesa_mobility import MobilityMap, PedestrianType
+from mesa_mobility.commands.console import progress_bar
 from mesa_mobility.crowd.presets import PRESETS
 from mesa_mobility.mobility.map import CORE_RADIUS
 from mesa_mobility.plugins.registry import load_behavior
@@ -122,6 +123,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--minutes", type=float, default=9.0, help="wait for no result after this")
+    parser.add_argument("--no-progress", action="store_true", help="no progress on standard error")
     given = parser.parse_args()
     lines = given.file.read_text(encoding="utf-8").splitlines() if given.file.exists() else []
     done = {
@@ -130,8 +132,13 @@ def main() -> None:
     asked = [(each, seed) for each in settings() for seed in range(1, given.seeds + 1)]
     missing = [(each, seed) for each, seed in asked if (json_text(each), seed) not in done]
     until = time.monotonic() + 60.0 * given.minutes
-    with given.file.open("a", encoding="utf-8") as file, ProcessPoolExecutor(given.jobs) as pool:
+    with (
+        given.file.open("a", encoding="utf-8") as file,
+        ProcessPoolExecutor(given.jobs) as pool,
+        progress_bar(shown=not given.no_progress) as told,
+    ):
         while missing and time.monotonic() < until:
+            told("runs", len(asked) - len(missing), len(asked))
             batch, missing = missing[: given.jobs], missing[given.jobs :]
             running = {pool.submit(measure, each, seed): (each, seed) for each, seed in batch}
             for future in as_completed(running):

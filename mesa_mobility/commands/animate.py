@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from mesa_mobility.commands.console import progress_bar, say, some_path
+from mesa_mobility.commands.console import NoProgress, progress_bar, say, some_path
 from mesa_mobility.errors import ResultsError
 
 
@@ -55,6 +55,7 @@ def animate(
     start: Start = 0.0,
     end: End = None,
     poses: Poses = None,
+    no_progress: NoProgress = False,
 ) -> None:
     """Write the people of a run as moving figures, for Blender and the web."""
     from mesa_mobility.animation import (
@@ -73,7 +74,7 @@ def animate(
     bank = None if poses is None else PoseBank.load(poses)
     count = len(selection.people_of(found.trajectories))
     each = walkers(found.trajectories, selection, bank)
-    with progress_bar() as report:
+    with progress_bar(shown=not no_progress) as report:
 
         def progress(done: int) -> None:
             report("writing people", done, count)
@@ -114,6 +115,7 @@ def render(
     at: Annotated[
         str | None, typer.Option(metavar="0,10,20", help="Seconds of the panels of a still.")
     ] = None,
+    no_progress: NoProgress = False,
 ) -> None:
     """Draw a run from above: a film (.mp4, .gif, .webp) or a still (.png, .pdf, .svg)."""
     from mesa_mobility.animation import Selection, write_film
@@ -124,7 +126,7 @@ def render(
     found = read_run(run)
     if output.suffix.lower() in FILMS:
         selection = Selection(numbers(people), start, end)
-        with progress_bar() as report:
+        with progress_bar(shown=not no_progress) as report:
             write_film(
                 found.trajectories,
                 found.plan,

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import sys
+import threading
+import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Annotated, Any, Protocol
 
 import typer
 from rich.console import Console
@@ -23,12 +25,17 @@ from rich.table import Table
 
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, cleaning_up, gentle_interrupt
 
+EVERY_S = 10.0
+"""Seconds from one line of progress to the next, where no bar can be drawn."""
+
+NoProgress = Annotated[bool, typer.Option("--no-progress", help="No progress on standard error.")]
+
 
 class Report(Protocol):
     """Shows the progress of long work."""
 
-    def __call__(self, what: str, done: float, total: float) -> None:
-        """`what` is being done, `done` of `total`."""
+    def __call__(self, what: str, done: float = 0.0, total: float | None = None) -> None:
+        """`what` is being done, `done` of `total`, which may be unknown."""
 
 
 def some_path(text: str) -> Path:
@@ -73,28 +80,30 @@ def answer_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
 
 @contextmanager
 def progress_bar(*, shown: bool = True) -> Iterator[Report]:
-    """A progress bar on standard error; nothing is drawn where that is not a terminal."""
+    """Progress on standard error: a bar on a terminal, elsewhere a line every ten seconds."""
     with _bar(TimeElapsedColumn(), shown=shown) as report:
         yield report
 
 
 @contextmanager
-def counting_bar() -> Iterator[Report]:
-    """A progress bar with the time left."""
-    with _bar(TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn()) as report:
+def counting_bar(*, shown: bool = True) -> Iterator[Report]:
+    """As ``progress_bar``, with the time left on a terminal."""
+    times = (TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn())
+    with _bar(*times, shown=shown) as report:
         yield report
 
 
 @contextmanager
-def stoppable_progress(kept: str = "nothing written") -> Iterator[Report]:
-    """A progress bar; the first Ctrl-C ends the command at the next report.
+def stoppable_progress(kept: str = "nothing written", *, shown: bool = True) -> Iterator[Report]:
+    """As ``progress_bar``; the first Ctrl-C ends the command at the next report.
 
     Args:
         kept: what is said then of files.
+        shown: whether there is any progress.
     """
-    with progress_bar() as report, gentle_interrupt() as stop_here:
+    with progress_bar(shown=shown) as report, gentle_interrupt() as stop_here:
 
-        def progress(what: str, done: float, total: float) -> None:
+        def progress(what: str, done: float = 0.0, total: float | None = None) -> None:
             report(what, done, total)
             stop_here()
 
@@ -108,9 +117,13 @@ def stoppable_progress(kept: str = "nothing written") -> Iterator[Report]:
 @contextmanager
 def _bar(*times: ProgressColumn, shown: bool = True) -> Iterator[Report]:
     console = Console(stderr=True)
-    if not shown or not console.is_terminal:
+    if not shown:
         # Older versions of Rich end a disabled bar with an empty line.
-        yield lambda what, done, total: None
+        yield lambda what, done=0.0, total=None: None
+        return
+    if not console.is_terminal:
+        with _lines() as report:
+            yield report
         return
     bar = Progress(
         TextColumn("{task.description}"),
@@ -124,7 +137,31 @@ def _bar(*times: ProgressColumn, shown: bool = True) -> Iterator[Report]:
     with cleaning_up(console.show_cursor), bar:
         task = bar.add_task("starting", total=None)
 
-        def report(what: str, done: float, total: float) -> None:
+        def report(what: str, done: float = 0.0, total: float | None = None) -> None:
             bar.update(task, description=what, completed=done, total=total)
 
         yield report
+
+
+@contextmanager
+def _lines() -> Iterator[Report]:
+    """A line on standard error every ``EVERY_S`` seconds, also while nothing is reported."""
+    began, ended = time.monotonic(), threading.Event()
+    now = ["starting"]
+
+    def tell() -> None:
+        while not ended.wait(EVERY_S):
+            minutes, seconds = divmod(round(time.monotonic() - began), 60)
+            with suppress(OSError, ValueError):  # nobody reads it any more
+                say(f"{now[0]}, {minutes}:{seconds:02} min")
+
+    def report(what: str, done: float = 0.0, total: float | None = None) -> None:
+        now[0] = f"{what}, {done / total:.0%}" if total else what
+
+    teller = threading.Thread(target=tell, name="mesa-mobility progress", daemon=True)
+    teller.start()
+    try:
+        yield report
+    finally:
+        ended.set()
+        teller.join()

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from mesa_mobility.commands.console import (
+    NoProgress,
     answer_json,
     answer_table,
     counting_bar,
@@ -52,6 +53,7 @@ def run(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what would be run, and run nothing.")
     ] = False,
+    no_progress: NoProgress = False,
 ) -> None:
     """Run what is missing of an experiment.
 
@@ -73,7 +75,7 @@ def run(
         )  # fmt: skip
         return
     interrupted = False
-    with gentle_interrupt() as stop_here, counting_bar() as report:
+    with gentle_interrupt() as stop_here, counting_bar(shown=not no_progress) as report:
         told: list[str] = []
 
         def progress(now: Any) -> None:

@@ -9,6 +9,7 @@ import typer
 
 from mesa_mobility.commands.animate import RunDir
 from mesa_mobility.commands.console import (
+    NoProgress,
     answer_json,
     answer_rows,
     answer_table,
@@ -42,6 +43,7 @@ def explain(
     as_json: Annotated[
         bool, typer.Option("--json", help="One JSON object with all options.")
     ] = False,
+    no_progress: NoProgress = False,
 ) -> None:
     """Why this, why not that: one decision of a run that was saved with `--record decisions`.
 
@@ -52,7 +54,7 @@ def explain(
 
     found = read_run(run)
     frame = decision_frame(found.trajectories, person, time)
-    with progress_bar() as report:
+    with progress_bar(shown=not no_progress) as report:
         model, explained = repeat_decision(
             found,
             run,

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from mesa_mobility.commands.animate import End, People, Poses, RunDir, Start, numbers
-from mesa_mobility.commands.console import progress_bar, say, some_path
+from mesa_mobility.commands.console import NoProgress, progress_bar, say, some_path
 
 
 def replay(
@@ -31,6 +31,7 @@ def replay(
     no_open: Annotated[
         bool, typer.Option("--no-open", help="Write the page and open no browser.")
     ] = False,
+    no_progress: NoProgress = False,
 ) -> None:
     """Watch a run in three dimensions: a page with a time slider that needs no network."""
     from mesa_mobility.animation import Selection
@@ -43,7 +44,7 @@ def replay(
     selection = Selection(numbers(people), start, end)
     bank = None if poses is None else PoseBank.load(poses)
     count = len(selection.people_of(found.trajectories))
-    with progress_bar() as report:
+    with progress_bar(shown=not no_progress) as report:
         write_page(
             found.trajectories,
             found.plan,

@@ -13,6 +13,7 @@ import typer
 
 from mesa_mobility._startup import nothing_collected
 from mesa_mobility.commands.console import (
+    NoProgress,
     answer_json,
     answer_table,
     progress_bar,
@@ -72,7 +73,7 @@ def run(
     as_json: Annotated[
         bool, typer.Option("--json", help="One JSON object as the last line of output.")
     ] = False,
-    no_progress: Annotated[bool, typer.Option("--no-progress", help="No progress bar.")] = False,
+    no_progress: NoProgress = False,
 ) -> None:
     """Run a model and report its figures.
 
@@ -83,10 +84,12 @@ def run(
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
     seed = secrets.randbelow(2**31) if seed is None else seed
-    with nothing_collected():
-        from mesa_mobility.crowd.precompile import compiling_ahead
+    with progress_bar(shown=not no_progress) as report, nothing_collected():
+        report("loading")
+        from mesa_mobility.crowd.precompile import compiling_ahead, is_compiled
         from mesa_mobility.plugins.registry import load_model
 
+        report("preparing" if is_compiled() else "compiling, once after installation")
         with compiling_ahead():
             settings = list(settings or [])
             if population is not None:
@@ -175,6 +178,7 @@ def _simulate(
     people = simulation.inside
     interrupted = False
     with progress_bar(shown=shown) as report:
+        report("preparing the first step")
 
         def progress(elapsed: float, inside: int) -> None:
             # The share of the time or that of the people, whichever is larger.

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, progress_bar, say, some_path
+from mesa_mobility.commands.console import (
+    NoProgress,
+    answer_json,
+    progress_bar,
+    say,
+    some_path,
+)
 from mesa_mobility.commands.verify import (
     FAILED,
     AsJson,
@@ -39,6 +45,7 @@ def validate(
         ),
     ] = None,
     report_file: ReportFile = None,
+    no_progress: NoProgress = False,
 ) -> None:
     """Compare crowds with measured ones: speeds, flows, densities, lanes, standing.
 
@@ -54,7 +61,7 @@ def validate(
     check_report(report_file)
     numbers = range(1, seeds + 1)
     cases = [each for experiment in experiments for each in experiment.cases]
-    with progress_bar() as report:
+    with progress_bar(shown=not no_progress) as report:
         results = run_cases(cases, numbers, jobs or available_processors(), report)
     verdicts = {
         experiment.name: judged(

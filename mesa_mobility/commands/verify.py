@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, progress_bar, say, some_path
+from mesa_mobility.commands.console import (
+    NoProgress,
+    answer_json,
+    progress_bar,
+    say,
+    some_path,
+)
 from mesa_mobility.processes import available_processors
 
 if TYPE_CHECKING:
@@ -39,6 +45,7 @@ def verify(
     jobs: Jobs = None,
     as_json: AsJson = False,
     report_file: ReportFile = None,
+    no_progress: NoProgress = False,
 ) -> None:
     """Run the verification tests of RiMEA, IMO, NIST and ISO for a level floor.
 
@@ -49,7 +56,7 @@ def verify(
     check_report(report_file)
     tests = suite(ids or [])
     entries = catalogue()
-    with progress_bar() as report:
+    with progress_bar(shown=not no_progress) as report:
         outcomes = verify(
             tests,
             range(1, seeds + 1),

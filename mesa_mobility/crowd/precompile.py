@@ -57,8 +57,7 @@ def compiling_ahead() -> Iterator[None]:
 
     Everything else is compiled in this process after the block.
     """
-    where = _cached_in()
-    if THREADS < 2 or where is None or any(where.glob("decision.decide-*.nbi")):
+    if THREADS < 2 or _cached_in() is None or is_compiled():
         yield
         return
     with deaf_children():
@@ -72,6 +71,12 @@ def compiling_ahead() -> Iterator[None]:
     finally:
         other.kill()
         other.wait()
+
+
+def is_compiled() -> bool:
+    """Whether decisions, which take longest to compile, are kept on disk as compiled code."""
+    where = _cached_in()
+    return where is not None and any(where.glob("decision.decide-*.nbi"))
 
 
 def _cached_in() -> Path | None:

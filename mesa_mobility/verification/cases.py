@@ -61,7 +61,8 @@ def run_cases(
         cases: the cases; duplicates are run once.
         seeds: one run each.
         jobs: processes.
-        progress: called with the run just done, the effort so far, and the total effort.
+        progress: called with the run just done, the effort so far, and the total effort; at first
+            before any run.
         drawn: whether figures have a ``drawing`` of the first run that they are from.
     """
     todo = [(each, seed) for each in dict.fromkeys(cases) for seed in seeds]
@@ -69,6 +70,8 @@ def run_cases(
     total = sum(each.effort for each, _ in todo)
     results: dict[tuple[Case, int], Figures] = {}
     done = 0.0
+    if progress is not None:
+        progress(f"the first of {len(todo)} runs", done, total)
     for each, seed, figures in run_units(todo, jobs, drawn=drawn):
         results[each, seed] = figures
         done += each.effort

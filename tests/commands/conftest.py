@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from mesa_mobility.cli import main
+from mesa_mobility.commands import console
 from mesa_mobility.plugins.registry import _find
 from tests.fixtures.walker import walker_bvh
 
@@ -31,6 +32,12 @@ class Outcome:
     status: int
     out: str
     err: str
+
+
+@pytest.fixture(autouse=True)
+def no_lines_of_progress(monkeypatch) -> None:
+    """However slow the machine is: tests look at every line of standard error."""
+    monkeypatch.setattr(console, "EVERY_S", 1e6)
 
 
 @pytest.fixture

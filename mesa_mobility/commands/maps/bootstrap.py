@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mesa_mobility.commands.console import (
+    NoProgress,
     answer_json,
     answer_table,
     say,
@@ -46,6 +47,7 @@ def bootstrap(
         int | None, typer.Option(min=2, help="How many clusters of poses (one for 150).")
     ] = None,
     as_json: AsJson = False,
+    no_progress: NoProgress = False,
 ) -> None:
     """Compute maps of clips drawn with replacement, as `map build` does of all clips.
 
@@ -57,7 +59,7 @@ def bootstrap(
     from mesa_mobility.results import check_writable
 
     check_writable(out, [f"{type_name}-{number}.npz" for number in range(1, maps + 1)])
-    with stoppable_progress("maps that are complete are kept") as report:
+    with stoppable_progress("maps that are complete are kept", shown=not no_progress) as report:
         prepared = prepare_recordings(
             find_clips(source),
             type_name,

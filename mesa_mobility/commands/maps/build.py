@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import say, some_path, stoppable_progress
+from mesa_mobility.commands.console import NoProgress, say, some_path, stoppable_progress
 from mesa_mobility.commands.maps.answers import (
     AsJson,
     answer,
@@ -97,6 +97,7 @@ def build(
         typer.Option("--poses", help="Also write the full-body poses behind the options."),
     ] = False,
     as_json: AsJson = False,
+    no_progress: NoProgress = False,
 ) -> None:
     """Compute a mobility map from recordings, or from the limits of a wheelchair."""
     from mesa_mobility.bodies.bankfile import poses_path
@@ -137,13 +138,14 @@ def build(
             derived=derived,
             name=name,
             kept=kept,
+            shown=not no_progress,
         )
         built = map_of_families(families)
         save = built.save if kept == Options.STORED else families.save
         if poses:
             from mesa_mobility.bodies import build_bank
 
-            with stoppable_progress() as report:
+            with stoppable_progress(shown=not no_progress) as report:
                 bank = build_bank(built, recordings, report)
     with putting_in_place():
         save(output)
@@ -168,6 +170,7 @@ def _from_recordings(
     derived: str | None,
     name: str | None,
     kept: Options,
+    shown: bool,
 ) -> tuple[OptionFamilies, Sequence[Recording], dict[str, Any]]:
     """The recorded options of a map, the recordings as used, and what to say of them."""
     from mesa_mobility.capture import find_clips
@@ -180,7 +183,7 @@ def _from_recordings(
 
     plan = None if derived is None else derived_type(derived)
     recorded = type_name or (plan.source if plan else "able_bodied")
-    with stoppable_progress() as report:
+    with stoppable_progress(shown=shown) as report:
         prepared = prepare_recordings(
             find_clips(source),
             recorded,

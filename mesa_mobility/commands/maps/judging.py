@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mesa_mobility.commands.console import stoppable_progress
+from mesa_mobility.commands.console import NoProgress, stoppable_progress
 from mesa_mobility.commands.maps.answers import (
     AsJson,
     answer,
@@ -47,6 +47,7 @@ def coverage(
         ),
     ] = False,
     as_json: AsJson = False,
+    no_progress: NoProgress = False,
 ) -> None:
     """Compare a map's options with the movements in other recordings."""
     from mesa_mobility.mobility import MobilityMap, left_out_one_at_a_time
@@ -54,7 +55,7 @@ def coverage(
 
     mobility_map = MobilityMap.load(file)
     recordings = []
-    with stoppable_progress() as report:
+    with stoppable_progress(shown=not no_progress) as report:
         for source in sources:
             recordings.extend(load_recordings(source, report, mobility_map if leave_out else None))
         if leave_out:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from mesa_mobility.commands.console import say, some_path, stoppable_progress
+from mesa_mobility.commands.console import NoProgress, say, some_path, stoppable_progress
 from mesa_mobility.commands.maps.judging import load_recordings
 from mesa_mobility.interrupts import putting_in_place
 
@@ -30,6 +30,7 @@ def poses(
             metavar="PATH",
         ),
     ] = None,
+    no_progress: NoProgress = False,
 ) -> None:
     """Write the poses of the recordings that a map's options go through."""
     from mesa_mobility.bodies import build_bank
@@ -40,7 +41,7 @@ def poses(
     output = output or poses_path(file)
     check_writable(output.parent)
     mobility_map = MobilityMap.load(file)
-    with stoppable_progress() as report:
+    with stoppable_progress(shown=not no_progress) as report:
         recordings = load_recordings(source, report, mobility_map)
         bank = build_bank(mobility_map, recordings, report)
     with putting_in_place():
