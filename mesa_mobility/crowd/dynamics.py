@@ -133,7 +133,6 @@ class Dynamics(Saved):
         agents = people.admit(rows, targets.points, new.headings, model)
         self._next = model.frame
         people.look_over(model.frame)
-        model.running = True
         return agents
 
     def advance(self, end: int) -> None:

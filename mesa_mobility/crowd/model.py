@@ -97,7 +97,7 @@ class PedestrianModel(mesa.Model):
         frame: frames since the start.
         time: ``elapsed``, and between two steps the time of Mesa's events, seconds.
         stalled: whether for a minute nobody has left and people have come no nearer to an exit;
-            ``stall_reason`` says why.
+            ``stall_reason`` says why, and ``go_on`` and ``run`` give it another minute.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
         events_at_first: events that Mesa itself has scheduled.
         framework_attributes: names of the attributes that this class has made.
@@ -344,6 +344,15 @@ class PedestrianModel(mesa.Model):
         self.datacollector.collect(self)
         self.running = (self.inside > 0 or self.sources.expecting) and not self.stalled
 
+    def go_on(self) -> None:
+        """Let an evacuation that has stalled run on: people have another minute to come nearer.
+
+        ``run``, ``add_pedestrians`` and ``add_source`` do so, too. A loop of ``step`` calls it after
+        a change of doors, obstacles or behaviours.
+        """
+        self._stall_watch, self.stalled = StallWatch(), False
+        self.running = True
+
     def run(
         self,
         max_seconds: float | None = None,
@@ -365,8 +374,7 @@ class PedestrianModel(mesa.Model):
         if max_seconds is None and endless:
             raise ModelError("max_seconds: got none, but people go round or come for ever")
         reported = 0
-        self._stall_watch, self.stalled = StallWatch(), False
-        self.running = True
+        self.go_on()
         while self.running and (max_seconds is None or self.elapsed < max_seconds - 1e-9):
             self.step()
             if progress is not None and int(self.elapsed) > reported:

@@ -66,7 +66,7 @@ def TimeControls(session: Session) -> None:
     speed = next(name for name, value in SPEEDS.items() if value == session.speed.value)
     colour, set_colour = solara.use_state("speed")
     playing = status.state == "playing"
-    over = status.state in ("no model", "finished", "stalled", "failed", "building")
+    over = status.state in ("no model", "finished", "failed", "building")
 
     def set_speed(name: str) -> None:
         session.set_speed(SPEEDS[name])

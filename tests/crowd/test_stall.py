@@ -3,7 +3,7 @@
 import pytest
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan
+from mesa_mobility import Exit, FloorPlan, Source
 from tests.fixtures.maps import make_map, shipped_map, stand, strider
 from tests.fixtures.scenes import advance, corridor, dead_end, model_of, put, statues
 
@@ -69,3 +69,39 @@ def test_a_way_out_that_opens_ends_it():
     assert not model.stalled
     model.run(max_seconds=240)
     assert model.inside == 0
+
+
+def stalled():
+    """Somebody who cannot move, a minute and a bit later."""
+    model = model_of(corridor(), [statues(), strider()], frames_per_step=3)
+    put(model, 5.0, 2.0)
+    model.run()
+    assert model.stalled
+    return model
+
+
+def let_in_later(model):
+    model.add_source(Source(area=box(8, 1, 12, 3), rate=1.0, start=model.elapsed + 20, number=3))
+
+
+def put_behind_a_closed_door(model):
+    model.floor_plan.close_gate("east")
+    advance(model, 1)
+    model.go_on()
+    model.run()
+    assert model.stall_reason == "every exit is closed"
+    put(model, 12.0, 2.0, type_index=1)
+
+
+@pytest.mark.parametrize(
+    "change", [let_in_later, put_behind_a_closed_door, lambda model: model.go_on()]
+)
+def test_a_run_that_has_stalled_has_another_minute_when_people_come_or_somebody_asks(change):
+    model = stalled()
+    change(model)
+    before = model.elapsed
+    assert model.running
+    assert not model.stalled
+    while model.running and model.elapsed < before + 59.0:
+        model.step()
+    assert model.elapsed == pytest.approx(before + 59.0, abs=0.1)

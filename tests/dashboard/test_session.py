@@ -173,3 +173,37 @@ def test_an_obstacle_goes_and_comes_back_unless_somebody_stands_there(session):
     session.toggle_obstacle(0)
     until(lambda: session.problem.value)
     assert session.problem.value == ("obstacle 0: pedestrian 1 stands there, expected free floor")
+
+
+def stalled_session(session):
+    """A doorway whose only way out is closed, a minute later."""
+    session.build(Recipe(Doorway, {"pedestrians": 2, "rng": 3}))
+    until(lambda: session.status.value.inside == 2)
+    session.toggle_opening("second door")
+    session.set_speed(FULL_SPEED)
+    session.play(True)
+    until(lambda: session.status.value.state == "stalled", 60)
+
+
+CHANGES = {
+    "door": lambda session: session.toggle_opening("second door"),
+    "weight": lambda session: session.set_behaviour("headway", True, 2.0),
+    "behaviour": lambda session: session.set_behaviour("headway", False, 1.0),
+    "choice": lambda session: session.choose_targets_by(session.choice.value.names[-1]),
+    "hand": lambda session: session.steer(0, (1.0, 0.0)),
+}
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_run_that_has_stalled_goes_on_after_any_change(session, change):
+    stalled_session(session)
+    before = session.status.value.elapsed
+    session.set_speed(1.0)
+    CHANGES[change](session)
+    session.step()
+    until(lambda: session.status.value.elapsed == pytest.approx(before + 0.1))
+    assert session.status.value.state == "ready"
+    session.play(True)
+    until(lambda: session.status.value.elapsed > before + 0.15)
+    assert session.status.value.state == "playing"

@@ -75,7 +75,9 @@ def add_pedestrians(
         population=None if population is None else Population.of(population),
         fields=fields or {},
     )
-    return model.dynamics.insert(positions, new)
+    people = model.dynamics.insert(positions, new)
+    model.go_on()
+    return people
 
 
 def add_source(model: PedestrianModel, source: Source) -> Inflow:
@@ -93,5 +95,5 @@ def add_source(model: PedestrianModel, source: Source) -> Inflow:
             from there.
     """
     inflow = model.sources.add(source, model.frame, model.rng)
-    model.running = True
+    model.go_on()
     return inflow

@@ -47,10 +47,19 @@ class Run:
         self.hand = ByHand(self.model)
 
     def set_playing(self, playing: bool) -> None:
-        """Play or pause."""
-        possible = self.model.running and not self.failed
+        """Play or pause; a run that is over stays so."""
         self.until_decision = False
-        self.clock.set_playing(playing and possible, self.model.elapsed)
+        self.clock.set_playing(playing and self._goes_on(), self.model.elapsed)
+
+    def _goes_on(self) -> bool:
+        """Whether another step is possible, now that somebody asks for it.
+
+        A run that has stalled gets another minute: a door, an obstacle, a weight, a behaviour or a
+        hand on the keys may have changed what kept people, and nobody has to say which.
+        """
+        if self.model.stalled:
+            self.model.go_on()
+        return self.model.running and not self.failed
 
     def step(self) -> None:
         """Advance the model by one step, unless it is over.
@@ -59,7 +68,7 @@ class Run:
             Exception: whatever the model has raised; it has failed then.
         """
         model = self.model
-        if not model.running or self.failed:
+        if not self._goes_on():
             self.set_playing(False)
             return
         watched = None if model.watch is None else model.watch.decision
