@@ -39,7 +39,7 @@ def dashboard(
         )
     if plan is not None and model is not None:
         raise ModelError(f"--plan {plan}: got model {model!r} as well, expected one of the two")
-    from mesa_mobility.dashboard.server import serve
+    from mesa_mobility.dashboard.serving.server import serve
     from mesa_mobility.live.access import is_loopback
 
     given = {}

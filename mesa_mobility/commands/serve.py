@@ -61,11 +61,11 @@ def serve(
         )
     import asyncio
 
-    from mesa_mobility.live.access import address_of, is_loopback, listen, new_token
+    from mesa_mobility.live.access import address_of, is_loopback, listen, own_token
     from mesa_mobility.live.run import Run
     from mesa_mobility.live.server import Access, LiveServer, origins_of
 
-    token = new_token()
+    token = own_token()
     access = Access(host, token, origins_of(origins or []))
     listening = listen(host, port)
     seed = secrets.randbelow(2**31) if seed is None else seed

@@ -347,8 +347,8 @@ class PedestrianModel(mesa.Model):
     def go_on(self) -> None:
         """Let an evacuation that has stalled run on: people have another minute to come nearer.
 
-        ``run``, ``add_pedestrians`` and ``add_source`` do so, too. A loop of ``step`` calls it after
-        a change of doors, obstacles or behaviours.
+        ``run``, ``add_pedestrians`` and ``add_source`` do so, too. A loop of ``step`` calls it
+        after a change of doors, obstacles or behaviours.
         """
         self._stall_watch, self.stalled = StallWatch(), False
         self.running = True

@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import ipaddress
+import os
+import re
 import secrets
 import socket
-from urllib.parse import urlsplit
+from collections.abc import Iterable
+from urllib.parse import parse_qsl, urlsplit
 
 from mesa_mobility.errors import MobilityError
 
 ANY_ADDRESS = ("0.0.0.0", "::")
 """Addresses that stand for all addresses of this machine."""
+
+TOKEN = "token"
+"""Where an address has the token."""
+
+TOKEN_VARIABLE = "MESA_MOBILITY_TOKEN"
+
+HEAD_SECONDS = 10.0
+"""Time that a client has to send its request."""
 
 
 class Names:
@@ -63,9 +74,31 @@ def address_of(host: str, port: int) -> str:
     return f"[{named}]:{port}" if ":" in named else f"{named}:{port}"
 
 
-def new_token() -> str:
-    """A token that cannot be guessed."""
-    return secrets.token_urlsafe(24)
+def own_token() -> str:
+    """The token of a server: that of the environment, or a new one that cannot be guessed.
+
+    It is no option of the command, since other users of a machine see those.
+
+    Raises:
+        MobilityError: one in the environment that is too short, or does not fit in an address.
+    """
+    given = os.environ.get(TOKEN_VARIABLE)
+    if given is None:
+        return secrets.token_urlsafe(24)
+    if not re.fullmatch(r"[A-Za-z0-9._~-]{16,200}", given):
+        raise MobilityError(
+            f"{TOKEN_VARIABLE}: got {len(given)} characters, expected 16 to 200 letters, digits, "
+            "'-', '_', '.' or '~'"
+        )
+    return given
+
+
+def token_in(query: str, authorizations: Iterable[str]) -> str:
+    """The token that a request gives in its address or as ``Authorization: Bearer``, or ""."""
+    given = dict(parse_qsl(query)).get(TOKEN, "")
+    for header in authorizations:
+        given = given or header.removeprefix("Bearer ")
+    return given
 
 
 def same_token(given: str, expected: str) -> bool:

@@ -20,7 +20,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from mesa_mobility.errors import MobilityError
-from mesa_mobility.live.access import Names, is_own_origin, same_token
+from mesa_mobility.live.access import HEAD_SECONDS, Names, is_own_origin, same_token, token_in
 from mesa_mobility.live.commands import Refused, read_command
 from mesa_mobility.live.run import Engine, Run
 from mesa_mobility.live.snapshot import Snapshot, Told
@@ -69,10 +69,7 @@ class Access:
         for origin in request.headers.get_all("Origin"):
             if not (is_own_origin(origin, hosts[0]) or origin.lower() in self.origins):
                 return "pages of other sites have no access"
-        query = dict(parse_qsl(urlsplit(request.path).query))
-        given = query.get("token", "")
-        for header in request.headers.get_all("Authorization"):
-            given = given or header.removeprefix("Bearer ")
+        given = token_in(urlsplit(request.path).query, request.headers.get_all("Authorization"))
         if not same_token(given, self.token):
             return "expected the token that the command has printed"
         return ""
@@ -131,6 +128,7 @@ class LiveServer:
             process_request=self._let_in,
             compression=None,
             max_size=MOST_BYTES,
+            open_timeout=HEAD_SECONDS,
             close_timeout=2.0,
             logger=_quiet_logger(self._report),
         )

@@ -96,6 +96,10 @@ class Server:
                 self._up.set()
         self._up.set()
 
+    def known(self, address: str) -> str:
+        """An address of a page with the token, for a browser that has no cookie yet."""
+        return f"{address}&{urlsplit(self.address).query}"
+
     def threads(self) -> int:
         """Threads of the process."""
         return len(os.listdir(f"/proc/{self.process.pid}/task"))
@@ -122,11 +126,13 @@ def start_dashboard() -> Iterator[Callable[..., Server]]:
         each.stop()
 
 
-def dashboard_server(*arguments: object, **keywords: Any) -> Server:
+def dashboard_server(
+    *arguments: object, python: tuple[str, ...] = ("-m", "mesa_mobility"), **keywords: Any
+) -> Server:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "mesa_mobility", "dashboard", *map(str, arguments)]
+    command = [sys.executable, *python, "dashboard", *map(str, arguments)]
     return Server([*command, "--port", str(port)], **keywords)
 
 

@@ -136,11 +136,11 @@ def test_a_refresh_comes_back_to_the_same_run(tab):
 
 
 @pytest.mark.slow
-def test_an_address_alone_sets_up_the_same_model_in_another_tab(tab, open_tab):
+def test_an_address_alone_sets_up_the_same_model_in_another_tab(tab, open_tab, server):
     tab.set("pedestrians", "18")
     inside(tab, 18)
     tab.step(2)
-    other = open_tab(tab.page.url)
+    other = open_tab(server.known(tab.page.url))
     inside(other, 18)
     # The run is that of the tab that is open.
     assert tab.shown()["elapsed"] == pytest.approx(0.2)

@@ -12,9 +12,9 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility._startup import nothing_collected
-from mesa_mobility.dashboard.guard import Guard
+from mesa_mobility.dashboard.serving.guard import Guard
 from mesa_mobility.errors import MobilityError
-from mesa_mobility.live.access import address_of, is_loopback, listen, new_token
+from mesa_mobility.live.access import TOKEN, address_of, is_loopback, listen, own_token
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.plugins.model_files import is_model_file, load_model_file
 from mesa_mobility.plugins.registry import load_model
@@ -46,7 +46,8 @@ def serve(
 ) -> None:
     """Serve the dashboard until interrupted.
 
-    If other machines reach it, its address holds a token, without which every request is refused.
+    Its address holds a token, without which every request is refused: other users of this machine
+    reach the port, too.
 
     Args:
         model: name of the installed model to open on, or a Python file with one.
@@ -57,8 +58,10 @@ def serve(
         given: values of model parameters that the page does not set, by name.
 
     Raises:
-        MobilityError: the address cannot be listened on, or there is no such model.
+        MobilityError: the address cannot be listened on, there is no such model, or the token in
+            the environment is none.
     """
+    token = own_token()
     listening = listen(host, port)
     os.environ.update(SETTINGS)
     # It concerns pages in frames, which this one is not.  Libraries change the filters for a while
@@ -75,29 +78,32 @@ def serve(
     own = is_model_file(model)
     kind = load_model_file(model) if own else load_model(model)
     loaded.set_result(kind)
-    token = "" if is_loopback(host) else new_token()
     # A browser takes a while to start, which it can do while Solara is imported.
     listening.listen()
     port = listening.getsockname()[1]
-    ready(f"http://{address_of(host, port)}/{f'?token={token}' if token else ''}")
+    ready(f"http://{address_of(host, port)}/?{TOKEN}={token}")
 
     import uvicorn
+    from solara.server.settings import assets
     from solara.server.starlette import app
 
     from mesa_mobility.dashboard import page
+    from mesa_mobility.dashboard.serving.connections import PromptProtocol
 
     page.opening = kind if own else model
     page.given = given or {}
     # Who is on the network is to execute no file that nobody has named.
-    page.model_files = not token
+    page.model_files = is_loopback(host)
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
             serving.set()
 
-    guarded = Guard(app, host, port, token)
-    config = uvicorn.Config(guarded, log_level="warning", ws_per_message_deflate=False)
+    guarded = Guard(app, host, port, token, assets.proxy_cache_dir)
+    config = uvicorn.Config(
+        guarded, http=PromptProtocol, log_level="warning", ws_per_message_deflate=False
+    )
     Server(config).run(sockets=[listening])
 
 

@@ -1,0 +1,1 @@
+"""The server of the dashboard: its connections, and who gets an answer."""
