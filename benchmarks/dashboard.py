@@ -97,10 +97,7 @@ def type_in(page: Page, name: str, value: int) -> None:
 
 def choose(page: Page, name: str, option: str) -> None:
     """Pick from a list."""
-    page.locator(".v-select", has=page.get_by_label(name, exact=True)).click()
-    page.locator(".v-menu__content.menuable__content__active .v-list-item").filter(
-        has_text=re.compile(f"^{re.escape(option)}$")
-    ).click()
+    page.get_by_label(name, exact=True).select_option(option)
 
 
 COUNT = f"""async (seconds) => {{
@@ -213,7 +210,7 @@ def screenshots(browser: Browser, folder: Path) -> None:
             "return c.onPage(best[1], best[2]);}"
         )
         page.mouse.click(*place)
-        page.get_by_role("button", name="To its next decision").click()
+        page.get_by_role("button", name="To the next decision").click()
         page.get_by_text("Decision as taken").wait_for()
         page.wait_for_timeout(1500)
         page.screenshot(path=folder / "dashboard.png")

@@ -7,23 +7,25 @@ from typing import Any
 
 import reacton.core
 import solara
-import solara.lab
 
 from mesa_mobility import MobilityError, PedestrianModel
 from mesa_mobility.dashboard.address import Address, Start, read, write
 from mesa_mobility.dashboard.controls import BehaviourControls, TimeControls
-from mesa_mobility.dashboard.forms import Choice, ParameterForm
+from mesa_mobility.dashboard.forms import ParameterForm
 from mesa_mobility.dashboard.model_files import load_offered, offered_models
 from mesa_mobility.dashboard.quiet import keep_quiet
 from mesa_mobility.dashboard.saved_runs import SavedRuns
 from mesa_mobility.dashboard.session.feed import Fed
-from mesa_mobility.dashboard.session.session import AS_TAKEN, IF_NOW, Session
+from mesa_mobility.dashboard.session.session import AS_TAKEN, IF_NOW, NOBODY, Session
 from mesa_mobility.dashboard.views.body_view import BodyCanvas
-from mesa_mobility.dashboard.views.charts import Charts
+from mesa_mobility.dashboard.views.charts import Charts, dark
 from mesa_mobility.dashboard.views.crowd_view import CrowdCanvas
 from mesa_mobility.dashboard.views.decision_view import DecisionCanvas
 from mesa_mobility.dashboard.views.map_view import MapView
 from mesa_mobility.dashboard.views.page_frame import PageFrame
+from mesa_mobility.dashboard.widgets.choosing import OneOf, Tabs
+from mesa_mobility.dashboard.widgets.fields import Choice, TextField
+from mesa_mobility.dashboard.widgets.text import heading
 from mesa_mobility.plugins import registry
 
 DEFAULT_MODEL = "doorway"
@@ -100,39 +102,34 @@ def Dashboard(
         except MobilityError as error:
             problem, kind = str(error), None
 
-    solara.Title(f"{name} - mesa-mobility")
+    title = f"{name} - mesa-mobility"
+    solara.Title(title)
     with solara.AppBar():
         solara.AppBarTitle("mesa-mobility")
-        PageFrame()
-    with solara.Sidebar():
-        with solara.Card("Model", margin=0, elevation=0):
-            about = MODELS_AND_FILES if model_files else MODELS
-            Choice("model", names, name, choose, about, problem)
-            if kind is not None:
-                begins = name == first and not opened.current
-                ParameterForm(
-                    session,
-                    kind,
-                    given=given if name == opening else {},
-                    start=start.texts if begins else {},
-                    on_made=set_texts,
-                ).key(name)
-        with solara.Card("Behaviours", margin=0, elevation=0):
-            BehaviourControls(session)
+        PageFrame(title=title, event_told=dark.set)
+    with solara.Sidebar(), solara.Div(classes=["mm-sidebar"]):
+        heading(2, "Model")
+        about = MODELS_AND_FILES if model_files else MODELS
+        Choice("model", names, name, choose, about, problem)
+        if kind is not None:
+            begins = name == first and not opened.current
+            ParameterForm(
+                session,
+                kind,
+                given=given if name == opening else {},
+                start=start.texts if begins else {},
+                on_made=set_texts,
+            ).key(name)
+        heading(2, "Behaviours")
+        BehaviourControls(session)
     _Address(session, name, texts)
     solara.Style(STYLE)
-    with solara.lab.Tabs():
-        with _tab("Simulation"):
-            _Simulation(session)
-        with _tab("Mobility map"):
-            _Map(session)
-        with _tab("Saved run"):
-            SavedRuns()
-
-
-def _tab(name: str) -> solara.Element:
-    label = solara.v.Html(tag="span", children=[name], attributes={"title": TABS[name]})
-    return solara.lab.Tab(tab_children=[label])
+    panels = {
+        "Simulation": lambda: _Simulation(session),
+        "Mobility map": lambda: _Map(session),
+        "Saved run": SavedRuns,
+    }
+    Tabs("views of the model", TABS, panels)
 
 
 @solara.component
@@ -176,8 +173,19 @@ STYLE = (
     ".mm-table { font-size: 13px; border-spacing: 0; padding: 6px 0; }"
     ".mm-table th { text-align: left; } .mm-table td, .mm-table th { padding: 1px 12px 1px 0;"
     " vertical-align: top; border-bottom: 1px solid #8884; overflow-wrap: anywhere; }"
-    # Labels of lists stand above them, and need that room where the row is wrapped.
-    ".mm-time > div { row-gap: 20px; }"
+    ".mm-sidebar { padding: 16px 20px; }"
+    ".mm-heading { font-size: 18px; font-weight: 500; margin: 8px 0; }"
+    "h3.mm-heading { font-size: 14px; margin: 4px 0 2px; }"
+    # Read by screen readers, and nowhere else.
+    ".mm-hidden { position: absolute; width: 1px; height: 1px; margin: -1px; overflow: hidden;"
+    " clip-path: inset(50%); white-space: nowrap; }"
+    ".mm-note-box { padding: 8px 12px; margin: 6px 0; font-size: 14px; border-radius: 4px;"
+    " border-left: 4px solid #1565c0; background: #8881; }"
+    ".mm-one-of { display: inline-flex; flex-wrap: wrap; gap: 2px; }"
+    ".mm-one-of .mm-down { background-color: #37474f !important; color: #fff !important; }"
+    ".mm-behaviour { display: flex; gap: 8px; align-items: center; }"
+    ".mm-behaviour > :first-child { flex: 1; }"
+    ".mm-person { display: flex; flex-wrap: wrap; gap: 8px; align-items: center; }"
 )
 """Styles of the HTML."""
 
@@ -191,7 +199,10 @@ def _Problem(session: Session) -> None:
 @solara.component
 def _Crowd(session: Session) -> None:
     def pick(what: dict[str, Any]) -> None:
-        session.select(what["row"], what["run"])
+        if "by" in what:
+            session.select_beside(what["by"], what["run"])
+        else:
+            session.select(what["row"], what["run"])
 
     def toggle(what: dict[str, Any]) -> None:
         if "opening" in what:
@@ -217,9 +228,8 @@ def _Crowd(session: Session) -> None:
         session.show_bodies(name == BODIES)
 
     with solara.Column(gap="6px"):
-        with solara.ToggleButtonsSingle(view, on_value=choose, dense=True):
-            for name, about in VIEWS.items():
-                solara.Button(name, value=name, small=True, attributes={"title": about})
+        heading(2, "Crowd", hidden=True)
+        OneOf("view of the crowd", VIEWS, view, choose)
         if view == BODIES and session.poses.value:
             poses = session.poses.value
             Fed(session.frame, BodyCanvas, poses=poses, **shared).key("bodies")
@@ -238,12 +248,12 @@ def _Decision(session: Session) -> None:
         session.tell(choice)
 
     nobody = session.selected.value < 0
-    with solara.Row(gap="8px", style={"align-items": "center"}):
-        with solara.ToggleButtonsSingle(what, on_value=tell, dense=True):
-            for name, about in DECISIONS.items():
-                solara.Button(name, value=name, small=True, attributes={"title": about})
+    heading(2, "Decision", hidden=True)
+    _Person(session)
+    with solara.Div(classes=["mm-person"]):
+        OneOf("decision shown", DECISIONS, what, tell)
         solara.Button(
-            "To its next decision",
+            "To the next decision",
             small=True,
             on_click=session.play_to_decision,
             disabled=nobody,
@@ -253,9 +263,45 @@ def _Decision(session: Session) -> None:
 
 
 @solara.component
+def _Person(session: Session) -> None:
+    """Whose decision is shown, without a pointer."""
+    error, set_error = solara.use_state("")
+    row = session.selected.value
+
+    def choose(text: str) -> None:
+        # Digits alone: nobody has a negative number, and an empty field is nobody.
+        wrong = bool(text) and not text.isdecimal()
+        set_error(f"person: got {text!r}, expected the number of a person" if wrong else "")
+        if not wrong:
+            session.select(int(text) if text else NOBODY)
+
+    with solara.Div(classes=["mm-person"]):
+        for name, by, about in (
+            ("Previous person", -1, "Select the person with the next lower number (P)"),
+            ("Next person", 1, "Select the person with the next higher number (N)"),
+        ):
+            solara.Button(
+                name,
+                small=True,
+                on_click=lambda by=by: session.select_beside(by),
+                attributes={"title": about},
+            )
+        with solara.Div(style={"width": "110px"}):
+            TextField(
+                "person",
+                "" if row < 0 else str(row),
+                choose,
+                error,
+                "Number of the person whose decision is shown; Enter selects",
+                quiet=True,
+            )
+
+
+@solara.component
 def _Charts(session: Session) -> None:
     # A number that grows: the observer's lists are drawn anew.
     number, observer = session.series.value
     recipe = session.recipe.value
     if recipe is not None and observer is not None and number:
+        heading(2, "Charts", hidden=True)
         Charts(observer, number, recipe.kind.reference_occupancy, recipe.kind.__name__.lower())

@@ -4,14 +4,27 @@ from __future__ import annotations
 
 import solara
 
-from mesa_mobility.dashboard.forms import Choice, TextField
 from mesa_mobility.dashboard.session.behaviours import TermState
 from mesa_mobility.dashboard.session.session import Session
+from mesa_mobility.dashboard.session.view_state import Status
+from mesa_mobility.dashboard.widgets.fields import Choice, Switch, TextField
+from mesa_mobility.dashboard.widgets.text import status as said_aloud
 from mesa_mobility.errors import ModelError
 from mesa_mobility.live.clock import FULL_SPEED
 from mesa_mobility.plugins.parameters import Parameter
 
 SPEEDS = {"0.25 x": 0.25, "1 x": 1.0, "2 x": 2.0, "5 x": 5.0, "20 x": 20.0, "full": FULL_SPEED}
+
+STATES = {
+    "no model": "no model",
+    "building": "the model is being made",
+    "ready": "ready",
+    "playing": "running",
+    "finished": "ended",
+    "stalled": "stalled",
+    "failed": "failed",
+}
+"""What the page calls the states of a ``Status``."""
 
 
 @solara.component
@@ -48,15 +61,19 @@ def _Behaviour(session: Session, state: TermState) -> None:
         session.set_behaviour(state.name, on, state.weight)
 
     label = state.name.replace("_", " ")
-    with solara.Row(gap="4px", style={"align-items": "center"}):
-        with solara.Div(style={"flex": "1"}, attributes={"title": state.description or label}):
-            solara.v.Checkbox(
-                label=label, v_model=state.on, on_v_model=switch, dense=True, hide_details=True,
-                class_="mt-0 pt-0",
-            )  # fmt: skip
+    with solara.Div(classes=["mm-behaviour"]):
+        Switch(label, state.on, switch, state.description or label, quiet=True)
         factor = f"Factor of {label} in the sum of costs; Enter applies it"
-        with solara.Div(style={"width": "88px"}, attributes={"title": factor}):
-            TextField("weight", f"{state.weight:g}", weigh, error, says=f"weight of {label}")
+        with solara.Div(style={"width": "88px"}):
+            TextField(
+                "weight",
+                f"{state.weight:g}",
+                weigh,
+                error,
+                factor,
+                says=f"weight of {label}",
+                quiet=True,
+            )
 
 
 @solara.component
@@ -75,7 +92,7 @@ def TimeControls(session: Session) -> None:
         set_colour(name)
         session.colour_by(name)
 
-    row = {"align-items": "center", "flex-wrap": "wrap", "padding-top": "14px"}
+    row = {"align-items": "center", "flex-wrap": "wrap", "padding-top": "6px"}
     with solara.Row(gap="8px", style=row):
         solara.Button(
             "Pause" if playing else "Play",
@@ -98,21 +115,20 @@ def TimeControls(session: Session) -> None:
             on_click=session.reset,
             attributes={"title": "The same model from its beginning; behaviours stay as set"},
         )
-        pace_help = "Simulated seconds in a second; full: as fast as possible"
-        with solara.Div(style={"width": "90px"}, attributes={"title": pace_help}):
-            solara.Select(
-                "speed",
-                list(SPEEDS),
-                speed,
-                on_value=set_speed,
-                dense=True,
-            )
-        with solara.Div(
-            style={"width": "130px"}, attributes={"title": "What the colours of people stand for"}
-        ):
+        with solara.Div(style={"width": "90px"}):
+            pace_help = "Simulated seconds in a second; full: as fast as possible"
+            Choice("speed", list(SPEEDS), speed, set_speed, pace_help, quiet=True)
+        with solara.Div(style={"width": "140px"}):
             names = list(session.colourings.value)
             shown = colour if colour in names else names[0]
-            solara.Select("colour by", names, shown, on_value=colour_by, dense=True)
-        pace = f", {status.pace:.1f} x real time" if playing and status.pace else ""
-        reason = f": {status.reason}" if status.reason else ""
-        solara.Text(f"{status.state}{pace}{reason}", classes=["mm-status"])
+            colour_help = "What the colours of people stand for"
+            Choice("colour by", names, shown, colour_by, colour_help, quiet=True)
+        said_aloud(in_words(status), "mm-status")
+        # Apart from it: a pace that changes each second is not read aloud.
+        if playing and status.pace:
+            solara.Text(f"{status.pace:.1f} x real time")
+
+
+def in_words(status: Status) -> str:
+    """A run's state, and why nobody gets out."""
+    return f"{STATES[status.state]}{f': {status.reason}' if status.reason else ''}"

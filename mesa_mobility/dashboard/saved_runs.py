@@ -6,7 +6,8 @@ import solara
 
 from mesa_mobility.animation.page import page_text
 from mesa_mobility.dashboard import offered
-from mesa_mobility.dashboard.forms import Choice
+from mesa_mobility.dashboard.widgets.fields import Choice
+from mesa_mobility.dashboard.widgets.text import Note, heading
 from mesa_mobility.errors import MobilityError, ResultsError
 from mesa_mobility.results.run import SUMMARY, TRAJECTORIES, read_run, title_of
 
@@ -54,11 +55,9 @@ def SavedRuns() -> None:
     """A list of saved runs, and the player of the one that is chosen."""
     names = solara.use_memo(offered_runs, [])
     name, choose = solara.use_state(NONE)
+    heading(2, "Saved run", hidden=True)
     if not names:
-        solara.Info(
-            f"No saved run in {offered.FOLDER}: `mesa-mobility run MODEL --out DIR` saves one.",
-            dense=True,
-        )
+        Note(f"No saved run in {offered.FOLDER}: `mesa-mobility run MODEL --out DIR` saves one.")
         return
     with solara.Div(style={"max-width": "480px", "padding-top": "14px"}):
         Choice("saved run", [NONE, *names], name, choose, HELP)

@@ -165,7 +165,7 @@ class Dashboard:
         page.set_default_timeout(60_000)
 
     def _console(self, message: Any) -> None:
-        if message.type == "error":
+        if message.type in ("error", "warning"):
             self.trouble.append(f"console: {message.text}")
 
     def _response(self, response: Any) -> None:
@@ -225,17 +225,16 @@ class Dashboard:
 
     def message(self, name: str) -> str:
         """The message below the field of a parameter."""
-        field = self.page.locator(".v-input", has=self.page.get_by_label(name, exact=True))
-        return str(field.locator(".v-messages").inner_text())
+        return str(self.below(name).inner_text())
+
+    def below(self, name: str) -> Any:
+        """What stands below the field of a parameter."""
+        field = self.page.locator(".mm-entry", has=self.page.get_by_label(name, exact=True))
+        return field.locator(".mm-below")
 
     def choose(self, name: str, option: str) -> None:
         """Pick from a list."""
-        field = self.page.locator(".v-select", has=self.page.get_by_label(name, exact=True))
-        # Its middle may be the explanation below.
-        field.locator(".v-input__slot").click()
-        self.page.locator(".v-menu__content.menuable__content__active .v-list-item").filter(
-            has_text=re.compile(f"^{re.escape(option)}$")
-        ).click()
+        self.page.get_by_label(name, exact=True).select_option(option)
 
     def click_at(self, x: float, y: float) -> None:
         """Click a place on the floor, metres, once it stays where it is on the page."""

@@ -101,7 +101,7 @@ def test_somebody_is_chosen_and_followed(open_bodies):
     # Who is looked after is the person whose decision is shown.
     tab.wait(f"() => {BODIES}.selected >= 0")
     row = tab.page.evaluate(f"() => {BODIES}.selected")
-    tab.button("To its next decision").click()
+    tab.button("To the next decision").click()
     tab.page.get_by_text("Decision as taken").wait_for()
     assert tab.decision()["pedestrian"] == row
 

@@ -132,7 +132,7 @@ def test_a_phone_shows_the_crowd_and_two_fingers_zoom(open_tab):
     tab.wait("() => !document.querySelector('.v-navigation-drawer--open')")
     play, speed = (
         tab.page.locator(what).first.bounding_box()
-        for what in (".mm-time button", ".mm-time .v-select label")
+        for what in (".mm-time button", ".mm-time .mm-entry label")
     )
     assert speed["y"] >= play["y"] + play["height"] or speed["x"] >= play["x"] + play["width"]
     before, (x, y) = view(tab), middle(tab)

@@ -9,9 +9,9 @@ pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]
 import solara
 from mesa_mobility.models import Doorway, StraightWalk
 
-from mesa_mobility.dashboard.forms import TextField
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.session import Session
+from mesa_mobility.dashboard.widgets.fields import TextField
 
 
 @pytest.fixture

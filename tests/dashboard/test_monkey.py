@@ -277,7 +277,7 @@ class Monkey:
         return True
 
     def switch(self):
-        where = self.page.evaluate(SOMETHING, [".v-input--checkbox", self.rng.random()])
+        where = self.page.evaluate(SOMETHING, [".mm-switch input", self.rng.random()])
         if where:
             self.page.mouse.click(*where)
 

@@ -72,6 +72,8 @@ function chosen() { return Number(element("person").value); }
 function why() {
   const person = state.people.find((each) => each.row === chosen());
   if (!person) return "";
+  if (person.first > state.frame) return `person ${person.row} is not there yet`;
+  if (person.last < state.frame) return `person ${person.row} has left`;
   if (!state.run.header.decided) return `person ${person.row}: the run has no record of decisions`;
   const { frames, options, shares } = person.decided;
   let k = frames.length - 1;

@@ -2,6 +2,7 @@
 "use strict";
 
 const WALL_HEIGHT = 1.2, EYES = 0.1, BONES = 22;
+const FOLLOWED = 1.1, OVER = 0.25; // metres: height of the place that is followed; a camera's way above walls
 const FINE_PIXELS = 110, FIGURE_PIXELS = 16; // height on the screen from which people are figures
 const FINE_MOST = 24, HELD_MOST = 100; // figures with all corners, with feet held on the floor
 const QUICK = 0.018; // seconds between pictures from which on there is more detail
@@ -36,7 +37,9 @@ class Stage {
       new THREE.MeshBasicMaterial({ color: 0xe6007e, side: THREE.DoubleSide }));
     this.scene.add(this.ring);
     this.fixed = [];
+    this.walls = [];
     this.how = "orbit";
+    this.missed = false; // whether somebody was to be followed who is not there
     this.detail = 0;
     this.pace = 0.03;
     this.since = 0;
@@ -60,6 +63,7 @@ class Stage {
     }
     this.fixed = [];
     if (!floor) return;
+    this.walls = floor.walls;
     this.scene.background = new THREE.Color(colours.ground);
     const put = (geometry, material) => {
       const mesh = new THREE.Mesh(geometry, material);
@@ -138,6 +142,7 @@ class Stage {
     const rows = people.length;
     if (rows > this.rows) this.enlarge(2 * rows);
     const who = people.find((each) => each.row === chosen);
+    this.turned = null;
     this.follow(who, frame);
     const camera = this.camera, data = this.bones.value && this.bones.value.image.data;
     camera.updateMatrixWorld();
@@ -185,6 +190,8 @@ class Stage {
     this.figures = [fine, figures.length - fine, pawns];
     if (row) this.bones.value.needsUpdate = true;
     this.renderer.render(this.scene, camera);
+    this.shownFrom = camera.position.toArray();
+    if (this.turned) camera.position.copy(this.turned);
     this.drawn += 1;
   }
 
@@ -230,21 +237,29 @@ class Stage {
   }
 
   follow(who, frame) {
-    this.orbit.enabled = this.how === "orbit" || this.how === "follow";
-    if (!who || this.how === "orbit" || this.how === "plan") {
-      if (this.orbit.enabled) this.orbit.update();
+    const { orbit, perspective: camera } = this, follows = this.how === "follow" || this.how === "eyes";
+    // Nobody to follow, or no longer: the whole floor instead.
+    if (follows && !who && !this.missed) this.fit();
+    this.missed = follows && !who;
+    orbit.enabled = this.how !== "plan" && (this.how !== "eyes" || this.missed);
+    if (!follows || this.missed) {
+      if (orbit.enabled) orbit.update();
       return;
     }
-    const { place, ahead } = this.head(who, frame), camera = this.perspective;
     if (this.how === "follow") {
-      const [x, y] = who.track.at(frame), target = new THREE.Vector3(x, y, 1.1);
-      camera.position.add(target.clone().sub(this.orbit.target));
-      this.orbit.target.copy(target);
+      const [x, y] = who.track.at(frame), target = new THREE.Vector3(x, y, FOLLOWED);
+      camera.position.add(target.clone().sub(orbit.target));
+      orbit.target.copy(target);
       const away = camera.position.clone().sub(target);
       if (away.length() > 8) camera.position.copy(target).addScaledVector(away.normalize(), 5);
-      this.orbit.update();
+      orbit.update();
+      // The reader's own view comes back after the picture, for the next turn of theirs.
+      this.turned = camera.position.clone();
+      camera.position.set(...overWalls(this.walls, target.toArray(), this.turned.toArray()));
+      camera.lookAt(target);
       return;
     }
+    const { place, ahead } = this.head(who, frame);
     camera.position.set(place[0] + 0.12 * ahead[0], place[1] + 0.12 * ahead[1], place[2] + EYES);
     camera.lookAt(camera.position.x + ahead[0], camera.position.y + ahead[1], camera.position.z + ahead[2]);
   }
@@ -275,6 +290,24 @@ class Stage {
     }
     return who;
   }
+}
+
+// The camera that looks from `camera` at `target`, raised about it until it looks over all walls between.
+// So it is never in an obstacle, whose edge would lie between. [x, y, z], metres.
+function overWalls(walls, target, camera) {
+  const [x, y, z] = target, dx = camera[0] - x, dy = camera[1] - y, dz = camera[2] - z;
+  const level = Math.hypot(dx, dy), long = Math.hypot(level, dz);
+  let steep = level ? dz / level : Infinity;
+  for (const [ax, ay, bx, by] of walls) {
+    // Where the line of sight crosses the wall: at share u of its own length, v of the wall's.
+    const wx = bx - ax, wy = by - ay, turn = dx * wy - dy * wx;
+    if (!turn) continue;
+    const u = ((ax - x) * wy - (ay - y) * wx) / turn, v = ((ax - x) * dy - (ay - y) * dx) / turn;
+    if (u > 0 && u <= 1 && v >= 0 && v <= 1) steep = Math.max(steep, (WALL_HEIGHT + OVER - z) / (u * level));
+  }
+  if (!level || steep <= dz / level) return camera;
+  const share = long / Math.hypot(1, steep) / level;
+  return [x + share * dx, y + share * dy, z + share * level * steep];
 }
 
 function triangles(corners, index, normals) {

@@ -26,14 +26,15 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     (terms, n) weighted, ``totals``, ``verdicts``, ``blockers``, ``ends`` (n, 2), ``durations``,
     ``speeds``, ``paths`` (n, 16, 2) and ``knots``. A neighbour is row, x, y, core radius, and x, y
     of where its movement leads; ``discs`` and ``others`` have x, y and radius of each disc of the
-    pedestrian's body and of each neighbour's.
+    pedestrian's body and of each neighbour's. ``lost`` says that there is no way to the target.
     """
     row, crowd, candidates = explained.pedestrian, model.crowd, explained.candidates
     kind = model.pedestrian_types[int(crowd.type_index[row])]
     return {
         "pedestrian": row,
         "when": _when(explained, model),
-        "goes": _goes(row, model),
+        "goes": _goes(explained, model),
+        "lost": _lost(explained, model),
         "taken": explained.taken,
         "frame": explained.frame,
         "type": kind.name,
@@ -84,16 +85,27 @@ def _placed_discs(row: int, model: PedestrianModel) -> list[list[float]]:
     ]
 
 
-def _goes(row: int, model: PedestrianModel) -> str:
-    """Where somebody goes next on its way, in a few words."""
-    stop, agenda = model.journeys.next_stop(row, model.crowd), model.crowd.agenda
+def _lost(explained: Explanation, model: PedestrianModel) -> bool:
+    """Whether there is no way to where somebody wants to go: their target is where they stand."""
+    candidates = explained.candidates
+    stays = model.journeys.stays.stands(explained.pedestrian)
+    return not stays and bool(np.array_equal(candidates.targets[0], candidates.positions[0]))
+
+
+def _goes(explained: Explanation, model: PedestrianModel) -> str:
+    """Where somebody goes next on their way, in a few words."""
+    row, agenda = explained.pedestrian, model.crowd.agenda
+    stop, lost = model.journeys.next_stop(row, model.crowd), _lost(explained, model)
     if stop is None:
-        return f"It goes to {' or '.join(model.population.exits(row)) or 'no exit'}"
+        exits = " or ".join(model.population.exits(row)) or "no exit"
+        return "There is no way to any exit; they wait" if lost else f"They go to {exits}"
     if model.journeys.stays.stands(row):
-        return f"It stays at {stop} until {agenda['waits_until'][row] / model.frame_rate:.1f} s"
+        return f"They stay at {stop} until {agenda['waits_until'][row] / model.frame_rate:.1f} s"
     later = len(model.journeys.stops(int(agenda["journey"][row]))) - int(agenda["crossed"][row]) - 1
     place = f"gate {stop}" if isinstance(stop, str) else str(stop)
-    return f"It goes to {place}" + (f", then to {later} more" if later > 0 else "")
+    if lost:
+        return f"There is no way to {place}; they wait"
+    return f"They go to {place}" + (f", then to {later} more" if later > 0 else "")
 
 
 def _when(explained: Explanation, model: PedestrianModel) -> str:
@@ -101,5 +113,5 @@ def _when(explained: Explanation, model: PedestrianModel) -> str:
     if explained.taken:
         return f"Decision as taken at {at:.2f} s"
     due = max(int(model.crowd.end[explained.pedestrian]) - explained.frame, 0) / model.frame_rate
-    when = "in this step" if due == 0 else f"in {due:.2f} s, when its movement ends"
-    return f"If it decided now, at {at:.2f} s, before everybody else; it will decide {when}"
+    when = "in this step" if due == 0 else f"in {due:.2f} s, when their movement ends"
+    return f"If they decided now, at {at:.2f} s, before everybody else; they will decide {when}"

@@ -27,6 +27,9 @@ Answer = Callable[[str], None]
 
 log = logging.getLogger(__name__)
 
+QUIET = 0.25
+"""Seconds that a wish for a model waits for the next one, if another came as shortly before it."""
+
 
 class Engine(Shown):
     """A thread that makes models, runs one, and publishes what the page shows.
@@ -61,6 +64,7 @@ class Engine(Shown):
         self._terms.wanted_choice = choice
         self._closed = False
         self._wanted = self._begun = 0
+        self._wanted_at = -QUIET
         self._given_up = threading.Event()
         known = kernel_context.has_current_context()
         self._page = kernel_context.get_current_context() if known else None
@@ -141,16 +145,21 @@ class Engine(Shown):
 
     def _want(self, command: Command) -> None:
         """Make a model; give up one that is still being made."""
+        before, self._wanted_at = self._wanted_at, time.monotonic()
+        hasty = self._wanted_at - before < QUIET
         self._wanted += 1
         number = self._wanted
-        before = self.status.peek()
-        self.status.set(Status("building", before.elapsed, before.inside))
+        shown = self.status.peek()
+        self.status.set(Status("building", shown.elapsed, shown.inside))
         self._given_up.set()
 
         def unless_superseded() -> None:
+            self._given_up.clear()
+            # Of wishes in quick succession the last one alone is made.
+            if hasty:
+                self._given_up.wait(QUIET)
             if number == self._wanted:
                 self._begun = number
-                self._given_up.clear()
                 command()
 
         self._commands.put(unless_superseded)

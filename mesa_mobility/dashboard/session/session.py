@@ -13,9 +13,14 @@ from mesa_mobility.dashboard.session import kept
 from mesa_mobility.dashboard.session.engine import Answer, Engine, said
 from mesa_mobility.dashboard.session.run import Run
 from mesa_mobility.dashboard.session.run_config import Recipe
+from mesa_mobility.errors import ModelError
 
-AS_TAKEN, IF_NOW = "as taken", "if it decided now"
+AS_TAKEN, IF_NOW = "as taken", "if they decided now"
 """The shown decision of the selected person: its last one, or the one that it would take now."""
+
+
+NOBODY = -1
+"""Row of no person."""
 
 
 class Session(Engine):
@@ -132,16 +137,42 @@ class Session(Engine):
     def select(self, row: int, shown: int | None = None) -> None:
         """Show the decisions of the person in ``row``; none if it is negative.
 
-        For ``shown`` see `post`.
+        The page says so if the model never had such a person. For ``shown`` see `post`.
         """
 
         def command(run: Run) -> None:
-            run.model.watch = Watch(row) if row >= 0 else None
-            if row != run.hand.row:
-                run.hand.release()
-            self.mark(row)
+            most = run.model.population.count - 1
+            if row > most:
+                raise ModelError(f"person: got {row}, expected at most {most}")
+            self._watch(run, row)
 
         self.post(command, shown)
+
+    def select_beside(self, by: int, shown: int | None = None) -> None:
+        """Select the person inside with the next higher number, or the next lower one.
+
+        The first follows the last; with nobody selected it begins there.
+
+        Args:
+            by: 1 for higher, -1 for lower numbers.
+            shown: see `post`.
+        """
+
+        def command(run: Run) -> None:
+            rows, now = run.model.rows, self.selected.peek()
+            if len(rows) == 0:
+                return
+            beyond = rows[rows > now] if by > 0 else rows[rows < now]
+            among = beyond if len(beyond) else rows
+            self._watch(run, int(among.min() if by > 0 else among.max()))
+
+        self.post(command, shown)
+
+    def _watch(self, run: Run, row: int) -> None:
+        run.model.watch = Watch(row) if row >= 0 else None
+        if row != run.hand.row:
+            run.hand.release()
+        self.mark(row)
 
     def steer(
         self, row: int, direction: tuple[float, float] | None, shown: int | None = None
@@ -163,7 +194,7 @@ class Session(Engine):
         self.post(command, shown)
 
     def tell(self, what: str) -> None:
-        """Show decisions "as taken", or continually the one "if it decided now"."""
+        """Show decisions "as taken", or continually the one "if they decided now"."""
 
         def command(_: Run) -> None:
             self.hypothetical = what == IF_NOW

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import solara
 
 from mesa_mobility.dashboard.session.observer import WINDOW, Observer
+from mesa_mobility.dashboard.widgets.text import heading
 
 MOST_POINTS = 400
 """Points drawn of a curve; the file has all."""
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#8c564b", "#999999")
 
-TEXT = {"fontSize": 13, "color": "#808080"}
 GRID_LINES = {"lineStyle": {"color": "rgba(128, 128, 128, 0.3)"}}
-"""Greys that are read on light and on dark pages."""
+"""Grey that is seen on light and on dark pages."""
+
+dark = solara.reactive(False)
+"""Whether the page is dark: each page has a value of its own."""
 
 Columns = Mapping[str, Sequence[float]]
 
@@ -55,13 +58,11 @@ def charts(observer: Observer) -> dict[str, tuple[str, Columns]]:
 
 
 def chart_option(
-    title: str, unit: str, columns: Columns, reference: Mapping[float, float] | None = None
+    columns: Columns, reference: Mapping[float, float] | None = None
 ) -> dict[str, Any]:
     """A line chart for ECharts.
 
     Args:
-        title: above it.
-        unit: of the y axis.
         columns: the time, and a curve for each other column.
         reference: published points, time (s) -> value.
     """
@@ -91,25 +92,58 @@ def chart_option(
     return {
         "animation": False,
         "color": list(COLOURS),
-        "title": {"text": f"{title} ({unit})", "textStyle": TEXT, "left": 4, "top": 2},
         "legend": {
             "show": len(drawn) > 1,
-            "top": 22,
+            "top": 0,
             "type": "scroll",
             "itemWidth": 14,
-            "textStyle": TEXT,
         },
-        "grid": {"left": 44, "right": 22, "top": 48 if len(drawn) > 1 else 32, "bottom": 24},
+        "grid": {"left": 44, "right": 22, "top": 30 if len(drawn) > 1 else 12, "bottom": 24},
         "tooltip": {"trigger": "axis"},
         "xAxis": {
             "type": "value",
             "min": 0,
-            "axisLabel": {"formatter": "{value} s"},
+            "axisLabel": {"formatter": "{value} s", "hideOverlap": True},
             "splitLine": GRID_LINES,
         },
         "yAxis": {"type": "value", "min": 0, "splitLine": GRID_LINES},
         "series": drawn,
     }
+
+
+def chart(
+    title: str,
+    option: dict[str, Any],
+    height: int,
+    clicked: Callable[[dict[str, Any]], None] | None = None,
+) -> None:
+    """A chart of ECharts below its title, which wraps where the chart is narrow.
+
+    Args:
+        title: above it, and the picture's name.
+        option: what ECharts draws.
+        height: pixels.
+        clicked: called with what was clicked.
+    """
+    heading(3, title)
+    solara.FigureEcharts(
+        _coloured(option, "#d0d0d0" if dark.value else "#444444"),
+        on_click=clicked,
+        attributes={"style": f"height: {height}px", "role": "img", "aria-label": title},
+        responsive=True,
+    )
+
+
+def _coloured(option: dict[str, Any], colour: str) -> dict[str, Any]:
+    """The same chart with all its texts in one colour."""
+    text = {"color": colour}
+    for part in option.keys() & {"xAxis", "yAxis"}:
+        own = option[part]
+        label = {**own.get("axisLabel", {}), **text}
+        option = {**option, part: {**own, "axisLabel": label, "nameTextStyle": text}}
+    for part in option.keys() & {"legend", "visualMap"}:
+        option = {**option, part: {**option[part], "textStyle": text}}
+    return option
 
 
 @solara.component
@@ -128,11 +162,7 @@ def Charts(
         for number, (title, (unit, columns)) in enumerate(charts(observer).items()):
             points = reference if number == 0 else None
             with solara.Column(gap="0px"):
-                solara.FigureEcharts(
-                    chart_option(title, unit, columns, points),
-                    attributes={"style": "height: 230px"},
-                    responsive=True,
-                )
+                chart(f"{title} ({unit})", chart_option(columns, points), 210)
                 _Download(observer, title, name)
 
 

@@ -11,7 +11,9 @@ import solara
 from mesa_mobility import MobilityMap
 from mesa_mobility.dashboard.views import map_data
 from mesa_mobility.dashboard.views.canvases import canvas_component
-from mesa_mobility.dashboard.views.charts import TEXT
+from mesa_mobility.dashboard.views.charts import chart
+from mesa_mobility.dashboard.widgets.fields import Switch, TextField
+from mesa_mobility.dashboard.widgets.text import heading
 
 
 @canvas_component("cluster_view.vue")
@@ -36,35 +38,37 @@ def MapView(mobility_map: MobilityMap) -> None:
         lambda: coverage_option(mobility_map, part), [mobility_map, number, whole]
     )
 
+    error, set_error = solara.use_state("")
+
     def clicked(event: dict[str, Any]) -> None:
         if event.get("data"):
             pick(int(event["data"]["value"][3]))
 
+    def typed(text: str) -> None:
+        most = mobility_map.n_clusters - 1
+        known = text.isdecimal() and int(text) <= most
+        set_error("" if known else f"cluster: got {text!r}, expected a number from 0 to {most}")
+        if known:
+            pick(int(text))
+
     with solara.Div(classes=["mm-map"]):
+        heading(2, f"Mobility map: {mobility_map.info()['pedestrian_type']}")
         _Facts(mobility_map)
         with solara.Div(classes=["mm-halves"]):
             with solara.Div(classes=["mm-left"]):
-                solara.FigureEcharts(
-                    clusters,
-                    on_click=clicked,
-                    attributes={"style": "height: 380px"},
-                    responsive=True,
+                chart(
+                    "Clusters: a click chooses one (area: recorded poses)", clusters, 380, clicked
                 )
-                about = "Which poses that are alike are shown; a click on a point chooses, too"
-                with solara.Div(attributes={"title": about}):
-                    solara.InputInt(
-                        f"cluster, 0 to {mobility_map.n_clusters - 1}",
-                        number,
-                        on_value=lambda n: pick(min(max(n, 0), mobility_map.n_clusters - 1)),
-                    )
+                TextField(
+                    f"cluster, 0 to {mobility_map.n_clusters - 1}",
+                    str(number),
+                    typed,
+                    error,
+                    "Poses that are alike; the options and the mean pose of one are shown",
+                )
                 about = "Speeds and turns of the options of all clusters, or of the one shown"
-                with solara.Div(attributes={"title": about}):
-                    solara.Checkbox(
-                        label="coverage of the whole map", value=whole, on_value=set_whole
-                    )
-                solara.FigureEcharts(
-                    covered, attributes={"style": "height: 340px"}, responsive=True
-                )
+                Switch("coverage of the whole map", whole, set_whole, about, quiet=True)
+                chart("Coverage: options by speed and turning", covered, 340)
             with solara.Div(classes=["mm-right"]):
                 ClusterCanvas(cluster=cluster)
         _Provenance(mobility_map)
@@ -81,12 +85,7 @@ def clusters_option(mobility_map: MobilityMap, chosen: int) -> dict[str, Any]:
     ring = {**points[chosen], "symbolSize": points[chosen]["symbolSize"] + 6}
     return {
         "animation": False,
-        "title": {
-            "text": "Clusters: click one (area: recorded poses)",
-            "textStyle": TEXT,
-            "left": 4,
-        },
-        "grid": {"left": 56, "right": 16, "top": 36, "bottom": 40},
+        "grid": {"left": 56, "right": 16, "top": 12, "bottom": 40},
         "tooltip": {"formatter": "cluster {@[3]}: {@[1]} options, {@[2]} poses, {@[0]} m/s"},
         "xAxis": {
             "type": "value", "name": "mean speed (m/s)", "nameLocation": "middle", "nameGap": 24,
@@ -126,12 +125,7 @@ def coverage_option(mobility_map: MobilityMap, rows: slice) -> dict[str, Any]:
     most = max((count for *_, count in cells), default=1)
     return {
         "animation": False,
-        "title": {
-            "text": "Coverage: options by speed and turning",
-            "textStyle": TEXT,
-            "left": 4,
-        },
-        "grid": {"left": 60, "right": 90, "top": 36, "bottom": 48},
+        "grid": {"left": 60, "right": 90, "top": 12, "bottom": 48},
         "tooltip": {"formatter": "{@[3]} options"},
         "xAxis": {
             "type": "category", "data": speeds, "name": "speed from (m/s)",

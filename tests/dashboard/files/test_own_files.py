@@ -169,9 +169,8 @@ def test_on_a_network_no_python_file_is_offered(start_dashboard, open_tab, own_f
     server = start_dashboard("doorway", "--host", "0.0.0.0", cwd=own_folder)
     place = urlsplit(server.address)
     tab = open_tab(f"http://127.0.0.1:{place.port}/?{place.query}")
-    tab.page.locator(".v-select", has=tab.page.get_by_label("model", exact=True)).click()
-    offered = tab.page.locator(".v-menu__content.menuable__content__active .v-list-item")
-    names = [text.strip() for text in offered.all_inner_texts()]
+    offered = tab.page.get_by_label("model", exact=True).locator("option")
+    names = [text.strip() for text in offered.all_text_contents()]
     assert "floor_plan" in names
     assert [name for name in names if ".py" in name] == []
 
@@ -179,7 +178,7 @@ def test_on_a_network_no_python_file_is_offered(start_dashboard, open_tab, own_f
 HELPLESS = """() => [...document.querySelectorAll("button, a, input, select, [role='tab']")]
     .filter((e) => e.offsetParent && e.type !== "hidden")
     .filter((e) => !(e.closest("[title]") || e.querySelector("[title]")
-        || e.closest(".v-input")?.querySelector(".v-messages__message")?.innerText))
+        || document.getElementById(e.getAttribute("aria-describedby"))?.innerText))
     .map((e) => e.outerHTML.slice(0, 200))"""
 """Controls that do not say what they are for."""
 
@@ -197,7 +196,7 @@ def test_every_control_says_what_it_is_for(own_tab):
     assert tab.page.evaluate(HELPLESS) == []
     for name in ("Mobility map", "Saved run"):
         tab.page.get_by_role("tab", name=name).click()
-        tab.page.locator(".v-window-item--active .v-input").first.wait_for()
+        tab.page.locator(".mm-panel:visible .mm-entry").first.wait_for()
         assert tab.page.evaluate(HELPLESS) == []
     tab.page.get_by_role("tab", name="Simulation").click()
     for model in ("room.py", "floor_plan", "mixed_evacuation"):

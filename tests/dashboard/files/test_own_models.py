@@ -59,7 +59,7 @@ def plays_and_slides(tab):
     inside(tab, 40)
     # JSON has no NaN: the page reports a message that it cannot read.
     tab.set("pedestrians", "nan")
-    tab.page.locator(".v-messages").filter(has_text="nan").first.wait_for()
+    tab.page.locator(".mm-below").filter(has_text="nan").first.wait_for()
 
 
 @pytest.mark.slow

@@ -81,7 +81,7 @@ const OPTIONS = {
         ctx.stroke();
         this.dot(ctx, d.chosen, 4.5 * r);
       }
-      this.paintTarget(ctx, r);
+      if (!d.lost) this.paintTarget(ctx, r);
       this.paintKey(ctx, r, side);
       this.refresh();
     },

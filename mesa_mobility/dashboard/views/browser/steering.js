@@ -81,12 +81,18 @@ const STEERED = {
     return { steers: false };
   },
   computed: {
+    KEYS_OF_PEOPLE() { return "N and P select the next and the previous person, Esc nobody; Space plays and pauses."; },
     hint() {
+      if (this.selected < 0) return "";
       const who = `person ${this.selected}`;
       return this.steers ? `${who} is steered; let the keys go to hand it back` : `W A S D or arrow keys steer ${who}`;
     },
   },
   methods: {
+    keysOfPeople() {
+      const beside = (by) => this.pick({ by, run: this.to ? this.to.run : 0 });
+      return { n: () => beside(1), N: () => beside(1), p: () => beside(-1), P: () => beside(-1), Escape: () => this.choose(-1) };
+    },
     send(row, direction) {
       this.steers = Boolean(direction);
       this.fresh = true;

@@ -159,15 +159,15 @@ def test_the_explanation_says_where_somebody_goes():
     model = model_of(shop(), shipped_map(), rng=8, frames_per_step=3)
     person = put(model, 4.0, 4.0, route=[Visit((6.0, 4.0), 30.0), "door"])
     assert described(model.explain(person.row), model)["goes"] == (
-        "It goes to the point (6, 4), then to 1 more"
+        "They go to the point (6, 4), then to 1 more"
     )
     model.run(max_seconds=10)
     said = described(model.explain(person.row), model)["goes"]
-    assert said.startswith("It stays at the point (6, 4) until 3")
+    assert said.startswith("They stay at the point (6, 4) until 3")
     person.route = ["door"]
-    assert described(model.explain(person.row), model)["goes"] == "It goes to gate door"
+    assert described(model.explain(person.row), model)["goes"] == "They go to gate door"
     person.exits = None
-    assert described(model.explain(person.row), model)["goes"] == "It goes to street"
+    assert described(model.explain(person.row), model)["goes"] == "They go to street"
 
 
 def test_places_that_cannot_be_visited_are_refused():
