@@ -25,7 +25,7 @@ def names_of(
 
     def get(name: str) -> Any:
         if name not in modules:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            raise _unknown(package, name, modules, sys._getframe(1))
         value = getattr(import_module(f"{package}.{modules[name]}"), name)
         setattr(sys.modules[package], name, value)
         return value
@@ -34,6 +34,24 @@ def names_of(
         return sorted({*vars(sys.modules[package]), *modules})
 
     return get, names
+
+
+def _unknown(package: str, name: str, known: Mapping[str, str], caller: Any) -> Exception:
+    """The error of a name that a package does not have, with the nearest one that it has."""
+    said = f"module {package!r} has no attribute {name!r}"
+    if name.startswith("__"):  # which programs try and nobody types
+        return AttributeError(said)
+    from difflib import get_close_matches
+    from dis import opname
+
+    close = get_close_matches(name, known, n=1)
+    if not close:
+        return AttributeError(said)
+    said += f", did you mean {close[0]!r}?"
+    # Python turns an AttributeError of ``from package import name`` into words of its own.
+    if opname[caller.f_code.co_code[caller.f_lasti]] == "IMPORT_FROM":
+        return ImportError(said)
+    return AttributeError(said, name=name)  # with a name, tracebacks do not say it once more
 
 
 def beside_in_a_checkout(package: str, subpackage: str) -> list[str]:

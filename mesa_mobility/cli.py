@@ -6,6 +6,7 @@ The commands are imported only when Ctrl-C is answered.
 from __future__ import annotations
 
 import sys
+import warnings
 from typing import Any
 
 from mesa_mobility.interrupts import end_on_interrupt, ignore_interrupts
@@ -21,7 +22,8 @@ def main() -> None:
     """
     end_on_interrupt()
     try:
-        status = _run()
+        with warnings.catch_warnings():
+            status = _run()
     finally:
         ignore_interrupts()
     sys.exit(status)
@@ -35,6 +37,7 @@ def _run() -> int:
 
         try:
             check_environment()
+            warnings.showwarning = _warn
             # Commands answer with nothing, and `typer.Exit` with its status.
             return app(prog_name="mesa-mobility", standalone_mode=False) or 0
         except UsageError as error:
@@ -46,6 +49,11 @@ def _run() -> int:
     # Unforeseen errors: still one line, with the place in the source for a report.
     except Exception as error:
         return _fail(f"unexpected {type(error).__name__}: {error} [{_place(error)}]")
+
+
+def _warn(message: Warning | str, *where: Any, **more: Any) -> None:
+    """A warning on one line, as errors are."""
+    print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
 
 
 def _wrong_usage(error: Any) -> int:

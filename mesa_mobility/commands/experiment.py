@@ -59,7 +59,7 @@ def run(
 
     Ends with status 1 if runs have failed or timed out.
     """
-    from mesa_mobility.experiments import read_experiment, run_experiment
+    from mesa_mobility.experiments import open_store, read_experiment, run_experiment
     from mesa_mobility.experiments.missing import count_missing
 
     if scheduler is not None and workers is not None:
@@ -96,6 +96,8 @@ def run(
         except Stopped:
             interrupted = True
     counts = _said(place, as_json=False)
+    for text, runs in open_store(place).warnings().items():
+        say(f"warning: {text} ({runs} runs)")
     if interrupted:
         say("interrupted: what has ended is kept; the same command goes on")
         raise typer.Exit(INTERRUPTED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
-from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.costs.terms import CostTerm, without_weight
 from mesa_mobility.crowd.hooks import Plugin, Saved, check_behaviours, keeps_its_model
 from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
@@ -144,6 +145,9 @@ class Dynamics(Saved):
         known = people.count
         self._let_in()
         if now == 0:
+            types = [each.name for each in model.pedestrian_types]
+            if said := without_weight(model.terms, types):
+                warnings.warn(said, UserWarning, stacklevel=4)
             statistics.count_people()
             self._record(people.present)
         elif people.count > known:

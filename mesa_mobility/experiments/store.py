@@ -242,6 +242,12 @@ class Store:
             if not (pa.types.is_floating(kind) or pa.types.is_integer(kind)):
                 raise ModelError(f"precision: column {name} is {kind}, expected numbers")
 
+    def warnings(self) -> dict[str, int]:
+        """What runs warn of, with the number of runs."""
+        table = self.table(["warning"])
+        said = table["warning"].to_pylist() if "warning" in table.column_names else ()
+        return dict(Counter(each for each in said if each is not None))
+
     def run_names(self) -> NDArray[np.bytes_]:
         """(n,) names of the runs that are there, in alphabetical order."""
         return np.unique(np.array(self.table([])["run"].to_pylist(), dtype="S40"))

@@ -150,6 +150,8 @@ def chosen(model: type, name: str, settings: Iterable[str]) -> dict[str, Any]:
             raise ModelError(f"--set {setting}: expected NAME=VALUE")
         if key in OWN_OPTION:
             raise ModelError(f"--set {setting}: use {OWN_OPTION[key]}")
+        if key == "seed" and key not in taken:
+            raise ModelError(f"--set {setting}: use {OWN_OPTION['rng']}")
         if key not in taken:
             raise ModelError(
                 f"model {name}: unknown parameter {key!r}{did_you_mean(key, taken)}; "

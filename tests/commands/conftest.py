@@ -18,6 +18,8 @@ ENTRY_POINTS = """\
 [mesa_mobility.models]
 corridor = corridor_plugin:Corridor
 forgetful = corridor_plugin:WithoutRecord
+picky = corridor_plugin:Picky
+seedless = corridor_plugin:Seedless
 absent = no_such_module:Model
 nameless = corridor_plugin:Missing
 number = corridor_plugin:not_a_class

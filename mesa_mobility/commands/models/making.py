@@ -72,7 +72,7 @@ def create_model(
     Raises:
         ModelError: a parameter that the constructor does not take, or a value that it refuses.
     """
-    from mesa_mobility.plugins.parameters import NOT_SETTABLE, chosen, parameters
+    from mesa_mobility.plugins.parameters import NOT_SETTABLE, OWN_OPTION, chosen, parameters
 
     keywords = {**chosen(kind, name, settings), **keywords}
     if map_file is not None:
@@ -80,13 +80,21 @@ def create_model(
     taken = parameters(kind)
     missing = [key for key in keywords if key not in taken]
     if missing:
-        raise ModelError(f"model {name}: its constructor does not take {', '.join(missing)}")
+        asked = [f"{key} ({OWN_OPTION[key]})" if key in OWN_OPTION else key for key in missing]
+        raise ModelError(f"model {name}: its constructor does not take {', '.join(asked)}")
     given = {
         key: keywords.get(key, each.default)
         for key, each in taken.items()
         if key not in NOT_SETTABLE
     }
-    return kind(**keywords), given
+    try:
+        return kind(**keywords), given
+    except ModelError as error:
+        parameter, colon, rest = str(error).partition(":")
+        if not colon or parameter not in OWN_OPTION or parameter not in keywords:
+            raise
+        # In the words of the user, who has typed no parameter's name.
+        raise ModelError(f"{OWN_OPTION[parameter]}:{rest}") from error
 
 
 def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:

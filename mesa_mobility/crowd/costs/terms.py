@@ -160,3 +160,18 @@ class CostTerm(Plugin):
         Returns:
             (n,) one finite number per option.
         """
+
+
+def without_weight(terms: Sequence[CostTerm], types: Sequence[str]) -> str | None:
+    """A warning where none of a model's terms has a weight above 0 for anybody; else None.
+
+    People then take any option, or the worst one.
+
+    Args:
+        terms: of the model; one without terms at all is as it should be.
+        types: names of the model's types of people.
+    """
+    if not terms or any((each.weights(types) > 0.0).any() for each in terms):
+        return None
+    names = ", ".join(each.name for each in terms)
+    return f"no behaviour has a weight above 0 (of {names}): people take any option, or the worst"

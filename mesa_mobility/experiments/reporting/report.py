@@ -78,6 +78,8 @@ def write_report(store: Store, path: str | os.PathLike[str] | None = None) -> Pa
     if experiment.replications == "auto":
         _convergence(page, store)
     _failures(page, frame)
+    for text, runs in store.warnings().items():
+        page.text(f"Warning of {runs} of {len(frame)} runs: {text}.")
     _inputs(page, frame)
     _repeat(page, definition)
     page.write(target)

@@ -34,6 +34,7 @@ RUN_COLUMNS: dict[str, pa.DataType] = {
     "cpu_s": pa.float64(),
     "worker": pa.string(),
     "inputs": pa.string(),
+    "warning": pa.string(),
 }
 """Columns of each row, whatever the model."""
 

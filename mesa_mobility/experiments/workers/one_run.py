@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import socket
 import time
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -64,6 +65,7 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
     try:
         model = _made(setup, point, row["seed"])
         row["inputs"] = json.dumps(inputs_of(model, _class(setup.model)[1], point), sort_keys=True)
+        row["warning"] = _warning(model)
         _advance(model, setup, wall)
         row["status"] = STALLED if getattr(model, "stalled", False) else DONE
         row |= _figures(model, set(row), occupancy=setup.occupancy)
@@ -140,13 +142,25 @@ def _advance(model: Any, setup: Setup, began: float) -> None:
 
     check()
     if _has_pedestrians(model):
-        model.run(max_seconds=setup.max_seconds, progress=check)
+        with warnings.catch_warnings():
+            # The row has it, and is read where the run is not.
+            warnings.filterwarnings("ignore", "no behaviour has a weight above 0")
+            model.run(max_seconds=setup.max_seconds, progress=check)
         return
     if setup.max_seconds is not None:
         raise ModelError("max_seconds: the model has no simulated seconds, expected none")
     while model.running:
         model.step()
         check()
+
+
+def _warning(model: Any) -> str | None:
+    """What the model itself would warn of."""
+    from mesa_mobility.crowd.costs.terms import without_weight
+
+    if not _has_pedestrians(model):
+        return None
+    return without_weight(model.terms, [each.name for each in model.pedestrian_types])
 
 
 def _has_pedestrians(model: Any) -> bool:
