@@ -54,7 +54,7 @@ def test_no_more_runs_than_the_most_and_the_report_says_so(tmp_path):
     assert (known.runs, known.enough) == (30, False)
     text = write_report(store).read_text(encoding="utf-8")
     found = known.estimates["mean egress_s"]
-    assert f"{found.value:.4g} ({found.low:.4g} to {found.high:.4g}) not reached" in text
+    assert f"{found.value:.4g} ({found.low:.4g} to {found.high:.4g}): not reached" in text
     assert "maximum of runs" in text
 
 
