@@ -54,6 +54,18 @@ def read_polygon(value: Polygon | str, what: str) -> Polygon:
     return geometry
 
 
+def read_area(value: BaseGeometry | str, what: str) -> BaseGeometry:
+    """`value` (shapely or WKT) as one or several valid, finite, non-empty 2D polygons.
+
+    `what` names it in error messages.
+    """
+    area: object = read_wkt(value, what, "POLYGON") if isinstance(value, str) else value
+    if getattr(area, "geom_type", "") != "MultiPolygon":
+        return read_polygon(area, what)  # type: ignore[arg-type]
+    assert isinstance(area, BaseGeometry)
+    return shapely.MultiPolygon([read_polygon(part, what) for part in shapely.get_parts(area)])
+
+
 def read_wkt(text: str, what: str, expected: str) -> BaseGeometry:
     """The geometry of a WKT; `what` and `expected` name it, and its types, in error messages."""
     # GEOS reads nested shapes recursively, and ends the process where they nest too deeply.

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.checks import read_area
 from mesa_mobility.floorplan.poisson_disk import lattice, throw
 from mesa_mobility.floorplan.reachability import with_way_out
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
@@ -28,7 +28,7 @@ def random_points(
     n: int,
     rng: np.random.Generator,
     *,
-    within: Polygon | None = None,
+    within: BaseGeometry | str | None = None,
     spacing: float,
     clearance: float,
     avoid: ArrayLike = (),
@@ -42,8 +42,19 @@ def random_points(
     thrown one by one (random sequential placement) are tried first, then a jittered hexagonal
     lattice.
 
+    Args:
+        plan: the floor plan.
+        n: how many.
+        rng: where they come from.
+        within: the area in which they lie, a polygon or several (shapely or WKT), metres; by
+            default the whole floor.
+        spacing: least distance of the points to each other, metres.
+        clearance: least distance to walls and exits, metres.
+        avoid: (k, 2) further points from which they keep the spacing, metres.
+
     Raises:
-        FloorPlanError: there is room for fewer than n points; the message says for how many.
+        FloorPlanError: there is room for fewer than n points; the message says for how many. Or
+            `within` is no valid area.
     """
     if n < 0 or not (np.isfinite([spacing, clearance]).all() and spacing > 0 and clearance >= 0):
         raise FloorPlanError(
@@ -53,7 +64,8 @@ def random_points(
     taken = np.asarray(avoid, dtype=np.float64).reshape(-1, 2)
     if n == 0:
         return np.empty((0, 2))
-    region = _standing_region(plan, within, clearance)
+    area = None if within is None else read_area(within, "within")
+    region = _standing_region(plan, area, clearance)
     # Open exits are not walls, but nobody should start in one.
     edge = np.concatenate([plan.walls, opening_segments(plan.open_exits())])
     sight = sight_of(edge, (), clearance)
@@ -94,7 +106,9 @@ def _most(region: BaseGeometry, spacing: float) -> int:
     return int(area / (np.pi * (spacing / 2) ** 2)) + 1
 
 
-def _standing_region(plan: "FloorPlan", within: Polygon | None, clearance: float) -> BaseGeometry:
+def _standing_region(
+    plan: "FloorPlan", within: BaseGeometry | None, clearance: float
+) -> BaseGeometry:
     # A smooth floor shrinks faster; `_fits` looks at the walls themselves.
     region = smooth_floor(plan).floor.buffer(-clearance, quad_segs=32)
     # In one piece of at least this clearance every place has a way out, or none has.
