@@ -61,7 +61,7 @@ def read_area(value: BaseGeometry | str, what: str) -> BaseGeometry:
     """
     area: object = read_wkt(value, what, "POLYGON") if isinstance(value, str) else value
     if getattr(area, "geom_type", "") != "MultiPolygon":
-        return read_polygon(area, what)  # type: ignore[arg-type]
+        return read_polygon(area, what)
     assert isinstance(area, BaseGeometry)
     return shapely.MultiPolygon([read_polygon(part, what) for part in shapely.get_parts(area)])
 

@@ -106,7 +106,7 @@ def _filled(plan: "FloorPlan") -> BaseGeometry:
         small &= ~shapely.is_missing(pockets)
         if not small.any():
             break
-        ends.update(map(tuple, mouths[small].reshape(-1, 2).tolist()))
+        ends.update((x, y) for x, y in mouths[small].reshape(-1, 2).tolist())
         left = shapely.difference(floor, shapely.union_all(pockets[small]))
         parts = [part for part in shapely.get_parts(left) if part.geom_type == "Polygon"]
         floor = parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
@@ -129,8 +129,7 @@ def _have_room(plan: "FloorPlan", mouths: NDArray[np.float64]) -> NDArray[np.boo
     shares = np.linspace(0.05, 0.95, 19)[:, None]
     places = mouths[:, None, :2] + shares * (mouths[:, None, 2:] - mouths[:, None, :2])
     away = distances_to_walls(plan, places.reshape(-1, 2), ROOM)
-    room: NDArray[np.bool_] = (away.reshape(len(mouths), len(shares)) >= ROOM).any(axis=1)
-    return room
+    return np.asarray((away.reshape(len(mouths), len(shares)) >= ROOM).any(axis=1))
 
 
 def _in_row(
