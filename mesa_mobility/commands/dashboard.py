@@ -53,8 +53,8 @@ def dashboard(
     def ready(url: str) -> None:
         if not is_loopback(host):
             say(
-                f"warning: {host} is reached from the network: who has the address below can run "
-                "models on this machine, and nothing is encrypted"
+                f"warning: {host} is reached from the network: all who have the address below can "
+                "run models on this machine, and nothing is encrypted"
             )
         say(f"{name if plan is None else plan}: open {url} (Ctrl-C ends)")
 

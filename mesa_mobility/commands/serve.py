@@ -90,7 +90,7 @@ def serve(
     def ready() -> None:
         if not is_loopback(host):
             say(
-                f"warning: {host} is reached from the network: who has the address below can "
+                f"warning: {host} is reached from the network: all who have the address below can "
                 "command the model, and nothing is encrypted"
             )
         say(f"{model}, seed {seed}: connect to the address below (Ctrl-C ends)")

@@ -36,3 +36,15 @@ def test_a_port_that_is_taken_gives_an_error(command):
         "--host and --port choose another address\n"
     )
     assert command("dashboard", "doorway", "--port", 0).status == 2
+
+
+@pytest.mark.parametrize("server", ["dashboard", "serve"])
+def test_a_token_that_can_be_guessed_is_refused(command, monkeypatch, server):
+    pytest.importorskip({"dashboard": "solara", "serve": "websockets"}[server])
+    monkeypatch.setenv("MESA_MOBILITY_TOKEN", "secret")
+    ended = command(server, "doorway")
+    assert ended.status == 2
+    assert ended.err == (
+        "error: MESA_MOBILITY_TOKEN: got 6 characters, expected 16 to 200 letters, digits, '-', "
+        "'_', '.' or '~'\n"
+    )
