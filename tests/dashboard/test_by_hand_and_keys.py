@@ -1,5 +1,7 @@
 """The crowd's canvas under pointer, wheel, fingers and keys; on a phone; in the dark."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -196,3 +198,20 @@ def test_a_page_that_turns_dark_draws_the_decision_anew(tab):
     tab.wait(f"() => !({DARK_GROUND})({DECISION})")
     tab.page.emulate_media(color_scheme="dark")
     tab.wait(f"() => ({DARK_GROUND})({DECISION})")
+
+
+@pytest.mark.slow
+def test_a_run_that_has_stalled_goes_on_when_its_door_is_opened_again(tab):
+    tab.set("pedestrians", "3")
+    tab.wait(f"() => {SHOWN}.inside === 3")
+    tab.page.get_by_role("button", name="second door: exit, open").click()
+    tab.choose("speed", "full")
+    tab.button("Play").click()
+    tab.page.get_by_text(re.compile("^stalled: every exit is closed")).wait_for()
+    stalled = tab.shown()["elapsed"]
+    tab.page.get_by_role("button", name="second door: exit, closed").click()
+    tab.page.get_by_role("button", name="second door: exit, open").wait_for()
+    tab.step(1)
+    assert tab.shown()["elapsed"] == pytest.approx(stalled + 0.1)
+    tab.button("Play").click()
+    tab.wait(f"() => {SHOWN}.inside === 0")
