@@ -114,3 +114,21 @@ def test_a_model_without_memory_says_so():
     until(lambda: said)
     assert said == ["the model needs more memory than there is"]
     session.close()
+
+
+def test_of_wishes_in_quick_succession_the_last_one_alone_is_made(session):
+    """As a slider gives that is moved with the arrow keys."""
+    made = []
+
+    class Counted(Doorway):
+        def __init__(self, pedestrians=1, rng=None):
+            made.append(pedestrians)
+            super().__init__(pedestrians=pedestrians, rng=rng)
+
+    until(lambda: time.monotonic() > session._wanted_at + 0.3)
+    for pedestrians in range(1, 9):
+        session.build(Recipe(Counted, {"pedestrians": pedestrians, "rng": 1}))
+        time.sleep(0.05)
+    until(lambda: session.status.value.state == "ready" and session.status.value.inside == 8)
+    # The first at once, and the one after which nothing came.
+    assert made == [1, 8]

@@ -207,3 +207,17 @@ def test_a_run_that_has_stalled_goes_on_after_any_change(session, change):
     session.play(True)
     until(lambda: session.status.value.elapsed > before + 0.15)
     assert session.status.value.state == "playing"
+
+
+def test_somebody_who_is_shut_in_goes_nowhere(session):
+    session.select(3)
+    until(lambda: session.decision.value.get("pedestrian") == 3)
+    assert session.decision.value["goes"] == "They go to second door"
+    assert not session.decision.value["lost"]
+    session.toggle_opening("second door")
+    session.tell(IF_NOW)
+    for _ in range(20):  # until their movement has ended
+        session.step()
+    until(lambda: session.decision.value["lost"])
+    assert session.decision.value["goes"] == "There is no way to any exit; they wait"
+    assert session.decision.value["target"] == session.decision.value["position"]

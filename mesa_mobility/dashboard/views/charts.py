@@ -142,7 +142,8 @@ def _coloured(option: dict[str, Any], colour: str) -> dict[str, Any]:
         label = {**own.get("axisLabel", {}), **text}
         option = {**option, part: {**own, "axisLabel": label, "nameTextStyle": text}}
     for part in option.keys() & {"legend", "visualMap"}:
-        option = {**option, part: {**option[part], "textStyle": text}}
+        own = {**option[part], "textStyle": text, "pageTextStyle": text}
+        option = {**option, part: own}
     return option
 
 

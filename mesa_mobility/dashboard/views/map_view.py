@@ -11,7 +11,7 @@ import solara
 from mesa_mobility import MobilityMap
 from mesa_mobility.dashboard.views import map_data
 from mesa_mobility.dashboard.views.canvases import canvas_component
-from mesa_mobility.dashboard.views.charts import chart
+from mesa_mobility.dashboard.views.charts import GRID_LINES, chart
 from mesa_mobility.dashboard.widgets.fields import Switch, TextField
 from mesa_mobility.dashboard.widgets.text import heading
 
@@ -85,12 +85,16 @@ def clusters_option(mobility_map: MobilityMap, chosen: int) -> dict[str, Any]:
     ring = {**points[chosen], "symbolSize": points[chosen]["symbolSize"] + 6}
     return {
         "animation": False,
-        "grid": {"left": 56, "right": 16, "top": 12, "bottom": 40},
+        "grid": {"left": 68, "right": 16, "top": 12, "bottom": 40},
         "tooltip": {"formatter": "cluster {@[3]}: {@[1]} options, {@[2]} poses, {@[0]} m/s"},
         "xAxis": {
             "type": "value", "name": "mean speed (m/s)", "nameLocation": "middle", "nameGap": 24,
+            "splitLine": GRID_LINES,
         },
-        "yAxis": {"type": "log", "name": "options", "nameLocation": "middle", "nameGap": 42},
+        "yAxis": {
+            "type": "log", "name": "options", "nameLocation": "middle", "nameGap": 48,
+            "splitLine": GRID_LINES,
+        },
         "series": [
             {"type": "scatter", "data": points, "itemStyle": {"color": "#0072b2", "opacity": 0.6}},
             {
@@ -181,10 +185,12 @@ def _Provenance(mobility_map: MobilityMap) -> None:
     clips = mobility_map.metadata.get("provenance", [])
     for line in mobility_map.metadata.get("acknowledgements", []):
         solara.Text(line, style={"display": "block", "font-size": "13px"})
-    with (
-        solara.Div(attributes={"title": "The recordings behind the map, and their licences"}),
-        solara.Details(f"Recordings and licences: {len(clips)} clips"),
-    ):
+    with solara.v.Html(tag="details", class_="mm-details"):
+        solara.v.Html(
+            tag="summary",
+            children=[f"Recordings and licences: {len(clips)} clips"],
+            attributes={"title": "The recordings behind the map, and their licences"},
+        )
         columns = ("clip", "subject", "description", "poses", "mirrored", "licence", "source")
         head = "".join(f"<th>{name}</th>" for name in columns)
         rows = "".join(
