@@ -222,3 +222,33 @@ def test_other_frame_rates_are_refused(run, plan, tmp_path):
     slower: Trajectories = replace(run, frame_rate=10.0, decisions=None)
     with pytest.raises(ResultsError, match="10 frames a second: expected 30"):
         write_page(slower, plan, tmp_path / "page.html", title="")
+
+
+@pytest.mark.slow
+def test_the_camera_that_follows_looks_over_walls_and_keeps_its_distance(page):
+    over = "([walls, target, camera]) => overWalls(walls, target, camera)"
+
+    def raised(walls, camera):
+        return np.array(page.evaluate(over, [walls, [0, 0, 1.1], camera]))
+
+    bench = [[1, -1, 1, 1], [2, -1, 2, 1], [1, -1, 2, -1], [1, 1, 2, 1]]
+    behind = [-1, -5, -1, 5]
+    assert raised([*bench, behind], [0, 3, 1.1]).tolist() == [0, 3, 1.1]
+    # In the bench: at 1 m it has to be 0.35 m higher than the person's 1.1 m.
+    made = raised(bench, [1.5, 0, 1.1])
+    assert np.linalg.norm(made - [0, 0, 1.1]) == pytest.approx(1.5)
+    assert (made[2] - 1.1) / made[0] == pytest.approx(0.35)
+    assert made[1] == 0
+    # High enough already.
+    assert raised(bench, [1.5, 0, 2.0]).tolist() == [1.5, 0, 2.0]
+    random = np.random.default_rng(1)
+    for _ in range(100):
+        walls = random.uniform(-4, 4, (6, 4)).tolist()
+        made = raised(walls, [*random.uniform(-4, 4, 2).tolist(), random.uniform(0.2, 3)])
+        for share in np.linspace(0.02, 1, 50):
+            x, y, z = share * made + (1 - share) * np.array([0, 0, 1.1])
+            for ax, ay, bx, by in walls:
+                along = np.array([bx - ax, by - ay])
+                t = np.clip(np.dot([x - ax, y - ay], along) / np.dot(along, along), 0, 1)
+                near = np.hypot(*(np.array([ax, ay]) + t * along - [x, y])) < 1e-3
+                assert not (near and z < 1.2)

@@ -117,3 +117,21 @@ def test_another_run_and_another_model(open_bodies):
     tab.wait(f"() => {BODIES}.inside === 60")
     meshes = f"{BODIES}.meshes"
     tab.wait(f"() => ({meshes}.wheelchair_far || 0) + ({meshes}.wheelchair_near || 0) > 10")
+
+
+@pytest.mark.slow
+def test_a_view_of_somebody_who_has_left_becomes_the_overview(open_bodies):
+    tab = open_bodies()
+    tab.set("pedestrians", "2")
+    tab.wait(f"() => {BODIES}.inside === 2")
+    tab.button("Eyes").click()
+    tab.wait(f"() => {BODIES}.selected >= 0")
+    row = tab.page.evaluate(f"() => {BODIES}.selected")
+    tab.page.get_by_label("speed", exact=True).select_option("full")
+    tab.play()
+    tab.wait(f"() => {BODIES}.gone !== ''")
+    assert tab.page.evaluate(f"() => {BODIES}.gone") == (
+        f"Person {row} has left; the whole floor is shown"
+    )
+    # From farther above than any eye.
+    tab.wait(f"() => {BODIES}.camera[2] > 3")
