@@ -30,6 +30,17 @@ def test_behaviors_are_listed_likewise(command):
     assert "broken: behavior broken_term (no_such_module:Term, from corridors 1.2)" in outcome.err
 
 
+def test_settings_of_a_behaviour_are_listed(command):
+    outcome = command("behaviors", "headway")
+    assert outcome.status == 0
+    lines = outcome.out.splitlines()
+    assert lines[0] == "Keeps a distance from people ahead that grows with speed."
+    assert [line.split()[:2] for line in lines[2:4]] == [["weight", "1.5"], ["distance", "0.36"]]
+    (time,) = (line for line in lines if line.startswith("time "))
+    assert time.split() == ["time", "1.2", "more", "than", "0", "s", "T,", "seconds."]
+    assert command("behaviors", "headwy").status == 2
+
+
 def test_help_imports_nothing_slow():
     script = (
         "import sys; sys.argv = ['mesa-mobility', 'run', '--help']\n"

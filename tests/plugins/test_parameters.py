@@ -237,3 +237,20 @@ def test_ranges_and_files_stand_beside_the_type():
 def test_a_range_has_two_ends(ends):
     with pytest.raises(ModelError, match=r"Range: got .*, expected a low and a high end"):
         Range(*ends)
+
+
+@pytest.mark.parametrize(
+    ("ends", "inside", "outside", "text"),
+    [
+        (Range(0, 2, "m"), [0, 1.5, 2], [-0.1, 2.1, math.inf, math.nan], "0 to 2 m"),
+        (Range(0, unit="s", above=True), [1e-9, 1e300], [0, -1, math.inf], "more than 0 s"),
+        (Range(0.5), [0.5, 9], [0.4, math.nan], "0.5 or more"),
+        (Range(0, 1, below=True), [0, 0.9], [1, -1], "0 or more and less than 1"),
+        (Range(0, 1, "s", above=True), [0.1, 1], [0, 2], "more than 0 and at most 1 s"),
+        (Range(1, endless=True), [1, math.inf], [0, -math.inf, math.nan], "1 or more, or inf"),
+    ],
+)
+def test_what_is_in_a_range(ends, inside, outside, text):
+    assert str(ends) == text
+    assert all(value in ends for value in inside)
+    assert not any(value in ends for value in outside)

@@ -13,7 +13,6 @@ from rich.table import Table
 from mesa_mobility.commands.console import say
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins import registry
-from mesa_mobility.plugins.settings import settings_text
 
 
 def models() -> None:
@@ -30,6 +29,8 @@ def behaviors(
     if name is None:
         _list(registry.behaviors())
         return
+    from mesa_mobility.plugins.settings import settings_text
+
     kind = registry.load_behavior(name)
     out = Console(highlight=False, markup=False)
     out.print((inspect.getdoc(kind) or name).partition("\n")[0])
