@@ -165,8 +165,9 @@ class Dashboard:
         page.set_default_timeout(60_000)
 
     def _console(self, message: Any) -> None:
-        # What a driver says of the time that a screenshot takes is no fault of the page.
-        if message.type in ("error", "warning") and not message.text.startswith("[.WebGL-"):
+        # The tests take screenshots and read pixels, which the page does not.
+        of_tests = message.text.startswith(("[.WebGL-", "Canvas2D: Multiple readback"))
+        if message.type in ("error", "warning") and not of_tests:
             self.trouble.append(f"console: {message.text}")
 
     def _response(self, response: Any) -> None:
