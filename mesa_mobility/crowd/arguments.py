@@ -21,6 +21,7 @@ from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility.judging.verdict import warn_unless_passed
 from mesa_mobility.plugins.settings import being_made, has_attribute, near_miss
 from mesa_mobility.populations import Population
 
@@ -37,6 +38,8 @@ def read_scene(
 ) -> Scene:
     """A scene without people, from arguments of ``PedestrianModel``.
 
+    Warns of maps that have failed their examination or have never been examined.
+
     Raises:
         ModelError: an unknown preset, or types, fields or a class of agents that do not fit.
         MapError: an unusable map file.
@@ -46,6 +49,8 @@ def read_scene(
     kinds = read_fields(fields, taken=[*dir(pedestrian_class), "row", *KERNEL_FIELDS])
     shares = None if population is None else Population.of(population)
     types = types_of(mobility_map, pedestrian_types, shares)
+    for map_ in dict.fromkeys(kind.mobility_map for kind in types):
+        warn_unless_passed(map_)
     return make_scene(floor_plan, types, rules, shares=shares, fields=kinds)
 
 

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from mesa_mobility.mobility.graph import MotionGraph, motion_graph
     from mesa_mobility.mobility.judging.abilities import abilities_of
     from mesa_mobility.mobility.judging.held_out import coverage
-    from mesa_mobility.mobility.judging.left_out import left_out_one_at_a_time
+    from mesa_mobility.mobility.judging.left_out import (
+        left_out_one_at_a_time,
+        sample_left_out,
+    )
     from mesa_mobility.mobility.map import MobilityMap
     from mesa_mobility.mobility.mapfile import shipped_map_path
     from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
@@ -56,6 +59,7 @@ _MODULES = {
     "prepare_recordings": "preparing.clips",
     "reachable_options": "paths",
     "recordings_behind": "preparing.again",
+    "sample_left_out": "judging.left_out",
     "shipped_map_path": "mapfile",
     "shortest_paths": "apsp",
 }
@@ -87,6 +91,7 @@ __all__ = [
     "prepare_recordings",
     "reachable_options",
     "recordings_behind",
+    "sample_left_out",
     "shipped_map_path",
     "shortest_paths",
 ]

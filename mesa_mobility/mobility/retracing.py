@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.capture import Recording
 from mesa_mobility.errors import MapError
-from mesa_mobility.mobility.borrowing import borrow, missing
+from mesa_mobility.mobility.standing.borrowing import borrow, missing
 from mesa_mobility.mobility.clusters import cluster_poses
 from mesa_mobility.mobility.graph import motion_graph
 from mesa_mobility.mobility.map import MobilityMap

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, answer_table, say
+from mesa_mobility.commands.console import Report, answer_json, answer_table, say
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import LoadedClips
@@ -23,17 +23,46 @@ def say_clips(loaded: LoadedClips) -> None:
         say(f"split {clip}: {reason}")
 
 
+def examine_map(
+    map_: MobilityMap, report: Report, left_out: dict[str, Any] | None = None
+) -> tuple[MobilityMap, dict[str, Any]]:
+    """Examine a map; what fails goes to standard error.
+
+    Args:
+        map_: the map.
+        report: of progress.
+        left_out: how well clips left out are covered, if that was measured.
+
+    Returns:
+        A copy of the map that says what it has failed; what was measured, and ``warnings``, to be
+        said. A map with which no model can be made stays as it is.
+    """
+    from mesa_mobility.errors import MobilityError
+    from mesa_mobility.examination.examining import examine, with_findings
+
+    try:
+        found = examine(map_, left_out, report)
+    except MobilityError as error:
+        say(f"warning: the map cannot be examined: {error}")
+        return map_, {"examination": {}, "warnings": [f"the map cannot be examined: {error}"]}
+    failed = [each for each in found if not each.passed]
+    for each in failed:
+        say(f"warning: {each.warning}")
+    said = {
+        "examination": {each.test: each.answer() for each in found},
+        "warnings": [each.warning for each in failed],
+    }
+    return with_findings(map_, found), said
+
+
 def described(map_: MobilityMap) -> dict[str, Any]:
-    """What is in a map and what its people can do; warnings go to standard error."""
+    """What is in a map and what its options let people do; what is borrowed, on standard error."""
     from mesa_mobility.mobility import abilities_of
 
-    able = abilities_of(map_)
     standing = map_.metadata.get("standing", "recorded")
     if standing != "recorded":
         say(standing)
-    for warning in able["warnings"]:
-        say(f"warning: {warning}")
-    return {**map_.info(), "abilities": able}
+    return {**map_.info(), "abilities": abilities_of(map_)}
 
 
 def answer(values: dict[str, Any], *, as_json: bool) -> None:

@@ -17,7 +17,7 @@ from mesa_mobility.commands.console import (
     some_path,
     stoppable_progress,
 )
-from mesa_mobility.commands.maps.answers import AsJson, say_clips
+from mesa_mobility.commands.maps.answers import AsJson, examine_map, say_clips
 from mesa_mobility.errors import MapError
 from mesa_mobility.interrupts import putting_in_place
 
@@ -125,7 +125,12 @@ def _made(
     except MapError as error:  # the others may be good
         say(f"map {said['number']}: {error}")
         return {**row, "said": "none", "error": str(error)}
+    built, examination = examine_map(built, report)
     with putting_in_place():
         built.save(file)
     options = f"{built.n_options} options in {built.n_clusters} clusters"
-    return {**row, "said": f"{said['clips']} different clips, {options}"}
+    return {
+        **row,
+        "said": f"{said['clips']} different clips, {options}",
+        "warnings": examination["warnings"],
+    }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,6 +17,7 @@ from mesa_mobility.commands.maps.answers import (
     AsJson,
     answer,
     described,
+    examine_map,
     say_clips,
 )
 from mesa_mobility.errors import MapError
@@ -23,7 +25,8 @@ from mesa_mobility.interrupts import putting_in_place
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import Recording
-    from mesa_mobility.mobility import OptionFamilies
+    from mesa_mobility.commands.console import Report
+    from mesa_mobility.mobility import OptionFamilies, PreparedRecordings
 
 
 class Options(StrEnum):
@@ -33,8 +36,12 @@ class Options(StrEnum):
     DISTRIBUTION = "distribution"
 
 
+ONE_AT_A_TIME, SOME_AT_ONCE = "clips_left_out_one_at_a_time", "clips_left_out"
+"""Entries of the answer."""
+
 MOST_LEFT_OUT = 12
-"""Clips up to which a build also leaves each out in turn: so many builds more."""
+"""Clips up to which a build also leaves each out in turn: so many builds more. Of more, some are
+left out at once: one build more."""
 
 
 def build(
@@ -112,6 +119,7 @@ def build(
         raise MapError(f"{output}: is a folder, expected a file to write")
     check_writable(output.parent)
     wall, cpu = time.perf_counter(), time.process_time()
+    families: OptionFamilies | None
     info: dict[str, Any] = {}
     bank = None
     if derived is not None and derived in WHEELCHAIRS:
@@ -124,8 +132,8 @@ def build(
         ):
             raise typer.BadParameter(f"{derived}: takes no recordings, and nothing but --output")
         words = ["mesa-mobility", "map", "build", "--derive", derived, "-o", f"{derived}.npz"]
+        families = None
         built = WHEELCHAIRS[derived].build(derived, {"command": shlex.join(words)})
-        save = built.save
     elif source is None:
         raise typer.BadParameter("MANIFEST_OR_DIR: expected recordings; only wheelchairs need none")
     else:
@@ -141,14 +149,19 @@ def build(
             shown=not no_progress,
         )
         built = map_of_families(families)
-        save = built.save if kept == Options.STORED else families.save
         if poses:
             from mesa_mobility.bodies import build_bank
 
             with stoppable_progress(shown=not no_progress) as report:
                 bank = build_bank(built, recordings, report)
+    with stoppable_progress() as report:
+        left_out = info.get(ONE_AT_A_TIME, info.get(SOME_AT_ONCE))
+        built, examination = examine_map(built, report, left_out)
     with putting_in_place():
-        save(output)
+        if families is None or kept == Options.STORED:
+            built.save(output)
+        else:
+            replace(families, metadata=built.metadata).save(output)
         if bank is not None:
             bank.save(poses_path(output))
     say(f"written to {output}")
@@ -157,7 +170,9 @@ def build(
         "wall_s": round(time.perf_counter() - wall, 3),
         "cpu_s": round(time.process_time() - cpu, 3),
     }
-    answer({**spent, **described(built), **info}, as_json=as_json)
+    said = {**spent, **described(built), **info, **examination}
+    said["warnings"] = [*info.get("recorded", {}).get("warnings", []), *said["warnings"]]
+    answer(said, as_json=as_json)
 
 
 def _from_recordings(
@@ -177,9 +192,9 @@ def _from_recordings(
     from mesa_mobility.mobility import (
         build_families,
         derived_type,
-        left_out_one_at_a_time,
         prepare_recordings,
     )
+    from mesa_mobility.mobility.preparing.summary import summary_of
 
     plan = None if derived is None else derived_type(derived)
     recorded = type_name or (plan.source if plan else "able_bodied")
@@ -192,8 +207,11 @@ def _from_recordings(
             progress=lambda done, total: report("reading recordings", done, total),
         )
         say_clips(prepared.clips)
-        for remark in prepared.remarks:
-            say(remark)
+        read = summary_of(prepared.clips.recordings)
+        for line in (*read.lines, *prepared.remarks):
+            say(line)
+        for line in read.warnings:
+            say(f"warning: {line}")
         recordings = prepared.recordings
         metadata: dict[str, Any] = {}
         if plan is not None:
@@ -216,14 +234,34 @@ def _from_recordings(
             progress=report,
         )
         info: dict[str, Any] = {
+            "recorded": read.answer(),
             "recordings": len(recordings),
             "skipped": [list(each) for each in prepared.clips.skipped],
             "split": [list(each) for each in prepared.clips.split],
         }
-        if 1 < len(prepared.clips.recordings) <= MOST_LEFT_OUT:
-            try:
-                left_out = left_out_one_at_a_time(recordings, clusters, report)
-                info["clips_left_out_one_at_a_time"] = left_out
-            except MapError as error:  # the map itself is good
-                say(f"clips are not left out one at a time: {error}")
+        left_out = _left_out(prepared, recordings, clusters, report)
+    if left_out is not None:
+        info[ONE_AT_A_TIME if "clips" in left_out else SOME_AT_ONCE] = left_out
     return families, recordings, info
+
+
+def _left_out(
+    prepared: PreparedRecordings,
+    recordings: Sequence[Recording],
+    clusters: int | None,
+    report: Report,
+) -> dict[str, Any] | None:
+    """How well clips are covered that are left out, each in turn or some at once."""
+    from mesa_mobility.mobility import left_out_one_at_a_time, sample_left_out
+
+    clips = len(prepared.clips.recordings)
+    if clips < 2:
+        say("clips are not left out: there is one")
+        return None
+    compare = left_out_one_at_a_time if clips <= MOST_LEFT_OUT else sample_left_out
+    try:
+        return compare(recordings, clusters, report)
+    except MapError as error:  # the map itself is good
+        each = " one at a time" if clips <= MOST_LEFT_OUT else ""
+        say(f"clips are not left out{each}: {error}")
+        return None

@@ -12,6 +12,7 @@ from mesa_mobility.commands.maps.answers import (
     AsJson,
     answer,
     described,
+    examine_map,
     say_clips,
 )
 
@@ -25,10 +26,13 @@ def info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Map file.")],
     as_json: AsJson = False,
 ) -> None:
-    """Print the contents and sources of a map file."""
+    """Print the contents and sources of a map file, and examine what its people cannot do."""
     from mesa_mobility.mobility import MobilityMap
 
-    answer({"file": str(file), **described(MobilityMap.load(file))}, as_json=as_json)
+    mobility_map = MobilityMap.load(file)
+    with stoppable_progress() as report:
+        _, examination = examine_map(mobility_map, report)
+    answer({"file": str(file), **described(mobility_map), **examination}, as_json=as_json)
 
 
 def coverage(

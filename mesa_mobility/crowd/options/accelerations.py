@@ -1,4 +1,4 @@
-"""Options that start or end abruptly are left out; see ``mobility.accelerations``."""
+"""Options that start or end abruptly are left out; see ``mobility.standing.accelerations``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from mesa_mobility.crowd.options.table import Parts
 from mesa_mobility.mobility import MobilityMap
-from mesa_mobility.mobility.accelerations import has_acceleration, peak_accelerations
+from mesa_mobility.mobility.standing.accelerations import has_acceleration, peak_accelerations
 
 
 def without_abrupt(mobility_map: MobilityMap, parts: Parts, most: float) -> Parts:

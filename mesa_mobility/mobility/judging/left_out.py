@@ -1,4 +1,4 @@
-"""Recall and precision of a map's options, with its clips left out one at a time.
+"""Recall and precision of a map's options, with its clips left out one at a time, or some at once.
 
 Recall: how often the map of the other clips has an option that ends where the person of the
 clip left out really was. Precision: movements of that clip are edited as options are; an edited
@@ -45,6 +45,9 @@ SUPPORTED = (0.05, 0.05, np.deg2rad(5.0))
 FINE = (0.04, 0.04, np.deg2rad(4.0))
 """Cell of thinning of the options that support: finer than what they are compared with."""
 
+SAMPLED = 7
+"""Of many clips, every seventh is left out at once: one more build."""
+
 EVERY = 5
 """Poses from one whose edited movements are looked at to the next: neighbours move alike."""
 
@@ -70,9 +73,7 @@ def left_out_one_at_a_time(
     Raises:
         MapError: there are fewer than two clips of more than 45 frames.
     """
-    # Of people who limp on the other side, there are mirror images alone.
-    originals = [r for r in recordings if not r.name.endswith(MIRRORED)] or recordings
-    tested = [r for r in originals if r.frames > HORIZON]
+    tested = _tested(recordings)
     if len(tested) < 2:
         raise MapError(
             f"{len(tested)} clips of more than {HORIZON} frames: expected at least two, as each is "
@@ -107,6 +108,44 @@ def left_out_one_at_a_time(
         "supported_recorded": share["recorded"],
         "clips": clips,
     }
+
+
+def sample_left_out(
+    recordings: Sequence[Recording],
+    clusters: int | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> dict[str, Any]:
+    """Build a map without every seventh clip, and compare it with these.
+
+    Args:
+        recordings: as for ``left_out_one_at_a_time``.
+        clusters: as for ``build_map``.
+        progress: as for ``build_map``.
+
+    Returns:
+        What ``coverage`` returns.
+
+    Raises:
+        MapError: the other clips do not give a map, or there are fewer than seven of more than 45
+            frames.
+    """
+    tested = _tested(recordings)[SAMPLED - 1 :: SAMPLED]
+    if not tested:
+        raise MapError(f"fewer than {SAMPLED} clips of more than {HORIZON} frames: none to leave out")
+    names = {r.name.removesuffix(MIRRORED) for r in tested}
+    others = [r for r in recordings if r.name.removesuffix(MIRRORED) not in names]
+    _, grouped, options = options_of_recordings(others, clusters, progress)
+    poses = pose_table(tested)
+    moved = movements(poses)
+    cluster = clusters_of(poses, moved.rows, grouped.centres)
+    return figures(*compare(_ends(options), cluster, moved.paths[:, -1], HORIZON, NEAR))
+
+
+def _tested(recordings: Sequence[Recording]) -> list[Recording]:
+    """The clips to compare with a map of others."""
+    # Of people who limp on the other side, there are mirror images alone.
+    originals = [r for r in recordings if not r.name.endswith(MIRRORED)] or recordings
+    return [r for r in originals if r.frames > HORIZON]
 
 
 def _ends(options: ReachableOptions) -> Ends:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesa_mobility.mobility.borrowing import borrow, missing
+from mesa_mobility.mobility.standing.borrowing import borrow, missing
 from mesa_mobility.mobility.clusters import STANDING, Clusters
 from mesa_mobility.mobility.edits import SAMPLE_EVERY
 from mesa_mobility.mobility.paths import ReachableOptions

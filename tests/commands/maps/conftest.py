@@ -2,6 +2,14 @@
 
 import json
 
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def without_walks(monkeypatch):
+    """Maps are examined by no test that takes a model, for want of time."""
+    monkeypatch.setattr("mesa_mobility.examination.examining.TESTS", ())
+
 
 def last_line(outcome):
     """The JSON that a command has written last."""

@@ -22,6 +22,13 @@ def test_build_writes_a_map_and_says_what_is_in_it(command, recordings, map_file
     assert {key: answer[key] for key in expected} == expected
     assert answer["build"]["poses"] == 4 * 270
     assert answer["skipped"] == [["short", "40 frames at 30 Hz, 45 needed"]]
+    # Hips 0.9 m above the origin; the toes end 0.96 m below them.
+    assert answer["recorded"]["clips"] == 2
+    assert answer["recorded"]["units"] == {"1 m (metre), guessed": 2}
+    assert answer["recorded"]["frames_a_second"] == {"30": 2}
+    assert answer["recorded"]["heights_m"] == {"person 1": pytest.approx(0.96, abs=0.03)}
+    assert "2 clips of 1 person, 0.9" in outcome.err
+    assert "unit of length: 1 m (metre), guessed" in outcome.err.splitlines()
     assert "skipped short: 40 frames" in outcome.err
     assert MobilityMap.load(path).n_clusters == 12
     # Built by another process, under another name: the same bytes.

@@ -21,7 +21,7 @@ def test_what_people_of_a_map_can_do_is_said(command, recordings, map_file):
     )
     assert answer["standing"] in outcome.err
     assert min(answer["abilities"]["turn_on_the_spot_deg"]) >= 30
-    assert answer["abilities"]["warnings"] == []
+    assert answer["warnings"] == []
     # It walks at 1 and 1.3 m/s, and starts and stops.
     assert 0.9 < answer["walking_speed_m_s"]["p75"] < 1.35
 
@@ -54,3 +54,21 @@ def test_coverage_takes_several_recordings(command, recordings, map_file):
         )
     )
     assert (one["poses"], both["poses"]) == (225, 450)
+
+
+def test_what_fails_is_said_with_what_helps(command, map_file, monkeypatch):
+    from mesa_mobility.examination import Finding
+
+    def door(subject):
+        return Finding("door", "alone", {"in_time": 3}, "all 21 in time", False, "add side steps")
+
+    monkeypatch.setattr("mesa_mobility.examination.examining.TESTS", (door,))
+    outcome = command("map", "info", map_file, "--json")
+    said = "door: alone: in time 3; expected all 21 in time; add side steps"
+    assert f"warning: {said}" in outcome.err.splitlines()
+    answer = last_line(outcome)
+    assert answer["warnings"] == [said]
+    assert answer["examination"]["door"] == {
+        "what": "alone", "in_time": 3, "expected": "all 21 in time", "passed": False,
+        "helps": "add side steps",
+    }  # fmt: skip

@@ -5,8 +5,8 @@ import pytest
 
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import abilities_of
-from mesa_mobility.mobility.ways_back import check_ways_back
-from tests.fixtures.maps import make_map, shipped_map, stand, straight
+from mesa_mobility.mobility.standing.ways_back import check_ways_back
+from tests.fixtures.maps import make_map, shipped_map, stand, straight, through
 
 LEFT, RIGHT = (straight(0.1, 45, turn=side * np.deg2rad(40.0), to=0) for side in (1, -1))
 STANDER = (stand(), LEFT, RIGHT, straight(1.2, 45, to=1))
@@ -21,15 +21,17 @@ def test_turns_steps_and_stops():
     assert able["side_step_m"] == pytest.approx([0.0, 0.25])
     # Standing and walking stop at once; the third cluster only by way of the second.
     assert able["clusters_that_stop_at_once"] == pytest.approx(0.667)
-    assert any("nobody steps to the left" in warning for warning in able["warnings"])
-    assert not any("right" in warning for warning in able["warnings"])
-    assert any("1" in warning and "options a cluster" in warning for warning in able["warnings"])
 
 
-def test_nothing_is_missing_in_the_map_that_ships():
-    able = abilities_of(shipped_map())
-    assert able["warnings"] == []
-    assert min(able["turn_on_the_spot_deg"]) > 40
+def test_abrupt_steps_do_not_count():
+    # 1 m to the left in the last 0.3 s of 1.5 s.
+    late = through([(0.0, max(0.0, k / 3.0), 0.0) for k in range(-11, 4)], to=0)
+    able = abilities_of(make_map([(*STANDER, late), (straight(0.5, 45, to=0),)]))
+    assert able["side_step_m"] == [0.0, 0.0]
+
+
+def test_people_of_the_map_that_ships_turn_on_the_spot():
+    assert min(abilities_of(shipped_map())["turn_on_the_spot_deg"]) > 40
     check_ways_back(shipped_map())
 
 

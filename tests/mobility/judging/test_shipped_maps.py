@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mesa_mobility.mobility import WHEELCHAIRS, MobilityMap, abilities_of, shipped_map_path
-from mesa_mobility.mobility.ways_back import check_ways_back
+from mesa_mobility.mobility.standing.ways_back import check_ways_back
 
 FOLDER = Path(str(files("mesa_mobility.maps")))
 

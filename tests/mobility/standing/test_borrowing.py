@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mesa_mobility.mobility import build_map, cluster_poses, motion_graph, reachable_options
-from mesa_mobility.mobility.borrowing import borrow, missing
-from mesa_mobility.mobility.ways_back import check_ways_back
+from mesa_mobility.mobility.standing.borrowing import borrow, missing
+from mesa_mobility.mobility.standing.ways_back import check_ways_back
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.poses import random_poses
 

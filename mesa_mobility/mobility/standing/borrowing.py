@@ -1,9 +1,9 @@
 """Standing and turning on the spot for recordings that do not show it: those of another map.
 
 Without standing, people cannot wait or set off from rest; without turns on the spot, they stay in
-a corner for ever. Both count only as far as they are gentle: a crowd's default rules leave out
-options that start abruptly, as those of people who run mostly do. Where nobody stands, the other map gives its standing cluster with all
-options from there. Each cluster gets the options that end in it, from the pose most alike that has
+a corner for ever. Turns and steps count only as far as they are gentle: a crowd's default rules
+leave out options that start abruptly, as those of people who run mostly do. Where nobody stands, the
+other map gives its standing cluster with all options from there. Each cluster gets the options that end in it, from the pose most alike that has
 such options; so it does where people stand but options do not lead back to that. Where they do not
 turn on the spot, the other map gives its turns, and where they do not step aside either way and
 back, its steps. Strides are shortened to the borrower's speed.
@@ -17,12 +17,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.mobility.accelerations import GENTLE, has_acceleration, peak_accelerations
+from mesa_mobility.mobility.standing.accelerations import is_gentle
 from mesa_mobility.mobility.clusters import STANDING, Clusters, nearest_centre
 from mesa_mobility.mobility.edits import Edit, edit_paths
-from mesa_mobility.mobility.map import CORE_RADIUS
 from mesa_mobility.mobility.paths import DURATIONS, MOST_JUMPS, SAMPLE_EVERY, ReachableOptions
-from mesa_mobility.mobility.ways_back import ON_THE_SPOT, TURN, leads_back
+from mesa_mobility.mobility.standing.ways_back import ON_THE_SPOT, TURN, leads_back
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.map import MobilityMap
@@ -31,7 +30,7 @@ STANDING_STILL, STOPPING, TURNING = "standing", "stopping", "turning on the spot
 STEPPING = "steps aside and back"
 """What can be missing, and is then borrowed."""
 
-STEP = 2.0 * CORE_RADIUS
+STEP = 0.28
 """Metres of a step aside or back, as wide as a body's core: without it people who stand close
 together, or at a wall beside a door, never get loose."""
 
@@ -45,7 +44,9 @@ def missing(options: ReachableOptions, clusters: Clusters) -> tuple[str, ...]:
     back = leads_back(options.offsets, options.path_clusters[rows, last], STANDING)
     lacks = [] if back.all() else [STOPPING]
     rows = rows[: options.offsets[STANDING + 1]]
-    rows = rows[_gentle(options.durations[rows], options.paths[rows])]
+    longest, width = options.paths.shape[1:]
+    flat = options.paths.reshape(-1, width)
+    rows = rows[is_gentle(options.durations[rows], rows * longest, flat)]
     ends = options.paths[rows, last[rows]]
     turned = ends[_turns(ends), 2]
     if turned.max(initial=0.0) < TURN or turned.min(initial=0.0) > -TURN:
@@ -54,15 +55,6 @@ def missing(options: ReachableOptions, clusters: Clusters) -> tuple[str, ...]:
     if max(-aside.max(initial=0.0), aside.min(initial=0.0), ahead.min(initial=0.0)) > -STEP:
         lacks.append(STEPPING)
     return tuple(lacks)
-
-
-def _gentle(
-    durations: NDArray[np.integer], paths: NDArray[np.floating]
-) -> NDArray[np.bool_]:
-    """Which options, with (m, 15, 3) paths, start and end gently."""
-    starts = np.arange(len(durations)) * paths.shape[1]
-    peaks = peak_accelerations(durations, starts, paths.reshape(-1, paths.shape[2]))
-    return ~has_acceleration(durations) | (peaks <= GENTLE)
 
 
 def _turns(ends: NDArray[np.floating]) -> NDArray[np.bool_]:

@@ -32,6 +32,15 @@ def has_acceleration(durations: NDArray[np.integer]) -> NDArray[np.bool_]:
     return durations * _FRAME_S >= SHORTEST_S
 
 
+def is_gentle(
+    durations: NDArray[np.integer], path_offsets: NDArray[np.integer], paths: NDArray[np.floating]
+) -> NDArray[np.bool_]:
+    """(m,) options that the default preset leaves; arguments as for ``peak_accelerations``."""
+    return ~has_acceleration(durations) | (
+        peak_accelerations(durations, path_offsets, paths) <= GENTLE
+    )
+
+
 def peak_accelerations(
     durations: NDArray[np.integer], path_offsets: NDArray[np.integer], paths: NDArray[np.floating]
 ) -> NDArray[np.float64]:

@@ -1,0 +1,12 @@
+"""What the people of a map cannot do, measured before the map is used.
+
+Lone people of the map walk through a door, round the corner of a corridor, turn round in a small
+space, stop at a point, and walk slowly; a small crowd leaves by a door. All of it takes seconds and
+gives the same figures each time. With it goes how well the map predicts clips that were left out,
+if that was measured when it was built.
+"""
+
+from mesa_mobility.examination.examining import examine, examined, with_findings
+from mesa_mobility.examination.finding import Finding
+
+__all__ = ["Finding", "examine", "examined", "with_findings"]

@@ -1,0 +1,97 @@
+"""The people that a map is examined with, and how long they may take."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesa_mobility.crowd import PedestrianModel, PedestrianType, Visit
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility.judging.verdict import with_verdict
+
+BESIDE = 0.3
+"""Metres that a door or a corridor leaves beside a body."""
+
+DOOR, CORRIDOR = 0.9, 1.2
+"""Least widths in metres: a door and a corridor of a flat."""
+
+SLACK_S, SLACK = 15.0, 3.0
+"""Seconds that people may take besides so many times those of the straight way. Of the maps that
+ship, people take at most 8 s besides the straight way."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Somebody of a map, with its type's median preferred speed.
+
+    Attributes:
+        kind: the pedestrian type.
+        speed: m/s.
+    """
+
+    kind: PedestrianType
+    speed: float
+
+    @classmethod
+    def of(cls, map_: MobilityMap) -> Subject:
+        """The subject of a map."""
+        # Under examination: its models need not warn that it has not been examined.
+        kind = PedestrianType(mobility_map=with_verdict(map_, {}))
+        speed = kind.preferred_speed
+        assert isinstance(speed, Distribution)  # that of the map
+        return cls(kind, float(speed.quantile(np.array([0.5]))[0]))
+
+    @property
+    def radius(self) -> float:
+        """Radius of the circle in which the body turns, metres."""
+        return self.kind.bounding_radius
+
+    @property
+    def door(self) -> float:
+        """Width in metres of a door that the body needs."""
+        return max(DOOR, 2.0 * self.kind.half_width + BESIDE)
+
+    @property
+    def corridor(self) -> float:
+        """Width in metres of a corridor that the body needs."""
+        return max(CORRIDOR, 2.0 * self.radius + BESIDE)
+
+    def limit(self, way: float, speed: float | None = None) -> float:
+        """Seconds for a way of so many metres, at its own speed or another, m/s."""
+        return SLACK_S + SLACK * way / (speed or self.speed)
+
+    def model(self, plan: FloorPlan, seed: int = 0) -> PedestrianModel:
+        """A model of people of this kind."""
+        return PedestrianModel(plan, pedestrian_types=[self.kind], rng=seed)
+
+    def alone(
+        self,
+        plan: FloorPlan,
+        place: tuple[float, float],
+        heading: float = 0.0,
+        *,
+        speed: float | None = None,
+        route: Sequence[Visit] = (),
+    ) -> PedestrianModel:
+        """A model of one person, who stands at a place and faces a heading, radians."""
+        model = self.model(plan)
+        model.add_pedestrians(
+            [place], headings=[heading], preferred_speeds=speed or self.speed, route=list(route)
+        )
+        return model
+
+    def times(
+        self, plan: FloorPlan, starts: Sequence[tuple[tuple[float, float], float, float]]
+    ) -> list[float | None]:
+        """Seconds until somebody alone has left, from each (place, heading, way in metres); None
+        where they have not in time."""
+        found: list[float | None] = []
+        for place, heading, way in starts:
+            model = self.alone(plan, place, heading)
+            model.run(max_seconds=self.limit(way))
+            found.append(None if model.inside else round(model.elapsed, 1))
+        return found
