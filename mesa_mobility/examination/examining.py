@@ -16,9 +16,9 @@ from mesa_mobility.mobility.judging.verdict import failed_tests, with_verdict
 COVERAGE, SHARE = "coverage", "share_within_15cm_20deg"
 """The test that no model is needed for, and its figure."""
 
-COVERED = 0.85
-"""Least share of poses of clips left out that a map predicts within 15 cm and 20 degrees; maps that
-ship have 0.88 or more."""
+COVERED = 0.8
+"""Least share of poses of clips left out that a map predicts within 15 cm and 20 degrees. Maps that
+ship have 0.84 (crutches) to 0.96 (able-bodied); one of six clips of carrying and running has 0.65."""
 
 TESTS = (door, corner, turn, stop, slowly, crowd)
 
