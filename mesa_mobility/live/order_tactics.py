@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,30 +28,54 @@ ARRIVED, AROUND = 0.3, 0.35
 """Metres from a place at which the first has arrived, and more for those who stand there."""
 
 
-def follow_orders(model: PedestrianModel, orders: Orders) -> None:
-    """Add the tactics to a model's own."""
+def follow_orders(model: PedestrianModel) -> Orders:
+    """The orders that a model's people follow; the tactics are added to the model's own.
+
+    A model that has them, such as one of a checkpoint, keeps them and its orders.
+    """
+    orders = _orders_of(model)
     names = [each.name for each in model.tactics]
-    first = names.index(StayAtPlaces.name) + 1 if StayAtPlaces.name in names else 0
-    # All that people heed on their way, they heed on the way to a place.
-    model.tactics.insert(first, WalkToPlaces(orders))
-    model.tactics.append(Steering(orders))
+    if WalkToPlaces.name not in names:
+        first = names.index(StayAtPlaces.name) + 1 if StayAtPlaces.name in names else 0
+        # All that people heed on their way, they heed on the way to a place.
+        model.tactics.insert(first, WalkToPlaces(orders))
+    if Steering.name not in names:
+        model.tactics.append(Steering(orders))
+    return orders
+
+
+def _orders_of(model: PedestrianModel) -> Orders:
+    """The orders that tactics of a model have, or new ones."""
+    found = (each.orders for each in model.tactics if isinstance(each, _OfOrders))
+    return next((orders for orders in found if orders is not None), None) or Orders(model)
 
 
 class _OfOrders(Tactic):
     """A tactic that follows orders.
 
     Args:
-        orders: to the model's people.
+        orders: to the model's people; by default those of its other tactics.
     """
 
     _crowd: Crowd
 
-    def __init__(self, orders: Orders) -> None:
-        self._orders = orders
+    def __init__(self, orders: Orders | None = None) -> None:
+        self.orders = orders
 
     def bind(self, model: PedestrianModel) -> None:
-        """Keep the model's crowd."""
+        """Keep the model's crowd, and share its orders."""
         self._crowd = model.crowd
+        self.orders = self.orders or _orders_of(model)
+
+    def state(self) -> dict[str, Any]:
+        """The orders. They are the same of all tactics of a model."""
+        assert self.orders is not None
+        return self.orders.state()
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        assert self.orders is not None
+        self.orders.restore(state)
 
 
 class WalkToPlaces(_OfOrders):
@@ -58,13 +83,14 @@ class WalkToPlaces(_OfOrders):
 
     name = "walking_orders"
 
-    def __init__(self, orders: Orders) -> None:
+    def __init__(self, orders: Orders | None = None) -> None:
         super().__init__(orders)
         self._routes: dict[int, PointRoutes] = {}
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Set the points of those who are on the way."""
-        orders, rows, site = self._orders, deciding.pedestrians, deciding.site
+        orders, rows, site = self.orders, deciding.pedestrians, deciding.site
+        assert orders is not None
         does = orders.of(rows)
         if desired.newcomers or not does.any():
             return
@@ -95,7 +121,8 @@ class Steering(_OfOrders):
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Set points and speeds of those who are steered, and of those in their way."""
-        orders, rows = self._orders, deciding.pedestrians
+        orders, rows = self.orders, deciding.pedestrians
+        assert orders is not None
         steered = orders.steered()
         if desired.newcomers or not len(steered):
             return

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd import PedestrianModel
+from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.clearances import passing_of
 from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.errors import LiveError
@@ -21,7 +22,7 @@ FASTEST = 10.0
 """Highest speed by hand, m/s; people walk as fast as their options let them."""
 
 
-class Orders:
+class Orders(Saved):
     """What the people of a model have been told.
 
     Arrays have an entry for each row of the crowd that has ever had an order.
@@ -35,6 +36,8 @@ class Orders:
         place: (n, 2) to which people walk, metres.
         stay: (n,) frames for which they stay there, or ``FOREVER``.
     """
+
+    saved = ("does", "velocity", "place", "stay")
 
     def __init__(self, model: PedestrianModel) -> None:
         self._model = model

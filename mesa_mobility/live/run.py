@@ -15,7 +15,6 @@ from mesa_mobility.crowd import PedestrianModel
 from mesa_mobility.errors import LiveError
 from mesa_mobility.live.clock import Clock
 from mesa_mobility.live.order_tactics import follow_orders
-from mesa_mobility.live.orders import Orders
 from mesa_mobility.live.snapshot import Camera, Snapshot
 
 FRAMES_A_SECOND = 30
@@ -41,11 +40,10 @@ class Run:
         if rate < 1 or FRAMES_A_SECOND % rate:
             raise LiveError(f"rate: got {rate}, expected 1, 2, 3, 5, 6, 10, 15 or 30 frames/s")
         self.model = model
-        self.orders = Orders(model)
+        self.orders = follow_orders(model)
         self.clock = Clock()
         self._steered_by: dict[int, Hashable] = {}
         model.frames_per_step = FRAMES_A_SECOND // rate
-        follow_orders(model, self.orders)
 
     def set_playing(self, playing: bool) -> None:
         """Let time go by, or not."""

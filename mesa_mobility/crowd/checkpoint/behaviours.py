@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.crowd.checkpoint.plain import Packer
-from mesa_mobility.crowd.hooks import Plugin
+from mesa_mobility.crowd.hooks import SHIPPED, Plugin
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins import registry
 
@@ -55,8 +56,9 @@ def match_behaviours(
             if class_name(type(each)) == wanted["class"]:
                 return there.pop(k)
         installed = registry.behaviors().get(wanted["name"])
-        if installed is not None and class_name(installed.load()) == wanted["class"]:
-            return installed.load()()
+        kind = installed.load() if installed is not None else _shipped(wanted["class"])
+        if kind is not None and class_name(kind) == wanted["class"]:
+            return kind()
         raise ModelError(
             f"behaviour {wanted['name']!r} ({wanted['class']}) is neither installed nor made by "
             f"the constructor of {type(model).__name__}, expected load(path, plugins=[...]) with it"
@@ -66,6 +68,18 @@ def match_behaviours(
     model.speed_rules[:] = [find(each) for each in saved["speed_rules"]]
     model.target_choice = find(saved["target_choice"][0])
     model.tactics[:] = [find(each) for each in saved["tactics"]]
+
+
+def _shipped(name: str) -> type[Plugin] | None:
+    """The behaviour of this class name if the package's public modules have it."""
+    module, _, kind = name.partition(":")
+    if not module.startswith(SHIPPED) or "._" in module:
+        return None
+    try:
+        found = getattr(import_module(module), kind, None)
+    except ImportError:
+        return None
+    return found if isinstance(found, type) and issubclass(found, Plugin) else None
 
 
 def class_name(kind: type) -> str:

@@ -41,8 +41,7 @@ class ByHand:
         if not math.isfinite(length):
             return
         if self._orders is None:
-            self._orders = Orders(model)
-            follow_orders(model, self._orders)
+            self._orders = follow_orders(model)
         speed = float(model.crowd.agenda["speed"][row]) / length if length else 0.0
         self._orders.steer(np.array([row]), (speed * direction[0], speed * direction[1]))
         self.row = row
