@@ -19,6 +19,7 @@ from mesa_mobility.crowd.tactics.shipped import (
     SlowInZones,
     SpreadAtCorners,
     StayAtPlaces,
+    StepOff,
     TakeTurns,
     Wait,
 )
@@ -120,6 +121,7 @@ class Preset:
             (self.anticipation, Anticipation),
             (self.speed_adaptation, AdaptSpeed),
             (self.impatience, Impatience),
+            (self.hard_bodies, StepOff),
         ]
         return [kind() for taken, kind in tactics if taken]
 

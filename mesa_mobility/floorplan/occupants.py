@@ -7,7 +7,7 @@ gone. So the change is refused and the plan stays as it was. Try again when the 
 the obstacle beside it, or take the people out first.
 
 Doors are lines and may be closed at any time: a body across the line steps off to the side on which
-its centre is.
+its centre is, and those who are in an exit on their way out leave.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from mesa_mobility.floorplan.formats import by_suffix, dxf, geojson
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.free_area import FreeArea
 from mesa_mobility.floorplan.layout import Layout
-from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.outline import SIMPLIFY
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.walls.wall_index import WallIndex
@@ -304,6 +304,10 @@ class FloorPlan(Layout):
     def closed_gates(self) -> tuple[Gate, ...]:
         """The gates that are closed now."""
         return self._area.closed_ones(self.gates)
+
+    def closed_openings(self) -> tuple[Opening, ...]:
+        """The gates and exits that are closed now."""
+        return self._area.closed_ones(self.openings()) if self._area.closed else ()
 
     check_reachable = reachability.check_reachable
     random_points = sampling.random_points

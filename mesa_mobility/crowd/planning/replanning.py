@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,7 @@ from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.paths import facing_at_waypoint, waypoint
 from mesa_mobility.crowd.state.records import NO_OPTION, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
+from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
 
 
 @kept()
@@ -27,6 +30,9 @@ def stop_where_blocked(
     """Stop people whose path is blocked, and those who would then run into them.
 
     They stand where they are and decide again in this frame.  Returns their number.
+
+    An exit closes behind those who are in it on their way out, as doors do that give way to a body:
+    they go on and leave.  Others in a closed exit decide again, so that they step off at once.
     """
     reach = table.farthest.max()
     stopped = np.zeros(len(rows), np.bool_)
@@ -38,6 +44,9 @@ def stop_where_blocked(
         i = rows[a]
         if state.end[i] <= frame:
             continue
+        caught = _in_closed_exit(i, table, state, around)
+        if caught and state.gone[i] >= 0:
+            continue
         pieces = _remaining(i, frame, table, state, path)
         walked = pieces
         if state.gone[i] >= 0:
@@ -48,7 +57,7 @@ def stop_where_blocked(
             reach + state.core[i] + overhang_of(i, table, state) + 0.01, found,
         )  # fmt: skip
         spacing = np.int64(state.spacing[i])
-        if body_hits_wall(i, path, walked, spacing, found[:walls], reach, table, state):
+        if caught or body_hits_wall(i, path, walked, spacing, found[:walls], reach, table, state):
             stopped[a] = True
             newly[count] = i
             count += 1
@@ -85,6 +94,23 @@ def stop_where_blocked(
     for b in range(count):
         _stop(newly[b], frame, state, rules)
     return total
+
+
+@kept()
+def _in_closed_exit(i: int, table: OptionTable, state: CrowdState, around: Surroundings) -> bool:
+    """Whether the body of pedestrian i is across an exit by which it may not leave."""
+    shape, core = table.shapes[state.type_index[i]], state.core[i]
+    c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+    for e in range(len(around.exits)):
+        if around.leads_out[state.destination[i], e]:
+            continue
+        ax, ay, bx, by = around.exits[e]
+        for d in range(shape.discs):
+            off, r = core * shape.offset[d], core * shape.radius[d]
+            x, y = state.x[i] + off * c, state.y[i] + off * s
+            if point_segment_distance2(x, y, ax, ay, bx, by) < r * r:
+                return True
+    return False
 
 
 @kept()

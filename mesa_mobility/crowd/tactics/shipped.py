@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.options.shapes import ShapeRecords, shapes_of
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.anticipation import turn_aside
 from mesa_mobility.crowd.tactics.corner_spreading import spread_at_corners
@@ -17,21 +18,22 @@ from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_adaptation import adapt_speeds
 from mesa_mobility.crowd.tactics.speed_compensation import compensate_speed
 from mesa_mobility.crowd.tactics.speed_rules import apply_speed_rules
+from mesa_mobility.crowd.tactics.stepping_off import step_off
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
 from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.crowd.tactics.turns import Turns
 from mesa_mobility.crowd.tactics.visits.journeys import Journeys
 from mesa_mobility.crowd.tactics.visits.slowing import slow_down
-from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.walls.boundaries import opening_segments
+from mesa_mobility.floorplan.zones import mean_factors
 
 LONGEST_S = 1.5
 """The longest movement, seconds."""
 
-_PARTS = 15
-
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
     from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
+    from mesa_mobility.floorplan import FloorPlan
 
 
 class _OfTheCrowd(Tactic):
@@ -94,11 +96,12 @@ class SlowInZones(Tactic):
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Multiply speeds by the mean factor on the way ahead."""
-        plan = deciding.site.plan
-        if plan.zones:
-            desired.speeds = desired.speeds * _mean_factors(
-                plan, deciding.positions, desired.points, desired.speeds
-            )
+        zones = deciding.site.plan.zones
+        if zones:
+            way = desired.points - deciding.positions
+            way *= (desired.speeds * LONGEST_S / np.maximum(np.hypot(*way.T), 1e-9))[:, None]
+            factors = mean_factors(zones, deciding.positions, deciding.positions + way)
+            desired.speeds = desired.speeds * factors
 
 
 class FollowSpeedRules(Tactic):
@@ -255,33 +258,39 @@ class Impatience(_OfTheCrowd):
             desired.points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
 
 
-def _mean_factors(
-    plan: FloorPlan,
-    positions: NDArray[np.float64],
-    points: NDArray[np.float64],
-    speeds: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """(n,) mean factor of the speed zones over the next ``LONGEST_S``, straight towards ``points``.
+class StepOff(_OfTheCrowd):
+    """People step off the line of a gate or exit that has closed on them, whatever else they want.
 
-    A movement that leads into a zone or out of it is decided on as a whole. With the factor where
-    it starts alone, people would be up to a movement late in slowing down, and in speeding up.
-
-    Args:
-        plan: the floor plan.
-        positions: (n, 2) where people are, metres.
-        points: (n, 2) where they want to go, metres.
-        speeds: (n,) how fast they walk where there is no zone, m/s.
+    A door is no place to stand in, and people whose only way out has closed would stay there.
     """
-    way = points - positions
-    way /= np.maximum(np.hypot(*way.T), 1e-9)[:, None]
-    # The way that is covered without zones, in equal parts; each takes 1 / factor of its time.
-    middles = (np.arange(_PARTS) + 0.5) / _PARTS * LONGEST_S
-    ahead = positions[:, None] + way[:, None] * (speeds[:, None] * middles)[:, :, None]
-    factors = plan.speed_factors(ahead).reshape(-1, _PARTS)
-    ends = np.cumsum(1.0 / factors, axis=1)
-    passed = np.clip((_PARTS - (ends - 1.0 / factors)) * factors, 0.0, 1.0)
-    found: NDArray[np.float64] = passed.mean(axis=1)
-    return found
+
+    name = "stepping_off"
+
+    _plan: FloorPlan
+    _shapes: ShapeRecords
+
+    def bind(self, model: PedestrianModel) -> None:
+        """Keep the floor plan, whose doors may close, and the bodies of all types."""
+        super().bind(model)
+        self._plan = model.floor_plan
+        self._shapes = shapes_of([each.shape for each in model.pedestrian_types])
+
+    def state(self) -> dict[str, Any]:
+        """Nothing: the plan and the types are the model's."""
+        return {}
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Send those away from the line who are across it."""
+        closed = self._plan.closed_openings()
+        if desired.newcomers or not closed:
+            return
+        lines, points = opening_segments(closed), desired.points.copy()
+        rows, crowd = deciding.pedestrians, self._crowd
+        across = np.zeros(len(rows), dtype=np.bool_)
+        step_off(rows, lines, self._shapes, crowd.records, points, across)
+        if across.any():
+            own = crowd.agenda["speed"][rows]
+            desired.points, desired.speeds = points, np.where(across, own, desired.speeds)
 
 
 def _stretch(kind: PedestrianType) -> float:

@@ -44,6 +44,7 @@ def test_those_of_the_presets():
     everything = [
         "corner_spreading", "visits", "speed_zones", "speed_rules", "taking_turns", "giving_way",
         "waiting", "speed_compensation", "anticipation", "speed_adaptation", "impatience",
+        "stepping_off",
     ]  # fmt: skip
     assert names(model_of(corridor(), strider())) == everything
     assert names(model_of(corridor(), strider(), preset="paper")) == [
