@@ -10,6 +10,8 @@ from mesa_mobility.behaviors.corridors import BEYOND, Corridor
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from mesa_mobility.schema import Array, Kind, Real, Whole
+
 AHEAD = 1.0
 """Metres ahead at which people's ways tell which way they go through a corridor."""
 
@@ -82,6 +84,18 @@ class Negotiation:
     places: NDArray[np.int64]
     least: float
     since: float
+
+    @staticmethod
+    def members() -> dict[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            "sense": Whole(-1, 1),
+            "going": Array("i8", low=0, below="people"),
+            "giving": Array("i8", ("giving",), low=0, below="people"),
+            "places": Array("i8", ("giving",), low=0),
+            "least": Real(0.0, infinite=True),
+            "since": Real(0.0),
+        }
 
     def state(self) -> dict[str, Any]:
         """Its attributes."""

@@ -12,6 +12,16 @@ from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Desired, PedestrianModel, Range, Tactic
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.schema import (
+    Array,
+    Flag,
+    Kind,
+    Maybe,
+    Members,
+    Several,
+    check,
+    check_shape,
+)
 
 REACH = 3.0
 """Metres before an end at which people heed a negotiation; no movement is longer."""
@@ -96,6 +106,15 @@ class Yielding(Tactic):
         self._widest = max(each.half_width for each in model.pedestrian_types)
         self._narrowest = min(each.least_core for each in model.pedestrian_types)
 
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            **self.setting_kinds(),
+            "courses": Array("i1", ("corridors", None), -1, 1),
+            "negotiations": Several(Maybe(Members(Negotiation.members())), length="corridors"),
+            "current": Flag(),
+        }
+
     def state(self) -> dict[str, Any]:
         """Who gives way to whom where; corridors follow from the floor plan."""
         return {
@@ -115,6 +134,12 @@ class Yielding(Tactic):
         self._negotiations = [
             None if each is None else Negotiation(**each) for each in state["negotiations"]
         ]
+        if state["current"]:
+            check_shape((len(self._courses),), (len(self._corridors),), "courses", {})
+            for corridor, each in zip(self._corridors, self._negotiations, strict=True):
+                most = len(corridor.places) - 1
+                if each is not None:
+                    check(each.places, Array("i8", (len(each.giving),), 0, most), "places")
 
     @property
     def giving_way(self) -> list[int]:

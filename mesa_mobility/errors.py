@@ -9,6 +9,10 @@ class MobilityError(Exception):
     """Base of every error that bad input raises in this package."""
 
 
+class ContentError(MobilityError):
+    """What a file holds is not what its reader has declared."""
+
+
 class CaptureError(MobilityError):
     """A recording or a manifest of recordings cannot be used."""
 

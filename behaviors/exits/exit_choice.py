@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Range, TargetChoice, Targets
 from mesa_mobility.errors import ModelError
+from mesa_mobility.schema import Array, Kind
 
 UNDECIDED = -1
 
@@ -61,6 +63,15 @@ class ExitChoice(TargetChoice):
         self._chosen = np.empty(0, dtype=np.int64)
         self._thought = np.empty(0)
         self._set_out = np.empty(0)
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are that are not a subclass's own."""
+        return {
+            **self.setting_kinds(),
+            "_chosen": Array("i8", ("known",), UNDECIDED, below="exit_numbers"),
+            "_thought": Array("f8", ("known",), 0.0, 1e9),
+            "_set_out": Array("f8", ("known",), 0.0, 1e9, missing=True),
+        }
 
     @abstractmethod
     def choose(self, choosing: Choosing) -> NDArray[np.int64]:

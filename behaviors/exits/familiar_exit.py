@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Annotated
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility import FloorPlan, ListOf, Pedestrian, Range
 from mesa_mobility.errors import ModelError
+from mesa_mobility.schema import Array, Kind, Several, Text
 
 
 class FamiliarExit(RandomUtility):
@@ -45,6 +46,14 @@ class FamiliarExit(RandomUtility):
         self.affiliation = affiliation
         self.familiar = familiar
         self._known = np.empty((0, 0), dtype=np.bool_)
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            **super().members(),
+            "familiar": Several(Text("exits")),
+            "_known": Array("?", (None, "exit_numbers")),
+        }
 
     def know(self, people: Iterable[Pedestrian], exits: Iterable[str]) -> None:
         """Set the exits that some people know; they choose again at their next decision.

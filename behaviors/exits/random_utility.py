@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from typing import Annotated
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility import Range
 from mesa_mobility.errors import ModelError
+from mesa_mobility.schema import Array, Kind
 
 
 class RandomUtility(ExitChoice):
@@ -34,6 +36,13 @@ class RandomUtility(ExitChoice):
         super().__init__(interval)
         self.scale = scale
         self._tastes: NDArray[np.float64] = np.empty((0, 0))
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            **super().members(),
+            "_tastes": Array("f8", (None, "exit_numbers"), -1e12, 1e12, missing=True),
+        }
 
     @abstractmethod
     def bonus(self, choosing: Choosing) -> NDArray[np.float64]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import Annotated, Any
+from collections.abc import Iterable, Mapping
+from typing import Annotated, ClassVar
 
 import numpy as np
 import shapely
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from mesa_mobility import Deciding, Desired, Pedestrian, PedestrianModel, Range, Tactic
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.schema import Array, Kind, Several, Whole
 
 # Metres between two places of a leader's trail, and the number of them that is kept.
 _STEP, _PLACES = 0.25, 400
@@ -53,6 +54,10 @@ class Following(Tactic):
 
     name = "following"
     after = "speed_rules"
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_leaders": Several(Whole(below="people"), dict, values=Whole(below="people")),
+        "_trails": Several(Whole(below="people"), dict, values=Array("f8", (None, 2), -1e9, 1e9)),
+    }
 
     _model: PedestrianModel
 
@@ -64,10 +69,6 @@ class Following(Tactic):
     def bind(self, model: PedestrianModel) -> None:
         """Keep the model, whose people follow and lead."""
         self._model = model
-
-    def state(self) -> dict[str, Any]:
-        """Who follows whom, and where leaders have walked."""
-        return {**self.settings(), "_leaders": self._leaders, "_trails": self._trails}
 
     def follow(self, people: Iterable[Pedestrian], leader: Pedestrian | None) -> None:
         """Let people follow a leader from their next decision on, or nobody any more.

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import shapely
@@ -24,6 +24,7 @@ from mesa_mobility import (
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.schema import Array, Kind, Several, Whole
 
 # Metres from its place within which somebody counts as one who looks.
 _LOOKS = 0.5
@@ -94,6 +95,10 @@ class Attractions(Tactic):
 
     name = "attraction"
     after = "speed_rules"
+    saved: ClassVar[Mapping[str, Kind]] = {  # attractions are given again
+        "_passed": Array("?", (None, "attractions")),
+        "_stopped": Several(Several(Whole(below="people")), length="attractions"),
+    }
 
     _model: PedestrianModel
 
@@ -107,10 +112,6 @@ class Attractions(Tactic):
     def bind(self, model: PedestrianModel) -> None:
         """Keep the model, whose people stop."""
         self._model = model
-
-    def state(self) -> dict[str, Any]:
-        """Who has passed which attraction, and who has stopped; attractions are given again."""
-        return {"_passed": self._passed, "_stopped": self._stopped}
 
     def stopped(self, attraction: Attraction) -> list[int]:
         """Rows of all who have been drawn to an attraction so far, in order."""

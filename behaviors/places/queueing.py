@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, ClassVar
 
 import numpy as np
 import shapely
@@ -24,6 +24,7 @@ from mesa_mobility import (
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.schema import Kind, Several, Whole
 
 # Radius of the place where people are served, metres, and the least distance in the line: only
 # one person is there at a time.
@@ -102,6 +103,10 @@ class Queueing(Tactic):
 
     name = "queueing"
     after = "speed_rules"
+    saved: ClassVar[Mapping[str, Kind]] = {  # counters are given again
+        "_lines": Several(Several(Whole(below="people"))),
+        "_standing": Several(Whole(below="people"), set),
+    }
 
     _model: PedestrianModel
 
@@ -113,10 +118,6 @@ class Queueing(Tactic):
     def bind(self, model: PedestrianModel) -> None:
         """Keep the model, whose people line up."""
         self._model = model
-
-    def state(self) -> dict[str, Any]:
-        """Who stands where; counters are given again."""
-        return {"_lines": self._lines, "_standing": self._standing}
 
     def line(self, counter: Counter) -> list[int]:
         """Rows of those who are served or stand in line before a counter, the first one first."""

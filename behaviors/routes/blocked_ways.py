@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, FloorPlan, Range, TargetChoice, Targets
 from mesa_mobility.floorplan import Router, lines_of_sight
+from mesa_mobility.schema import Array, Kind, Several, Text
 
 # Metres before a closed gate, which is a wall, that must be in sight.
 _BEFORE = 0.05
@@ -34,16 +36,15 @@ class BlockedWays(TargetChoice):
     """
 
     name = "blocked_ways"
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_seen": Several(Text("openings"), dict, values=Array("?")),
+    }
 
     def __init__(self, sight: Annotated[float, Range(0.0, unit="m", above=True)] = 15.0) -> None:
         self.sight = sight
         self._seen: dict[str, NDArray[np.bool_]] = {}
         self._routers: dict[tuple[tuple[str, ...], float], Router] = {}
         self._version = -1
-
-    def state(self) -> dict[str, Any]:
-        """Who has seen what; the routes follow from the floor plan."""
-        return {"sight": self.sight, "_seen": self._seen}
 
     def targets(self, deciding: Deciding) -> Targets:
         """Targets on the shortest ways that people believe in."""

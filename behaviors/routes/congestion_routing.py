@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from bisect import bisect, insort
-from collections.abc import Sequence
-from typing import Annotated, Any
+from collections.abc import Mapping, Sequence
+from typing import Annotated, ClassVar
 
 import numpy as np
 from mesa_mobility.behaviors.routes.network import Network
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Range, RouteChoice
+from mesa_mobility.schema import Array, Kind, Several, Whole
 
 
 class CongestionRouting(RouteChoice):
@@ -36,6 +37,10 @@ class CongestionRouting(RouteChoice):
     """
 
     name = "congestion_routing"
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_again": Array("f8", high=1e9, infinite=True),
+        "_under_way": Several(Whole(below="people"), set),
+    }
 
     def __init__(
         self, interval: float = 2.0, patience: Annotated[float, Range(0.0, 1.0, below=True)] = 0.1
@@ -44,10 +49,6 @@ class CongestionRouting(RouteChoice):
         self.patience = patience
         self._under_way: set[int] = set()
         self._network: Network | None = None
-
-    def state(self) -> dict[str, Any]:
-        """Who thinks again when; the network follows from the floor plan."""
-        return {**self.settings(), "_again": self._again, "_under_way": self._under_way}
 
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> list[Sequence[str] | None]:
         """The gates of the quickest way; those who gain too little go on as before."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Annotated, Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, ListOf, Pedestrian, Range, RouteChoice
 from mesa_mobility.errors import ModelError
+from mesa_mobility.schema import Array, Kind, Several, Text, Whole
 
 
 class FamiliarRoutes(RouteChoice):
@@ -29,6 +30,10 @@ class FamiliarRoutes(RouteChoice):
     """
 
     name = "familiar_routes"
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_again": Array("f8", high=1e9, infinite=True),
+        "_known": Several(Whole(below="people"), dict, values=Several(Text("gates"), tuple)),
+    }
 
     def __init__(
         self,
@@ -39,10 +44,6 @@ class FamiliarRoutes(RouteChoice):
         self.share = share
         self.came = came
         self._known: dict[int, tuple[str, ...]] = {}
-
-    def state(self) -> dict[str, Any]:
-        """Who knows which way."""
-        return {**self.settings(), "_again": self._again, "_known": self._known}
 
     def know(self, people: Iterable[Pedestrian], came: Sequence[str]) -> None:
         """Set the gates by which some have come in, in order; they choose again at their next

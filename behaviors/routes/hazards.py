@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import shapely
@@ -15,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility import Deciding, FloorPlan, ListOf, Range, TargetChoice, Targets, check_fields
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.schema import Kind, Several, Whole
 
 # Metres by which an area grows until ways round it are searched for anew, and metres between the
 # places at its edge to which people in it may walk.
@@ -100,6 +101,9 @@ class Hazards(TargetChoice):
     """
 
     name = "hazards"
+    saved: ClassVar[Mapping[str, Kind]] = {  # hazards are given again
+        "_enclosed": Several(Whole(below="people"), set),
+    }
 
     def __init__(
         self,
@@ -115,10 +119,6 @@ class Hazards(TargetChoice):
     def enclosed(self) -> list[int]:
         """Rows of those who had no way clear of the hazards when they last decided, sorted."""
         return sorted(self._enclosed)
-
-    def state(self) -> dict[str, Any]:
-        """Who is enclosed; hazards are given again, and routes follow from them."""
-        return {**self.settings(), "_enclosed": self._enclosed}
 
     def targets(self, deciding: Deciding) -> Targets:
         """Targets on the shortest ways clear of hazards."""

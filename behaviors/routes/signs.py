@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from mesa_mobility import Deciding, ListOf, PedestrianModel, Range, RouteChoice, check_fields
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.schema import Array, Kind
 
 # Metres in front of a sign, which hangs on a wall, that must be in sight.
 _BEFORE = 0.1
@@ -80,6 +81,10 @@ class Signs(RouteChoice):
     """
 
     name = "signs"
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_again": Array("f8", high=1e9, infinite=True),
+        "_passed": Array("?", (None, "signs+1")),
+    }
 
     def __init__(
         self,
@@ -100,10 +105,6 @@ class Signs(RouteChoice):
         for sign in self.signs:
             for name in sign.gates:
                 model.floor_plan.gate(name)
-
-    def state(self) -> dict[str, Any]:
-        """Who has passed which sign."""
-        return {**self.settings(), "_again": self._again, "_passed": self._passed}
 
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> list[Sequence[str] | None]:
         """The gates of the first sign in the list that somebody notices now and follows."""

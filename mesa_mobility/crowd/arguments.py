@@ -25,6 +25,9 @@ from mesa_mobility.mobility.judging.verdict import warn_unless_passed
 from mesa_mobility.plugins.settings import being_made, has_attribute, near_miss
 from mesa_mobility.populations import Population
 
+MOST_FRAMES = 108_000
+"""Most frames in one step: an hour."""
+
 
 def read_scene(
     floor_plan: FloorPlan,
@@ -98,8 +101,8 @@ def check_seconds(name: str, seconds: object) -> None:
 
 def check_frames_per_step(frames: object) -> None:
     """Raise ModelError unless a step can advance so many frames."""
-    if not isinstance(frames, int) or isinstance(frames, bool) or frames < 1:
-        raise ModelError(f"frames_per_step: got {frames!r}, expected 1, 2, 3 or more")
+    if not isinstance(frames, int) or isinstance(frames, bool) or not 1 <= frames <= MOST_FRAMES:
+        raise ModelError(f"frames_per_step: got {frames!r}, expected 1 to {MOST_FRAMES}")
 
 
 def check_record(record: object) -> None:

@@ -31,6 +31,7 @@ from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
+from mesa_mobility.schema import Flag, Kind, Whole
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -47,6 +48,12 @@ class Dynamics(Saved):
         model: the model, whose behaviours may change at any time.
         scene: its floor, and what people can do on it.
     """
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            "next": Whole(high=LONG_AFTER), "grouped": Flag(), "plan_has_changed": Flag(),
+        }  # fmt: skip
 
     def __init__(self, model: PedestrianModel, scene: Scene) -> None:
         self._model = model

@@ -6,10 +6,11 @@ from abc import ABC
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from mesa_mobility.errors import ModelError
+from mesa_mobility.errors import ContentError, ModelError
 from mesa_mobility.plugins.parameters import Parameter
 from mesa_mobility.plugins.registry import did_you_mean
 from mesa_mobility.plugins.settings import being_made, checked, declared, has_attribute, making
+from mesa_mobility.schema import Kind, Sizes
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -32,10 +33,17 @@ class Saved:
     """A part of a model that goes into a checkpoint.
 
     Attributes:
-        saved: names of the attributes that change while a model runs.
+        saved: the attributes that change while a model runs, and what each of them is.
     """
 
-    saved: ClassVar[tuple[str, ...]]
+    saved: ClassVar[Mapping[str, Kind]] = {}
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are; a checkpoint with others is refused.
+
+        Names of sizes are those of ``mesa_mobility.crowd.checkpoint.checking``.
+        """
+        return self.saved
 
     def state(self) -> dict[str, Any]:
         """All that changes while a model runs."""
@@ -45,6 +53,20 @@ class Saved:
         """Take over what ``state`` has given, in this process or another."""
         for name in self.saved:
             setattr(self, name, state[name])
+
+
+class _Setting(Kind):
+    """A value that a setting takes."""
+
+    def __init__(self, setting: Parameter) -> None:
+        self._setting = setting
+
+    def check(self, value: Any, where: str, sizes: Sizes) -> None:
+        """Refuse all others."""
+        try:
+            checked(self._setting, value)
+        except ModelError as error:
+            raise ContentError(f"{where}: {error}") from None
 
 
 _MAKING = ("__init__", "__post_init__", "bind", "restore")
@@ -64,9 +86,16 @@ class Plugin(ABC):
 
     Attributes:
         name: unique name, as it is registered and shown.
+        saved: the attributes that a checkpoint holds beside the settings, and what each of them is,
+            in the words of ``mesa_mobility.schema``:
+            ``{"_lines": Several(Whole(below="people"))}``.
+            A checkpoint with others is refused. None, by default, for all attributes, which are
+            only compared with those of a fresh object.
     """
 
     name: ClassVar[str]
+
+    saved: ClassVar[Mapping[str, Kind] | None] = None
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
@@ -153,13 +182,26 @@ class Plugin(ABC):
             model: the model, whose ``floor_plan``, ``crowd`` and ``agents`` the behaviour may keep.
         """
 
+    def members(self) -> Mapping[str, Kind] | None:
+        """What the members of ``state`` are: settings, and those in ``saved``, if it has any."""
+        return None if self.saved is None else {**self.setting_kinds(), **self.saved}
+
+    def setting_kinds(self) -> dict[str, Kind]:
+        """What ``settings`` are, for ``members``."""
+        known = declared(type(self))
+        return {name: _Setting(known[name]) for name in self.settings()}
+
     def state(self) -> dict[str, Any]:
         """All that the behaviour needs to go on from a checkpoint; by default its attributes.
+
+        They are the settings and those in ``saved``, or all of them.
 
         Numbers, texts, arrays, lists and dictionaries of them, geometries, distributions and
         generators can be saved, and the model itself, its plan and its people.
         """
-        return dict(vars(self))
+        if self.saved is None:
+            return dict(vars(self))
+        return {**self.settings(), **{name: getattr(self, name) for name in self.saved}}
 
     @making
     def restore(self, state: Mapping[str, Any]) -> None:

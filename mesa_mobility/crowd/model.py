@@ -182,7 +182,8 @@ class PedestrianModel(mesa.Model):
         self.tactics: list[Tactic] = self.rules.make_tactics()
         self.target_choice = target_choice or self.rules.make_target_choice()
         self.frame, self.time = 0, 0.0
-        self.recorder = Recorder() if record else None
+        declared = {name: values.dtype for name, values in scene.crowd.fields.items()}
+        self.recorder = Recorder(declared) if record else None
         self.decisions = DecisionRecorder() if record == "decisions" else None
         self.watch: Watch | None = None
         self.space = space_of(floor_plan, float(scene.repertoire.reach.max()), self.random)

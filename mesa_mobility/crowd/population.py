@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,9 +18,10 @@ from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state.advance import Moved
 from mesa_mobility.crowd.state.aggregates import EMPTY, Aggregates, aggregate, split_active
-from mesa_mobility.crowd.state.departed import Departed
+from mesa_mobility.crowd.state.departed import ROWS, Departed
 from mesa_mobility.crowd.tactics.visits.visit import Route
 from mesa_mobility.errors import ModelError
+from mesa_mobility.schema import MOST, Either, Kind, Members, Several, Text, Whole
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -43,7 +44,12 @@ class Population(Saved):
         aggregates: sums over the people inside, after the last step.
     """
 
-    saved = ("count", "rows", "present", "groups")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "count": Whole(below="people+1"),
+        "rows": ROWS,
+        "present": ROWS,
+        "groups": Several(Either(Text(), Whole(-MOST))),
+    }
 
     def __init__(
         self, scene: Scene, space: CrowdSpace, pedestrian_class: type[Pedestrian] = Pedestrian
@@ -58,6 +64,14 @@ class Population(Saved):
         self.groups: list[str | int] = []
         self.aggregates: Aggregates = EMPTY
         self._agents_by_row: list[Pedestrian | None] = []
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            **self.saved,
+            **self._scene.crowd.members(),
+            "departed": Members(self.departed.members()),
+        }
 
     def state(self) -> dict[str, Any]:
         """Everybody's records, and who is inside."""

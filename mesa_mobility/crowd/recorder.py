@@ -10,15 +10,32 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.repertoire import Repertoire
-from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
+from mesa_mobility.schema import Array, Each, Either, Kind
 
 
 class Recorder(Saved):
-    """Keeps position and heading of everybody inside, one block of arrays a frame."""
+    """Keeps position and heading of everybody inside, one block of arrays a frame.
 
-    def __init__(self) -> None:
+    Args:
+        fields: types of the fields that the model declares for its people.
+    """
+
+    def __init__(self, fields: Mapping[str, np.dtype[Any]] | None = None) -> None:
         self._blocks: list[tuple[NDArray[np.generic], ...]] = []
-        self._fields: dict[str, np.dtype[Any]] = {}
+        self._fields = dict(fields or {})
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            "frame": Array("i4", ("rows",), 0, LAST_FRAME),
+            "person": Array("i4", ("rows",), 0, below="people"),
+            **dict.fromkeys(("x", "y", "heading"), Array("f8", ("rows",), -FARTHEST, FARTHEST)),
+            **{
+                name: Array(kind.str, ("rows",), infinite=True, missing=True)
+                for name, kind in self._fields.items()
+            },
+        }
 
     def state(self) -> dict[str, Any]:
         """All that has been recorded."""
@@ -26,8 +43,7 @@ class Recorder(Saved):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given."""
-        self._blocks = _by_frame(state.values())
-        self._fields = {name: values.dtype for name, values in list(state.items())[5:]}
+        self._blocks = _by_frame(state[name] for name in self.members())
 
     def add(self, frame: int, rows: NDArray[np.int64], state: Crowd) -> None:
         """Keep the people in ``rows`` at ``frame``."""
@@ -41,7 +57,6 @@ class Recorder(Saved):
                 *(values[rows] for values in state.fields.values()),
             )
         )
-        self._fields = {name: values.dtype for name, values in state.fields.items()}
 
     def arrays(self, since: int = 0) -> dict[str, NDArray[np.generic]]:
         """``frame``, ``person``, ``x``, ``y``, ``heading`` and fields of the model's people: a row
@@ -65,6 +80,13 @@ class DecisionRecorder(Saved):
         """All that has been recorded."""
         columns = [np.concatenate(each) for each in zip(*self._blocks, strict=True)]
         return {"columns": columns}
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        numbers = [("people", 0), ("types", 0), ("options", -2)]
+        columns = [Array("i4", ("rows",), low, below=size) for size, low in numbers]
+        frames = Array("i4", ("rows",), 0, LAST_FRAME)
+        return {"columns": Either(Each(of=list), Each(frames, *columns, of=list))}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given."""

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, FRAMES_A_SECOND
 from mesa_mobility.crowd.state.aggregates import Aggregates
-from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.schema import Array, Each, Kind, Maybe, Real, Whole
 
 STALL_SECONDS = 60.0
 """Time without progress after which an evacuation has stalled."""
@@ -36,7 +40,17 @@ class StallWatch(Saved):
     measured along the new one.
     """
 
-    saved = ("_since", "_look", "_mark", "_route", "_start", "_begun")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_since": Real(0.0),
+        "_look": Whole(high=2 * LAST_FRAME),
+        "_mark": Each(Whole(-1), Whole(), Whole()),
+        "_route": Array("f8", ("known",), -FARTHEST, FARTHEST, infinite=True),
+        "_start": Array("f8", ("known",), -FARTHEST, FARTHEST, infinite=True),
+        "_begun": Maybe(
+            Each(Array("i8", ("those",), 0, below="people"),
+                 Array("f8", ("those",), -FARTHEST, FARTHEST, infinite=True))
+        ),
+    }  # fmt: skip
 
     def __init__(self) -> None:
         self._since = 0.0
@@ -91,7 +105,8 @@ class StallWatch(Saved):
             self._route = np.full(len(crowd.route), np.inf)
             self._route[those] = routes
             self._start, self._begun = self._route.copy(), None
-        more = len(crowd.route) - len(self._route)
+        # A crowd from a checkpoint may have fewer records, none of them of people less.
+        more = max(len(crowd.route) - len(self._route), 0)
         self._route = np.append(self._route, np.full(more, np.inf))
         self._start = np.append(self._start, np.full(more, np.inf))
         route, before, start = crowd.route[rows], self._route[rows], self._start[rows]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.advance import Moved
+from mesa_mobility.schema import Each, Kind, Maybe, Real, Several, Whole
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -22,7 +24,13 @@ class Statistics(Saved):
         last_left: seconds at which somebody last left, or None.
     """
 
-    saved = ("occupancy", "last_left", "_walked", "_person_frames", "_fallback_frames")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "occupancy": Several(Each(Real(0.0), Whole())),
+        "last_left": Maybe(Real(0.0)),
+        "_walked": Real(0.0, 1e18),
+        "_person_frames": Whole(),
+        "_fallback_frames": Whole(),
+    }
 
     def __init__(self, model: PedestrianModel) -> None:
         self._model = model

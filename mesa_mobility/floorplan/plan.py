@@ -25,6 +25,7 @@ from mesa_mobility.floorplan.outline import SIMPLIFY
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.walls.wall_index import WallIndex
 from mesa_mobility.floorplan.zones import SpeedZone
+from mesa_mobility.schema import Flag, Kind, Object, Several, Text, Whole, check
 
 
 class FloorPlan(Layout):
@@ -312,6 +313,16 @@ class FloorPlan(Layout):
     check_reachable = reachability.check_reachable
     random_points = sampling.random_points
 
+    @staticmethod
+    def members() -> dict[str, Kind]:
+        """What the members of ``state`` are."""
+        return {
+            "obstacles": Several(Whole(), dict, values=Object(Polygon)),
+            "next_obstacle": Whole(),
+            "closed": Several(Text("openings")),
+            "cut_off": Flag(),
+        }
+
     def state(self) -> dict[str, Any]:
         """All that changes while models run: obstacles, the next one's id, and what is closed."""
         return {
@@ -328,7 +339,13 @@ class FloorPlan(Layout):
         """
         if state == self.state():
             return
-        area = self._area.with_obstacles(state["obstacles"], state["cut_off"])
+        least = max(state["obstacles"], default=-1) + 1
+        check(state["next_obstacle"], Whole(least), "next_obstacle")
+        obstacles = {
+            number: read_polygon(each, f"obstacle {number}")
+            for number, each in state["obstacles"].items()
+        }
+        area = self._area.with_obstacles(obstacles, state["cut_off"])
         area = area.with_closed(state["closed"])
         self._next_obstacle = state["next_obstacle"]
         self._change(area)

@@ -16,6 +16,7 @@ from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.live.making_way import BRISK, step_aside
 from mesa_mobility.live.orders import FREE, STANDS, STEERED, WALKS, Orders
 from mesa_mobility.live.point_routes import PointRoutes
+from mesa_mobility.schema import Kind
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -66,6 +67,10 @@ class _OfOrders(Tactic):
         """Keep the model's crowd, and share its orders."""
         self._crowd = model.crowd
         self.orders = self.orders or _orders_of(model)
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return Orders.saved
 
     def state(self) -> dict[str, Any]:
         """The orders. They are the same of all tactics of a model."""

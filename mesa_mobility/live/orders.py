@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,8 +12,9 @@ from mesa_mobility.crowd import PedestrianModel
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.clearances import passing_of
 from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
-from mesa_mobility.errors import LiveError
+from mesa_mobility.errors import ContentError, LiveError
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
+from mesa_mobility.schema import Array, Kind
 
 FREE, WALKS, STANDS, STEERED = range(4)
 """What somebody does: as the model has it; on the way to a place; there; as somebody steers."""
@@ -37,7 +41,12 @@ class Orders(Saved):
         stay: (n,) frames for which they stay there, or ``FOREVER``.
     """
 
-    saved = ("does", "velocity", "place", "stay")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "does": Array("i1", ("orders",), FREE, STEERED),
+        "velocity": Array("f8", ("orders", 2), -FASTEST, FASTEST),
+        "place": Array("f8", ("orders", 2), -1e9, 1e9),
+        "stay": Array("i8", ("orders",), 0, FOREVER),
+    }
 
     def __init__(self, model: PedestrianModel) -> None:
         self._model = model
@@ -45,6 +54,13 @@ class Orders(Saved):
         self.velocity = np.empty((0, 2))
         self.place = np.empty((0, 2))
         self.stay = np.empty(0, dtype=np.int64)
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        people = self._model.population.count
+        if state["does"][people:].any():  # room for more people is kept ahead
+            raise ContentError(f"does: an order to nobody, expected {people} people at most")
+        super().restore(state)
 
     def of(self, rows: NDArray[np.int64]) -> NDArray[np.int8]:
         """(n,) what people do."""

@@ -13,7 +13,6 @@ from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import clusters as clustering
 from mesa_mobility.mobility import edits, paths, thinning
 from mesa_mobility.mobility import graph as graphs
-from mesa_mobility.mobility.standing.borrowing import missing
 from mesa_mobility.mobility.clusters import Clusters, cluster_poses
 from mesa_mobility.mobility.edits import EDITS, HORIZON
 from mesa_mobility.mobility.graph import MotionGraph, motion_graph
@@ -21,8 +20,9 @@ from mesa_mobility.mobility.map import CORE_RADIUS, MobilityMap
 from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
 from mesa_mobility.mobility.poses import FRAME_RATE, PoseTable, pose_table
 from mesa_mobility.mobility.provenance import acknowledgements, provenance
-from mesa_mobility.mobility.storing.families import OptionFamilies
+from mesa_mobility.mobility.standing.borrowing import missing
 from mesa_mobility.mobility.standing.ways_back import check_ways_back
+from mesa_mobility.mobility.storing.families import OptionFamilies
 
 LEAST_SECONDS = 5.0
 """Least time of all recordings together: a few steps of a walk, a start and a stop."""

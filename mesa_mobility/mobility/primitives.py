@@ -19,10 +19,10 @@ from mesa_mobility.mobility.clusters import STANDING
 from mesa_mobility.mobility.edits import SAMPLE_EVERY
 from mesa_mobility.mobility.map import MobilityMap
 from mesa_mobility.mobility.poses import FRAME_RATE
+from mesa_mobility.mobility.standing.ways_back import check_ways_back
 from mesa_mobility.mobility.storing.assembly import STAND_FRAMES
 from mesa_mobility.mobility.storing.steps import quantise_costs, quantise_paths
 from mesa_mobility.mobility.thinning import DURATIONS, EDIT_CELL
-from mesa_mobility.mobility.standing.ways_back import check_ways_back
 
 SPEED_BIN = 0.1
 """Difference of two neighbouring speeds, m/s."""

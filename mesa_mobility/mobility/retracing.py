@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from mesa_mobility.capture import Recording
 from mesa_mobility.errors import MapError
-from mesa_mobility.mobility.standing.borrowing import borrow, missing
 from mesa_mobility.mobility.clusters import cluster_poses
 from mesa_mobility.mobility.graph import motion_graph
 from mesa_mobility.mobility.map import MobilityMap
@@ -25,6 +24,7 @@ from mesa_mobility.mobility.paths import (
     reachable_options,
 )
 from mesa_mobility.mobility.poses import PoseTable, pose_table
+from mesa_mobility.mobility.standing.borrowing import borrow, missing
 from mesa_mobility.mobility.storing.families import OptionFamilies
 from mesa_mobility.mobility.storing.steps import quantise_paths
 

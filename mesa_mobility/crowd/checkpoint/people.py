@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from mesa_mobility.crowd.checkpoint.checking import check_alike
 from mesa_mobility.crowd.checkpoint.plain import Packer, Unpacker
 from mesa_mobility.crowd.people.pedestrian import last_number
 from mesa_mobility.errors import ModelError
@@ -47,6 +48,15 @@ def restore_attributes(
     model: PedestrianModel, saved: Mapping[str, Any], unpacker: Unpacker
 ) -> None:
     """Give the agents their own attributes."""
-    for agent in model.space.active_agents:
-        for name, value in saved["own"].get(str(agent.row), {}).items():
-            object.__setattr__(agent, name, unpacker.unpack(value))
+    agents = {str(agent.row): agent for agent in model.space.active_agents}
+    for row, packed in saved["own"].items():
+        if row not in agents:
+            raise ModelError(f"people, own: got {row!r:.40}, expected the row of somebody inside")
+        agent = agents[row]
+        own = {name: unpacker.unpack(value) for name, value in packed.items()}
+        where = f"{type(agent).__name__} {row}, "
+        for name in _FRAMEWORK & own.keys():
+            raise ModelError(f"{where}{name}: expected attributes that not everybody has")
+        check_alike(vars(agent), own, type(agent), where)
+        for name, value in own.items():
+            object.__setattr__(agent, name, value)

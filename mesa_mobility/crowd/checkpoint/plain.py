@@ -24,6 +24,7 @@ from mesa_mobility.crowd.state.fields import KINDS
 from mesa_mobility.crowd.tactics.visits.visit import Visit
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone
+from mesa_mobility.schema import Members, Whole, check
 
 TAG = "$"
 """Key of the one entry of an object that stands for something else than a dictionary."""
@@ -48,6 +49,21 @@ _GENERATORS = {
 
 class NotPlain(ModelError):
     """A value that a checkpoint cannot hold."""
+
+
+def set_bits(generator: np.random.Generator, state: Any) -> None:
+    """Give a generator its state.
+
+    Raises:
+        ContentError: it would read beyond its own numbers.
+        TypeError: not the state of such a generator; KeyError and ValueError likewise.
+    """
+    inner = state["state"]
+    if "pos" in inner:
+        check(inner["pos"], Whole(0, 624), "generator, pos")
+    if "buffer_pos" in state:
+        check(state["buffer_pos"], Whole(0, 4), "generator, buffer_pos")
+    generator.bit_generator.state = state
 
 
 class Packer:
@@ -143,8 +159,13 @@ class Unpacker:
     """
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], objects: Mapping[Any, Any]) -> None:
-        self._arrays = arrays
+        self._arrays = dict(arrays)
         self.objects = objects
+
+    @property
+    def left(self) -> list[str]:
+        """Names of the arrays that no value so far is made of."""
+        return sorted(self._arrays)
 
     def unpack(self, value: Any) -> Any:
         """The value that ``Packer.pack`` was given.
@@ -174,9 +195,9 @@ class Unpacker:
             case "dict":
                 return {self.unpack(key): self.unpack(each) for key, each in content}
             case "array":
-                return self._arrays[content].copy()
+                return self._arrays.pop(content)
             case "scalar":
-                return self._arrays[content][()]
+                return self._arrays.pop(content)[()]
             case "type":
                 return {kind.__name__: kind for kind in KINDS}[content]
             case "path":
@@ -188,11 +209,14 @@ class Unpacker:
                     each for each in content[0]["features"]
                     if each["properties"]["kind"] != "obstacle"
                 ]})  # fmt: skip
-                plan.restore(self.unpack(content[1]))
+                state = self.unpack(content[1])
+                openings = {"openings": [each.name for each in plan.openings()]}
+                check(state, Members(plan.members()), "floor plan", openings)
+                plan.restore(state)
                 return plan
             case "generator":
                 generator = np.random.Generator(_GENERATORS[content[0]]())
-                generator.bit_generator.state = self.unpack(content[1])
+                set_bits(generator, self.unpack(content[1]))
                 return generator
             case "made":
                 name, given = content

@@ -23,14 +23,26 @@ from mesa_mobility.crowd.checkpoint.behaviours import (
     match_behaviours,
     pack_behaviour,
 )
+from mesa_mobility.crowd.checkpoint.checking import (
+    CONTENT,
+    COUNTERS,
+    check_attributes,
+    check_collected,
+    check_crowd,
+    check_ids,
+    check_population,
+    restore_behaviour,
+    sizes_of,
+)
 from mesa_mobility.crowd.checkpoint.people import pack_people, restore_attributes
-from mesa_mobility.crowd.checkpoint.plain import NotPlain, Packer, Unpacker
+from mesa_mobility.crowd.checkpoint.plain import NotPlain, Packer, Unpacker, set_bits
 from mesa_mobility.crowd.hooks import Plugin, scheduled_events
 from mesa_mobility.crowd.mesa_clock import set_clock
-from mesa_mobility.errors import ModelError
+from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.mapfile import shipped_map_path
 from mesa_mobility.plugins import registry
+from mesa_mobility.schema import Anything, Members, check
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
@@ -39,8 +51,6 @@ Model = TypeVar("Model", bound="PedestrianModel")
 
 SHIPPED = "able_bodied"
 """The map that a model without a map has."""
-
-_COUNTERS = ("frame", "frames_per_step", "running", "steps", "stalled")
 
 
 def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
@@ -62,7 +72,7 @@ def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
     _refuse_functions(model)
     arguments, missing = _pack_arguments(model, packer)
     state = {
-        "counters": {name: getattr(model, name) for name in _COUNTERS},
+        "counters": {name: getattr(model, name) for name in COUNTERS},
         "random": [model.rng.bit_generator.state, model.random.getstate()],
         "parts": {name: part.state() for name, part in model.parts().items()},
         "collected": _collected(model),
@@ -104,13 +114,15 @@ def load_model(
     """
     content, arrays = read_archive(path)
     try:
+        check(content, CONTENT, "checkpoint")
         return _load(kind, content, arrays, plugins, given)
-    except ModelError as error:
+    except MobilityError as error:
         raise ModelError(f"{os.fspath(path)}: {error}") from error
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+    except Exception as error:  # constructors of models meet values that no check knows of
+        reason = next(iter(str(error).splitlines()), "")[:200]
         raise ModelError(
             f"{os.fspath(path)}: not a checkpoint of this version of the model "
-            f"({type(error).__name__}: {error})"
+            f"({type(error).__name__}: {reason})"
         ) from error
 
 
@@ -138,15 +150,21 @@ def _load(
 
     parts = model.parts()
     states = unpacker.unpack(content["parts"])
-    if states.keys() != parts.keys():
-        raise ModelError(f"it has the parts {', '.join(states)}, expected {', '.join(parts)}")
+    check(states, Members(dict.fromkeys(parts, Anything())), "parts")
     counters = unpacker.unpack(content["counters"])
+    check(counters, Members(COUNTERS), "counters")
     for name, value in counters.items():
         setattr(model, name, value)
     model.time = model.elapsed
     set_clock(model)
     for name, part in parts.items():
+        if name == "population":
+            check_population(model, states[name])
+        else:
+            check(states[name], Members(part.members()), name, sizes_of(model))
         part.restore(states[name])
+    check_crowd(model, states)
+    check_ids(content["people"], model.inside)
     model.population.make_agents(
         model, content["people"]["unique_ids"], content["people"]["last_id"]
     )
@@ -156,13 +174,17 @@ def _load(
     model.bind()
     for group, behaviours in behaviours_of(model).items():
         for each, saved in zip(behaviours, content["behaviors"][group], strict=True):
-            each.restore(unpacker.unpack(saved["state"]))
-    for name, value in content["own"].items():
-        setattr(model, name, unpacker.unpack(value))
+            restore_behaviour(model, each, unpacker.unpack(saved["state"]))
+    own = {name: unpacker.unpack(value) for name, value in content["own"].items()}
+    check_attributes(model, own)
+    for name, value in own.items():
+        setattr(model, name, value)
     _restore_collected(model, unpacker.unpack(content["collected"]))
     bits, state = unpacker.unpack(content["random"])
-    model.rng.bit_generator.state = bits
+    set_bits(model.rng, bits)
     model.random.setstate(state)
+    if unpacker.left:
+        raise ModelError(f"arrays that nothing refers to: {', '.join(unpacker.left)}"[:200])
     return model
 
 
@@ -232,6 +254,7 @@ def _pack_arguments(model: PedestrianModel, packer: Packer) -> tuple[dict[str, A
     packed: dict[str, Any] = {}
     missing = []
     for name, value in given.items():
+        known = len(own.arrays)
         try:
             packed[name] = own.pack(value, name)
         except NotPlain:
@@ -239,6 +262,8 @@ def _pack_arguments(model: PedestrianModel, packer: Packer) -> tuple[dict[str, A
                 packed[name] = 0
             else:
                 missing.append(name)
+            for each in list(own.arrays)[known:]:  # of what has been packed of it
+                del own.arrays[each]
     return packed, missing
 
 
@@ -269,6 +294,7 @@ def _collected(model: PedestrianModel) -> dict[str, Any]:
 
 
 def _restore_collected(model: PedestrianModel, saved: Mapping[str, Any]) -> None:
+    check_collected(_collected(model), saved)
     for name in _COLLECTED:
         there = getattr(model.datacollector, name)
         there.clear()

@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import ClassVar, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +82,13 @@ class CostTerm(Plugin):
     def _told(self) -> list[str]:
         weight = getattr(self, "_weight", self.default_weight)
         return [f"weight={weight:g}", *super()._told()]
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        super().restore(state)
+        self.weight = self._weight  # checked as when they are set
+        self.weight_by_type = self._by_type
+        self.for_types = self._for_types
 
     @property
     def weight(self) -> float:

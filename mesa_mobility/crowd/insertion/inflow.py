@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, overload
+from typing import Any, ClassVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_types
-from mesa_mobility.crowd.insertion.source import Source
+from mesa_mobility.crowd.insertion.source import MOST_PEOPLE, Source
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian_type import indices_of
 from mesa_mobility.crowd.scene import Scene
@@ -18,6 +18,7 @@ from mesa_mobility.crowd.state.clearances import passing_of
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan.entrance import Entrance, read_entrance
 from mesa_mobility.populations import Population
+from mesa_mobility.schema import Each, Kind, Members, Object, Real, Several, Whole, check
 
 PLACES_TRIED = 16
 """Places tried in a frame for the next person."""
@@ -43,7 +44,12 @@ class Inflow(Saved):
         entered: those of them who have entered.
     """
 
-    saved = ("arrived", "entered", "_next", "_deck")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "arrived": Whole(high=MOST_PEOPLE),
+        "entered": Whole(below="people+1"),
+        "_next": Real(0.0, infinite=True),
+        "_deck": Several(Whole(below="types")),
+    }
 
     def __init__(
         self,
@@ -67,6 +73,15 @@ class Inflow(Saved):
         self._times: NDArray[np.float64] | None = None if times is None else np.asarray(times)
         self._next = max(source.start, frame * FRAME_SECONDS)
         self._draw_next()
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        super().restore(state)
+        check(self.entered, Whole(high=self.arrived), "entered")
+        if len(self._deck) > DECK or not self._newcomers.keys() >= set(self._deck):
+            raise ModelError(
+                f"source: _deck of {len(self._deck)}, expected at most {DECK} types of its"
+            )
 
     @property
     def next_type(self) -> int:
@@ -144,6 +159,10 @@ class Sources(Sequence[Inflow], Saved):
 
     def __len__(self) -> int:
         return len(self._inflows)
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {"inflows": Several(Each(Object(Source), Members(Inflow.saved)))}
 
     def state(self) -> dict[str, Any]:
         """The sources, and who has come by each."""

@@ -7,6 +7,8 @@ would let more people through than the same door with a floor behind it.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,7 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.paths import commit
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
+from mesa_mobility.schema import Array, Kind, Several
 
 WALKS_ON = 45
 """Frames for which somebody stays: 1.5 s, the longest look-ahead."""
@@ -31,6 +34,10 @@ preferred speed; measured by Moussaid et al., Proc. R. Soc. B 276 (2009) 2755-27
 _MADE_UP = 1.0 - RELAXATION / _SECONDS * (1.0 - math.exp(-_SECONDS / RELAXATION))
 
 
+ROWS = Array("i8", low=0, below="people", rising=True)
+"""Rows of people, in order, in a checkpoint."""
+
+
 class Departed(Saved):
     """People who have crossed an exit within the last 1.5 s.
 
@@ -38,7 +45,7 @@ class Departed(Saved):
         rows: their rows in the crowd, in order.
     """
 
-    saved = ("rows", "_new")
+    saved: ClassVar[Mapping[str, Kind]] = {"rows": ROWS, "_new": Several(ROWS)}
 
     def __init__(self) -> None:
         self.rows = np.empty(0, dtype=np.int64)

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.state.clearances import clearance_of, passing_of
 from mesa_mobility.crowd.state.corners import Corners
+from mesa_mobility.crowd.state.records import FARTHEST
 from mesa_mobility.crowd.state.surroundings import Surroundings, survey
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Router, Targets
 from mesa_mobility.floorplan.routing.targets import Destination, is_point
+from mesa_mobility.schema import Each, Either, Kind, Maybe, Members, Real, Several, Text
 
 _SLIM = 0.05
 """Clearance in metres of routes for a body so slim that only walls stop it."""
@@ -54,6 +56,12 @@ class Environment(Saved):
         self._version = -1
         self.corners = Corners(self._routers)
 
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        number = Real(-FARTHEST, FARTHEST)
+        ways = Either(Each(number, number), Several(Text("openings"), tuple))
+        return {"plan": Members(self.plan.members()), "destinations": Several(Maybe(ways))}
+
     def state(self) -> dict[str, Any]:
         """The destinations, in the order of their numbers."""
         return {"plan": self.plan.state(), "destinations": self._destinations}
@@ -63,6 +71,11 @@ class Environment(Saved):
         self.plan.restore(state["plan"])
         if self._destinations != state["destinations"]:
             self._make_routers(list(state["destinations"]))
+
+    @property
+    def destinations(self) -> int:
+        """Upper bound of the numbers of destinations."""
+        return len(self._destinations) * self.bodies
 
     @property
     def bodies(self) -> int:

@@ -15,48 +15,67 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.errors import ModelError
+from mesa_mobility.schema import Array, Kind, Members, Records
 
-PERSON = np.dtype(
-    [
-        # First what neighbours read.
-        ("x", "f8"),
-        ("y", "f8"),
-        ("vx", "f8"),
-        ("vy", "f8"),
-        ("core", "f8"),
-        ("box", "f8", (4,)),
-        ("stride", "f8"),
-        ("start", "i4"),
-        ("gone", "i4"),
-        ("spacing", "i4"),
-        ("option", "i4"),
-        ("from_x", "f8"),
-        ("from_y", "f8"),
-        ("from_c", "f8"),
-        ("from_s", "f8"),
-        ("from_heading", "f8"),
-        ("to_x", "f8"),
-        ("to_y", "f8"),
-        ("to_heading", "f8"),
-        ("heading", "f8"),
-        ("target_x", "f8"),
-        ("target_y", "f8"),
-        ("route", "f8"),
-        ("preferred", "f8"),
-        ("end", "i4"),
-        ("cluster", "i4"),
-        ("destination", "i4"),
-        ("type_index", "i2"),
-        ("knots", "i1"),
-        ("active", "?"),
-        ("decisions", "i4"),
-        ("fallbacks", "i4"),
-        ("fallback_frames", "i4"),
-        ("active_frames", "i4"),
-    ],
-    align=True,
-)
+FARTHEST = 1e9
+"""Most metres of any place, such as a target, from the origin; its square is still exact enough."""
+
+LAST_FRAME = 2**30
+"""A year of frames: beyond, sums of frames would not fit their 31 bits."""
+
+
+def _record(fields: Mapping[str, Array]) -> np.dtype[Any]:
+    """The type of records with these fields."""
+    return np.dtype(
+        [(name, kind.dtype, kind.shape or ()) for name, kind in fields.items()], align=True
+    )
+
+
+_FRAME = Array("i4", (), 0, LAST_FRAME)
+_METRES = Array("f8", (), -FARTHEST, FARTHEST)
+_RADIANS = Array("f8", (), -1e6, 1e6)
+_SPEED = Array("f8", (), -100.0, 100.0)
+_COUNT = Array("i4", (), 0, LAST_FRAME)
+
+PERSON_FIELDS: dict[str, Array] = {
+    # First what neighbours read.
+    "x": _METRES,
+    "y": _METRES,
+    "vx": _SPEED,
+    "vy": _SPEED,
+    "core": Array("f8", (), 1e-6, 1.0),
+    "box": Array("f8", (4,), -FARTHEST, FARTHEST),
+    "stride": Array("f8", (), 0.0, 100.0),
+    "start": _FRAME,
+    "gone": Array("i4", (), -1, LAST_FRAME),
+    "spacing": Array("i4", (), 1, LAST_FRAME),
+    "option": Array("i4", (), -2, below="options"),
+    "from_x": _METRES,
+    "from_y": _METRES,
+    "from_c": Array("f8", (), -1.0, 1.0),
+    "from_s": Array("f8", (), -1.0, 1.0),
+    "from_heading": _RADIANS,
+    "to_x": _METRES,
+    "to_y": _METRES,
+    "to_heading": _RADIANS,
+    "heading": _RADIANS,
+    "target_x": _METRES,
+    "target_y": _METRES,
+    "route": Array("f8", (), -FARTHEST, FARTHEST, infinite=True),
+    "preferred": Array("f8", (), 0.0, 100.0),
+    "end": _FRAME,
+    "cluster": Array("i4", (), 0, below="clusters"),
+    "destination": Array("i4", (), 0, below="destinations"),
+    "type_index": Array("i2", (), 0, below="types"),
+    "knots": Array("i1", (), 1, 16),
+    "active": Array("?", ()),
+    "decisions": _COUNT,
+    "fallbacks": _COUNT,
+    "fallback_frames": _COUNT,
+    "active_frames": _COUNT,
+}
+
+PERSON = _record(PERSON_FIELDS)
 """Record of a pedestrian.
 
 Now: ``x``, ``y``, ``heading`` (metres, radians), ``vx``, ``vy`` (mean velocity of the movement
@@ -82,24 +101,25 @@ NO_CORNER = -1
 FALLBACK = -2
 
 
-AGENDA = np.dtype(
-    [
-        ("speed", "f8"),
-        ("sets_off", "i4"),
-        ("waits_until", "i4"),
-        ("journey", "i4"),
-        ("crossed", "i4"),
-        ("group", "i4"),
-        ("corner", "i4"),
-        ("mouth", "i4"),
-        ("checked", "f8"),
-        ("nearest", "f8"),
-        ("since", "f8"),
-        ("desired_speed", "f8"),
-        ("behind", "f8"),
-    ],
-    align=True,
-)
+_SECONDS = Array("f8", (), -1e9, 1e9)
+
+AGENDA_FIELDS: dict[str, Array] = {
+    "speed": Array("f8", (), 0.0, 100.0),
+    "sets_off": _FRAME,
+    "waits_until": Array("i4", (), 0),
+    "journey": Array("i4", (), 0, below="journeys+1"),
+    "crossed": _COUNT,
+    "group": Array("i4", (), 0, below="groups+1"),
+    "corner": Array("i4", (), -1),
+    "mouth": Array("i4", (), -LAST_FRAME, LAST_FRAME),
+    "checked": Array("f8", (), -1.0, LAST_FRAME),
+    "nearest": Array("f8", (), -FARTHEST, FARTHEST, infinite=True),
+    "since": _SECONDS,
+    "desired_speed": Array("f8", (), 0.0, 100.0),
+    "behind": Array("f8", (), -1e3, 1e3),
+}
+
+AGENDA = _record(AGENDA_FIELDS)
 """Fields that are needed only when a pedestrian gets a target, apart to keep records small.
 
 Fields: ``speed``, its unhindered preferred speed, m/s (``preferred`` in the record is that of
@@ -177,18 +197,19 @@ class Crowd:
             "fields": {name: values[:count] for name, values in self.fields.items()},
         }
 
-    def replace(self, people: Mapping[str, Any]) -> None:
-        """Hold the people of ``first`` alone.
+    def members(self) -> dict[str, Kind]:
+        """What ``first`` gives."""
+        fields = {name: Array(values.dtype.str, ("people",), infinite=True, missing=True)
+                  for name, values in self.fields.items()}  # fmt: skip
+        return {
+            "records": Records(PERSON, PERSON_FIELDS, ("people",)),
+            "agenda": Records(AGENDA, AGENDA_FIELDS, ("people",)),
+            "fields": Members(fields),
+        }
 
-        Raises:
-            ModelError: records with other fields.
-        """
+    def replace(self, people: Mapping[str, Any]) -> None:
+        """Hold the people of ``first`` alone."""
         records, agenda, fields = people["records"], people["agenda"], people["fields"]
-        kinds = {name: values.dtype for name, values in fields.items()}
-        if (records.dtype, agenda.dtype, kinds) != (
-            PERSON, AGENDA, {name: values.dtype for name, values in self.fields.items()}
-        ):  # fmt: skip
-            raise ModelError("its people have other fields than those of this model")
         capacity = max(len(records), 64)
         self._take(_larger(records, capacity))
         self.agenda = _larger(agenda, capacity)

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import Environment
-from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.records import FARTHEST, Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
 from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
 from mesa_mobility.crowd.tactics.target_choice import (
-    FARTHEST,
     Deciding,
     TargetChoice,
     query_targets,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import networkx as nx
@@ -15,9 +15,14 @@ from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.annotations import Range
+from mesa_mobility.schema import Array, Kind
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.model import PedestrianModel
+
+
+AGAIN = Array("f8", high=1e9, infinite=True)
+"""When each person chooses again, s, in a checkpoint: -inf before the first time."""
 
 
 class RouteChoice(TargetChoice):
@@ -45,6 +50,10 @@ class RouteChoice(TargetChoice):
     def bind(self, model: PedestrianModel) -> None:
         """Keep the model, whose people it sends."""
         self._model = model
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are that are not a subclass's own."""
+        return super().members() or {**self.setting_kinds(), "_again": AGAIN}
 
     @property
     def graph(self) -> nx.DiGraph:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ from mesa_mobility.crowd.tactics.visits.journeys import Journeys
 from mesa_mobility.crowd.tactics.visits.slowing import slow_down
 from mesa_mobility.floorplan.walls.boundaries import opening_segments
 from mesa_mobility.floorplan.zones import mean_factors
+from mesa_mobility.schema import Kind
 
 LONGEST_S = 1.5
 """The longest movement, seconds."""
@@ -61,6 +62,7 @@ class StayAtPlaces(_OfTheCrowd):
     stand there."""
 
     name = "visits"
+    saved: ClassVar[Mapping[str, Kind]] = {}  # the journeys are the model's
 
     _journeys: Journeys
 
@@ -68,10 +70,6 @@ class StayAtPlaces(_OfTheCrowd):
         """Keep who goes where, and who stays."""
         super().bind(model)
         self._journeys = model.journeys
-
-    def state(self) -> dict[str, Any]:
-        """Nothing: the journeys are the model's."""
-        return {}
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Send those who have arrived to their spot, and slow down those who come near theirs."""
@@ -132,6 +130,10 @@ class TakeTurns(_OfTheCrowd):
         super().bind(model)
         self._turns = Turns(model.floor_plan)
 
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return self._turns.members()
+
     def state(self) -> dict[str, Any]:
         """Who has the turn where."""
         return self._turns.state()
@@ -139,6 +141,7 @@ class TakeTurns(_OfTheCrowd):
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given."""
         self._turns.restore(state)
+        self._turns.check_mouths(self._crowd)
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Let people wait where others have the turn."""
@@ -163,6 +166,10 @@ class GiveWay(_OfTheCrowd):
         if widest > WIDE:
             stretch = np.array([_stretch(each) for each in model.pedestrian_types])
             self._precedence = Precedence(model.floor_plan, widest, stretch)
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {} if self._precedence is None else self._precedence.members()
 
     def state(self) -> dict[str, Any]:
         """Who goes first where."""
@@ -266,6 +273,8 @@ class StepOff(_OfTheCrowd):
 
     name = "stepping_off"
 
+    saved: ClassVar[Mapping[str, Kind]] = {}  # the plan and the types are the model's
+
     _plan: FloorPlan
     _shapes: ShapeRecords
 
@@ -274,10 +283,6 @@ class StepOff(_OfTheCrowd):
         super().bind(model)
         self._plan = model.floor_plan
         self._shapes = shapes_of([each.shape for each in model.pedestrian_types])
-
-    def state(self) -> dict[str, Any]:
-        """Nothing: the plan and the types are the model's."""
-        return {}
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Send those away from the line who are across it."""

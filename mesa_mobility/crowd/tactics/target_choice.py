@@ -12,7 +12,7 @@ from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.hooks import Plugin
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import Environment
-from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.records import FARTHEST, Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.crowd.tactics.waiting import HELD, wait_until, waiting
 from mesa_mobility.crowd.unchanged import Given
@@ -22,9 +22,6 @@ from mesa_mobility.plugins.output import numbers_given, whole_numbers_given
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.tactics.tactic import Desired
-
-FARTHEST = 1e9
-"""Greatest distance of a target from the origin, metres; its square is still exact enough."""
 
 _BAD_POINTS, _BAD_DISTANCES, _BAD_GATES, _BAD_CORNERS = 1, 2, 3, 4
 

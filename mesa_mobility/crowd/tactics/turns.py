@@ -11,7 +11,7 @@ everybody wants the same way, nothing changes.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import FOR_TWO, Passages, narrow_passages
+from mesa_mobility.schema import Array, Flag, Kind, check
 
 PATIENT = 30.0
 """Longest turn in seconds while others wait: people who wait for longer become
@@ -55,7 +56,10 @@ class Turns(Saved):
         plan: the floor plan; changes to it are followed.
     """
 
-    saved = ("_holder", "_since")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_holder": Array("i8", ("passages",), low=NOBODY),
+        "_since": Array("f8", ("passages",), 0.0, 1e9),
+    }
 
     def __init__(self, plan: FloorPlan) -> None:
         self._plan = plan
@@ -63,6 +67,10 @@ class Turns(Saved):
         self._passages: Passages
         self._holder = np.empty(0, dtype=np.int64)
         self._since = np.empty(0)
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {**self.saved, "current": Flag()}
 
     def state(self) -> dict[str, Any]:
         """Who has the turn where."""
@@ -74,6 +82,15 @@ class Turns(Saved):
         if state["current"]:
             self._version = self._plan.version
             self._passages = narrow_passages(self._plan)
+            passages, mouths = len(self._passages.first_mouth) - 1, len(self._passages.mouths)
+            kind = Array("i8", (passages,), low=NOBODY, high=mouths - 1)
+            check(self._holder, kind, "_holder")
+
+    def check_mouths(self, crowd: Crowd) -> None:
+        """Raise ContentError if somebody is at a mouth that there is not."""
+        if self._version == self._plan.version:
+            most = len(self._passages.mouths)
+            check(crowd.agenda["mouth"], Array("i4", None, -most, most), "agenda, mouth")
 
     def take(
         self,

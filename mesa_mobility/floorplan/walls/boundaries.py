@@ -52,9 +52,7 @@ def opening_segments(openings: Iterable[Opening]) -> NDArray[np.float64]:
     return np.array([[*o.a, *o.b] for o in openings], dtype=np.float64).reshape(-1, 4)
 
 
-def _cut_one(
-    segments: NDArray[np.float64], opening: Opening, off: float
-) -> NDArray[np.float64]:
+def _cut_one(segments: NDArray[np.float64], opening: Opening, off: float) -> NDArray[np.float64]:
     origin = np.array(opening.a)
     along = (np.array(opening.b) - origin) / opening.length
     across = np.array([-along[1], along[0]])

@@ -19,9 +19,13 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
-from mesa_mobility.floorplan.walls.boundaries import boundary_segments, cut_out, opening_segments
+from mesa_mobility.floorplan.walls.boundaries import (
+    boundary_segments,
+    cut_out,
+    opening_segments,
+    turns,
+)
 from mesa_mobility.floorplan.walls.boundaries import rings as rings_of
-from mesa_mobility.floorplan.walls.boundaries import turns
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.mobility.standing.accelerations import is_gentle
 from mesa_mobility.mobility.map import MobilityMap
+from mesa_mobility.mobility.standing.accelerations import is_gentle
 from mesa_mobility.mobility.standing.ways_back import ON_THE_SPOT, TURN
 
 
@@ -24,9 +24,7 @@ def abilities_of(map_: MobilityMap) -> dict[str, Any]:
     """
     ends, headings = map_.end_points, map_.end_headings
     standing = np.asarray(map_.options_of(map_.standing))
-    gentle = standing[
-        is_gentle(map_.durations[standing], map_.path_offsets[standing], map_.paths)
-    ]
+    gentle = standing[is_gentle(map_.durations[standing], map_.path_offsets[standing], map_.paths)]
     turns = headings[gentle][np.hypot(*ends[gentle].T) <= ON_THE_SPOT]
     ahead, aside = ends[gentle].T
     stepped = aside[(np.abs(ahead) <= np.abs(aside)) & (np.abs(headings[gentle]) <= TURN)]

@@ -131,7 +131,9 @@ def sample_left_out(
     """
     tested = _tested(recordings)[SAMPLED - 1 :: SAMPLED]
     if not tested:
-        raise MapError(f"fewer than {SAMPLED} clips of more than {HORIZON} frames: none to leave out")
+        raise MapError(
+            f"fewer than {SAMPLED} clips of more than {HORIZON} frames: none to leave out"
+        )
     names = {r.name.removesuffix(MIRRORED) for r in tested}
     others = [r for r in recordings if r.name.removesuffix(MIRRORED) not in names]
     _, grouped, options = options_of_recordings(others, clusters, progress)

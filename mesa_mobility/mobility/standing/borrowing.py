@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.mobility.standing.accelerations import is_gentle
 from mesa_mobility.mobility.clusters import STANDING, Clusters, nearest_centre
 from mesa_mobility.mobility.edits import Edit, edit_paths
 from mesa_mobility.mobility.paths import DURATIONS, MOST_JUMPS, SAMPLE_EVERY, ReachableOptions
+from mesa_mobility.mobility.standing.accelerations import is_gentle
 from mesa_mobility.mobility.standing.ways_back import ON_THE_SPOT, TURN, leads_back
 
 if TYPE_CHECKING:

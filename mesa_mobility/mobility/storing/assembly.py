@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesa_mobility.mobility.standing.borrowing import borrow, missing
 from mesa_mobility.mobility.clusters import STANDING, Clusters
 from mesa_mobility.mobility.edits import SAMPLE_EVERY
 from mesa_mobility.mobility.paths import ReachableOptions
+from mesa_mobility.mobility.standing.borrowing import borrow, missing
 from mesa_mobility.mobility.storing.steps import quantise_costs, quantise_paths
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ opening makes room for it (``making_room.py``); those who wait do so wherever th
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,7 @@ from mesa_mobility.crowd.tactics.giving_way.openings import (
 from mesa_mobility.crowd.tactics.waiting import waiting
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import narrow_mouths
+from mesa_mobility.schema import Array, Flag, Kind, check_shape
 
 WIDE = 0.18
 """Core radius in metres above which a body is wide.
@@ -76,7 +77,12 @@ class Precedence(Saved):
         stretch: (types,) radius of a circle that holds a body, in core radii.
     """
 
-    saved = ("_at", "_first", "_nearest", "_since")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_first": Array("i8", ("openings_found",), low=NOBODY, below="people"),
+        "_nearest": Array("f8", ("openings_found",), 0.0, 1e9, infinite=True),
+        "_since": Array("f8", ("openings_found",), 0.0, 1e9),
+        "_at": Array("i8", low=NOBODY, below="openings_found"),
+    }
 
     def __init__(self, plan: FloorPlan, widest: float, stretch: NDArray[np.float64]) -> None:
         self._stretch = stretch
@@ -91,6 +97,10 @@ class Precedence(Saved):
         self._nearest = np.empty(0)
         self._since = np.empty(0)
 
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {**self.saved, "current": Flag()}
+
     def state(self) -> dict[str, Any]:
         """Who goes first where."""
         return {**super().state(), "current": self._version == self._plan.version}
@@ -100,6 +110,7 @@ class Precedence(Saved):
         super().restore(state)
         if state["current"]:
             self._look_for_openings()
+            check_shape(self._first.shape, (len(self._mouths),), "_first", {})
 
     def _look_for_openings(self) -> None:
         self._version = self._plan.version

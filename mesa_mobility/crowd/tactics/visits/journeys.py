@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,28 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.state.environment import Environment
-from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.records import FARTHEST, Crowd
 from mesa_mobility.crowd.tactics.visits.crossings import find_crossings
 from mesa_mobility.crowd.tactics.visits.place import Place
 from mesa_mobility.crowd.tactics.visits.stays import Stays
 from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.schema import (
+    Array,
+    Each,
+    Either,
+    Flag,
+    Kind,
+    Maybe,
+    Members,
+    Object,
+    Several,
+    Text,
+    Whole,
+    check,
+    check_shape,
+)
 
 
 @dataclass(frozen=True)
@@ -46,6 +61,9 @@ class Journey:
     lines: NDArray[np.float64]
 
 
+_STOP = Either(Object(Visit), Text("gates"))
+
+
 class Journeys(Saved):
     """The journeys of a model's people.
 
@@ -54,7 +72,14 @@ class Journeys(Saved):
         stays: who is at a place of its route.
     """
 
-    saved = ("_numbers", "crossed")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_numbers": Several(
+            Each(Several(_STOP, tuple), Flag(), Maybe(Several(Text("exits"), tuple)),
+                 Whole(below="bodies")),
+            dict, values=Whole(1, below="journeys+1"),
+        ),
+        "crossed": Whole(),
+    }  # fmt: skip
 
     def __init__(self, plan: FloorPlan, site: Environment) -> None:
         self._plan = plan
@@ -66,6 +91,16 @@ class Journeys(Saved):
         self._numbers: dict[tuple[object, ...], int] = {}
         self.crossed = 0
 
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        known = Each(
+            Several(_STOP, tuple), Flag(), Whole(below="bodies"),
+            Array("i4", ("legs",), 0, below="destinations"),
+            Array("f8", ("legs", 4), -FARTHEST, FARTHEST, missing=True),
+        )  # fmt: skip
+        stays = Members(self.stays.members())
+        return {**self.saved, "known": Several(known), "stays": stays}
+
     def state(self) -> dict[str, Any]:
         """The journeys, who stays where, and how many gates have been crossed."""
         known = [tuple(vars(each).values()) for each in self._known]
@@ -76,8 +111,15 @@ class Journeys(Saved):
         super().restore(state)
         self.stays.restore(state["stays"])
         self._known = [Journey(*each) for each in state["known"]]
+        for each in self._known:
+            legs = (len(each.stops) + (not each.loop),)
+            check_shape(each.legs.shape, legs, "known, legs", {})
         self._places.clear()
         self._take_stock()
+        check(self.stays.places, Array("i8", low=-1, high=len(self._places) - 1), "stays, _place")
+
+    def __len__(self) -> int:
+        return len(self._known)
 
     def add(self, route: Route, loop: bool, exits: tuple[str, ...] | None, kind: int) -> int:
         """Number, above 0, of this route for people of one pedestrian type.

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
-from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
 from mesa_mobility.crowd.tactics.visits.place import Place
 from mesa_mobility.crowd.tactics.visits.visit import Visit
 from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.distributions import Distribution
+from mesa_mobility.schema import Array, Kind
 
 THERE = 0.3
 """Metres from its spot at which somebody stops."""
@@ -31,7 +34,13 @@ class Stays(Saved):
     computed before the first has arrived.
     """
 
-    saved = ("_place", "_spot", "_came", "_stay", "_until")
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "_place": Array("i8", ("known",), -1),
+        "_spot": Array("f8", ("known", 2), -FARTHEST, FARTHEST),
+        "_came": Array("i8", ("known",), -1, LAST_FRAME),
+        "_stay": Array("i8", ("known",), -1, LAST_FRAME),
+        "_until": Array("i8", ("known",), -1, LAST_FRAME),
+    }
 
     def __init__(self) -> None:
         self._place = np.empty(0, dtype=np.int64)
@@ -39,6 +48,11 @@ class Stays(Saved):
         self._came = np.empty(0, dtype=np.int64)
         self._stay = np.empty(0, dtype=np.int64)
         self._until = np.empty(0, dtype=np.int64)
+
+    @property
+    def places(self) -> NDArray[np.int64]:
+        """Number of the place of each row, -1 for none; there may be more rows than people."""
+        return self._place
 
     def spots(self, rows: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Indices among ``rows`` of those on the way to a spot, and their (k, 2) spots, metres."""
