@@ -21,7 +21,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.errors import ContentError
+from mesa_mobility.errors import ContentError, MobilityError
 
 Sizes = Mapping[str, Any]
 """Numbers by name, and the texts that a ``Text`` may be."""
@@ -41,16 +41,26 @@ class Kind(ABC):
         """Raise ContentError, of one line that begins with ``where``, unless the value fits."""
 
 
-def check(value: Any, kind: Kind, where: str, sizes: Sizes | None = None) -> None:
-    """Raise ContentError unless a value is of a kind.
+def check(
+    value: Any,
+    kind: Kind,
+    where: str,
+    sizes: Sizes | None = None,
+    error: type[MobilityError] = ContentError,
+) -> None:
+    """Raise an error of one line unless a value is of a kind.
 
     Args:
         value: anything.
         kind: what it must be.
         where: what the value is called, for the error.
         sizes: what names of sizes stand for.
+        error: what is raised.
     """
-    kind.check(value, where, ChainMap({}, dict(sizes or {})))
+    try:
+        kind.check(value, where, ChainMap({}, dict(sizes or {})))
+    except ContentError as fault:
+        raise error(str(fault)) from None
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from mesa_mobility.bodies.rotations import matrices
 from mesa_mobility.bodies.skeleton import COUNTERPARTS, TURN_OF, TURNING
 from mesa_mobility.errors import MapError
 from mesa_mobility.files.read_once import read_once
+from mesa_mobility.schema import Real, Text, Whole, check
 
 QUATERNION_STEP = 1.0 / 32767
 """Quaternions are stored as 16-bit integers: to 0.004 degrees."""
@@ -23,6 +24,8 @@ HEIGHT_STEP = 0.0001
 """Heights are stored in tenths of a millimetre."""
 
 STRIDE_STEP = 0.01
+
+_PIECE = 1 << 14
 
 _MIRROR = np.array([-1.0, 1.0, -1.0, 1.0])
 """A rotation seen in a mirror along y, as factors of its quaternion."""
@@ -200,7 +203,7 @@ def check_bank(bank: PoseBank) -> None:
             raise MapError(
                 f"pose bank array {name!r}: shape {getattr(bank, name).shape}, expected {shape}"
             )
-    if p < 1 or m < 1 or len(bank.cluster_poses) < 1:
+    if p < 1 or m < 1 or bank.cluster_poses.ndim != 1 or len(bank.cluster_poses) < 1:
         raise MapError(f"pose bank of {p} poses and {m} options: expected at least one each")
     for name, total in (("clips", p), ("offsets", q)):
         each = getattr(bank, name)
@@ -212,9 +215,17 @@ def check_bank(bank: PoseBank) -> None:
             raise MapError(f"pose bank array {name!r}: expected numbers of the {p} poses")
     if bank.frames[bank.offsets[:-1]].any() or (bank.frames < 0).any():
         raise MapError("pose bank array 'frames': expected each option to begin at frame 0")
-    lengths = np.abs(np.linalg.norm(bank.rotations * QUATERNION_STEP, axis=2) - 1.0)
-    if lengths.max() > 1e-3:
-        raise MapError("pose bank array 'rotations': expected quaternions of length 1")
+    for start in range(0, p, _PIECE):  # in pieces: as floats they would take four times the memory
+        quaternions = bank.rotations[start : start + _PIECE] * QUATERNION_STEP
+        if np.abs(np.linalg.norm(quaternions, axis=2) - 1.0).max() > 1e-3:
+            raise MapError("pose bank array 'rotations': expected quaternions of length 1")
+    standing = bank.metadata.get("standing", 0)
+    for name, value, kind in (
+        ("standing", standing, Whole(below=len(bank.cluster_poses))),
+        ("scale", bank.metadata.get("scale", 1.0), Real(0.1, 10.0)),
+        ("pedestrian_type", bank.metadata.get("pedestrian_type"), Text()),
+    ):
+        check(value, kind, f"pose bank metadata, {name}", error=MapError)
     if not isinstance(bank.metadata.get("map_digest"), str):
         raise MapError("pose bank metadata: no 'map_digest' of the map that it belongs to")
     clips = bank.metadata.get("clips")
@@ -222,3 +233,5 @@ def check_bank(bank: PoseBank) -> None:
         raise MapError(
             f"pose bank metadata: expected an entry for each of {len(bank.clips) - 1} clips"
         )
+    if not all(isinstance(each, dict) and isinstance(each.get("clip"), str) for each in clips):
+        raise MapError("pose bank metadata: expected the name of each clip as its 'clip'")

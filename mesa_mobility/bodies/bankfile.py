@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.errors import MapError
+from mesa_mobility.errors import MapError, MobilityError
+from mesa_mobility.files.archives import reading
 from mesa_mobility.mobility.storing.archive import Kind, read_arrays, read_metadata, write_arrays
 
 if TYPE_CHECKING:
@@ -80,10 +81,12 @@ def read_bank(path: str | Path, make: Callable[..., Bank]) -> Bank:
     """
     path = Path(path)
     arrays = read_arrays(path, (_DTYPES,), KIND)
-    try:
-        return make(**_decode(arrays))
-    except MapError as error:
-        raise MapError(f"{path}: {error}") from None
+    with reading(path, KIND.name, MapError):
+        try:
+            return make(**_decode(arrays))
+        except MobilityError as error:
+            raise MapError(f"{path}: {error}") from None
+    raise AssertionError("the context lets no error by")
 
 
 def _decode(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:

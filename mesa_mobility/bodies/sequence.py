@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.bodies.bank import STRIDE_STEP, PoseBank
 from mesa_mobility.bodies.rotations import from_vectors, rotation_vectors
+from mesa_mobility.errors import ResultsError
 
 BLEND_FRAMES = 6
 """Frames, 0.2 s, within which the difference at a join fades."""
@@ -59,7 +60,8 @@ def pose_sequence(bank: PoseBank, frames: NDArray[np.int64], movements: Movement
     begins, poses, strides = _stretches(bank, movements)
     own = np.searchsorted(movements.starts, frames, side="right") - 1
     row = own + 1  # the first row is that of somebody who has not decided yet
-    phase = np.where(own >= 0, frames - movements.starts[np.maximum(own, 0)], 0)
+    phase = frames - np.concatenate([[0], movements.starts])[row]
+    phase[own < 0] = 0
     stretch = (phase[:, None] >= begins[row]).sum(axis=1) - 1
     into = phase - begins[row, stretch]
     still = ~_moving(movements)[row]
@@ -138,8 +140,16 @@ def _stretches(
     """Frames and poses at which the stretches of each movement begin, and its strides.
 
     The first row is of somebody who stands.
+
+    Raises:
+        ResultsError: an option that the bank does not have.
     """
     standing = int(bank.cluster_poses[int(bank.metadata.get("standing", 0))])
+    if movements.options.max(initial=-1) >= bank.n_options:
+        raise ResultsError(
+            f"decisions: option {movements.options.max()}, expected one of the {bank.n_options} of "
+            f"the poses of {bank.pedestrian_type!r}"
+        )
     moving = _moving(movements)
     rows = np.where(moving, np.concatenate([[0], movements.options]), 0)
     counts = np.where(moving, bank.offsets[rows + 1] - bank.offsets[rows], 1)

@@ -240,6 +240,8 @@ def check_map(map_: MobilityMap) -> None:
             raise MapError(f"mobility map array {name!r}: not finite, expected finite numbers")
     _check_offsets("offsets", map_.offsets, m)
     _check_offsets("path_offsets", map_.path_offsets, p)
+    if (map_.mean_speeds < 0.0).any() or (map_.costs < 0.0).any():
+        raise MapError("mobility map: negative costs or mean speeds, expected 0 or more")
     if (map_.sizes < 1).any():
         raise MapError(
             f"mobility map cluster {int(np.argmin(map_.sizes))}: no poses, expected some"
@@ -279,6 +281,8 @@ def _check_speeds(map_: MobilityMap) -> None:
 def _check_metadata(metadata: Mapping[str, Any]) -> None:
     if not isinstance(metadata.get("pedestrian_type"), str):
         raise MapError("mobility map metadata: no 'pedestrian_type', expected a name")
+    if not isinstance(metadata.get("build", {}), Mapping):
+        raise MapError("mobility map metadata: 'build' has no members, expected some by name")
     rate = metadata.get("frame_rate_hz", 30.0)
     if rate != 30.0:
         raise MapError(f"mobility map metadata: 'frame_rate_hz' is {rate!r}, expected 30")

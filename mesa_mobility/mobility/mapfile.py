@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.errors import MapError
+from mesa_mobility.errors import MapError, MobilityError
+from mesa_mobility.files.archives import reading
 from mesa_mobility.mobility.storing.archive import read_arrays, read_metadata, write_arrays
 from mesa_mobility.mobility.storing.layouts import FAMILIES, OPTIONS
 from mesa_mobility.mobility.storing.steps import COST_STEP, PATH_STEPS
@@ -30,6 +31,7 @@ Map = TypeVar("Map")
 FORMAT_VERSION = 1
 
 _INT16 = np.iinfo(np.int16).max
+_PIECE = 1 << 16
 _PLAIN = ("offsets", "durations", "path_clusters", "mean_poses", "centres", "sizes", "mean_speeds")
 
 
@@ -93,14 +95,16 @@ def read_map(path: str | Path, make: Callable[..., Map], lender: Callable[[], Mo
     """
     path = Path(path)
     arrays = read_arrays(path, (OPTIONS, FAMILIES))
-    try:
-        if "sources" not in arrays:
-            return make(**_decode(arrays))
-        from mesa_mobility.mobility.storing.families import read_families
+    with reading(path, "mobility map", MapError):
+        try:
+            if "sources" not in arrays:
+                return make(**_decode(arrays))
+            from mesa_mobility.mobility.storing.families import read_families
 
-        return make(**read_families(arrays).fields(lender))
-    except MapError as error:
-        raise MapError(f"{path}: {error}") from None
+            return make(**read_families(arrays).fields(lender))
+        except MobilityError as error:
+            raise MapError(f"{path}: {error}") from None
+    raise AssertionError("the context lets no error by")
 
 
 def _decode(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
@@ -141,7 +145,17 @@ def _decode(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     return {
         "costs": (arrays["costs"] * COST_STEP).astype(np.float32),
         "path_offsets": path_offsets,
-        "paths": np.multiply(whole, PATH_STEPS, dtype=np.float64).astype(np.float32),
+        "paths": _metres(whole),
         "metadata": metadata,
         **{name: arrays[name] for name in _PLAIN},
     }
+
+
+def _metres(whole: NDArray[np.int32]) -> NDArray[np.float32]:
+    """(p, 3) samples of whole steps in metres and radians."""
+    paths = np.empty(whole.shape, dtype=np.float32)
+    # In pieces: double precision of all at once would take twice the memory of the map.
+    for start in range(0, len(whole), _PIECE):
+        piece = slice(start, start + _PIECE)
+        paths[piece] = np.multiply(whole[piece], PATH_STEPS, dtype=np.float64)
+    return paths

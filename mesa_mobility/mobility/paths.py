@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.compiled.threads import THREADS
+from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit
 from mesa_mobility.mobility.thinning import (
     BUDGET,
@@ -44,6 +45,9 @@ TRANSITION_PENALTY = 1.0
 
 MOST_JUMPS = int(BUDGET / TRANSITION_PENALTY)
 """Transitions that a path within the budget has at most."""
+
+MOST_OPTIONS = 1_000_000
+"""Most options of a map: three times those of the able-bodied one, in half a gigabyte."""
 
 CELL = (0.08, 0.08, np.deg2rad(30.0))
 """Cell of thinning: metres, metres, radians of the end point and end heading.
@@ -146,8 +150,14 @@ def joined(
             recordings.
         edits: how recorded options are edited to fill further cells.
     """
-    each = [None if own is None else with_copies(own, edits) for own in recorded]
-    counts = [0 if own is None else len(own.layers) for own in each]
+    each: list[ClusterOptions | None] = []
+    counts: list[int] = []
+    for own in recorded:
+        copies = None if own is None else with_copies(own, edits)
+        each.append(copies)
+        counts.append(0 if copies is None else len(copies.layers))
+        if sum(counts) > MOST_OPTIONS:
+            raise MapError(f"more than {MOST_OPTIONS} options, expected those of one person's type")
     columns = zip(*(own for own in each if own is not None), strict=True)
     all_ = ClusterOptions(*(np.concatenate(column) for column in columns))
     edit_copies(all_, edits)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.seal import FIELD, UNSEALED, check_seal, seal
+from mesa_mobility.schema import Array, Several, Text, check
 
 if TYPE_CHECKING:
     from mesa_mobility.bodies import Movements
@@ -24,15 +25,17 @@ if TYPE_CHECKING:
 FILE = "decisions.parquet"
 FORMAT_VERSION = 1
 METADATA_KEY = b"mesa_mobility"
-SCHEMA = pa.schema(
-    [
-        ("frame", pa.int32()),
-        ("person", pa.int32()),
-        ("type_index", pa.int32()),
-        ("option", pa.int32()),
-        ("share", pa.float32()),
-    ]
-)
+
+COLUMNS: dict[str, Array] = {
+    "frame": Array("i4", ("rows",), 0),
+    "person": Array("i4", ("rows",), 0),
+    "type_index": Array("i4", ("rows",), 0, below="types"),
+    "option": Array("i4", ("rows",), -2),
+    "share": Array("f4", ("rows",), 0.0, 1.0),
+}
+"""The columns, and what each of them is."""
+
+SCHEMA = pa.schema([(name, pa.from_numpy_dtype(kind.dtype)) for name, kind in COLUMNS.items()])
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,23 +62,15 @@ class Decisions:
     maps: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        for name in SCHEMA.names:
+        sizes = {"types": len(self.maps), "rows": len(self.frame)}
+        for name, kind in COLUMNS.items():
             values = getattr(self, name)
-            if values.shape != (len(self.frame),):
-                raise ResultsError(
-                    f"decisions: {name} has shape {values.shape}, expected ({len(self.frame)},)"
-                )
+            check(values, kind, f"decisions: {name}", sizes, error=ResultsError)
             view = values.view()
             view.setflags(write=False)
             object.__setattr__(self, name, view)
         if np.any(np.diff(self.frame) < 0):
             raise ResultsError("decisions: frames go back, expected the order of time")
-        kinds = self.type_index
-        if len(kinds) and not 0 <= kinds.min() <= kinds.max() < len(self.maps):
-            raise ResultsError(
-                f"decisions: types {kinds.min()} to {kinds.max()}, expected those of the "
-                f"{len(self.maps)} maps"
-            )
 
     @classmethod
     def of(cls, model: Any) -> Decisions:
@@ -147,21 +142,44 @@ def read_decisions(path: str | os.PathLike[str]) -> Decisions:
     source = Path(path)
     try:
         check_seal(source)
-        table = pq.read_table(source, page_checksum_verification=True)
+        _check_footer(source)
+        table = pq.read_table(source, columns=SCHEMA.names, page_checksum_verification=True)
         values = json.loads(table.schema.metadata[METADATA_KEY])
         if values["format_version"] != FORMAT_VERSION:
             raise ResultsError(
                 f"{source}: format version {values['format_version']}, expected {FORMAT_VERSION}"
             )
         columns = table.select(SCHEMA.names).cast(SCHEMA)
-        maps = tuple(str(each) for each in values["maps"])
+        check(values["maps"], Several(Text()), "metadata, maps", error=ResultsError)
+        maps = tuple(values["maps"])
         return Decisions(**{name: columns[name].to_numpy() for name in SCHEMA.names}, maps=maps)
     except FileNotFoundError as error:
         raise ResultsError(f"{source}: no such file") from error
-    except ResultsError:
-        raise
+    except ResultsError as error:
+        said = str(error)
+        named = said if said.startswith(f"{source}: ") else f"{source}: {said}"
+        raise ResultsError(named) from None
     except (
-        OSError, KeyError, TypeError, ValueError, RecursionError, pa.ArrowException
+        AttributeError, OverflowError, MemoryError, OSError, KeyError, TypeError, ValueError,
+        RecursionError, pa.ArrowException,
     ) as error:  # fmt: skip
         reason = next(iter(str(error).splitlines()), type(error).__name__)
         raise ResultsError(f"{source}: not readable decisions: {reason}") from error
+
+
+def _check_footer(path: Path) -> None:
+    """Raise ResultsError where a file has other columns, or would unpack to far more than decisions
+    do."""
+    packed = path.stat().st_size
+    most = 64_000_000 + 100 * packed
+    about = pq.read_metadata(path)
+    if about.schema.names != SCHEMA.names:
+        names = ", ".join(about.schema.names)
+        raise ResultsError(f"{path}: columns {names:.80}, expected {', '.join(SCHEMA.names)}")
+    groups = [about.row_group(k) for k in range(about.num_row_groups)]
+    # Encodings, too, may make much of little: rows count as well as bytes.
+    total = max(about.num_rows * 20, sum(group.total_byte_size for group in groups))
+    if total > most:
+        raise ResultsError(
+            f"{path}: {total / 1e6:.0f} MB of decisions, expected at most {most / 1e6:.0f} MB"
+        )

@@ -17,6 +17,7 @@ import numpy as np
 
 from mesa_mobility.crowd.arguments import MOST_FRAMES
 from mesa_mobility.crowd.checkpoint.movements import check_choices, check_movements, check_next
+from mesa_mobility.crowd.checkpoint.recordings import check_recording
 from mesa_mobility.crowd.hooks import Plugin, ships
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import LAST_FRAME
@@ -116,6 +117,8 @@ def check_crowd(model: PedestrianModel, states: Mapping[str, Any]) -> None:
     columns = states.get("decisions", {}).get("columns")
     if columns:
         check_choices(columns[2], columns[3], scene)
+    if model.recorder is not None:
+        check_recording(states["recorder"], scene.crowd, model.frame)
     counted = (model.frame - 2) * FRAME_SECONDS
     for source, inflow in states["sources"]["inflows"]:
         if source.times is None:  # arrivals are counted frame by frame

@@ -29,6 +29,9 @@ _ROUNDING = 1e-5
 _TOUCHING = 1e-3
 """Metres by which bodies may overlap: collisions are tested at samples of paths."""
 
+_OFF = 0.02
+"""Metres off the edge of the floor at which people may cross an exit."""
+
 Records = NDArray[np.void]
 
 
@@ -68,7 +71,7 @@ def check_movements(
 def check_next(scene: Scene, inside: NDArray[np.int64], frame: int, following: int) -> None:
     """Raise ContentError if a movement of those inside ends before the next event."""
     people = scene.crowd.records[inside]
-    ends = np.where(people["gone"] > frame, people["gone"], people["end"])
+    ends = np.where(people["gone"] > frame, people["gone"], people["end"]).astype(np.int64)
     if following > ends.min(initial=LONG_AFTER):
         raise ContentError(f"dynamics, next: got {following}, expected at most {ends.min()}")
 
@@ -220,7 +223,7 @@ def _check_floor(
         off = ~scene.plan.contains(places)
         if off.any():
             away = shapely.distance(area, shapely.points(places[off]))
-            if away.max() > _ROUNDING:
+            if away.max() > _OFF:
                 person = int(rows[at[np.flatnonzero(off)[np.argmax(away)]]])
                 raise ContentError(
                     f"population, pedestrian {person}: is off the floor at frame {frame + k}, "

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import json
-import math
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import MapError
-from mesa_mobility.files.archives import add_array, reading
+from mesa_mobility.files.archives import add_array, members_of, read_array, reading
 from mesa_mobility.files.atomic import replacing
 
 Layout = Mapping[str, str]
@@ -86,41 +84,21 @@ def read_metadata(raw: NDArray[np.uint8], version: int) -> dict[str, Any]:
 def _read_layout(
     archive: zipfile.ZipFile, path: Path, layouts: Sequence[Layout], kind: Kind
 ) -> dict[str, NDArray[Any]]:
-    entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+    entries = members_of(archive, kind.largest, str(path), MapError)
     layout = next((each for each in layouts if set(each) <= set(entries)), layouts[0])
     missing = sorted(set(layout) - set(entries))
     if missing:
         raise MapError(f"{path}: not a {kind.name}, arrays missing: {', '.join(missing)}")
-    total = sum(entries[name].file_size for name in layout)
-    if total > kind.largest:
+    unknown = sorted(set(entries) - set(layout))
+    if unknown:
         raise MapError(
-            f"{path}: arrays of {total / 1e6:.0f} MB, expected at most {kind.largest / 1e6:.0f} MB"
+            f"{path}: unknown arrays {', '.join(unknown):.80}, expected {', '.join(layout)}"
         )
-    arrays = {}
-    for name in layout:
-        entry = entries[name]
-        what = f"{path}: array {name!r}"
-        # Other compression methods cannot be unpacked in bounded steps.
-        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise MapError(f"{what}: compressed by method {entry.compress_type}, expected deflate")
-        with archive.open(entry) as stream:
-            # Reading one byte more reaches the end of the member, which triggers its checksum test.
-            arrays[name] = _read_array(io.BytesIO(stream.read(entry.file_size + 1)), what)
+    arrays = {
+        name: read_array(archive, entries[name], f"{path}: array {name!r}", MapError)
+        for name in layout
+    }
     for name, dtype in layout.items():
         if arrays[name].dtype != np.dtype(dtype):
             raise MapError(f"{path}: array {name!r}: type {arrays[name].dtype}, expected {dtype}")
     return arrays
-
-
-def _read_array(file: io.BytesIO, what: str) -> NDArray[Any]:
-    version = np.lib.format.read_magic(file)
-    if version != (1, 0):
-        raise MapError(f"{what}: npy format {version}, expected (1, 0)")
-    shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
-    content = file.read()
-    # Check the header's size before allocating memory for it.
-    if dtype.hasobject or fortran_order or math.prod(shape) * dtype.itemsize != len(content):
-        raise MapError(
-            f"{what}: its header says {dtype} in shape {shape}, but {len(content)} bytes follow"
-        )
-    return np.frombuffer(content, dtype=dtype).reshape(shape)

@@ -21,18 +21,22 @@ from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.clusters import Clusters
 from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit, grid
-from mesa_mobility.mobility.paths import MOST_JUMPS, ReachableOptions, joined
+from mesa_mobility.mobility.paths import MOST_JUMPS, MOST_OPTIONS, ReachableOptions, joined
 from mesa_mobility.mobility.poses import MOTION_STEP
 from mesa_mobility.mobility.storing.archive import read_metadata, write_arrays
 from mesa_mobility.mobility.storing.assembly import assemble
 from mesa_mobility.mobility.storing.layouts import FAMILIES
 from mesa_mobility.mobility.storing.steps import COST_STEP, quantise_costs
 from mesa_mobility.mobility.thinning import DURATIONS, ClusterOptions
+from mesa_mobility.schema import Array, Real, Several, Whole, check
 
 # It also stands for the rule by which edited options follow from a file that does not hold them.
 FORMAT_VERSION = 3
 
 _NO_CLUSTER = np.iinfo(np.uint16).max
+
+MOST_EDITS = 100
+"""Most edits of each recorded option: maps that ship have 24."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +96,7 @@ class OptionFamilies:
         """All options of the map, edited ones included."""
         layers = np.tile(np.arange(len(DURATIONS)), len(self.counts))
         layers = np.repeat(layers, self.counts.reshape(-1))
+        edits = self.edits()
         frames = np.array(DURATIONS)[layers]
         paths, clusters, valid = _follow(
             frames, self.sources, self.jumps, self.steps * MOTION_STEP, self.clusters.labels
@@ -113,7 +118,7 @@ class OptionFamilies:
             columns.taken(np.arange(first, last)) if last > first else None
             for first, last in itertools.pairwise(bounds)
         ]
-        return joined(parts, self.edits())
+        return joined(parts, edits)
 
     def fields(self, lender: Callable[[], Any]) -> dict[str, Any]:
         """The fields of the map.
@@ -156,9 +161,20 @@ class OptionFamilies:
         write_arrays(path, FAMILIES, arrays, metadata)
 
     def edits(self) -> tuple[Edit, ...]:
-        """How recorded options are edited, in the order of the numbers in ``ReachableOptions``."""
+        """How recorded options are edited, in the order of the numbers in ``ReachableOptions``.
+
+        Raises:
+            ContentError: they are no turns and strides of people, or too many.
+        """
         edits = self.metadata.get("build", {}).get("edits", {})
-        return grid(edits.get("turns_deg_in_45_frames", [0.0]), edits.get("strides", [1.0]))
+        turns = edits.get("turns_deg_in_45_frames", [0.0])
+        strides = edits.get("strides", [1.0])
+        check(turns, Several(Real(-180.0, 180.0)), "metadata, turns_deg_in_45_frames")
+        check(strides, Several(Real(0.01, 10.0)), "metadata, strides")
+        check(len(turns) * len(strides), Whole(0, MOST_EDITS), "metadata, number of edits")
+        copies = int(self.counts.sum(axis=1).max()) * (len(turns) * len(strides) + 1)
+        check(copies, Whole(0, MOST_OPTIONS), "array 'counts', edited options of a cluster")
+        return grid(turns, strides)
 
 
 def read_families(arrays: dict[str, NDArray[Any]]) -> OptionFamilies:
@@ -185,6 +201,9 @@ def read_families(arrays: dict[str, NDArray[Any]]) -> OptionFamilies:
     for name, shape in shapes.items():
         if arrays[name].shape != shape:
             raise MapError(f"array {name!r}: shape {arrays[name].shape}, expected {shape}")
+    check(arrays["mean_speeds"], Array("f8", (k,), 0.0, 100.0), "array 'mean_speeds'")
+    if m > MOST_OPTIONS // 2:
+        raise MapError(f"{m} recorded options, expected at most {MOST_OPTIONS // 2}")
     counts = arrays["counts"].astype(np.int64)
     labels = arrays["labels"].astype(np.int32)
     labels[labels == _NO_CLUSTER] = -1
