@@ -22,7 +22,7 @@ _CHUNK = 1 << 20
 def add_array(archive: zipfile.ZipFile, name: str, array: NDArray[Any], level: int) -> None:
     """Add an array to an archive, as ``name.npy``; see ``add_bytes``."""
     buffer = io.BytesIO()
-    np.lib.format.write_array(buffer, np.ascontiguousarray(array), allow_pickle=False)
+    np.lib.format.write_array(buffer, np.asarray(array, order="C"), allow_pickle=False)
     add_bytes(archive, f"{name}.npy", buffer.getvalue(), level)
 
 

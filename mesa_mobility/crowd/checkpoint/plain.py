@@ -197,7 +197,7 @@ class Unpacker:
             case "array":
                 return self._arrays.pop(content)
             case "scalar":
-                return self._arrays.pop(content)[()]
+                return self._arrays.pop(content).reshape(())[()]
             case "type":
                 return {kind.__name__: kind for kind in KINDS}[content]
             case "path":

@@ -215,6 +215,14 @@ def test_what_packs_to_next_to_nothing_can_be_read_again(tmp_path):
     assert not PedestrianModel.load(tmp_path / "f", mobility_map=strider()).zeros.any()
 
 
+def test_a_number_of_numpy_is_a_number_again(tmp_path):
+    model = PedestrianModel(corridor(), mobility_map=strider(), rng=1)
+    model.number = np.float32(0.5)
+    model.save(tmp_path / "f")
+    found = PedestrianModel.load(tmp_path / "f", mobility_map=strider()).number
+    assert (type(found), found) == (np.float32, 0.5)
+
+
 def test_a_crowd_with_fewer_records_than_before_is_watched_on():
     """After loading, there is room for fewer people than the watch has seen."""
     watch, before, now = StallWatch(), Crowd(128), Crowd(70)

@@ -76,7 +76,7 @@ class Journeys(Saved):
         "_numbers": Several(
             Each(Several(_STOP, tuple), Flag(), Maybe(Several(Text("exits"), tuple)),
                  Whole(below="bodies")),
-            dict, values=Whole(1, below="journeys+1"),
+            dict, values=Whole(1),
         ),
         "crossed": Whole(),
     }  # fmt: skip
@@ -111,6 +111,8 @@ class Journeys(Saved):
         super().restore(state)
         self.stays.restore(state["stays"])
         self._known = [Journey(*each) for each in state["known"]]
+        most = max(self._numbers.values(), default=0)
+        check(most, Whole(high=len(self._known)), "_numbers")
         for each in self._known:
             legs = (len(each.stops) + (not each.loop),)
             check_shape(each.legs.shape, legs, "known, legs", {})
