@@ -1,7 +1,8 @@
 """Checks of floor plans; each raises FloorPlanError with one line."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 import shapely
@@ -25,6 +26,16 @@ _WKT_TYPES = (
     "POINT", "LINESTRING", "LINEARRING", "POLYGON",
     "MULTIPOINT", "MULTILINESTRING", "MULTIPOLYGON",
 )  # fmt: skip
+
+
+@contextmanager
+def one_line(what: str) -> Iterator[None]:
+    """Turn an error of the geometry library, which says where it is, into a FloorPlanError."""
+    try:
+        yield
+    except shapely.errors.GEOSException as error:
+        text = " ".join(str(error).split())[:100]
+        raise FloorPlanError(f"{what}: expected lines that can be put in order, {text}") from None
 
 
 def read_polygon(value: Polygon | str, what: str) -> Polygon:

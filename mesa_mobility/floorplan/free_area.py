@@ -83,10 +83,15 @@ class FreeArea:
 
     def _subtract(self, obstacles: Mapping[int, Polygon]) -> None:
         self.obstacles = dict(obstacles)
-        pieces = checks.free_area(
-            self._walkable, list(self.obstacles.values()), self._exits, self._gates, self.cut_off
-        )
-        self.geometry: BaseGeometry = outline_of(
-            pieces, self._simplify, [*self._exits, *self._gates]
-        )
+        with checks.one_line("walkable area and obstacles"):
+            pieces = checks.free_area(
+                self._walkable,
+                list(self.obstacles.values()),
+                self._exits,
+                self._gates,
+                self.cut_off,
+            )
+            self.geometry: BaseGeometry = outline_of(
+                pieces, self._simplify, [*self._exits, *self._gates]
+            )
         shapely.prepare(self.geometry)

@@ -11,6 +11,7 @@ they lie on the outline as before.
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -120,7 +121,7 @@ def _thinned(
     near = openings.query(edges, predicate="dwithin", distance=tolerance + 2 * EDGE_TOLERANCE)[0]
     keep[near] = keep[near + 1] = True
     fixed = np.flatnonzero(keep).tolist()
-    spans = list(zip(fixed[:-1], fixed[1:], strict=True))
+    spans = list(pairwise(fixed))
     while spans:
         i, j = spans.pop()
         if j - i < 2:

@@ -116,6 +116,17 @@ def test_along_exits_and_gates_every_vertex_is_kept() -> None:
     assert abs(middles[:, 0] - 2).min() < 0.15
 
 
+def test_an_error_of_the_geometry_library_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise shapely.errors.GEOSException("TopologyException: non-noded\nintersection at 1 2")
+
+    plan = FloorPlan(_stairs(10, 0.3, 1.0)[0], exits=[_stairs(10, 0.3, 1.0)[1]])
+    smooth_floor(plan)
+    monkeypatch.setattr(shapely, "union_all", fails)
+    with pytest.raises(FloorPlanError, match=r"narrow passages: .* intersection at 1 2$"):
+        narrow_passages(plan)
+
+
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10**6), tolerance=st.floats(0.001, 0.05))
 def test_simplified_outlines_contain_what_was_given(seed: int, tolerance: float) -> None:
@@ -158,7 +169,7 @@ def test_vertices_a_rounding_error_apart_are_one() -> None:
 
 
 @pytest.mark.parametrize(("width", "closed"), [(0.36, False), (0.30, True)])
-def test_gaps_in_rough_walls_are_as_wide_as_the_walls_leave_them(width: float, closed: bool) -> None:
+def test_gaps_in_rough_walls_are_as_wide_as_walls_leave_them(width: float, closed: bool) -> None:
     # Teeth 10 cm apart and 8 cm deep on both sides of a gap, opposite each other at their tips.
     x = np.arange(0, 2.0, 0.1)
     low = np.ravel(np.column_stack([x, x + 0.05])), np.ravel(np.column_stack([0 * x, 0 * x - 0.08]))
@@ -221,9 +232,7 @@ def test_an_area_to_stand_in_as_wkt() -> None:
 def test_areas_that_nobody_can_stand_in(within: object, says: str) -> None:
     plan = FloorPlan(box(0, 0, 8, 5), exits=[Exit("end", (8, 2), (8, 3))])
     with pytest.raises(FloorPlanError, match=says):
-        plan.random_points(
-            2, np.random.default_rng(0), within=within, spacing=0.5, clearance=0.3
-        )
+        plan.random_points(2, np.random.default_rng(0), within=within, spacing=0.5, clearance=0.3)
 
 
 @pytest.mark.thorough

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from shapely.errors import GEOSException
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.floorplan.checks import one_line
 from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 
@@ -88,7 +89,8 @@ def _floors_and_mouths(
 ) -> tuple[list[shapely.Polygon | shapely.LineString], list[list[NDArray[np.float64]]]]:
     """The floors of passages narrower than ``width`` metres, and the (6,) mouths of each."""
     gaps = _gaps(plan, width)
-    narrow = _narrow_floor(plan, gaps, width)
+    with one_line("narrow passages"):
+        narrow = _narrow_floor(plan, gaps, width)
     along = gaps[:, 2:] - gaps[:, :2]
     normals = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
     middles = (gaps[:, :2] + gaps[:, 2:]) / 2.0

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from mesa_mobility.compiled.threads import in_threads, shares
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.checks import one_line
 from mesa_mobility.floorplan.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.corner_offsets import pass_abreast
 from mesa_mobility.floorplan.routing.network import network, ways_of
@@ -254,7 +255,8 @@ class Router:
         ]
         self._sight: Sight = sight_of(walls, np.concatenate(curtains), self._clearance)
         points = [each for each in self._destinations if is_point(each)]
-        nodes = with_points(find_nodes(plan, self._sight, self._clearance), points)
+        with one_line("routes"):
+            nodes = with_points(find_nodes(plan, self._sight, self._clearance), points)
         self._ways = ways_of(plan, nodes, len(walls), self._clearance, self._beyond)
         self._edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]

@@ -18,7 +18,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
+from mesa_mobility.floorplan.checks import EDGE_TOLERANCE, one_line
 from mesa_mobility.floorplan.walls.boundaries import (
     boundary_segments,
     cut_out,
@@ -57,8 +57,8 @@ _ROUNDS = 8
 class SmoothFloor(NamedTuple):
     """The free area without small pockets.
 
-    Fields: ``floor`` its polygon or polygons; ``walls`` (m,) its walls as shapely lines; ``tree`` of
-    them; ``is_exact`` whether it is the free area itself.
+    Fields: ``floor`` its polygon or polygons; ``walls`` (m,) its walls as shapely lines; ``tree``
+    of them; ``is_exact`` whether it is the free area itself.
     """
 
     floor: BaseGeometry
@@ -74,7 +74,8 @@ def smooth_floor(plan: "FloorPlan") -> SmoothFloor:
     """The smooth floor of a plan as it is now; kept until the plan changes."""
     found = _CACHE.get(plan)
     if found is None or found[0] != plan.version:
-        found = (plan.version, _make(plan))
+        with one_line("smooth outline"):
+            found = (plan.version, _make(plan))
         _CACHE[plan] = found
     return found[1]
 
@@ -139,7 +140,7 @@ def _have_room(plan: "FloorPlan", mouths: NDArray[np.float64]) -> NDArray[np.boo
 def _in_row(
     small: NDArray[np.bool_], pockets: NDArray[np.object_], mouths: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """(k,) which of (k, 4) mouths, in order along their rings, are among many that are ``small``."""
+    """(k,) which of (k, 4) mouths, in order along rings, are among many that are ``small``."""
     joined = np.zeros(len(small), dtype=np.bool_)
     joined[1:] = small[1:] & small[:-1] & (mouths[1:, :2] == mouths[:-1, 2:]).all(axis=1)
     row = np.cumsum(~joined)
@@ -162,7 +163,9 @@ def _pockets(
         if len(tips) < _MANY and not ends:
             continue
         closed = np.concatenate([ring, ring])
-        for tip, after in zip(tips.tolist(), np.append(tips[1:], tips[:1] + len(ring)).tolist()):
+        for tip, after in zip(
+            tips.tolist(), np.append(tips[1:], tips[:1] + len(ring)).tolist(), strict=True
+        ):
             a, b = closed[tip], closed[after]
             if not 0.0 < np.hypot(*(b - a)) <= _MOUTH:
                 continue
