@@ -214,7 +214,7 @@ def check_behaviours(what: str, given: Iterable[object], kind: type[Plugin]) -> 
     """Raise ModelError unless all are behaviours of a kind, with names."""
     for each in given:
         if not isinstance(each, kind):
-            text = f"the class {each.__name__}" if isinstance(each, type) else f"{each!r:.80}"
+            text = f"{each!r:.80}"
             raise ModelError(f"{what}: got {text}, expected an object of a {kind.__name__}")
         name = getattr(each, "name", None)
         if not (isinstance(name, str) and name):

@@ -158,21 +158,27 @@ def check_fields(made: Any, what: str) -> None:
 
 
 def making(method: Method) -> Method:
-    """The method, during which its object may take on new attributes."""
+    """The method, during which its object may take on new attributes.
+
+    Behaviours, which have ``check_settings``, refuse unknown names by a ModelError; models leave
+    them to Python, as Mesa's do.
+    """
 
     @wraps(method)
     def made(self: Any, *args: Any, **keywords: Any) -> Any:
         if id(self) in _BEING_MADE:
             return method(self, *args, **keywords)
+        has_settings = hasattr(self, "check_settings")
         _BEING_MADE.add(id(self))
         try:
             result = method(self, *args, **keywords)
         except TypeError:
-            _refuse_unknown(type(self), method, keywords)
+            if has_settings:
+                _refuse_unknown(type(self), method, keywords)
             raise
         finally:
             _BEING_MADE.discard(id(self))
-        if hasattr(self, "check_settings"):
+        if has_settings:
             self.check_settings()
         return result
 
