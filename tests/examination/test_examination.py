@@ -24,6 +24,7 @@ def marcher():
     return make_map([(stand(), *on), (*on, stand())], core_radius=0.14)
 
 
+@pytest.mark.thorough
 def test_a_marcher_fails_what_takes_turns_and_walks_straight_on():
     subject = Subject.of(marcher())
     found = {test.__name__: test(subject) for test in (door, corner, turn)}
@@ -35,6 +36,7 @@ def test_a_marcher_fails_what_takes_turns_and_walks_straight_on():
     assert "add recordings of people who sidestep" in found["door"].warning
 
 
+@pytest.mark.thorough
 def test_somebody_who_cannot_walk_slowly_is_found():
     # Preferred speeds are those of adults, 1.34 m/s in the median; shares of steps walk slower.
     slow = slowly(Subject.of(marcher()))
@@ -42,6 +44,7 @@ def test_somebody_who_cannot_walk_slowly_is_found():
     assert slow.measured["own_m_s"] == pytest.approx(1.34)
 
 
+@pytest.mark.thorough
 def test_stops_within_reach_of_the_point():
     found = stop(Subject.of(shipped_map()))
     assert found.passed
