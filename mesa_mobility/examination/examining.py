@@ -18,8 +18,8 @@ COVERAGE, SHARE = "coverage", "share_within_15cm_20deg"
 
 COVERED = 0.8
 """Least share of poses of clips left out that a map predicts within 15 cm and 20 degrees. Maps that
-ship have 0.84 (crutches) to 0.96 (able-bodied); one of six clips of a man who carries a box has 0.65,
-and one of 37 clips of runners 0.52."""
+ship have 0.84 (crutches) to 0.96 (able-bodied); six clips of a man who carries a box have 0.65, and
+37 clips of runners 0.52."""
 
 TESTS = (door, corner, turn, stop, slowly, crowd)
 

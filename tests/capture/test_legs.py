@@ -90,8 +90,12 @@ def test_the_joint_below_the_ankle_has_many_names(left, right):
 
 def test_two_joints_that_could_be_the_toes_are_named():
     parents = (-1, 0, 1, 2, 3, 3, 0, 6, 7, 8)
-    names = "Hips LeftUpLeg LeftLeg LeftFoot LeftToe1 LeftToe2 RightUpLeg RightLeg RightFoot RightToe"
-    with pytest.raises(CaptureError, match="but not one of LeftToeBase, LeftToe, or a single") as error:
+    names = (
+        "Hips LeftUpLeg LeftLeg LeftFoot LeftToe1 LeftToe2 RightUpLeg RightLeg RightFoot RightToe"
+    )
+    with pytest.raises(
+        CaptureError, match="but not one of LeftToeBase, LeftToe, or a single"
+    ) as error:
         leg_joints(Skeleton(names.split(), parents, np.zeros((10, 3))))
     assert str(error.value).endswith("(there: LeftToe1, LeftToe2)")
 
@@ -99,7 +103,9 @@ def test_two_joints_that_could_be_the_toes_are_named():
 def test_a_joint_that_is_missing_is_named():
     with pytest.raises(CaptureError) as error:
         leg_joints(
-            skeleton("LeftUpLeg LeftShin LeftFoot LeftToe", "RightUpLeg RightLeg RightFoot RightToe")
+            skeleton(
+                "LeftUpLeg LeftShin LeftFoot LeftToe", "RightUpLeg RightLeg RightFoot RightToe"
+            )
         )
     assert str(error.value) == (
         "no legs: found LeftUpLeg, LeftFoot, RightUpLeg, RightLeg, RightFoot (CMU and ACCAD BVH, "

@@ -30,7 +30,11 @@ def test_a_marcher_fails_what_takes_turns_and_walks_straight_on():
     found = {test.__name__: test(subject) for test in (door, corner, turn)}
     assert [name for name, each in found.items() if each.passed] == []
     # Of 21 starts one is straight before the door; the others face its wall or along it.
-    assert found["door"].measured == {"starts": 21, "in_time": 1, "slowest_s": pytest.approx(4, abs=1)}
+    assert found["door"].measured == {
+        "starts": 21,
+        "in_time": 1,
+        "slowest_s": pytest.approx(4, abs=1),
+    }
     assert found["corner"].measured["in_time"] == 0
     assert "in time 1" in found["door"].warning
     assert "add recordings of people who sidestep" in found["door"].warning
@@ -77,7 +81,10 @@ def never_examined():
     ("map_", "says"),
     [
         (never_examined(), "has never been examined"),
-        (with_verdict(marcher(), {"door": {}, "crowd": {}}), r"failed its examination \(door, crowd\)"),
+        (
+            with_verdict(marcher(), {"door": {}, "crowd": {}}),
+            r"failed its examination \(door, crowd\)",
+        ),
     ],
 )
 def test_a_model_warns_before_such_a_map_is_used(map_, says):
@@ -101,7 +108,10 @@ def test_what_is_no_verdict_is_none(said):
 
 
 def test_the_verdict_goes_into_the_file(tmp_path):
-    found = [Finding("door", "", {"in_time": 3}, "", False, ""), Finding("turn", "", {}, "", True, "")]
+    found = [
+        Finding("door", "", {"in_time": 3}, "", False, ""),
+        Finding("turn", "", {}, "", True, ""),
+    ]
     with_findings(marcher(), found).save(tmp_path / "a.npz")
     assert failed_tests(MobilityMap.load(tmp_path / "a.npz")) == {"door": {"in_time": 3}}
 
@@ -115,7 +125,7 @@ def test_maps_that_ship_pass(name):
 @pytest.mark.captures
 @pytest.mark.slow
 def test_runners_get_through_a_door(captures_dir):
-    """They set off abruptly and kept no step aside; alone, they stayed at the wall beside a door."""
+    """They set off abruptly and kept no step aside; alone, they stayed beside a door."""
     from mesa_mobility.capture import find_clips
     from mesa_mobility.mobility import build_map, prepare_recordings
 

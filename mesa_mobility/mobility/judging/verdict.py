@@ -1,8 +1,9 @@
 """What a map's examination has found, as its metadata keep it.
 
 The tests walk people through doors and corridors, so they are above the crowd, in
-``mesa_mobility.examination``. A map keeps what was measured in the tests that it has failed. Of those
-that it has passed it keeps nothing, so the file of a good map depends on its recordings alone.
+``mesa_mobility.examination``. A map keeps what was measured in the tests that it has failed. Of
+those that it has passed it keeps nothing, so the file of a good map depends on its recordings
+alone.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ KEY, FAILED = "examination", "failed"
 
 
 def with_verdict(map_: MobilityMap, failed: Mapping[str, Mapping[str, Any]]) -> MobilityMap:
-    """A copy of a map that has failed these tests, with what was measured, and passed the others."""
+    """A copy of a map that has failed these tests, with what was measured, and passed the rest."""
     said = {test: dict(measured) for test, measured in failed.items()}
     return replace(map_, metadata={**map_.metadata, KEY: {FAILED: said}})
 
@@ -39,8 +40,9 @@ def warn_unless_passed(map_: MobilityMap) -> None:
     name = map_.pedestrian_type
     if failed is None:
         said = (
-            f"the map {name!r} has never been examined, and what its people cannot do is not known: "
-            "`mesa-mobility map info` examines it, mesa_mobility.examination.examined notes that in it"
+            f"the map {name!r} has never been examined, and what its people cannot do is not "
+            "known: `mesa-mobility map info` examines it, and mesa_mobility.examination.examined "
+            "notes the result in it"
         )
     else:
         said = (

@@ -53,7 +53,8 @@ class Summary:
         tall = f"{low:.2f} m" if round(low, 2) == round(high, 2) else f"{low:.2f} to {high:.2f} m"
         return [
             f"{_many(self.clips, 'clip', 'clips')} of "
-            f"{_many(len(self.heights), 'person', 'people')}, {tall} tall from the lowest joint to the highest",
+            f"{_many(len(self.heights), 'person', 'people')}, "
+            f"{tall} tall from the lowest joint to the highest",
             f"unit of length: {_counts(self.units)}",
             f"frames a second: {_counts(self.frame_rates)}",
         ]

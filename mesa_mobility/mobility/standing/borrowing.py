@@ -2,11 +2,13 @@
 
 Without standing, people cannot wait or set off from rest; without turns on the spot, they stay in
 a corner for ever. Turns and steps count only as far as they are gentle: a crowd's default rules
-leave out options that start abruptly, as those of people who run mostly do. Where nobody stands, the
-other map gives its standing cluster with all options from there. Each cluster gets the options that end in it, from the pose most alike that has
-such options; so it does where people stand but options do not lead back to that. Where they do not
-turn on the spot, the other map gives its turns, and where they do not step aside either way and
-back, its steps. Strides are shortened to the borrower's speed.
+leave out options that start abruptly, as those of people who run mostly do.
+
+Where nobody stands, the other map gives its standing cluster with all options from there. Each
+cluster gets the options that end in it, from the pose most alike that has such options; so it does
+where people stand but options do not lead back to that. Where they do not turn on the spot, the
+other map gives its turns, and where they do not step aside either way and back, its steps. Strides
+are shortened to the borrower's speed.
 """
 
 from __future__ import annotations

@@ -31,7 +31,10 @@ def test_heights_that_nobody_has_are_warned_of(height, warned):
 
 def test_people_are_told_apart_by_their_skeletons():
     summary = summary_of([pole(1.5), pole(1.8, "b"), pole(1.5, "c")])
-    assert summary.lines[0] == "3 clips of 2 people, 1.50 to 1.80 m tall from the lowest joint to the highest"
+    assert (
+        summary.lines[0]
+        == "3 clips of 2 people, 1.50 to 1.80 m tall from the lowest joint to the highest"
+    )
 
 
 def test_guessed_units_are_named(tmp_path):
