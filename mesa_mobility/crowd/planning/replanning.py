@@ -17,6 +17,9 @@ from mesa_mobility.crowd.state.records import NO_OPTION, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
 
+TOUCHING = 1e-3
+"""Metres by which a body is in a line that it touches no more than others touch walls."""
+
 
 @kept()
 def stop_where_blocked(
@@ -32,7 +35,7 @@ def stop_where_blocked(
     They stand where they are and decide again in this frame.  Returns their number.
 
     An exit closes behind those who are in it on their way out, as doors do that give way to a body:
-    they go on and leave.  Others in a closed exit decide again, so that they step off at once.
+    they go on and leave.  Others across a closed door decide again, and step off at once.
     """
     reach = table.farthest.max()
     stopped = np.zeros(len(rows), np.bool_)
@@ -44,8 +47,7 @@ def stop_where_blocked(
         i = rows[a]
         if state.end[i] <= frame:
             continue
-        caught = _in_closed_exit(i, table, state, around)
-        if caught and state.gone[i] >= 0:
+        if state.gone[i] >= 0 and _in_closed_exit(i, table, state, around):
             continue
         pieces = _remaining(i, frame, table, state, path)
         walked = pieces
@@ -57,7 +59,9 @@ def stop_where_blocked(
             reach + state.core[i] + overhang_of(i, table, state) + 0.01, found,
         )  # fmt: skip
         spacing = np.int64(state.spacing[i])
-        if caught or body_hits_wall(i, path, walked, spacing, found[:walls], reach, table, state):
+        if _on_lines(i, found[:walls], table, state) or body_hits_wall(
+            i, path, walked, spacing, found[:walls], reach, table, state
+        ):
             stopped[a] = True
             newly[count] = i
             count += 1
@@ -99,14 +103,24 @@ def stop_where_blocked(
 @kept()
 def _in_closed_exit(i: int, table: OptionTable, state: CrowdState, around: Surroundings) -> bool:
     """Whether the body of pedestrian i is across an exit by which it may not leave."""
+    for e in range(len(around.exits)):
+        if not around.leads_out[state.destination[i], e] and _on_lines(
+            i, around.exits[e : e + 1], table, state
+        ):
+            return True
+    return False
+
+
+@kept()
+def _on_lines(i: int, lines: NDArray[np.float64], table: OptionTable, state: CrowdState) -> bool:
+    """Whether the body of pedestrian i is across one of some lines (n, 4 or more), as only doors
+    that close on people are."""
     shape, core = table.shapes[state.type_index[i]], state.core[i]
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
-    for e in range(len(around.exits)):
-        if around.leads_out[state.destination[i], e]:
-            continue
-        ax, ay, bx, by = around.exits[e]
+    for w in range(len(lines)):
+        ax, ay, bx, by = lines[w, 0], lines[w, 1], lines[w, 2], lines[w, 3]
         for d in range(shape.discs):
-            off, r = core * shape.offset[d], core * shape.radius[d]
+            off, r = core * shape.offset[d], core * shape.radius[d] - TOUCHING
             x, y = state.x[i] + off * c, state.y[i] + off * s
             if point_segment_distance2(x, y, ax, ay, bx, by) < r * r:
                 return True

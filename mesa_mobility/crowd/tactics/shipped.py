@@ -294,6 +294,9 @@ class StepOff(_OfTheCrowd):
         across = np.zeros(len(rows), dtype=np.bool_)
         step_off(rows, lines, self._shapes, crowd.records, points, across)
         if across.any():
+            # Those without a route would rather stand.
+            steps = points[across] - deciding.positions[across]
+            crowd.route[rows[across]] = np.hypot(steps[:, 0], steps[:, 1])
             own = crowd.agenda["speed"][rows]
             desired.points, desired.speeds = points, np.where(across, own, desired.speeds)
 

