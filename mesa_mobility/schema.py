@@ -23,6 +23,11 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ContentError, MobilityError
 
+__all__ = [
+    "Anything", "Array", "Each", "Either", "Flag", "Kind", "Maybe", "Members", "Object", "Real",
+    "Records", "Several", "Sizes", "Text", "Whole", "check", "check_shape",
+]  # fmt: skip
+
 Sizes = Mapping[str, Any]
 """Numbers by name, and the texts that a ``Text`` may be."""
 
@@ -158,7 +163,7 @@ class Array(Kind):
         """Refuse all but such arrays."""
         wanted = np.dtype(self.dtype)
         if not isinstance(value, np.ndarray) or value.dtype != wanted:
-            found = f"type {value.dtype}" if isinstance(value, np.ndarray) else value
+            found = value.dtype if isinstance(value, np.ndarray) else value
             _refuse(where, found, f"an array of {wanted}")
         if self.shape is not None:
             check_shape(value.shape, self.shape, where, sizes)
@@ -355,5 +360,5 @@ def _range(limits: Real | Array) -> str:
 
 
 def _refuse(where: str, value: Any, expected: str) -> NoReturn:
-    text = " ".join(f"{value!r:.60}".split()) if not isinstance(value, str) else f"{value:.60}"
+    text = " ".join(f"{value!r:.60}".split())
     raise ContentError(f"{where}: got {text}, expected {expected}")

@@ -219,6 +219,8 @@ def check_bank(bank: PoseBank) -> None:
         quaternions = bank.rotations[start : start + _PIECE] * QUATERNION_STEP
         if np.abs(np.linalg.norm(quaternions, axis=2) - 1.0).max() > 1e-3:
             raise MapError("pose bank array 'rotations': expected quaternions of length 1")
+    if not isinstance(bank.metadata.get("map_digest"), str):
+        raise MapError("pose bank metadata: no 'map_digest' of the map that it belongs to")
     standing = bank.metadata.get("standing", 0)
     for name, value, kind in (
         ("standing", standing, Whole(below=len(bank.cluster_poses))),
@@ -226,8 +228,6 @@ def check_bank(bank: PoseBank) -> None:
         ("pedestrian_type", bank.metadata.get("pedestrian_type"), Text()),
     ):
         check(value, kind, f"pose bank metadata, {name}", error=MapError)
-    if not isinstance(bank.metadata.get("map_digest"), str):
-        raise MapError("pose bank metadata: no 'map_digest' of the map that it belongs to")
     clips = bank.metadata.get("clips")
     if not isinstance(clips, list) or len(clips) != len(bank.clips) - 1:
         raise MapError(

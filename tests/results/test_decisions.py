@@ -39,8 +39,11 @@ def test_movements_of_a_person_come_in_order_of_time():
     ("changes", "what"),
     [
         ({"frame": np.array([5, 0, 12], np.int32)}, "go back"),
-        ({"option": np.array([1], np.int32)}, "option has shape"),
-        ({"type_index": np.array([0, 0, 1], np.int32)}, "types 0 to 1"),
+        ({"option": np.array([1], np.int32)}, "option: shape"),
+        (
+            {"type_index": np.array([0, 0, 1], np.int32)},
+            r"type_index\[2\]: got 1, expected a number, finite, 0 to 0",
+        ),
     ],
 )
 def test_decisions_that_cannot_be_are_refused(changes, what):

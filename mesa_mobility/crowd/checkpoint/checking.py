@@ -21,7 +21,7 @@ from mesa_mobility.crowd.checkpoint.recordings import check_recording
 from mesa_mobility.crowd.hooks import Plugin, ships
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import LAST_FRAME
-from mesa_mobility.errors import ContentError, ModelError
+from mesa_mobility.errors import ContentError, MobilityError, ModelError
 from mesa_mobility.schema import (
     Anything,
     Flag,
@@ -139,7 +139,7 @@ def restore_behaviour(model: PedestrianModel, behaviour: Plugin, state: Any) -> 
         behaviour.restore(read)
         if ships(behaviour):
             _make_again(behaviour)
-    except ContentError as error:
+    except MobilityError as error:
         raise ModelError(f"{where}: {error}") from error
     except Exception as error:
         member = f", after the member {read.last!r}" if read.last else ""

@@ -159,13 +159,14 @@ class Unpacker:
     """
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], objects: Mapping[Any, Any]) -> None:
-        self._arrays = dict(arrays)
+        self._arrays = arrays
+        self._used: set[str] = set()
         self.objects = objects
 
     @property
     def left(self) -> list[str]:
         """Names of the arrays that no value so far is made of."""
-        return sorted(self._arrays)
+        return sorted(self._arrays.keys() - self._used)
 
     def unpack(self, value: Any) -> Any:
         """The value that ``Packer.pack`` was given.
@@ -195,9 +196,9 @@ class Unpacker:
             case "dict":
                 return {self.unpack(key): self.unpack(each) for key, each in content}
             case "array":
-                return self._arrays.pop(content)
+                return self._array(content)
             case "scalar":
-                return self._arrays.pop(content).reshape(())[()]
+                return self._array(content).reshape(())[()]
             case "type":
                 return {kind.__name__: kind for kind in KINDS}[content]
             case "path":
@@ -222,6 +223,13 @@ class Unpacker:
                 name, given = content
                 return _DATACLASSES[name](**{key: self.unpack(each) for key, each in given.items()})
         raise ValueError(f"kind {kind!r}")
+
+    def _array(self, name: str) -> NDArray[Any]:
+        # Not a copy: two values that refer to one array would change together.
+        if name in self._used:
+            raise ValueError(f"array {name} is there twice")
+        self._used.add(name)
+        return self._arrays[name]
 
     @staticmethod
     def _name(content: Any) -> Any:

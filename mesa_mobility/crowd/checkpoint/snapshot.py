@@ -117,7 +117,8 @@ def load_model(
         check(content, CONTENT, "checkpoint")
         return _load(kind, content, arrays, plugins, given)
     except MobilityError as error:
-        raise ModelError(f"{os.fspath(path)}: {error}") from error
+        text = " ".join(str(error).split())  # texts of the file may have several lines
+        raise ModelError(f"{os.fspath(path)}: {text}") from error
     except Exception as error:  # constructors of models meet values that no check knows of
         reason = next(iter(str(error).splitlines()), "")[:200]
         raise ModelError(

@@ -86,9 +86,14 @@ class CostTerm(Plugin):
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given."""
         super().restore(state)
-        self.weight = self._weight  # checked as when they are set
-        self.weight_by_type = self._by_type
-        self.for_types = self._for_types
+        # They are checked as when a user sets them; those of the class are none of the object's.
+        for name, attribute in (
+            ("_weight", "weight"),
+            ("_by_type", "weight_by_type"),
+            ("_for_types", "for_types"),
+        ):
+            if name in state:
+                setattr(self, attribute, state[name])
 
     @property
     def weight(self) -> float:

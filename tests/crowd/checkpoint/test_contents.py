@@ -130,14 +130,11 @@ def test_one_number_of_a_person(saved, tmp_path, field, value, text):
     (("population", "agenda"), put("journey", 0, 3), r"agenda, journey\[0\]: got 3"),
     (("population", "agenda"), put("speed", 0, np.inf), r"agenda, speed\[0\]: got inf"),
     (("population", "records"), lambda a: a[:-1], r"records: shape \(5,\), expected \(6\)"),
-    (("population", "present"), lambda a: a.astype("f8"), "present: got type float64"),
+    (("population", "present"), lambda a: a.astype("f8"), "present: got dtype..float64.."),
     (("recorder", "x"), put("", 7, 1e3), "recorder, row .*: is more than 0.41 m from the frame"),
-    (("recorder", "x"), lambda a: a[:-1], r"recorder, y: shape"),
-    (("stall_watch", "_begun"), None, ""),
+    (("recorder", "x"), lambda a: a[:-1], r"recorder, (x|y): shape"),
 ])  # fmt: skip
 def test_one_number_of_a_part(saved, tmp_path, names, change, text):
-    if change is None:
-        return
     change_array(saved, tmp_path / "f", names, change)
     with pytest.raises(ModelError, match=text):
         load(tmp_path / "f")
@@ -174,7 +171,7 @@ def overlap(content):
     (lambda c: behaviour(c, "tactics", "counting")[0].__setitem__(1, "7"),
      r"behaviour 'counting': no state of it, after the member 'calls' \(TypeError"),
     (overlap, "people, number of different unique_ids"),
-    (lambda c: c["own"].update(step=5), "own, step: expected the name of an attribute"),
+    (lambda c: c["own"].update(run=5), "own, run: expected the name of an attribute"),
     (lambda c: c["own"].update(frame=5), "own, frame: expected attributes that all models"),
     (lambda c: c["parts"]["$"][1].pop(), "parts: missing"),
     (lambda c: c.update(x=1), "checkpoint: unknown 'x'"),

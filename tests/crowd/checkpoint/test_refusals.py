@@ -100,7 +100,7 @@ def changed(path, change):
     (lambda c: c.update(format_version=99), "format version 99, expected 1"),
     (lambda c: c.update(model="somewhere:Else"), "a checkpoint of somewhere:Else"),
     (lambda c: c.update(map_sha256=["0"]), "its mobility maps are others"),
-    (lambda c: c.pop("parts"), "not a checkpoint of this version"),
+    (lambda c: c.pop("parts"), "checkpoint: missing 'parts', expected the members"),
     (lambda c: c["own"].update(x={"$": ["code", "1+1"]}), "not one of a checkpoint"),
 ])  # fmt: skip
 def test_files_that_do_not_fit(tmp_path, change, text):
