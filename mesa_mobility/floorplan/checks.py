@@ -120,7 +120,7 @@ def check_exits(walkable: Polygon, exits: Sequence[Exit], gates: Sequence[Gate])
                 f"exit {opening.name!r} is not on the edge of the walkable area: "
                 f"it is up to {away:.3f} m away, at most {EDGE_TOLERANCE} m is accepted"
             )
-    lines = [opening.line for opening in exits]
+    lines = np.array([opening.line for opening in exits], dtype=object)
     bands = shapely.buffer(lines, EDGE_TOLERANCE, cap_style="flat")
     later, earlier = shapely.STRtree(bands).query(lines, predicate="intersects")
     for i, k in sorted(zip(later.tolist(), earlier.tolist(), strict=True)):

@@ -35,7 +35,7 @@ def test_each_case_runs_once_a_seed_in_processes_of_one_thread(timeless):
         ("product(factor 3.0)", 7): 21.0,
     }
     assert {figures["threads"] for figures in results.values()} == {"1"}
-    assert reports == [(1.0, 4.0), (2.0, 4.0), (3.0, 4.0), (4.0, 4.0)]
+    assert reports == [(0.0, 4.0), (1.0, 4.0), (2.0, 4.0), (3.0, 4.0), (4.0, 4.0)]
 
 
 def test_a_case_that_breaks_says_so_and_the_others_run(timeless):

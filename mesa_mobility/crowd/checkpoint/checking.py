@@ -181,12 +181,15 @@ def check_attributes(model: PedestrianModel, given: Mapping[str, Any]) -> None:
 def check_collected(there: Mapping[str, Mapping[str, Any]], given: Any) -> None:
     """Raise ContentError unless the tables of a data collector are as it has them itself."""
     columns = Several(Anything(), length="steps")
+    # Reporters that were added are added again once a model has been loaded.
+    reported = given.get("model_vars") if isinstance(given, Mapping) else None
+    names = [*there["model_vars"], *(reported if isinstance(reported, Mapping) else ())]
     tables = {
         name: Members(dict.fromkeys(columns_of, Several(Anything(), length=f"rows of {name}")))
         for name, columns_of in there["tables"].items()
     }
     kinds = {
-        "model_vars": Members(dict.fromkeys(there["model_vars"], columns)),
+        "model_vars": Members(dict.fromkeys(names, columns)),
         "_agent_records": Several(Real(), dict),
         "tables": Members(tables),
     }

@@ -86,10 +86,8 @@ def _placed_discs(row: int, model: PedestrianModel) -> list[list[float]]:
 
 
 def _lost(explained: Explanation, model: PedestrianModel) -> bool:
-    """Whether there is no way to where somebody wants to go: their target is where they stand."""
-    candidates = explained.candidates
-    stays = model.journeys.stays.stands(explained.pedestrian)
-    return not stays and bool(np.array_equal(candidates.targets[0], candidates.positions[0]))
+    """Whether there is no way to where somebody wants to go."""
+    return not np.isfinite(model.crowd.route[explained.pedestrian])
 
 
 def _goes(explained: Explanation, model: PedestrianModel) -> str:

@@ -64,8 +64,10 @@ def test_too_little_movement_is_one_line(command, recordings, tmp_path, rows, sa
     (tmp_path / "slow.bvh").write_text(text)
     outcome = command("map", "build", tmp_path / "slow.bvh", "-o", tmp_path / "a.npz")
     assert outcome.status == 2
-    assert len(outcome.err.splitlines()) == 1
-    assert says in outcome.err
+    # Unit and height come first: with a wrong unit, nobody walks.
+    [line] = [each for each in outcome.err.splitlines() if each.startswith("error: ")]
+    assert says in line
+    assert outcome.err.splitlines()[-1] == line
     assert not (tmp_path / "a.npz").exists()
 
 
