@@ -10,7 +10,7 @@ from shapely import box
 
 from mesa_mobility.errors import FloorPlanError, ModelError
 from tests.fixtures.maps import shipped_map, strider
-from tests.fixtures.oracles.counting import crossings, overlaps, track, wall_crossings
+from tests.fixtures.oracles.counting import crossings, during, overlaps, track, wall_crossings
 from tests.fixtures.scenes import advance, core_of, corridor, dead_end, model_of, put, two_doors
 
 
@@ -128,6 +128,5 @@ def test_whatever_comes_and_goes_nobody_is_run_into_or_walked_through(seed):
     rows = model.recorder.arrays()
     assert overlaps(rows, core, tolerance=1e-5) == 0
     for first, last, walls in intervals:
-        during = (rows["frame"] >= first) & (rows["frame"] <= last)
-        part = {name: values[during] for name, values in rows.items()}
+        part = during(rows, first, last, plan, core)
         assert wall_crossings(part, walls) == 0, (first, last)

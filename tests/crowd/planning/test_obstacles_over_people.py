@@ -11,7 +11,7 @@ from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel, PedestrianType
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.results import Trajectories, check_safety
 from tests.fixtures.maps import shipped_map, strider
-from tests.fixtures.oracles.counting import off_floor, overlaps, wall_crossings
+from tests.fixtures.oracles.counting import during, off_floor, overlaps, wall_crossings
 from tests.fixtures.scenes import advance, core_of, corridor, model_of, put
 
 
@@ -167,20 +167,10 @@ def changing(changes: int, seed: int, *, over_people: bool) -> None:
     assert refused > changes // 5 if over_people else put_down > changes // 5
     rows = model.recorder.arrays()
     assert overlaps(rows, core, tolerance=1e-5) == 0
-    # People who are in an exit when it closes leave: their last row is beyond its line.
-    leaving = rows["frame"] == _last_frames(rows)
     for first, last, walls, free in intervals:
-        during = (rows["frame"] >= first) & (rows["frame"] <= last) & ~leaving
-        part = {name: values[during] for name, values in rows.items()}
+        part = during(rows, first, last, plan, core)
         assert wall_crossings(part, walls) == 0, (first, last)
         assert off_floor(part, free) == 0, (first, last)
-
-
-def _last_frames(rows: dict[str, np.ndarray]) -> np.ndarray:
-    """For each row, the last frame of its person."""
-    last = np.zeros(rows["person"].max() + 1, dtype=np.int64)
-    np.maximum.at(last, rows["person"], rows["frame"])
-    return last[rows["person"]]
 
 
 def _let_in(model: PedestrianModel, places: np.ndarray) -> int:
