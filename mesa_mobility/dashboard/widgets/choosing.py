@@ -6,18 +6,6 @@ from collections.abc import Callable, Mapping
 
 import solara
 
-UNDRAWN = {"display": "none"}
-"""Style of the first panel while another is chosen: its canvases stop drawing."""
-
-UNSEEN = {
-    "position": "absolute",
-    "visibility": "hidden",
-    "height": "0",
-    "width": "100%",
-    "overflow": "hidden",
-}
-"""Style of the others: ECharts warns of charts without a size that it makes a moment too late."""
-
 
 @solara.component_vue("tabs.vue")
 def _TabList(
@@ -47,7 +35,7 @@ def Tabs(
     for number, name in enumerate(names):
         with solara.Div(
             classes=["mm-panel"],
-            style={} if name == chosen else UNDRAWN if number == 0 else UNSEEN,
+            style={"display": "block" if name == chosen else "none"},
             attributes={
                 "role": "tabpanel",
                 "id": f"mm-panel-{number}",

@@ -81,6 +81,8 @@ def test_tabs_are_turned_by_arrows(tab):
         assert looking(tab.page, "focused") == name
         assert tab.page.get_by_role("tab", selected=True).inner_text() == name
         assert tab.page.get_by_role("tabpanel").count() == 1
+    # Charts of the first tab, which was left before they could be drawn, are drawn now.
+    tab.page.locator(".solara-echarts canvas").first.wait_for()
 
 
 @pytest.mark.thorough
