@@ -189,8 +189,9 @@ def check_bank(bank: PoseBank) -> None:
     Raises:
         MapError: naming the array and what was expected.
     """
-    p, m, q = len(bank.rotations), len(bank.strides), len(bank.frames)
+    p, m, q = (np.atleast_1d(each).shape[0] for each in (bank.rotations, bank.strides, bank.frames))
     shapes = {
+        "strides": (m,),
         "rotations": (p, len(TURNING), 4),
         "heights": (p,),
         "contacts": (p,),

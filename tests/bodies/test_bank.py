@@ -86,6 +86,8 @@ def test_poses_stand_beside_their_map():
     [
         ({"heights": np.zeros(3, np.int16)}, "heights"),
         ({"poses": np.array([0, 0, 99], np.int32)}, "poses"),
+        ({"strides": np.full((2, 1), 100, np.uint8)}, "'strides': shape"),
+        ({"strides": np.array(100, np.uint8)}, "'strides': shape"),
         ({"frames": np.array([1, 0, 1], np.int16)}, "frames"),
         ({"rotations": np.zeros((4, 17, 4), np.int16)}, "rotations"),
         ({"metadata": {}}, "map_digest"),
