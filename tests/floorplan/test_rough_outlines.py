@@ -83,7 +83,7 @@ def test_jitter_is_left_out_and_the_floor_only_grows() -> None:
 def test_simplify_can_be_turned_off_and_is_kept_in_files() -> None:
     floor, exits = _jittered(40), [Exit("end", (12, 2), (12, 3))]
     plan = FloorPlan(floor, exits=exits, simplify=0)
-    assert plan.free.normalize().equals_exact(floor.normalize())
+    assert plan.free.normalize().equals_exact(floor.normalize(), 0.0)
     assert FloorPlan.from_geojson(plan.to_geojson()).simplify == 0.0
     assert FloorPlan.from_geojson(FloorPlan(floor, exits=exits).to_geojson()).simplify == 0.01
 
@@ -97,7 +97,7 @@ def test_bad_tolerances(value: object) -> None:
 def test_an_outline_without_such_vertices_keeps_every_bit() -> None:
     floor = box(0.1, 0.2, 9.3, 7.7).difference(box(3.3, 0.2, 3.4, 5.0)).difference(box(6, 3, 7, 4))
     plan = FloorPlan(floor, exits=[Exit("end", (9.3, 2), (9.3, 3))])
-    assert plan.free.normalize().equals_exact(floor.normalize())
+    assert plan.free.normalize().equals_exact(floor.normalize(), 0.0)
     assert smooth_floor(plan).is_exact
 
 
