@@ -25,7 +25,7 @@ from mesa_mobility.dashboard.views.map_view import MapView
 from mesa_mobility.dashboard.views.page_frame import PageFrame
 from mesa_mobility.dashboard.widgets.choosing import OneOf, Tabs
 from mesa_mobility.dashboard.widgets.fields import Choice, TextField
-from mesa_mobility.dashboard.widgets.text import heading
+from mesa_mobility.dashboard.widgets.text import Note, heading
 from mesa_mobility.plugins import registry
 
 DEFAULT_MODEL = "doorway"
@@ -194,6 +194,8 @@ STYLE = (
 def _Problem(session: Session) -> None:
     if session.problem.value:
         solara.Error(session.problem.value, dense=True)
+    for notice in session.notices.value:
+        Note(notice)
 
 
 @solara.component

@@ -2,6 +2,7 @@
 
 import threading
 import time
+import warnings
 
 import pytest
 
@@ -9,6 +10,7 @@ pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]
 
 from mesa_mobility.models import Doorway
 
+from mesa_mobility.dashboard.session.notices import hand_out_warnings
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.session import Session
 from tests.fixtures.waiting import until
@@ -132,3 +134,32 @@ def test_of_wishes_in_quick_succession_the_last_one_alone_is_made(session):
     until(lambda: session.status.value.state == "ready" and session.status.value.inside == 8)
     # The first at once, and the one after which nothing came.
     assert made == [1, 8]
+
+
+class Warns(Doorway):
+    """Warns of itself when it is made."""
+
+    def __init__(self, rng=None):
+        super().__init__(pedestrians=2, rng=rng)
+        warnings.warn("the door is\nnarrow", UserWarning, stacklevel=1)
+
+
+def test_warnings_of_a_model_are_shown_as_long_as_it_runs(session, monkeypatch, capsys):
+    monkeypatch.setattr(warnings, "showwarning", warnings.showwarning)
+    with warnings.catch_warnings():
+        hand_out_warnings()
+        for _ in range(2):
+            said = []
+            session.build(Recipe(Warns), said.append)
+            until(lambda: said)
+            assert said == [""]
+            assert session.notices.value == ("the door is narrow",)
+        # No behaviour has a weight: the model warns of that when somebody decides.
+        for term in session.behaviours.value:
+            session.set_behaviour(term.name, term.on, 0.0)
+        session.play(True)
+        until(lambda: len(session.notices.value) == 2)
+        session.build(Recipe(Doorway, {"pedestrians": 3}), said.append)
+        until(lambda: len(said) == 2)
+        assert session.notices.value == ()
+    assert capsys.readouterr().err == ""

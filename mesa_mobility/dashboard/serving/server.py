@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from mesa_mobility._startup import nothing_collected
 from mesa_mobility.dashboard.serving.guard import Guard
+from mesa_mobility.dashboard.session.notices import hand_out_warnings
 from mesa_mobility.errors import MobilityError
 from mesa_mobility.live.access import TOKEN, address_of, is_loopback, listen, own_token
 from mesa_mobility.mobility import MobilityMap
@@ -64,6 +65,7 @@ def serve(
     token = own_token()
     listening = listen(host, port)
     os.environ.update(SETTINGS)
+    hand_out_warnings()
     # It concerns pages in frames, which this one is not.  Libraries change the filters for a while
     # in the thread below; one that is added meanwhile is lost.
     warnings.filterwarnings("ignore", "Cookies with samesite=none", UserWarning)

@@ -15,6 +15,7 @@ from solara.server import kernel_context
 from mesa_mobility import MobilityError, PedestrianModel
 from mesa_mobility.dashboard.session import kept
 from mesa_mobility.dashboard.session.behaviours import Behaviours
+from mesa_mobility.dashboard.session.notices import hear
 from mesa_mobility.dashboard.session.observer import Observer
 from mesa_mobility.dashboard.session.plan_changes import PlanChanges
 from mesa_mobility.dashboard.session.run import Run
@@ -91,6 +92,7 @@ class Engine(Shown):
         return self._page is not None and connected in list(self._page.page_status.values())
 
     def _work(self) -> None:
+        hear(self._notice)
         try:
             while not self._closed:
                 command = self._next()
@@ -167,11 +169,12 @@ class Engine(Shown):
     def _make(self, recipe: Recipe, answer: Answer | None) -> None:
         problem, run = "", None
         try:
-            model = self._wait_for(Making(recipe))
+            making = Making(recipe)
+            model = self._wait_for(making)
             if model is not None:
-                run = Run(
-                    recipe, model, Observer(model), PlanChanges(model), self._terms, self._clock
-                )
+                seen, plan = Observer(model), PlanChanges(model)
+                run = Run(recipe, model, seen, plan, self._terms, self._clock)
+                run.notices = making.notices
         # A plug-in may fail in any way, which must not affect the current run.
         except Exception as error:
             problem = said(error)
@@ -201,13 +204,13 @@ class Engine(Shown):
         """Show a run in place of the current one."""
         before = self._current
         kind, preset = run.recipe.kind, run.recipe.keywords.get("preset")
-        same = before is None or (before.recipe.kind, before.recipe.keywords.get("preset")) == (
-            kind, preset,
-        )  # fmt: skip
+        known = None if before is None else before.recipe
+        same = known is None or (known.kind, known.keywords.get("preset")) == (kind, preset)
         self._current = run
         self._terms.adopt(run.model, keep=same)
         run.set_playing(False)
         self.show_new(run.recipe, run.model, run.plan, self._terms)
+        self.notices.set(tuple(run.notices))
         self._show_terms(run.model)
 
     def _go_on_with(self, run: Run, answer: Answer | None) -> None:
@@ -219,6 +222,7 @@ class Engine(Shown):
         with self.together:
             self._terms.apply(run.model)
             self.show_new(run.recipe, run.model, run.plan, self._terms)
+            self.notices.set(tuple(run.notices))
             self._show_terms(run.model)
             self.speed.set(run.clock.speed)
             if run.model.watch is not None:
@@ -226,6 +230,12 @@ class Engine(Shown):
             if answer is not None:
                 answer("")
         self._publish()
+
+    def _notice(self, warning: str) -> None:
+        """Show a warning of the current model."""
+        if self._current is not None and warning not in self._current.notices:
+            self._current.notices.append(warning)
+            self.notices.set(tuple(self._current.notices))
 
     def _show_terms(self, model: PedestrianModel) -> None:
         self.behaviours.set(self._terms.states(model))

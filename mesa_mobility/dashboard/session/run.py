@@ -31,6 +31,7 @@ class Run:
         failed: whether a step has raised an error; no further step follows.
         hand: the steering of somebody with keys.
         until_decision: whether it pauses when the watched person has decided.
+        notices: the warnings that the model has given.
     """
 
     recipe: Recipe
@@ -41,6 +42,7 @@ class Run:
     clock: Clock
     failed: bool = False
     until_decision: bool = False
+    notices: list[str] = field(default_factory=list)
     hand: ByHand = field(init=False)
 
     def __post_init__(self) -> None:

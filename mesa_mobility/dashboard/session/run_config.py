@@ -12,6 +12,7 @@ from typing import Any
 from solara.server import kernel_context
 
 from mesa_mobility import PedestrianModel
+from mesa_mobility.dashboard.session.notices import hear
 
 
 @dataclass(frozen=True)
@@ -71,10 +72,12 @@ class Making:
 
     Attributes:
         done: set when the model is made, or has failed.
+        notices: the warnings it has given.
     """
 
     def __init__(self, recipe: Recipe) -> None:
         self.done = threading.Event()
+        self.notices: list[str] = []
         self._recipe = recipe
         self._model: PedestrianModel | None = None
         self._error: Exception | None = None
@@ -86,6 +89,7 @@ class Making:
             self._thread.start()
 
     def _make(self) -> None:
+        hear(self.notices.append)
         try:
             self._model = self._recipe.make()
         except GivenUp:

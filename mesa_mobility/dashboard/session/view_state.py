@@ -76,6 +76,7 @@ class Shown:
         types: the pedestrian types of the model that runs.
         selected: row of the person whose decisions are shown, or -1.
         problem: what the last command or step ran into, or "".
+        notices: the warnings that the model has given.
         colouring: by what people are coloured.
         colourings: names of all by which they can be.
         run_number: number of the run that is shown, 1 for the page's first.
@@ -96,6 +97,7 @@ class Shown:
         self.types: solara.Reactive[tuple[PedestrianType, ...]] = solara.reactive(())
         self.selected = solara.reactive(-1)
         self.problem = solara.reactive("")
+        self.notices: solara.Reactive[tuple[str, ...]] = solara.reactive(())
         self.colouring = COLOURINGS["speed"]
         self.colourings = solara.reactive(tuple(COLOURINGS))
         self._colour = "speed"
