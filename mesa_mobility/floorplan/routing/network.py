@@ -43,6 +43,7 @@ def ways_of(plan: "FloorPlan", nodes: Nodes, walls: int, clearance: float, beyon
         nodes.kind,
         nodes.xy,
         nodes.opening,
+        nodes.only,
         nodes.normal,
         lines,
         ends,

@@ -26,6 +26,7 @@ class Ways(NamedTuple):
     kind: NDArray[np.int64]
     xy: NDArray[np.float64]
     opening: NDArray[np.int64]
+    only: NDArray[np.int64]
     normal: NDArray[np.float64]
     lines: NDArray[np.float64]
     ends: NDArray[np.float64]
@@ -52,32 +53,40 @@ def _curtain(ways: Ways, node: int) -> int:
 def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> NDArray[np.int64]:
     """(k, 2) all directed edges, from and to which node, between nodes in view of each other."""
     n = len(ways.kind)
-    edges = np.empty((max(64, n), 2), dtype=np.int64)
-    count = 0
+    edges = [(0, 0) for _ in range(0)]
     for i in range(n):
-        if ways.kind[i] == EXIT:
+        # Ends of routes, and nodes that lead to one exit only, are pairs of the others.
+        if ways.kind[i] == EXIT or ways.only[i] >= 0:
             continue
         for j in range(n):
-            # One view serves both directions between nodes that are not exits.
-            both = ways.kind[i] != EXIT and ways.kind[j] != EXIT
-            if i == j or (both and j < i):
+            # One view serves both directions.
+            through = ways.kind[j] != EXIT and ways.only[j] < 0
+            if i == j or (through and j < i):
                 continue
             there = _may_follow(ways, i, j)
-            back = both and _may_follow(ways, j, i)
-            if not there and not back:
-                continue
-            ax, ay = ways.xy[i]
-            bx, by = ways.xy[j]
-            if clear_line(sight, ax, ay, bx, by, clearance, np.inf, _curtain(ways, j)):
-                if count + 2 > len(edges):
-                    edges = np.concatenate((edges, np.empty_like(edges)))
+            back = through and _may_follow(ways, j, i)
+            if (there or back) and _in_view(sight, ways, i, j, clearance):
                 if there:
-                    edges[count, 0], edges[count, 1] = i, j
-                    count += 1
+                    edges.append((i, j))
                 if back:
-                    edges[count, 0], edges[count, 1] = j, i
-                    count += 1
-    return edges[:count].copy()
+                    edges.append((j, i))
+    for j in range(n):
+        if ways.kind[j] == EXIT:
+            for i in range(n):
+                if ways.only[i] == ways.opening[j] and _may_follow(ways, i, j):
+                    if _in_view(sight, ways, i, j, clearance):
+                        edges.append((i, j))
+    found = np.empty((len(edges), 2), dtype=np.int64)
+    for k, (i, j) in enumerate(edges):
+        found[k, 0], found[k, 1] = i, j
+    return found
+
+
+@internal()
+def _in_view(sight: Sight, ways: Ways, i: int, j: int, clearance: float) -> bool:
+    ax, ay = ways.xy[i]
+    bx, by = ways.xy[j]
+    return clear_line(sight, ax, ay, bx, by, clearance, np.inf, _curtain(ways, j))
 
 
 @internal()

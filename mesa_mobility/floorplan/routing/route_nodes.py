@@ -1,6 +1,6 @@
 """The nodes of routes: corners, gates and exits."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -55,6 +55,8 @@ class Nodes:
         kind: (n,) CORNER, GATE or EXIT.
         xy: (n, 2) metres.
         opening: (n,) number of the gate or exit in `FloorPlan.openings()`, -1 for corners.
+        only: (n,) number of the exit that a route bends here for and for nothing else, at the end
+            of a wall beside it; -1 for nodes that any route may pass.
         normal: (n, 2) unit direction in which the gate or exit is crossed, 0 for corners. Every
             point of a gate is two nodes, one for either direction.
     """
@@ -62,13 +64,16 @@ class Nodes:
     kind: NDArray[np.int64]
     xy: NDArray[np.float64]
     opening: NDArray[np.int64]
+    only: NDArray[np.int64]
     normal: NDArray[np.float64]
 
 
 def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
     """The nodes of a plan for bodies that keep `clearance` metres from walls."""
-    corners = np.concatenate(_corners(plan, sight, clearance))
-    corners = corners[np.unique(corners.round(3), axis=0, return_index=True)[1]]
+    corners, only = _corners(plan, sight, clearance)
+    keys = np.column_stack([corners.round(3), only])
+    first = np.unique(keys, axis=0, return_index=True)[1]
+    corners, only = corners[first], only[first]
     kinds = [np.zeros(len(corners), np.int64)]
     points, normals = [corners], [np.zeros((len(corners), 2))]
     numbers = [np.full(len(corners), -1, dtype=np.int64)]
@@ -87,10 +92,12 @@ def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
             points.append(places)
             normals.append(np.tile(direction, (len(places), 1)))
             numbers.append(np.full(len(places), number, dtype=np.int64))
+    kind = np.concatenate(kinds)
     return Nodes(
-        np.concatenate(kinds),
+        kind,
         np.ascontiguousarray(np.concatenate(points)),
         np.concatenate(numbers),
+        np.concatenate([only, np.full(len(kind) - len(only), -1, dtype=np.int64)]),
         np.ascontiguousarray(np.concatenate(normals)),
     )
 
@@ -104,6 +111,7 @@ def with_points(nodes: Nodes, points: Sequence[tuple[float, float]]) -> Nodes:
         np.concatenate([nodes.kind, np.full(n, CORNER, dtype=np.int64)]),
         np.ascontiguousarray(np.concatenate([nodes.xy, np.array(points, dtype=np.float64)])),
         np.concatenate([nodes.opening, np.full(n, -1, dtype=np.int64)]),
+        np.concatenate([nodes.only, np.full(n, -1, dtype=np.int64)]),
         np.ascontiguousarray(np.concatenate([nodes.normal, np.zeros((n, 2))])),
     )
 
@@ -150,32 +158,44 @@ def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> ND
     return wall_distances(sight, places, clearance) > NODE_SHARE * clearance - 1e-9
 
 
-def _corners(plan: "FloorPlan", sight: Sight, clearance: float) -> list[NDArray[np.float64]]:
-    bases, offsets = _wall_ends(plan, clearance)
+def _corners(
+    plan: "FloorPlan", sight: Sight, clearance: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The (n, 2) corners of routes, and for each the only exit that it leads to, or -1."""
+    bases, offsets = _gate_ends(plan, clearance)
     beside = []
     for ring in rings(smooth_floor(plan).floor.simplify(_SIMPLIFY * clearance)):
         for vertex, own, edges in _reflex(ring, clearance):
             bases += [vertex] * len(own)
             offsets += own
             beside += [np.stack([vertex, vertex + offset]) for offset in edges]
-    waiting_base = np.array(bases, dtype=np.float64).reshape(-1, 2)
-    waiting_offset = np.array(offsets, dtype=np.float64).reshape(-1, 2)
-    found = [np.empty((0, 2))]
+    only = [-1] * len(bases)
+    for number, base, offset in _exit_ends(plan, clearance):
+        bases.append(base)
+        offsets.append(offset)
+        only.append(number)
+    base = np.array(bases, dtype=np.float64).reshape(-1, 2)
+    offset = np.array(offsets, dtype=np.float64).reshape(-1, 2)
+    waiting = np.arange(len(base))
+    found, leads = [], []
     # In a narrow passage a corner is put nearer to its wall.
     for share in _SHARES:
-        places = waiting_base + share * waiting_offset
+        places = base[waiting] + share * offset[waiting]
         good = plan.contains(places) & _passable(sight, places, clearance)
         found.append(places[good])
-        waiting_base, waiting_offset = waiting_base[~good], waiting_offset[~good]
+        leads.append(np.array(only, dtype=np.int64)[waiting[good]])
+        waiting = waiting[~good]
     # Where even that is too near to another wall, the route bends in the middle of the gap, and
     # beside the vertex before and after it.
-    failed = {tuple(base) for base in waiting_base.tolist()}
+    failed = {tuple(each) for each in base[waiting].tolist()}
     more = [place for vertex, place in beside if tuple(vertex.tolist()) in failed]
-    found.append(np.array(more, dtype=np.float64).reshape(-1, 2))
-    found.append(_middles(plan, waiting_base, clearance))
-    last = np.concatenate(found[-2:])
-    found[-2:] = [last[plan.contains(last) & _passable(sight, last, clearance)]]
-    return found
+    last = np.array(more, dtype=np.float64).reshape(-1, 2)
+    last = np.concatenate([last, _middles(plan, base[waiting], clearance)])
+    last = last[plan.contains(last) & _passable(sight, last, clearance)]
+    return (
+        np.concatenate([*found, last]),
+        np.concatenate([*leads, np.full(len(last), -1, dtype=np.int64)]),
+    )
 
 
 def _middles(
@@ -224,17 +244,24 @@ def _cap(
     return [clearance * outwards + beside * across, clearance * outwards - beside * across]
 
 
-def _wall_ends(
+def _exit_ends(
+    plan: "FloorPlan", clearance: float
+) -> Iterator[tuple[int, NDArray[np.float64], NDArray[np.float64]]]:
+    """The ends of walls at open exits: number of the exit, end, and offset of the corner."""
+    for number, opening in enumerate(plan.openings()):
+        if isinstance(opening, Exit) and plan.is_open(opening.name):
+            a, b = np.array(opening.a), np.array(opening.b)
+            along = (b - a) / opening.length * min(clearance, opening.length / 2)
+            inward = -clearance * outward(plan, opening)
+            yield number, a, inward + along
+            yield number, b, inward - along
+
+
+def _gate_ends(
     plan: "FloorPlan", clearance: float
 ) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
-    """Ends of walls that are not vertices of the free area: at open exits and closed gates."""
+    """The ends of closed gates that are no vertices of the free area, and offsets of corners."""
     bases, offsets = [], []
-    for opening in plan.open_exits():
-        a, b = np.array(opening.a), np.array(opening.b)
-        along = (b - a) / opening.length * min(clearance, opening.length / 2)
-        inward = -clearance * outward(plan, opening)
-        bases += [a, b]
-        offsets += [inward + along, inward - along]
     edge = plan.free.boundary
     for gate in plan.closed_gates():
         a, b = np.array(gate.a), np.array(gate.b)

@@ -215,3 +215,25 @@ def test_bad_questions(plans, ask, says: str) -> None:
 def test_bad_routers(plans, options: dict) -> None:
     with pytest.raises(FloorPlanError, match="a router needs clearance > 0 and beyond > 0"):
         Router(plans["room"](), **options)
+
+
+def test_exits_side_by_side_cost_no_views_of_each_other() -> None:
+    # A wall of 300 exits: each has three places and two ends of walls, which serve it alone.
+    exits = [Exit(f"door {k}", (k + 0.1, 0), (k + 0.9, 0)) for k in range(300)]
+    router = Router(FloorPlan(box(0, 0, 300, 20), exits=exits))
+    assert router.graph.number_of_edges() <= 300 * 2 * 3
+    assert router.targets([(150.5, 8)], [0]).distances[0] == pytest.approx(8.0, abs=CLOSE)
+    # Along the wall to the next one, around the end of its wall at (150.3, 0.2).
+    along = router.targets([(149.98, 0.15)], [router.destination(["door 150"])]).distances[0]
+    assert along == pytest.approx(hypot(0.32, 0.05) + 0.2, abs=CLOSE)
+
+
+def test_ends_of_walls_beside_an_exit_lead_to_it_alone() -> None:
+    exits = [Exit("left", (2, 0), (3, 0)), Exit("right", (7, 0), (8, 0))]
+    graph = Router(FloorPlan(box(0, 0, 10, 6), exits=exits)).graph
+    corners = [node for node, kind in graph.nodes(data="kind") if kind == "corner"]
+    assert len(corners) == 4
+    for corner in corners:
+        left = graph.nodes[corner]["position"][0] < 5
+        openings = {graph.nodes[node]["opening"] for node in graph.successors(corner)}
+        assert openings == {"left" if left else "right"}
