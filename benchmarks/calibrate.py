@@ -22,7 +22,7 @@ import numpy as np
 from mesa_mobility import MobilityMap, PedestrianType
 from mesa_mobility.commands.console import progress_bar
 from mesa_mobility.crowd.presets import PRESETS
-from mesa_mobility.mobility.map import CORE_RADIUS
+from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.plugins.registry import load_behavior
 from mesa_mobility.results.files import json_text
 from mesa_mobility.validation.bottleneck import DENSITY_IN_FRONT, bottleneck

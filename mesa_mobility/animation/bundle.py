@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mesa_mobility.animation.figure import Figure, rest_positions
 from mesa_mobility.animation.levels import jointed_figures, rigid_figures, seated_head
 from mesa_mobility.bodies import PoseBank
-from mesa_mobility.bodies.bank import OTHER_SIDE
+from mesa_mobility.bodies.bank_data import OTHER_SIDE
 from mesa_mobility.bodies.feet import LEGS
 from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, HEEL_BACK, JOINT, OFFSETS, PARENTS, TURNING
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.bodies.bank_data import BankData
 from mesa_mobility.errors import MapError, MobilityError
 from mesa_mobility.files.archives import reading
 from mesa_mobility.mobility.storing.archive import Kind, read_arrays, read_metadata, write_arrays
-
-if TYPE_CHECKING:
-    from mesa_mobility.bodies.bank import PoseBank
 
 Bank = TypeVar("Bank")
 
@@ -52,7 +50,7 @@ def shipped_banks() -> list[Path]:
     return sorted((Path(str(files("mesa_mobility.maps"))) / "poses").glob("*" + SUFFIX))
 
 
-def write_bank(bank: PoseBank, path: str | Path) -> None:
+def write_bank(bank: BankData, path: str | Path) -> None:
     """Write a bank to ``path``: complete or not at all, the same bytes for the same bank.
 
     Raises:

@@ -9,12 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.bodies.bank import (
-    HEIGHT_STEP,
-    QUATERNION_STEP,
-    STRIDE_STEP,
-    PoseBank,
-)
+from mesa_mobility.bodies.bank import PoseBank
+from mesa_mobility.bodies.bank_data import HEIGHT_STEP, QUATERNION_STEP, STRIDE_STEP
 from mesa_mobility.bodies.retargeting import retarget
 from mesa_mobility.bodies.rotations import quaternions
 from mesa_mobility.bodies.skeleton import JOINTS, STATURE

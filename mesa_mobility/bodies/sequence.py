@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.bodies.bank import STRIDE_STEP, PoseBank
+from mesa_mobility.bodies.bank import PoseBank
+from mesa_mobility.bodies.bank_data import STRIDE_STEP
 from mesa_mobility.bodies.rotations import from_vectors, rotation_vectors
 from mesa_mobility.errors import ResultsError
 

@@ -1,12 +1,12 @@
 """Walkable area, walls, doors, exits and routes."""
 
-from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
+from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.plan import FloorPlan
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.routing.targets import Targets
 from mesa_mobility.floorplan.walls.line_of_sight import line_of_sight, lines_of_sight
-from mesa_mobility.floorplan.walls.wall_index import CellTable, WallIndex
-from mesa_mobility.floorplan.zones import SpeedZone
 
 __all__ = [
     "CellTable",

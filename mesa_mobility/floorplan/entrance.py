@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.checks import read_wkt
+from mesa_mobility.floorplan.floor.checks import read_wkt
+from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.reachability import with_way_out
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 _THROWS = 8
 """Points thrown within the bounds of an area for each place wanted."""
@@ -45,7 +43,7 @@ class Entrance:
     """
 
     def __init__(
-        self, plan: FloorPlan, geometry: BaseGeometry, *, clearance: float, passing: float
+        self, plan: Floor, geometry: BaseGeometry, *, clearance: float, passing: float
     ) -> None:
         self._plan = plan
         self._passing = passing

@@ -13,7 +13,7 @@ its centre is, and those who are in an exit on their way out leave.
 from __future__ import annotations
 
 import gc
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
@@ -23,9 +23,7 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
+from mesa_mobility.floorplan.floor.floor import Floor
 
 
 class Occupants(Protocol):
@@ -36,15 +34,15 @@ class Occupants(Protocol):
 
 
 # Not an attribute of plans: a copy of a plan, or one sent to another process, is empty.
-_OCCUPANTS: WeakKeyDictionary[FloorPlan, WeakSet[Occupants]] = WeakKeyDictionary()
+_OCCUPANTS: WeakKeyDictionary[Floor, WeakSet[Occupants]] = WeakKeyDictionary()
 
 
-def add_occupants(plan: FloorPlan, people: Occupants) -> None:
+def add_occupants(plan: Floor, people: Occupants) -> None:
     """From now on refuse obstacles where one of these people stands, as long as they exist."""
     _OCCUPANTS.setdefault(plan, WeakSet()).add(people)
 
 
-def check_vacant(plan: FloorPlan, obstacle: Polygon, name: str, free: BaseGeometry) -> None:
+def check_vacant(plan: Floor, obstacle: Polygon, name: str, free: BaseGeometry) -> None:
     """Raise FloorPlanError if somebody stands where an obstacle is to be.
 
     Args:
@@ -62,7 +60,7 @@ def check_vacant(plan: FloorPlan, obstacle: Polygon, name: str, free: BaseGeomet
         raise FloorPlanError(f"{name}: pedestrian {number} stands there, expected free floor")
 
 
-def _in_the_way(plan: FloorPlan, obstacle: Polygon, free: BaseGeometry) -> int | None:
+def _in_the_way(plan: Floor, obstacle: Polygon, free: BaseGeometry) -> int | None:
     """Lowest number of a person that the obstacle would touch or leave off the floor."""
     found: list[int] = []
     for people in _OCCUPANTS.get(plan, ()):

@@ -6,29 +6,25 @@ from copy import copy
 from typing import Any
 
 import networkx as nx
-import numpy as np
-import shapely
-from numpy.typing import ArrayLike, NDArray
 from shapely import Polygon
-from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import occupants, reachability, sampling
-from mesa_mobility.floorplan.checks import read_polygon
-from mesa_mobility.floorplan.extent import warn_of_other_units
+from mesa_mobility.floorplan.floor.checks import read_polygon
+from mesa_mobility.floorplan.floor.extent import warn_of_other_units
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.free_area import FreeArea
+from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.wall_index import WallIndex
+from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats import by_suffix, dxf, geojson
 from mesa_mobility.floorplan.formats.content import Content
-from mesa_mobility.floorplan.free_area import FreeArea
-from mesa_mobility.floorplan.layout import Layout
-from mesa_mobility.floorplan.openings import Exit, Gate, Opening
-from mesa_mobility.floorplan.outline import SIMPLIFY
 from mesa_mobility.floorplan.routing.router import Router
-from mesa_mobility.floorplan.walls.wall_index import WallIndex
-from mesa_mobility.floorplan.zones import SpeedZone
 from mesa_mobility.schema import Flag, Kind, Object, Several, Text, Whole, check
 
 
-class FloorPlan(Layout):
+class FloorPlan(Floor):
     """A walkable polygon with exits, gates and obstacles.
 
     Warns, with the extent, of coordinates that look like millimetres or degrees.
@@ -184,32 +180,6 @@ class FloorPlan(Layout):
     write_geojson = geojson.write
 
     @property
-    def free(self) -> BaseGeometry:
-        """Walkable area minus obstacles, its outline simplified: a Polygon, or a MultiPolygon, an
-        exit at each piece."""
-        return self._area.geometry
-
-    @property
-    def walls(self) -> NDArray[np.float64]:
-        """(m, 4) x1, y1, x2, y2 in metres: edge of `free` without open exits, and closed gates."""
-        return self._walls.copy()
-
-    @property
-    def wall_index(self) -> WallIndex:
-        """An R-tree of the walls, in an order of its own, which follows every change."""
-        return self._wall_index
-
-    @property
-    def obstacles(self) -> dict[int, Polygon]:
-        """The obstacles by id."""
-        return dict(self._area.obstacles)
-
-    @property
-    def area(self) -> float:
-        """Free area in square metres."""
-        return self._area.geometry.area
-
-    @property
     def route_graph(self) -> nx.DiGraph:
         """The routes of adults as a graph, up to date with obstacles and doors.
 
@@ -221,10 +191,6 @@ class FloorPlan(Layout):
             self._router = Router(self)
         return self._router.graph
 
-    def is_open(self, name: str) -> bool:
-        """Whether the gate or exit of this name is open."""
-        return self.gate(name).name not in self._area.closed
-
     def close_gate(self, name: str) -> None:
         """Make the gate or exit of this name a wall."""
         if self.is_open(name):
@@ -234,11 +200,6 @@ class FloorPlan(Layout):
         """Open the gate or exit of this name again."""
         if not self.is_open(name):
             self._change(self._area.with_closed(self._area.closed - {name}))
-
-    @property
-    def cut_off(self) -> bool:
-        """Whether obstacles may cut pieces off from every exit."""
-        return self._area.cut_off
 
     def add_obstacle(self, polygon: Polygon | str, *, cut_off: bool = False) -> int:
         """Put an obstacle (shapely or WKT, metres) in the way and return its id.
@@ -289,27 +250,6 @@ class FloorPlan(Layout):
         plan._take(area)
         return plan
 
-    def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """(n,) whether each of the (n, 2) points is in the free area, its edge included."""
-        xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-        return shapely.intersects_xy(self._area.geometry, xy[:, 0], xy[:, 1])
-
-    def open_exits(self) -> tuple[Exit, ...]:
-        """The exits that are open now."""
-        return self._area.open_ones(self.exits)
-
-    def open_gates(self) -> tuple[Gate, ...]:
-        """The gates that are open now."""
-        return self._area.open_ones(self.gates)
-
-    def closed_gates(self) -> tuple[Gate, ...]:
-        """The gates that are closed now."""
-        return self._area.closed_ones(self.gates)
-
-    def closed_openings(self) -> tuple[Opening, ...]:
-        """The gates and exits that are closed now."""
-        return self._area.closed_ones(self.openings()) if self._area.closed else ()
-
     check_reachable = reachability.check_reachable
     random_points = sampling.random_points
 
@@ -349,10 +289,6 @@ class FloorPlan(Layout):
         area = area.with_closed(state["closed"])
         self._next_obstacle = state["next_obstacle"]
         self._change(area)
-
-    def _take(self, area: FreeArea) -> None:
-        self._area, self._walls = area, area.walls()
-        self._wall_index.replace(self._walls)
 
     def _change(self, area: FreeArea) -> None:
         self._take(area)

@@ -1,7 +1,6 @@
 """Whether a body of some width can reach an open exit."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -9,14 +8,12 @@ from numpy.typing import ArrayLike
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.openings import Exit
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.openings import Exit
 from mesa_mobility.floorplan.walls.smooth_floor import CLOSER, smooth_floor
 
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
-
-def check_reachable(plan: "FloorPlan", points: ArrayLike, clearance: float) -> None:
+def check_reachable(plan: Floor, points: ArrayLike, clearance: float) -> None:
     """Raise FloorPlanError if a body of radius `clearance` metres cannot reach an open exit.
 
     `points` is (n, 2) in metres.
@@ -38,7 +35,7 @@ def check_reachable(plan: "FloorPlan", points: ArrayLike, clearance: float) -> N
         )
 
 
-def with_way_out(plan: "FloorPlan", region: BaseGeometry, radius: float) -> BaseGeometry:
+def with_way_out(plan: Floor, region: BaseGeometry, radius: float) -> BaseGeometry:
     """The part of a region from which bodies could reach an exit if everything were open.
 
     All of the region is kept where none of it has a way out, or where the plan has no exit.
@@ -62,7 +59,7 @@ def with_way_out(plan: "FloorPlan", region: BaseGeometry, radius: float) -> Base
 
 
 def _pieces(
-    plan: "FloorPlan",
+    plan: Floor,
     floor: BaseGeometry,
     clearance: float,
     exits: Sequence[Exit],

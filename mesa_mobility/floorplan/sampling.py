@@ -1,30 +1,26 @@
 """Random places at which people can stand."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.checks import read_area
+from mesa_mobility.floorplan.floor.boundaries import opening_segments
+from mesa_mobility.floorplan.floor.checks import read_area
+from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.poisson_disk import lattice, throw
 from mesa_mobility.floorplan.reachability import with_way_out
-from mesa_mobility.floorplan.walls.boundaries import opening_segments
 from mesa_mobility.floorplan.walls.sight import Sight, sight_of
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 from mesa_mobility.floorplan.walls.wall_distances import wall_distances
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 PASSING = 0.1615
 """Half the width in metres of the narrowest gap that routes of an adult lead through."""
 
 
 def random_points(
-    plan: "FloorPlan",
+    plan: Floor,
     n: int,
     rng: np.random.Generator,
     *,
@@ -106,9 +102,7 @@ def _most(region: BaseGeometry, spacing: float) -> int:
     return int(area / (np.pi * (spacing / 2) ** 2)) + 1
 
 
-def _standing_region(
-    plan: "FloorPlan", within: BaseGeometry | None, clearance: float
-) -> BaseGeometry:
+def _standing_region(plan: Floor, within: BaseGeometry | None, clearance: float) -> BaseGeometry:
     # A smooth floor shrinks faster; `_fits` looks at the walls themselves.
     region = smooth_floor(plan).floor.buffer(-clearance, quad_segs=32)
     # In one piece of at least this clearance every place has a way out, or none has.

@@ -16,7 +16,8 @@ from mesa_mobility.mobility import graph as graphs
 from mesa_mobility.mobility.clusters import Clusters, cluster_poses
 from mesa_mobility.mobility.edits import EDITS, HORIZON
 from mesa_mobility.mobility.graph import MotionGraph, motion_graph
-from mesa_mobility.mobility.map import CORE_RADIUS, MobilityMap
+from mesa_mobility.mobility.map import MobilityMap
+from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.mobility.paths import ReachableOptions, reachable_options
 from mesa_mobility.mobility.poses import FRAME_RATE, PoseTable, pose_table
 from mesa_mobility.mobility.provenance import acknowledgements, provenance

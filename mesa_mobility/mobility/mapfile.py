@@ -11,19 +11,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import MapError, MobilityError
 from mesa_mobility.files.archives import reading
+from mesa_mobility.mobility.map_data import MapData
 from mesa_mobility.mobility.storing.archive import read_arrays, read_metadata, write_arrays
 from mesa_mobility.mobility.storing.layouts import FAMILIES, OPTIONS
 from mesa_mobility.mobility.storing.steps import COST_STEP, PATH_STEPS
-
-if TYPE_CHECKING:
-    from mesa_mobility.mobility.map import MobilityMap
 
 Map = TypeVar("Map")
 """The object made from the arrays of a file."""
@@ -56,7 +54,7 @@ def shipped_map_path(name: str) -> Path:
     return path
 
 
-def write_map(map_: MobilityMap, path: str | Path) -> None:
+def write_map(map_: MapData, path: str | Path) -> None:
     """Write a map to ``path``: complete or not at all.
 
     Raises:
@@ -82,7 +80,7 @@ def write_map(map_: MobilityMap, path: str | Path) -> None:
     write_arrays(path, OPTIONS, arrays, metadata)
 
 
-def read_map(path: str | Path, make: Callable[..., Map], lender: Callable[[], MobilityMap]) -> Map:
+def read_map(path: str | Path, make: Callable[..., Map], lender: Callable[[], MapData]) -> Map:
     """Read and check a map file, of all options or of families of options.
 
     Args:

@@ -12,7 +12,7 @@ from mesa_mobility.crowd.planning.grid import people_within
 from mesa_mobility.crowd.state import people_grid as neighbours
 from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.floorplan import WallIndex
-from mesa_mobility.floorplan.walls import wall_index as walls
+from mesa_mobility.floorplan.floor import wall_index as walls
 from mesa_mobility.results import check_safety
 from tests.fixtures.maps import strider
 

@@ -12,7 +12,7 @@ from shapely import Polygon, affinity, box
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Router
-from mesa_mobility.floorplan.outline import GRID, simplified
+from mesa_mobility.floorplan.floor.outline import GRID, simplified
 from mesa_mobility.floorplan.routing.passages import narrow_passages
 from mesa_mobility.floorplan.walls.narrow_gaps import closed_gaps
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor

@@ -18,7 +18,7 @@ from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, facing_at_waypoint, position_at
 from mesa_mobility.crowd.state.records import CrowdState
-from mesa_mobility.floorplan.walls.geometry import segment_segment_distance2
+from mesa_mobility.floorplan.floor.geometry import segment_segment_distance2
 
 
 @internal()

@@ -19,7 +19,7 @@ from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, position_at, waypoint
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
-from mesa_mobility.floorplan.walls.geometry import segment_segment_distance2
+from mesa_mobility.floorplan.floor.geometry import segment_segment_distance2
 
 
 @internal()

@@ -16,7 +16,7 @@ from mesa_mobility.crowd.people.free_speeds import free_speeds
 from mesa_mobility.distributions.base import EXTREMES, Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
-from mesa_mobility.mobility.map import CORE_RADIUS
+from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.populations import Population
 
 _LEAST, _GREATEST = EXTREMES

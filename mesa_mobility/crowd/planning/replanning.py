@@ -15,7 +15,7 @@ from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.paths import facing_at_waypoint, waypoint
 from mesa_mobility.crowd.state.records import NO_OPTION, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
-from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
+from mesa_mobility.floorplan.floor.geometry import point_segment_distance2
 
 TOUCHING = 1e-3
 """Metres by which a body is in a line that it touches no more than others touch walls."""

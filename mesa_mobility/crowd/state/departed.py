@@ -18,7 +18,7 @@ from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.paths import commit
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
-from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
+from mesa_mobility.floorplan.floor.geometry import point_segment_distance2
 from mesa_mobility.schema import Array, Kind, Several
 
 WALKS_ON = 45

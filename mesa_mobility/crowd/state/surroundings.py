@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.floor.wall_index import cell_table
 from mesa_mobility.floorplan.routing.targets import Destination
-from mesa_mobility.floorplan.walls.wall_index import cell_table
 
 CELL_SIZE = 1.0
 

@@ -24,8 +24,8 @@ from mesa_mobility.crowd.tactics.target_choice import Deciding
 from mesa_mobility.crowd.tactics.turns import Turns
 from mesa_mobility.crowd.tactics.visits.journeys import Journeys
 from mesa_mobility.crowd.tactics.visits.slowing import slow_down
-from mesa_mobility.floorplan.walls.boundaries import opening_segments
-from mesa_mobility.floorplan.zones import mean_factors
+from mesa_mobility.floorplan.floor.boundaries import opening_segments
+from mesa_mobility.floorplan.floor.zones import mean_factors
 from mesa_mobility.schema import Kind
 
 LONGEST_S = 1.5

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.options.shapes import ShapeRecords
 from mesa_mobility.crowd.state.records import CrowdState
-from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
+from mesa_mobility.floorplan.floor.geometry import point_segment_distance2
 
 CLEAR = 1.0
 """Metres by which somebody aims beyond what is needed: a wheelchair does not set off for less. They

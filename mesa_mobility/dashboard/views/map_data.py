@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesa_mobility import MobilityMap
 from mesa_mobility.dashboard.session.decision import BONES
 from mesa_mobility.dashboard.session.serialization import packed
-from mesa_mobility.mobility.map import SAMPLE_SECONDS
+from mesa_mobility.mobility.map_data import SAMPLE_SECONDS
 
 SPEED_STEP, FASTEST = 0.1, 2.2
 """Cells of the coverage: metres a second, and where they end."""

@@ -9,10 +9,10 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.extent import check_coordinates
-from mesa_mobility.floorplan.openings import Exit, Gate, Opening
-from mesa_mobility.floorplan.outline import SIMPLIFY
-from mesa_mobility.floorplan.zones import SpeedZone
+from mesa_mobility.floorplan.floor.extent import check_coordinates
+from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
+from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.zones import SpeedZone
 
 KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
 """Values of the property `kind` of a feature."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import FloorPlanError, MobilityError
-from mesa_mobility.floorplan.extent import check_coordinates
+from mesa_mobility.floorplan.floor.extent import check_coordinates
 
 METRES = {
     "mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "km": 1000.0, "in": 0.0254, "ft": 0.3048,

@@ -4,21 +4,19 @@ import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import shapely
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.formats.content import Content, content_of
-from mesa_mobility.floorplan.outline import SIMPLIFY
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 
-def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
+def feature_collection(plan: Floor) -> dict[str, Any]:
     """The plan as a GeoJSON FeatureCollection, coordinates in metres.
 
     Every feature has the properties `kind` (walkable, obstacle, gate, exit or zone)
@@ -45,10 +43,12 @@ def feature_collection(plan: "FloorPlan") -> dict[str, Any]:
     return {"type": "FeatureCollection", "features": features}
 
 
-def write(plan: "FloorPlan", path: "str | os.PathLike[str]") -> None:
+def write(plan: Floor, path: "str | os.PathLike[str]") -> None:
     """Write `to_geojson` to a file, complete or not at all."""
     with replacing(path, FloorPlanError) as temporary:
-        temporary.write_text(json.dumps(plan.to_geojson(), indent=1) + "\n", encoding="utf-8")
+        temporary.write_text(
+            json.dumps(feature_collection(plan), indent=1) + "\n", encoding="utf-8"
+        )
 
 
 def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:

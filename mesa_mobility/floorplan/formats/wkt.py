@@ -10,7 +10,7 @@ from typing import Any
 import shapely
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.checks import read_wkt
+from mesa_mobility.floorplan.floor.checks import read_wkt
 from mesa_mobility.floorplan.formats.content import KINDS, Content, content_of
 
 _PART = re.compile(

@@ -1,23 +1,19 @@
 """The route graph made of its nodes: arrays for compiled functions, a network for Python."""
 
-from typing import TYPE_CHECKING
-
 import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.boundaries import opening_segments
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.route_graph import Ways
 from mesa_mobility.floorplan.routing.route_nodes import VIEW_SHARE, Nodes
-from mesa_mobility.floorplan.walls.boundaries import opening_segments
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 _KIND_NAMES = ("corner", "gate", "exit")
 
 
-def ways_of(plan: "FloorPlan", nodes: Nodes, walls: int, clearance: float, beyond: float) -> Ways:
+def ways_of(plan: Floor, nodes: Nodes, walls: int, clearance: float, beyond: float) -> Ways:
     """The route graph's nodes and openings, as arrays for compiled functions.
 
     Args:

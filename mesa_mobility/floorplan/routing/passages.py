@@ -1,6 +1,6 @@
 """Passages too narrow for two people, such as doors and corridors, and their mouths."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -8,12 +8,10 @@ from numpy.typing import NDArray
 from shapely.errors import GEOSException
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.floorplan.checks import one_line
+from mesa_mobility.floorplan.floor.checks import one_line
+from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.walls.narrow_gaps import narrow_gaps
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 FOR_TWO = 1.2
 """Metres that two people need to pass each other with room: each takes 0.6 m (Fruin, Pedestrian
@@ -45,7 +43,7 @@ class Passages(NamedTuple):
     boxes: NDArray[np.float64]
 
 
-def narrow_passages(plan: "FloorPlan", width: float = FOR_TWO) -> Passages:
+def narrow_passages(plan: Floor, width: float = FOR_TWO) -> Passages:
     """The passages narrower than ``width`` metres that lead from floor to floor.
 
     Dead ends, and passages that lead to an exit, have only one mouth and are left out: nobody comes
@@ -65,7 +63,7 @@ def narrow_passages(plan: "FloorPlan", width: float = FOR_TWO) -> Passages:
     )
 
 
-def narrow_mouths(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
+def narrow_mouths(plan: Floor, width: float) -> NDArray[np.float64]:
     """(m, 6) the mouths of all passages narrower than ``width`` metres, and exits as narrow.
 
     Each is a line from (x, y) to (x, y), metres, and the unit vector into the passage, or out by
@@ -85,7 +83,7 @@ def narrow_mouths(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
 
 
 def _floors_and_mouths(
-    plan: "FloorPlan", width: float
+    plan: Floor, width: float
 ) -> tuple[list[shapely.Polygon | shapely.LineString], list[list[NDArray[np.float64]]]]:
     """The floors of passages narrower than ``width`` metres, and the (6,) mouths of each."""
     gaps = _gaps(plan, width)
@@ -114,7 +112,7 @@ def _box(outline: NDArray[np.float64], mouths: list[NDArray[np.float64]]) -> NDA
     return np.concatenate([corners.min(axis=0), corners.max(axis=0)])
 
 
-def _gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
+def _gaps(plan: Floor, width: float) -> NDArray[np.float64]:
     """(k, 4) the gaps up to ``width`` metres wide, each once."""
     found = narrow_gaps(plan, width + 10.0**-_DIGITS).round(_DIGITS)
     turned = (found[:, 0] > found[:, 2]) | (
@@ -126,9 +124,7 @@ def _gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
     return np.unique(found, axis=0)
 
 
-def _narrow_floor(
-    plan: "FloorPlan", gaps: NDArray[np.float64], width: float
-) -> list[shapely.Polygon]:
+def _narrow_floor(plan: Floor, gaps: NDArray[np.float64], width: float) -> list[shapely.Polygon]:
     """The parts of the floor between gaps in which no disc of diameter ``width`` has room."""
     if len(gaps) == 0:
         return []

@@ -73,9 +73,9 @@ def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> NDArray[np.int6
     for j in range(n):
         if ways.kind[j] == EXIT:
             for i in range(n):
-                if ways.only[i] == ways.opening[j] and _may_follow(ways, i, j):
-                    if _in_view(sight, ways, i, j, clearance):
-                        edges.append((i, j))
+                own = ways.only[i] == ways.opening[j] and _may_follow(ways, i, j)
+                if own and _in_view(sight, ways, i, j, clearance):
+                    edges.append((i, j))
     found = np.empty((len(edges), 2), dtype=np.int64)
     for k, (i, j) in enumerate(edges):
         found[k, 0], found[k, 1] = i, j

@@ -2,23 +2,20 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
-from mesa_mobility.floorplan.openings import Exit, Opening
-from mesa_mobility.floorplan.walls.boundaries import rings, turns
+from mesa_mobility.floorplan.floor.boundaries import rings, turns
+from mesa_mobility.floorplan.floor.checks import EDGE_TOLERANCE
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.openings import Exit, Opening
 from mesa_mobility.floorplan.walls.narrow_gaps import walls_near
 from mesa_mobility.floorplan.walls.sight import Sight
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 from mesa_mobility.floorplan.walls.wall_distances import wall_distances
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 CORNER, GATE, EXIT = 0, 1, 2
 """Kinds of nodes."""
@@ -68,7 +65,7 @@ class Nodes:
     normal: NDArray[np.float64]
 
 
-def find_nodes(plan: "FloorPlan", sight: Sight, clearance: float) -> Nodes:
+def find_nodes(plan: Floor, sight: Sight, clearance: float) -> Nodes:
     """The nodes of a plan for bodies that keep `clearance` metres from walls."""
     corners, only = _corners(plan, sight, clearance)
     keys = np.column_stack([corners.round(3), only])
@@ -116,7 +113,7 @@ def with_points(nodes: Nodes, points: Sequence[tuple[float, float]]) -> Nodes:
     )
 
 
-def outward(plan: "FloorPlan", opening: Exit) -> NDArray[np.float64]:
+def outward(plan: Floor, opening: Exit) -> NDArray[np.float64]:
     """(2,) unit normal of an exit, away from the free area."""
     normal = _both_ways(opening)[0]
     along = np.linspace(0.05, 0.95, 10)[:, None]
@@ -135,7 +132,7 @@ def _both_ways(opening: Opening) -> list[NDArray[np.float64]]:
 
 
 def _places(
-    plan: "FloorPlan", room: BaseGeometry, opening: Opening, clearance: float
+    plan: Floor, room: BaseGeometry, opening: Opening, clearance: float
 ) -> NDArray[np.float64]:
     """Points along the parts of a gate or exit that are clear of walls, and in the `room`."""
     near = shapely.union_all(walls_near(plan, opening.line, clearance))
@@ -159,7 +156,7 @@ def _passable(sight: Sight, places: NDArray[np.float64], clearance: float) -> ND
 
 
 def _corners(
-    plan: "FloorPlan", sight: Sight, clearance: float
+    plan: Floor, sight: Sight, clearance: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """The (n, 2) corners of routes, and for each the only exit that it leads to, or -1."""
     bases, offsets = _gate_ends(plan, clearance)
@@ -198,9 +195,7 @@ def _corners(
     )
 
 
-def _middles(
-    plan: "FloorPlan", bases: NDArray[np.float64], clearance: float
-) -> NDArray[np.float64]:
+def _middles(plan: Floor, bases: NDArray[np.float64], clearance: float) -> NDArray[np.float64]:
     """The middles of the gaps between some vertices and the walls near them."""
     found = [np.empty((0, 2))]
     for base in shapely.points(bases):
@@ -245,7 +240,7 @@ def _cap(
 
 
 def _exit_ends(
-    plan: "FloorPlan", clearance: float
+    plan: Floor, clearance: float
 ) -> Iterator[tuple[int, NDArray[np.float64], NDArray[np.float64]]]:
     """The ends of walls at open exits: number of the exit, end, and offset of the corner."""
     for number, opening in enumerate(plan.openings()):
@@ -258,7 +253,7 @@ def _exit_ends(
 
 
 def _gate_ends(
-    plan: "FloorPlan", clearance: float
+    plan: Floor, clearance: float
 ) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
     """The ends of closed gates that are no vertices of the free area, and offsets of corners."""
     bases, offsets = [], []

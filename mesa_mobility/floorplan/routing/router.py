@@ -1,7 +1,6 @@
 """Shortest routes to exits and gates, and the target of each person."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
@@ -11,8 +10,10 @@ from scipy.sparse.csgraph import dijkstra
 
 from mesa_mobility.compiled.threads import in_threads, shares
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.checks import one_line
-from mesa_mobility.floorplan.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.boundaries import opening_segments
+from mesa_mobility.floorplan.floor.checks import one_line
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.corner_offsets import pass_abreast
 from mesa_mobility.floorplan.routing.network import network, ways_of
 from mesa_mobility.floorplan.routing.route_graph import edges_in_view
@@ -26,12 +27,8 @@ from mesa_mobility.floorplan.routing.target_cache import empty_cache
 from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
 from mesa_mobility.floorplan.routing.targets import Destination, Targets, is_point
 from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
-from mesa_mobility.floorplan.walls.boundaries import opening_segments
 from mesa_mobility.floorplan.walls.narrow_gaps import closed_gaps
 from mesa_mobility.floorplan.walls.sight import Sight, sight_of
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 
 class Router:
@@ -54,7 +51,7 @@ class Router:
         FloorPlanError: clearance or beyond out of range.
     """
 
-    def __init__(self, plan: "FloorPlan", *, clearance: float = 0.2, beyond: float = 2.0) -> None:
+    def __init__(self, plan: Floor, *, clearance: float = 0.2, beyond: float = 2.0) -> None:
         if not (np.isfinite([clearance, beyond]).all() and clearance > 0 and beyond > 0):
             raise FloorPlanError(
                 f"a router needs clearance > 0 and beyond > 0, found {clearance} and {beyond}"

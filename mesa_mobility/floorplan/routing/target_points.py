@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import inlined, internal
+from mesa_mobility.floorplan.floor.geometry import segments_cross
 from mesa_mobility.floorplan.routing.opening_points import nearest, opening_behind, place
 from mesa_mobility.floorplan.routing.route_graph import IN_LINE, Ways, in_view, side
 from mesa_mobility.floorplan.routing.route_nodes import CORNER, EXIT, GATE
-from mesa_mobility.floorplan.walls.geometry import segments_cross
 from mesa_mobility.floorplan.walls.line_of_sight import clear_line, free_length
 from mesa_mobility.floorplan.walls.sight import NO_WALL, Sight
 

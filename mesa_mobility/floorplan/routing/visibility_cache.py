@@ -12,7 +12,7 @@ from numba.cpython.unsafe.numbers import trailing_zeros
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import inlined, internal
-from mesa_mobility.floorplan.walls.geometry import segments_cross
+from mesa_mobility.floorplan.floor.geometry import segments_cross
 from mesa_mobility.floorplan.walls.sight import (
     NO_WALL,
     Sight,

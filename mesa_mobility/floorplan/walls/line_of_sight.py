@@ -1,14 +1,13 @@
 """Line of sight: whether a body can go straight from one point to another."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.compiled.decorators import internal, kept
 from mesa_mobility.compiled.simd import LANES, lowest_bit
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.walls.geometry import (
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.geometry import (
     point_segment_distance2,
     segment_segment_distance2,
     segments_cross,
@@ -24,9 +23,6 @@ from mesa_mobility.floorplan.walls.sight import (
     sight_on,
 )
 from mesa_mobility.floorplan.walls.wall_boxes import near_line
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 # Somebody close to a convex wall has to come a little nearer to it.
 _OWN_SHARE = 0.5
@@ -188,19 +184,19 @@ def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> flo
 
 
 def line_of_sight(
-    plan_or_walls: "FloorPlan | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
+    plan_or_walls: "Floor | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
 ) -> bool:
     """Whether the straight line from p to q (x, y in metres) stays `clearance` from all walls.
 
     A line that touches a wall has no clearance: it is not in view. `plan_or_walls`
-    is a FloorPlan or an (m, 4) array of wall segments.
+    is a floor plan or an (m, 4) array of wall segments.
     """
     ends = [np.asarray(end, dtype=np.float64).reshape(1, 2) for end in (p, q)]
     return bool(lines_of_sight(plan_or_walls, ends[0], ends[1], clearance)[0])
 
 
 def lines_of_sight(
-    plan_or_walls: "FloorPlan | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
+    plan_or_walls: "Floor | ArrayLike", p: ArrayLike, q: ArrayLike, clearance: float = 0.0
 ) -> NDArray[np.bool_]:
     """(n,) `line_of_sight` for every pair of rows of two (n, 2) arrays.
 

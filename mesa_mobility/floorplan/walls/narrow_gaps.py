@@ -1,18 +1,14 @@
 """Gaps that are too narrow for a body."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.floorplan.walls.boundaries import opening_segments, rings, turns
+from mesa_mobility.floorplan.floor.boundaries import opening_segments, rings, turns
+from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 # Gaps of the smooth floor may look wider by this much (metres).
 _OFF = 0.04
@@ -24,7 +20,7 @@ _POCKET = 0.2
 _APART = 0.005
 
 
-def narrow_gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
+def narrow_gaps(plan: Floor, width: float) -> NDArray[np.float64]:
     """(k, 4) segments across every gap of the smooth floor that is narrower than `width` metres.
 
     A gap is narrowest between a reflex vertex of the floor, or a loose end of a wall, and the
@@ -44,7 +40,7 @@ def narrow_gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
     return shapely.get_coordinates(across).reshape(-1, 4)
 
 
-def closed_gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
+def closed_gaps(plan: Floor, width: float) -> NDArray[np.float64]:
     """(k, 4) segments across every gap of the free area that is narrower than `width` metres.
 
     Where walls of the smooth floor are not the real ones, a gap is closed only if no place in it is
@@ -70,7 +66,7 @@ def closed_gaps(plan: "FloorPlan", width: float) -> NDArray[np.float64]:
     return gaps[~passable.any(axis=1)]
 
 
-def walls_near(plan: "FloorPlan", place: BaseGeometry, reach: float) -> NDArray[np.object_]:
+def walls_near(plan: Floor, place: BaseGeometry, reach: float) -> NDArray[np.object_]:
     """The walls less than `reach` metres from a place, as shapely lines."""
     xmin, ymin, xmax, ymax = place.bounds
     index = plan.wall_index

@@ -1,17 +1,15 @@
 """Walls prepared for views: their boxes, and a grid of cells that a line is followed through."""
 
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import NamedTuple, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.compiled.decorators import internal
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.wall_index import CellTable, as_segments, cell_table
 from mesa_mobility.floorplan.walls.wall_boxes import boxes_around
-from mesa_mobility.floorplan.walls.wall_index import CellTable, as_segments, cell_table
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 TOUCH = 1e-9
 """A line nearer to a wall than this touches it (metres)."""
@@ -52,14 +50,14 @@ def sight_of(walls: ArrayLike, curtains: ArrayLike, reach: float) -> Sight:
     return Sight(rows, len(solid), table, boxes, boxed)
 
 
-_CACHE: "WeakKeyDictionary[FloorPlan, tuple[int, float, Sight]]" = WeakKeyDictionary()
+_CACHE: "WeakKeyDictionary[Floor, tuple[int, float, Sight]]" = WeakKeyDictionary()
 
 
-def sight_on(plan_or_walls: "FloorPlan | ArrayLike", clearance: float) -> Sight:
+def sight_on(plan_or_walls: "Floor | ArrayLike", clearance: float) -> Sight:
     """The walls of a plan, or (m, 4) walls, for views of this clearance; that of a plan is kept."""
     if not hasattr(plan_or_walls, "walls"):
         return sight_of(plan_or_walls, (), clearance)
-    plan = cast("FloorPlan", plan_or_walls)
+    plan = cast(Floor, plan_or_walls)
     found = _CACHE.get(plan)
     if found is None or found[0] != plan.version or found[1] < clearance:
         found = (plan.version, clearance, sight_of(plan.walls, (), clearance))

@@ -10,7 +10,7 @@ The walls that people see, and that stop them, stay as they are: this floor only
 may bend and where gaps may be.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -18,18 +18,16 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.floorplan.checks import EDGE_TOLERANCE, one_line
-from mesa_mobility.floorplan.walls.boundaries import (
+from mesa_mobility.floorplan.floor.boundaries import (
     boundary_segments,
     cut_out,
     opening_segments,
     turns,
 )
-from mesa_mobility.floorplan.walls.boundaries import rings as rings_of
+from mesa_mobility.floorplan.floor.boundaries import rings as rings_of
+from mesa_mobility.floorplan.floor.checks import EDGE_TOLERANCE, one_line
+from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 ROOM = 0.16
 """Half the width in metres of the narrowest gap that routes of an adult lead through. A pocket is
@@ -67,10 +65,10 @@ class SmoothFloor(NamedTuple):
     is_exact: bool
 
 
-_CACHE: "WeakKeyDictionary[FloorPlan, tuple[int, SmoothFloor]]" = WeakKeyDictionary()
+_CACHE: "WeakKeyDictionary[Floor, tuple[int, SmoothFloor]]" = WeakKeyDictionary()
 
 
-def smooth_floor(plan: "FloorPlan") -> SmoothFloor:
+def smooth_floor(plan: Floor) -> SmoothFloor:
     """The smooth floor of a plan as it is now; kept until the plan changes."""
     found = _CACHE.get(plan)
     if found is None or found[0] != plan.version:
@@ -80,7 +78,7 @@ def smooth_floor(plan: "FloorPlan") -> SmoothFloor:
     return found[1]
 
 
-def _make(plan: "FloorPlan") -> SmoothFloor:
+def _make(plan: Floor) -> SmoothFloor:
     floor = _filled(plan)
     exact = floor is plan.free
     walls = plan.walls
@@ -93,7 +91,7 @@ def _make(plan: "FloorPlan") -> SmoothFloor:
     return SmoothFloor(floor, lines, shapely.STRtree(lines), exact)
 
 
-def _filled(plan: "FloorPlan") -> BaseGeometry:
+def _filled(plan: Floor) -> BaseGeometry:
     """The free area without pockets that follow each other; itself if there are none."""
     free = floor = plan.free
     openings = shapely.STRtree([each.line for each in plan.openings()])
@@ -126,7 +124,7 @@ def _tips(floor: BaseGeometry) -> int:
     return sum(int((turns(ring) < 0.0).sum()) for ring in rings_of(floor))
 
 
-def _have_room(plan: "FloorPlan", mouths: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _have_room(plan: Floor, mouths: NDArray[np.float64]) -> NDArray[np.bool_]:
     """(k,) whether there is a place ``ROOM`` from every wall in (k, 4) mouths of convex pockets.
 
     If there is none in the mouth, there is none behind it to which a way leads.

@@ -1,16 +1,12 @@
 """Distances to the nearest wall."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal, kept
-from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
+from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.geometry import point_segment_distance2
 from mesa_mobility.floorplan.walls.sight import Sight, sight_on
-
-if TYPE_CHECKING:
-    from mesa_mobility.floorplan.plan import FloorPlan
 
 
 @internal()
@@ -45,7 +41,7 @@ def wall_distances(
 
 
 def distances_to_walls(
-    plan: "FloorPlan", points: NDArray[np.float64], at_most: float
+    plan: Floor, points: NDArray[np.float64], at_most: float
 ) -> NDArray[np.float64]:
     """(n,) metres from (n, 2) points to the nearest wall of a plan, `at_most` if none is nearer."""
     return wall_distances(sight_on(plan, at_most), np.ascontiguousarray(points), at_most)

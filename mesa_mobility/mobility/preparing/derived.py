@@ -10,7 +10,7 @@ import numpy as np
 
 from mesa_mobility.capture import Recording, scale
 from mesa_mobility.errors import MapError
-from mesa_mobility.mobility.map import CORE_RADIUS
+from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.mobility.poses import STANDING_SPEED, STANDING_TURN_RATE, pose_table
 from mesa_mobility.mobility.preparing.wheelchairs import BOYCE, WHEELCHAIRS
 

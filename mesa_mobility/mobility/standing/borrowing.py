@@ -14,19 +14,16 @@ are shortened to the borrower's speed.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.mobility.clusters import STANDING, Clusters, nearest_centre
 from mesa_mobility.mobility.edits import Edit, edit_paths
+from mesa_mobility.mobility.map_data import MapData
 from mesa_mobility.mobility.paths import DURATIONS, MOST_JUMPS, SAMPLE_EVERY, ReachableOptions
 from mesa_mobility.mobility.standing.accelerations import is_gentle
 from mesa_mobility.mobility.standing.ways_back import ON_THE_SPOT, TURN, leads_back
-
-if TYPE_CHECKING:
-    from mesa_mobility.mobility.map import MobilityMap
 
 STANDING_STILL, STOPPING, TURNING = "standing", "stopping", "turning on the spot"
 STEPPING = "steps aside and back"
@@ -70,7 +67,7 @@ def _steps(ends: NDArray[np.floating]) -> NDArray[np.bool_]:
 
 
 def borrow(
-    options: ReachableOptions, clusters: Clusters, lender: MobilityMap
+    options: ReachableOptions, clusters: Clusters, lender: MapData
 ) -> tuple[ReachableOptions, Clusters]:
     """Add what the standing cluster lacks from another map.
 
@@ -111,7 +108,7 @@ def borrow(
     return joined, clusters if stands else _standing_as(clusters, lender)
 
 
-def _stride(clusters: Clusters, lender: MobilityMap) -> float:
+def _stride(clusters: Clusters, lender: MapData) -> float:
     """Speed of the moving poses of the one over that of the other, at most 1."""
     own, other = (
         float(np.average(each.mean_speeds[1:], weights=each.sizes[1:]))
@@ -121,7 +118,7 @@ def _stride(clusters: Clusters, lender: MobilityMap) -> float:
 
 
 def _borrowed(
-    lender: MobilityMap, rows: NDArray[np.integer], ours: NDArray[np.int32], stride: float
+    lender: MapData, rows: NDArray[np.integer], ours: NDArray[np.int32], stride: float
 ) -> tuple[NDArray, ...]:
     samples = lender.durations[rows].astype(np.int64) // SAMPLE_EVERY
     longest = DURATIONS[-1] // SAMPLE_EVERY
@@ -146,7 +143,7 @@ def _taken(options: ReachableOptions, rows: NDArray[np.integer]) -> tuple[NDArra
     return tuple(column[rows] for column in (*columns, *marks))
 
 
-def _standing_as(clusters: Clusters, lender: MobilityMap) -> Clusters:
+def _standing_as(clusters: Clusters, lender: MapData) -> Clusters:
     centres, joints = clusters.centres.copy(), clusters.mean_joints.copy()
     sizes, speeds = clusters.sizes.copy(), clusters.mean_speeds.copy()
     centres[STANDING] = lender.centres[lender.standing]

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import MapError
-
-if TYPE_CHECKING:
-    from mesa_mobility.mobility.map import MobilityMap
+from mesa_mobility.mobility.map_data import MapData
 
 ON_THE_SPOT = 0.5
 """Somebody whose option ends within so many metres has stayed on the spot."""
@@ -19,7 +15,7 @@ TURN = np.deg2rad(30.0)
 """Turning by less within one option is none: the pelvis swings, and edits turn people by 20."""
 
 
-def check_ways_back(map_: MobilityMap) -> None:
+def check_ways_back(map_: MapData) -> None:
     """Check that nobody can be trapped.
 
     From each cluster, options lead to standing in the end, and a stander can turn on the spot

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mesa_mobility.mobility.clusters import STANDING, Clusters
 from mesa_mobility.mobility.edits import SAMPLE_EVERY
+from mesa_mobility.mobility.map_data import MapData
 from mesa_mobility.mobility.paths import ReachableOptions
 from mesa_mobility.mobility.standing.borrowing import borrow, missing
 from mesa_mobility.mobility.storing.steps import quantise_costs, quantise_paths
-
-if TYPE_CHECKING:
-    from mesa_mobility.mobility.map import MobilityMap
 
 STAND_FRAMES = 12
 """Duration of the stand option: 1.5 s of standing would be absorbing, 0.4 s is not."""
@@ -24,7 +22,7 @@ def assemble(
     options: ReachableOptions,
     clusters: Clusters,
     metadata: Mapping[str, Any],
-    lender: Callable[[], MobilityMap],
+    lender: Callable[[], MapData],
 ) -> dict[str, Any]:
     """The fields of a map.
 

@@ -3,7 +3,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mesa_mobility.floorplan.walls.geometry import (
+from mesa_mobility.floorplan.floor.geometry import (
     point_segment_distance2,
     segment_box_distance2,
     segment_segment_distance2,

@@ -11,8 +11,8 @@ from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.state.paths import waypoint
 from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.floorplan.floor.geometry import point_segment_distance2
 from mesa_mobility.floorplan.routing.route_graph import IN_LINE
-from mesa_mobility.floorplan.walls.geometry import point_segment_distance2
 
 
 @entry_point()

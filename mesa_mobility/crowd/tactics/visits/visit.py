@@ -13,7 +13,7 @@ from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import FloorPlanError, ModelError
-from mesa_mobility.floorplan.checks import read_wkt
+from mesa_mobility.floorplan.floor.checks import read_wkt
 from mesa_mobility.plugins.output import numbers_in
 
 

@@ -20,8 +20,8 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
-from mesa_mobility.floorplan.openings import Opening
+from mesa_mobility.floorplan.floor.checks import EDGE_TOLERANCE
+from mesa_mobility.floorplan.floor.openings import Opening
 
 SIMPLIFY = 0.01
 """Metres by which walls may recede where vertices are left out, by default."""

@@ -10,7 +10,7 @@ from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.checks import read_polygon
+from mesa_mobility.floorplan.floor.checks import read_polygon
 
 
 @dataclass(frozen=True)

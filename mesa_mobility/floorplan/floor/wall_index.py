@@ -8,7 +8,7 @@ from rtree.index import Index
 
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.walls.geometry import segment_box_distance2
+from mesa_mobility.floorplan.floor.geometry import segment_box_distance2
 
 MOST_CELLS = 1 << 20
 """Most cells of a grid; with a side of 1 m they cover a square kilometre."""

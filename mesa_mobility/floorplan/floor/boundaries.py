@@ -7,8 +7,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.floorplan.checks import EDGE_TOLERANCE
-from mesa_mobility.floorplan.openings import Opening
+from mesa_mobility.floorplan.floor.checks import EDGE_TOLERANCE
+from mesa_mobility.floorplan.floor.openings import Opening
 
 _SHORTEST_WALL = 1e-9
 

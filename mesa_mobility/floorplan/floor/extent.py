@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from shapely import Polygon
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.openings import Opening
+from mesa_mobility.floorplan.floor.openings import Opening
 
 LARGEST_COORDINATE = 1e8
 """Metres.  Zones of national grids reach 6e7; doubles resolve 15 nanometres there."""

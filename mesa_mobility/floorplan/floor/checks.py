@@ -10,8 +10,8 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.extent import check_coordinates
-from mesa_mobility.floorplan.openings import Exit, Gate, Opening
+from mesa_mobility.floorplan.floor.extent import check_coordinates
+from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 
 EDGE_TOLERANCE = 0.01
 """An exit lies on the edge of the walkable area when no point of it is farther away (metres)."""

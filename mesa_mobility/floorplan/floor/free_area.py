@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.floorplan import checks
-from mesa_mobility.floorplan.layout import Layout
-from mesa_mobility.floorplan.openings import Exit, Gate
-from mesa_mobility.floorplan.outline import outline_of
-from mesa_mobility.floorplan.walls import boundaries
+from mesa_mobility.floorplan.floor import boundaries, checks
+from mesa_mobility.floorplan.floor.layout import Layout
+from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.outline import outline_of
 
 Opening = TypeVar("Opening", bound=Gate | Exit)
 

@@ -7,10 +7,10 @@ from numpy.typing import ArrayLike, NDArray
 from shapely import Polygon
 
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import checks, extent
-from mesa_mobility.floorplan.openings import Exit, Gate
-from mesa_mobility.floorplan.outline import check_tolerance
-from mesa_mobility.floorplan.zones import SpeedZone, check_zones, speed_factors
+from mesa_mobility.floorplan.floor import checks, extent
+from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.outline import check_tolerance
+from mesa_mobility.floorplan.floor.zones import SpeedZone, check_zones, speed_factors
 
 
 class Layout:

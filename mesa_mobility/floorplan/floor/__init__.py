@@ -1,0 +1,1 @@
+"""A floor at one time: its outline, openings, zones and walls."""
