@@ -10,7 +10,7 @@ from mesa_mobility.behaviors.corridors import Corridor, find_corridors
 from mesa_mobility.behaviors.negotiation import OFF, Negotiation, Party, agree, courses_of
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, PedestrianModel, Range, Tactic
+from mesa_mobility import Deciding, Desired, Range, Tactic, World
 from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.schema import (
     Array,
@@ -100,7 +100,7 @@ class Yielding(Tactic):
         # For each corridor, the way that each person goes through it: 1, -1, or 0 for neither.
         self._courses = np.zeros((0, 0), dtype=np.int8)
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model, whose orders to wait are heeded."""
         self._model = model
         self._widest = max(each.half_width for each in model.pedestrian_types)

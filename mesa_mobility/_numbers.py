@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from numbers import Real
+from typing import TypeGuard
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """Whether this is a real number: neither a truth value nor text, and not NaN.
 
     NumPy's numbers count, and infinite ones; whole numbers too large for a float do not.

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,9 +23,6 @@ from mesa_mobility.distributions import TruncatedNormal
 from mesa_mobility.distributions.base import strata
 from mesa_mobility.distributions.truncation import normal_quantile
 from mesa_mobility.errors import ModelError
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd import PedestrianType
 
 ROUNDING = 1e-6
 """By how much shares may miss 1."""
@@ -59,7 +56,7 @@ class Population:
         0.22
     """
 
-    shares: Mapping[str | PedestrianType, float]
+    shares: Mapping[Any, float]
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -86,7 +83,7 @@ class Population:
         object.__setattr__(self, "shares", kept)
 
     @classmethod
-    def of(cls, value: Population | Mapping[str | PedestrianType, float] | str) -> Population:
+    def of(cls, value: Population | Mapping[Any, float] | str) -> Population:
         """A population from what a parameter may be given as.
 
         Args:
@@ -132,7 +129,7 @@ class Population:
         return ", ".join(f"{_name(kind)}: {share:g}" for kind, share in self.shares.items())
 
 
-def _name(kind: str | PedestrianType) -> str:
+def _name(kind: Any) -> str:
     return kind if isinstance(kind, str) else getattr(kind, "name", repr(kind))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, Pedestrian, PedestrianModel, Range, Tactic
+from mesa_mobility import Deciding, Desired, Pedestrian, Range, Tactic, World
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.schema import Array, Kind, Several, Whole
@@ -59,14 +59,14 @@ class Following(Tactic):
         "_trails": Several(Whole(below="people"), dict, values=Array("f8", (None, 2), -1e9, 1e9)),
     }
 
-    _model: PedestrianModel
+    _model: World
 
     def __init__(self, distance: Annotated[float, Range(0.0, unit="m", above=True)] = 1.5) -> None:
         self.distance = distance
         self._leaders: dict[int, int] = {}
         self._trails: dict[int, NDArray[np.float64]] = {}
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model, whose people follow and lead."""
         self._model = model
 

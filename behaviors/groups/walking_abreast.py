@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, PedestrianModel, Range, Tactic
+from mesa_mobility import Deciding, Desired, Range, Tactic, World
 from mesa_mobility.floorplan import lines_of_sight
 
 # Largest group that walks in one row; those of larger ones are seen to fall apart.
@@ -55,7 +55,7 @@ class WalkingAbreast(Tactic):
     name = "walking_abreast"
     after = "speed_rules"
 
-    _model: PedestrianModel
+    _model: World
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class WalkingAbreast(Tactic):
     ) -> None:
         self.distance, self.behind, self.slower = distance, behind, slower
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model, whose people's velocities count."""
         self._model = model
 

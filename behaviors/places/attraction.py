@@ -15,10 +15,10 @@ from mesa_mobility import (
     Deciding,
     Desired,
     ListOf,
-    PedestrianModel,
     Range,
     Tactic,
     Visit,
+    World,
     check_fields,
 )
 from mesa_mobility.distributions import Distribution
@@ -100,7 +100,7 @@ class Attractions(Tactic):
         "_stopped": Several(Several(Whole(below="people")), length="attractions"),
     }
 
-    _model: PedestrianModel
+    _model: World
 
     def __init__(
         self, attractions: Annotated[Iterable[Attraction], ListOf(Attraction, once=True)] = ()
@@ -109,7 +109,7 @@ class Attractions(Tactic):
         self._passed = np.zeros((0, len(self.attractions)), dtype=np.bool_)
         self._stopped: list[list[int]] = [[] for _ in self.attractions]
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model, whose people stop."""
         self._model = model
 

@@ -15,10 +15,10 @@ from mesa_mobility import (
     Deciding,
     Desired,
     ListOf,
-    PedestrianModel,
     Range,
     Tactic,
     Visit,
+    World,
     check_fields,
 )
 from mesa_mobility.distributions import Distribution
@@ -108,14 +108,14 @@ class Queueing(Tactic):
         "_standing": Several(Whole(below="people"), set),
     }
 
-    _model: PedestrianModel
+    _model: World
 
     def __init__(self, counters: Annotated[Iterable[Counter], ListOf(Counter)] = ()) -> None:
         self.counters: list[Counter] = counters  # type: ignore[assignment]
         self._lines: list[list[int]] = []
         self._standing: set[int] = set()
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model, whose people line up."""
         self._model = model
 

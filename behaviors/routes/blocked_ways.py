@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, FloorPlan, Range, TargetChoice, Targets
+from mesa_mobility import Deciding, FloorPlan, Range, TargetChoice, Targets, World
 from mesa_mobility.floorplan import Router, lines_of_sight
 from mesa_mobility.schema import Array, Kind, Several, Text
 
@@ -85,7 +85,7 @@ class BlockedWays(TargetChoice):
                 corners[own] = -1
         return Targets(points, gates, distances, corners)
 
-    def bind(self, model: Any) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model, whose types have bodies of different widths."""
         self._model = model
 

@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, ListOf, PedestrianModel, Range, RouteChoice, check_fields
+from mesa_mobility import Deciding, ListOf, Range, RouteChoice, World, check_fields
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.schema import Array, Kind
@@ -99,7 +99,7 @@ class Signs(RouteChoice):
         # The last column is for those who have come in: newcomers face nowhere yet.
         self._passed = np.zeros((0, len(self.signs) + 1), dtype=np.bool_)
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model; FloorPlanError if its plan lacks a gate of a sign."""
         super().bind(model)
         for sign in self.signs:

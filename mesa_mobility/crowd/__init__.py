@@ -21,19 +21,21 @@ if TYPE_CHECKING:
         wall_kernel,
     )
     from mesa_mobility.crowd.costs.terms import CostTerm
+    from mesa_mobility.crowd.hooks import World
     from mesa_mobility.crowd.insertion.inflow import Inflow
     from mesa_mobility.crowd.insertion.source import Source
-    from mesa_mobility.crowd.model import PedestrianModel
+    from mesa_mobility.crowd.journeys.visit import Visit
     from mesa_mobility.crowd.options.capability import Capability
+    from mesa_mobility.crowd.pedestrian_model import PedestrianModel
     from mesa_mobility.crowd.people.pedestrian import Pedestrian
-    from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
     from mesa_mobility.crowd.planning.explanation import FREE, PERSON, WALL, Explanation, Watch
     from mesa_mobility.crowd.presets import PRESETS, Preset
+    from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
     from mesa_mobility.crowd.tactics.route_choice import RouteChoice
     from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
-    from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
-    from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
-    from mesa_mobility.crowd.tactics.visits.visit import Visit
+    from mesa_mobility.crowd.tactics.tactic import Tactic
+    from mesa_mobility.crowd.tactics.target_choice import TargetChoice
+    from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 
 _MODULES = {
     "FREE": "planning.explanation",
@@ -44,21 +46,22 @@ _MODULES = {
     "Capability": "options.capability",
     "CompiledTerm": "costs.compiled_terms",
     "CostTerm": "costs.terms",
-    "Deciding": "tactics.target_choice",
-    "Desired": "tactics.tactic",
+    "Deciding": "tactics.deciding",
+    "Desired": "tactics.deciding",
     "Explanation": "planning.explanation",
     "Inflow": "insertion.inflow",
     "RouteChoice": "tactics.route_choice",
     "SpeedRule": "tactics.speed_rules",
     "Pedestrian": "people.pedestrian",
-    "PedestrianModel": "model",
-    "PedestrianType": "people.pedestrian_type",
+    "PedestrianModel": "pedestrian_model",
+    "PedestrianType": "types.pedestrian_type",
     "Preset": "presets",
     "Source": "insertion.source",
     "Tactic": "tactics.tactic",
     "TargetChoice": "tactics.target_choice",
-    "Visit": "tactics.visits.visit",
+    "Visit": "journeys.visit",
     "Watch": "planning.explanation",
+    "World": "hooks",
     "bound_kernel": "costs.kernel_decorators",
     "option_kernel": "costs.kernel_decorators",
     "pair_bound_kernel": "costs.kernel_decorators",
@@ -90,6 +93,7 @@ __all__ = [
     "TargetChoice",
     "Visit",
     "Watch",
+    "World",
     "bound_kernel",
     "option_kernel",
     "pair_bound_kernel",

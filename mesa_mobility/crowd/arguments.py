@@ -11,13 +11,13 @@ from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.people.pedestrian import Pedestrian, check_pedestrian_class
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.crowd.presets import Preset, read_preset
 from mesa_mobility.crowd.scene import Scene, make_scene
 from mesa_mobility.crowd.state.fields import read_fields
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType, types_of
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.mobility import MobilityMap

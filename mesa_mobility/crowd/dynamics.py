@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -12,16 +12,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.terms import CostTerm, without_weight
-from mesa_mobility.crowd.hooks import Plugin, Saved, check_behaviours, keeps_its_model
-from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED
+from mesa_mobility.crowd.hooks import Plugin, World, check_behaviours, keeps_its_model
+from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED, Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
+from mesa_mobility.crowd.journeys.waiting import Waits
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
 from mesa_mobility.crowd.planning.decision_order import decision_order, due
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
-from mesa_mobility.crowd.planning.explanation import Explanation, judge, weigh
+from mesa_mobility.crowd.planning.explanation import Explanation, Watch, judge, weigh
 from mesa_mobility.crowd.planning.replanning import stop_where_blocked
 from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
+from mesa_mobility.crowd.population import Population
+from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder
+from mesa_mobility.crowd.running.statistics import Statistics
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.state.people_grid import Grid, build_grid
@@ -33,12 +38,25 @@ from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.schema import Flag, Kind, Whole
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
-
 # The model that has bound a behaviour last, by the behaviour's identity.
 _SERVES: WeakValueDictionary[int, Dynamics] = WeakValueDictionary()
+
+
+class Run(World, Protocol):
+    """A model as its dynamics see it: what may change at any time, and what they change."""
+
+    terms: list[CostTerm]
+    tactics: list[Tactic]
+    speed_rules: list[SpeedRule]
+    target_choice: TargetChoice
+    population: Population
+    sources: Sources
+    statistics: Statistics
+    waits: Waits
+    recorder: Recorder | None
+    decisions: DecisionRecorder | None
+    watch: Watch | None
+    frame: int
 
 
 class Dynamics(Saved):
@@ -55,7 +73,7 @@ class Dynamics(Saved):
             "next": Whole(high=LONG_AFTER), "grouped": Flag(), "plan_has_changed": Flag(),
         }  # fmt: skip
 
-    def __init__(self, model: PedestrianModel, scene: Scene) -> None:
+    def __init__(self, model: Run, scene: Scene) -> None:
         self._model = model
         self._scene = scene
         self._scheduler = DecisionScheduler(
@@ -155,7 +173,7 @@ class Dynamics(Saved):
             types = [each.name for each in model.pedestrian_types]
             if said := without_weight(model.terms, types):
                 warnings.warn(said, UserWarning, stacklevel=4)
-            statistics.count_people()
+            statistics.count_people(model.elapsed)
             self._record(people.present)
         elif people.count > known:
             self._record(np.arange(known, people.count, dtype=np.int64))
@@ -175,9 +193,9 @@ class Dynamics(Saved):
             self._next = moved.next
         self._record(walking)
         people.part(moved)
-        statistics.add(moved, end - now)
+        statistics.add(moved, end - now, model.elapsed)
         if end == full_second:
-            statistics.count_people()
+            statistics.count_people(model.elapsed)
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows`` if they decided now."""

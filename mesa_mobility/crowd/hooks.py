@@ -1,20 +1,24 @@
-"""Hooks by which the parts of a model, and plug-ins, are bound to it, saved and restored."""
+"""Behaviours: how they are bound to a model, set, saved and restored."""
 
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, ClassVar, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.journeys.journeys import Journeys
+from mesa_mobility.crowd.journeys.visit import Route
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import ContentError, ModelError
+from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.plugins.parameters import Parameter
 from mesa_mobility.plugins.registry import did_you_mean
 from mesa_mobility.plugins.settings import being_made, checked, declared, has_attribute, making
 from mesa_mobility.schema import Kind, Sizes
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
 
 SHIPPED = "mesa_mobility."
 """How the names of modules begin whose behaviours are taken on trust."""
@@ -22,37 +26,77 @@ SHIPPED = "mesa_mobility."
 _OF_PRESETS = "mesa_mobility.crowd."
 
 
-def scheduled_events(model: object) -> int:
-    """Events that a model of a newer Mesa has to come; models of Mesa 3.3 keep none."""
-    owner = getattr(model, "_scheduler", model)
-    events = getattr(owner, "_event_list", ())
-    return len(events) if hasattr(events, "__len__") else 0
+class People(Protocol):
+    """The people of a model, as behaviours see them."""
+
+    @property
+    def count(self) -> int:
+        """People who have ever been in the model."""
+
+    @property
+    def rows(self) -> NDArray[np.int64]:
+        """Rows of the people inside, in the order of the model's agents."""
+
+    @property
+    def present(self) -> NDArray[np.int64]:
+        """Those of ``rows`` who have not left since the step began."""
+
+    @property
+    def groups(self) -> Sequence[str | int]:
+        """Names of the groups, in the order of their numbers from 1 on."""
+
+    def exits(self, row: int) -> tuple[str, ...]:
+        """Names of the exits by which somebody may leave; none if they go round for ever."""
+
+    def send(self, row: int, exits: Sequence[str] | None, route: Route, frame: int) -> None:
+        """Send somebody along a route and out by one of these exits."""
 
 
-class Saved:
-    """A part of a model that goes into a checkpoint.
+class World(Protocol):
+    """A model as behaviours and agents see it: all that they are bound to.
 
-    Attributes:
-        saved: the attributes that change while a model runs, and what each of them is.
+    ``PedestrianModel`` is one.
     """
 
-    saved: ClassVar[Mapping[str, Kind]] = {}
+    @property
+    def floor_plan(self) -> FloorPlan:
+        """Where people walk."""
 
-    def members(self) -> Mapping[str, Kind]:
-        """What the members of ``state`` are; a checkpoint with others is refused.
+    @property
+    def pedestrian_types(self) -> tuple[PedestrianType, ...]:
+        """The types of people."""
 
-        Names of sizes are those of ``mesa_mobility.crowd.checkpoint.checking``.
-        """
-        return self.saved
+    @property
+    def crowd(self) -> Crowd:
+        """The crowd's arrays, a row a person."""
 
-    def state(self) -> dict[str, Any]:
-        """All that changes while a model runs."""
-        return {name: getattr(self, name) for name in self.saved}
+    @property
+    def population(self) -> People:
+        """Who has come and who is inside."""
 
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Take over what ``state`` has given, in this process or another."""
-        for name in self.saved:
-            setattr(self, name, state[name])
+    @property
+    def journeys(self) -> Journeys:
+        """The routes of people who cross gates and visit places in order."""
+
+    @property
+    def speed_rules(self) -> Sequence[Any]:
+        """Behaviours that change preferred speeds."""
+
+    @property
+    def tactics(self) -> Sequence[Any]:
+        """The steps from a target to what people want of their next movement, in order."""
+
+    @property
+    def frame(self) -> int:
+        """Frames since the start."""
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the start."""
+
+    @property
+    def rng(self) -> np.random.Generator:
+        """The generator that all random numbers are drawn from."""
 
 
 class _Setting(Kind):
@@ -175,11 +219,11 @@ class Plugin(ABC):
                 told.append(f"{name}={value!r:.60}")
         return told
 
-    def bind(self, model: PedestrianModel) -> None:  # noqa: B027
+    def bind(self, model: World) -> None:  # noqa: B027
         """Called once by each model before it uses the behaviour.
 
         Args:
-            model: the model, whose ``floor_plan``, ``crowd`` and ``agents`` the behaviour may keep.
+            model: the model; the behaviour may keep it, and all that it gives.
         """
 
     def members(self) -> Mapping[str, Kind] | None:

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
+import mesa
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.insertion.free_space import first_free
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.insertion.placement import circles, face, place_newcomers
+from mesa_mobility.crowd.journeys.visit import Route
 from mesa_mobility.crowd.people.pedestrian import Pedestrian, number_from
+from mesa_mobility.crowd.people.space import CrowdSpace
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
-from mesa_mobility.crowd.space import CrowdSpace
 from mesa_mobility.crowd.state.advance import Moved
 from mesa_mobility.crowd.state.aggregates import EMPTY, Aggregates, aggregate, split_active
 from mesa_mobility.crowd.state.departed import ROWS, Departed
-from mesa_mobility.crowd.tactics.visits.visit import Route
 from mesa_mobility.errors import ModelError
 from mesa_mobility.schema import MOST, Either, Kind, Members, Several, Text, Whole
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
 
 class Population(Saved):
@@ -88,7 +86,9 @@ class Population(Saved):
         self.departed.restore(state["departed"])
         self._scene.crowd.replace(state)
 
-    def make_agents(self, model: PedestrianModel, unique_ids: Sequence[int], last_id: int) -> None:
+    def make_agents(
+        self, model: mesa.Model, unique_ids: Sequence[int], last_id: int, frame: int
+    ) -> None:
         """Make the agents of those inside anew, with these numbers, and forget all others."""
         for agent in self._space.active_agents:
             model.deregister_agent(agent)
@@ -98,7 +98,7 @@ class Population(Saved):
             number_from(model, number - 1)
             self._agents_by_row[row] = self._pedestrian_class(model, row)
         number_from(model, last_id)
-        self.look_over(model.frame)
+        self.look_over(frame)
 
     @property
     def core_radii(self) -> NDArray[np.float64]:
@@ -157,7 +157,7 @@ class Population(Saved):
         rows: NDArray[np.int64],
         targets: NDArray[np.float64],
         headings: ArrayLike | None,
-        model: PedestrianModel,
+        model: mesa.Model,
     ) -> list[Pedestrian]:
         """Let people in who have just been placed.
 

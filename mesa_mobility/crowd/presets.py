@@ -9,20 +9,6 @@ from typing import Any
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.costs.terms import EXPECTED_WEIGHT, CostTerm, is_weight
-from mesa_mobility.crowd.tactics.shipped import (
-    AdaptSpeed,
-    Anticipation,
-    CompensateSpeed,
-    FollowSpeedRules,
-    GiveWay,
-    Impatience,
-    SlowInZones,
-    SpreadAtCorners,
-    StayAtPlaces,
-    StepOff,
-    TakeTurns,
-    Wait,
-)
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
@@ -41,19 +27,14 @@ class Preset:
         name: for results; by which those that ship are selected.
         terms: weight of each registered cost term, by its name.
         target_choice: registered behaviour that gives people their targets.
+        tactics: registered tactics, in order: the steps from a target to what people want of their
+            next movement.
         group_pace: registered speed rule that keeps groups together.
         durations: option durations in frames.
         shares: shortened copies of the options of each cluster, as shares of the ground covered:
             first of the shortest ones, then of the next longer, and so on.
         most_acceleration: of an option, m/s2; those that exceed it are left out. None for all.
         hard_bodies: whether no two cores may overlap.
-        abreast: whether a crowd spreads out to pass a corner.
-        turns: whether people take turns at passages too narrow for two, and wide ones give way to
-            each other at openings too narrow for two of them.
-        anticipation: whether people who walk turn aside early for others.
-        speed_adaptation: whether people walk as fast as those ahead of them let them.
-        impatience: whether people who make no progress look for a way round.
-        even_pace: whether free walkers correct their accumulated distance error.
 
     Raises:
         ModelError: a number out of range.
@@ -62,17 +43,12 @@ class Preset:
     name: str
     terms: dict[str, float]
     target_choice: str
+    tactics: tuple[str, ...]
     group_pace: str | None
     durations: tuple[int, ...]
     shares: tuple[tuple[float, ...], ...]
     most_acceleration: float | None
     hard_bodies: bool
-    abreast: bool
-    turns: bool
-    anticipation: bool
-    speed_adaptation: bool
-    impatience: bool
-    even_pace: bool
 
     def __post_init__(self) -> None:
         def refuse(what: str, got: object, expected: str) -> None:
@@ -84,8 +60,11 @@ class Preset:
             is_weight(weight) for weight in self.terms.values()
         ):
             refuse("terms", self.terms, f"for the name of each {EXPECTED_WEIGHT}")
+        if isinstance(self.tactics, str) or not all(isinstance(each, str) for each in self.tactics):
+            refuse("tactics", self.tactics, "names of registered tactics, in order")
         # As they are read from JSON, too.
         object.__setattr__(self, "durations", tuple(self.durations))
+        object.__setattr__(self, "tactics", tuple(self.tactics))
         object.__setattr__(self, "shares", tuple(tuple(each) for each in self.shares))
         if not self.durations or not all(
             is_number(each) and isinstance(each, int) and each > 0 for each in self.durations
@@ -103,27 +82,14 @@ class Preset:
         return {
             **asdict(self),
             "terms": dict(self.terms),
+            "tactics": list(self.tactics),
             "durations": list(self.durations),
             "shares": [list(each) for each in self.shares],
         }
 
     def make_tactics(self) -> list[Tactic]:
-        """The steps from a target to what somebody wants of its next movement, in order."""
-        tactics: list[tuple[bool, type[Tactic]]] = [
-            (self.abreast, SpreadAtCorners),
-            (True, StayAtPlaces),
-            (True, SlowInZones),
-            (True, FollowSpeedRules),
-            (self.turns, TakeTurns),
-            (self.turns, GiveWay),
-            (True, Wait),
-            (self.even_pace, CompensateSpeed),
-            (self.anticipation, Anticipation),
-            (self.speed_adaptation, AdaptSpeed),
-            (self.impatience, Impatience),
-            (self.hard_bodies, StepOff),
-        ]
-        return [kind() for taken, kind in tactics if taken]
+        """The tactics in order, looked up among the installed behaviours."""
+        return [load_behavior(name)() for name in self.tactics]
 
     def make_target_choice(self) -> TargetChoice:
         """The target choice, looked up among the installed behaviours."""
@@ -150,17 +116,12 @@ PRESETS = {
             "interference": 1.0,
         },
         target_choice="nearest_exit",
+        tactics=("visits", "speed_zones", "speed_rules", "waiting"),
         group_pace=None,
         durations=(45,),
         shares=(),
         most_acceleration=None,
         hard_bodies=False,
-        abreast=False,
-        turns=False,
-        anticipation=False,
-        speed_adaptation=False,
-        impatience=False,
-        even_pace=False,
     ),
     # The same terms and constants, but a preferred velocity in place of unlimited reward, bodies
     # that do not overlap and make way, options short and slow enough for a queue to move and none
@@ -180,17 +141,25 @@ PRESETS = {
             "stepping": 1.3,
         },
         target_choice="nearest_exit",
+        tactics=(
+            "corner_spreading",
+            "visits",
+            "speed_zones",
+            "speed_rules",
+            "taking_turns",
+            "giving_way",
+            "waiting",
+            "speed_compensation",
+            "anticipation",
+            "speed_adaptation",
+            "impatience",
+            "stepping_off",
+        ),
         group_pace="walk_together",
         durations=(12, 24, 45),
         shares=((0.75, 0.5, 0.25, 0.0), (0.75, 0.5, 0.25)),
         most_acceleration=0.95,
         hard_bodies=True,
-        abreast=True,
-        turns=True,
-        anticipation=True,
-        speed_adaptation=True,
-        impatience=True,
-        even_pace=True,
     ),
 }
 

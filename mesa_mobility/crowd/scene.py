@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
 from mesa_mobility.crowd.options.shapes import shapes_of
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd
-from mesa_mobility.crowd.tactics.visits.journeys import Journeys
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.populations import Population
 

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.pedestrian_model import PedestrianModel
 from mesa_mobility.crowd.state.clearances import clearance_of
 from mesa_mobility.crowd.state.records import Crowd
-from mesa_mobility.crowd.tactics.shipped import StayAtPlaces
-from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
-from mesa_mobility.crowd.tactics.target_choice import Deciding
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.crowd.tactics.visits import StayAtPlaces
 from mesa_mobility.live.making_way import BRISK, step_aside
 from mesa_mobility.live.orders import FREE, STANDS, STEERED, WALKS, Orders
 from mesa_mobility.live.point_routes import PointRoutes
 from mesa_mobility.schema import Kind
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
 AHEAD = 1.0
 """Seconds ahead of its velocity at which somebody who is steered aims: near, so that movements are
@@ -45,7 +44,7 @@ def follow_orders(model: PedestrianModel) -> Orders:
     return orders
 
 
-def _orders_of(model: PedestrianModel) -> Orders:
+def _orders_of(model: World) -> Orders:
     """The orders that tactics of a model have, or new ones."""
     found = (each.orders for each in model.tactics if isinstance(each, _OfOrders))
     return next((orders for orders in found if orders is not None), None) or Orders(model)
@@ -63,7 +62,7 @@ class _OfOrders(Tactic):
     def __init__(self, orders: Orders | None = None) -> None:
         self.orders = orders
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model's crowd, and share its orders."""
         self._crowd = model.crowd
         self.orders = self.orders or _orders_of(model)

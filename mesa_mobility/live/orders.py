@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd import PedestrianModel
-from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.journeys.waiting import end_wait, frames_of, wait_until
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.clearances import passing_of
-from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.errors import ContentError, LiveError
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
 from mesa_mobility.schema import Array, Kind
@@ -48,7 +48,7 @@ class Orders(Saved):
         "stay": Array("i8", ("orders",), 0, FOREVER),
     }
 
-    def __init__(self, model: PedestrianModel) -> None:
+    def __init__(self, model: World) -> None:
         self._model = model
         self.does = np.empty(0, dtype=np.int8)
         self.velocity = np.empty((0, 2))

@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.errors import MapError
-from mesa_mobility.human_limits import FASTEST_SPRINT
+from mesa_mobility.human_limits import FASTEST_SPRINT, SLIMMEST_CORE
 
 SAMPLE_SECONDS = 0.1
 """Time between two samples of a stored path: three frames at 30 Hz."""
@@ -241,9 +242,10 @@ def _check_metadata(metadata: Mapping[str, Any]) -> None:
         raise MapError(f"mobility map metadata: 'frame_rate_hz' is {rate!r}, expected 30")
     body = metadata.get("body", {})
     radius = body.get("core_radius_m", CORE_RADIUS) if isinstance(body, Mapping) else None
-    if isinstance(radius, bool) or not isinstance(radius, int | float) or not 0 < radius < 1:
+    if not (is_number(radius) and SLIMMEST_CORE <= radius < 1.0):
         raise MapError(
-            "mobility map metadata: expected 'body' with a 'core_radius_m' between 0 and 1 m"
+            "mobility map metadata: expected 'body' with a 'core_radius_m' of "
+            f"{SLIMMEST_CORE} to 1 m"
         )
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesa_mobility.crowd.people.free_speeds import ADULTS
+from mesa_mobility.crowd.types.free_speeds import ADULTS
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict, case

@@ -6,7 +6,7 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
-from mesa_mobility.crowd.stall import StallWatch
+from mesa_mobility.crowd.running.stall import StallWatch
 from mesa_mobility.crowd.state.aggregates import Aggregates
 from mesa_mobility.crowd.state.records import Crowd
 from tests.fixtures.scenes import corridor, model_of, put, statues

@@ -17,7 +17,7 @@ WITH_EXAMPLES = sorted(
 def test_the_main_classes_have_examples() -> None:
     assert {
         "mesa_mobility.crowd.costs.terms",
-        "mesa_mobility.crowd.model",
+        "mesa_mobility.crowd.pedestrian_model",
         "mesa_mobility.distributions.base",
         "mesa_mobility.floorplan.plan",
         "mesa_mobility.mobility.map",

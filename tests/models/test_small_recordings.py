@@ -6,7 +6,7 @@ from mesa_mobility.models import Doorway, StraightWalk
 
 from mesa_mobility import PedestrianModel
 from mesa_mobility.capture import find_clips
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.mobility import build_map, prepare_recordings
 from tests.fixtures.oracles.counting import overlaps, track, wall_crossings
 

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesa_mobility.crowd.checkpoint.plain import Packer
 from mesa_mobility.crowd.hooks import SHIPPED, Plugin
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins import registry
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
-
-def behaviours_of(model: PedestrianModel) -> dict[str, list[Plugin]]:
+def behaviours_of(model: CrowdModel) -> dict[str, list[Plugin]]:
     """A model's behaviours, by the names that they have in the file."""
     return {
         "terms": list(model.terms),
@@ -41,7 +39,7 @@ def pack_behaviour(behaviour: Plugin, packer: Packer) -> dict[str, Any]:
 
 
 def match_behaviours(
-    model: PedestrianModel, saved: Mapping[str, Any], plugins: Iterable[Plugin]
+    model: CrowdModel, saved: Mapping[str, Any], plugins: Iterable[Plugin]
 ) -> None:
     """Give a model the behaviours that it had, those of its constructor before others.
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from mesa_mobility.crowd.arguments import MOST_FRAMES
 from mesa_mobility.crowd.checkpoint.movements import check_choices, check_movements, check_next
 from mesa_mobility.crowd.checkpoint.recordings import check_recording
 from mesa_mobility.crowd.hooks import Plugin, ships
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import LAST_FRAME
 from mesa_mobility.errors import ContentError, MobilityError, ModelError
@@ -34,9 +35,6 @@ from mesa_mobility.schema import (
     Whole,
     check,
 )
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
 _BEHAVIOUR = Members({"class": Text(), "name": Text(), "state": Anything()})
 
@@ -79,7 +77,7 @@ COUNTERS: dict[str, Kind] = {
 """The attributes of a model itself that change while it runs."""
 
 
-def sizes_of(model: PedestrianModel) -> dict[str, Any]:
+def sizes_of(model: CrowdModel) -> dict[str, Any]:
     """What names of sizes stand for in a model as it is now."""
     scene, plan = model._scene, model.floor_plan
     return {
@@ -98,7 +96,7 @@ def sizes_of(model: PedestrianModel) -> dict[str, Any]:
     }
 
 
-def check_population(model: PedestrianModel, state: Any) -> None:
+def check_population(model: CrowdModel, state: Any) -> None:
     """Raise ContentError unless the state of a model's population fits the model and itself."""
     given = state if isinstance(state, dict) else {}
     counts = {
@@ -109,7 +107,7 @@ def check_population(model: PedestrianModel, state: Any) -> None:
     check(state["count"], Whole(counts["people"], counts["people"]), "population, count")
 
 
-def check_crowd(model: PedestrianModel, states: Mapping[str, Any]) -> None:
+def check_crowd(model: CrowdModel, states: Mapping[str, Any]) -> None:
     """Raise ContentError unless the restored people fit the floor, and what else is restored."""
     scene, people, state = model._scene, model.population, states["population"]
     check_movements(scene, people.present, state, model.frame)
@@ -125,7 +123,7 @@ def check_crowd(model: PedestrianModel, states: Mapping[str, Any]) -> None:
             check(inflow["_next"], Real(counted, infinite=True), "sources, _next")
 
 
-def restore_behaviour(model: PedestrianModel, behaviour: Plugin, state: Any) -> None:
+def restore_behaviour(model: CrowdModel, behaviour: Plugin, state: Any) -> None:
     """Give a behaviour of a model its state.
 
     Raises:
@@ -171,7 +169,7 @@ def check_alike(there: Mapping[str, Any], given: Mapping[str, Any], of: type, wh
             )
 
 
-def check_attributes(model: PedestrianModel, given: Mapping[str, Any]) -> None:
+def check_attributes(model: CrowdModel, given: Mapping[str, Any]) -> None:
     """As ``check_alike``, of the attributes that subclasses and users have added to a model."""
     for name in model.framework_attributes & given.keys():
         raise ContentError(f"own, {name}: expected attributes that all models do not have")

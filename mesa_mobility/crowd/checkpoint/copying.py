@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.people.pedestrian import last_number, number_from
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan.occupants import add_occupants
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
-Model = TypeVar("Model", bound="PedestrianModel")
+Model = TypeVar("Model", bound="CrowdModel")
 
 
 def copy_model(model: Model, memo: dict[int, Any]) -> Model:
@@ -33,7 +31,7 @@ def copy_model(model: Model, memo: dict[int, Any]) -> Model:
     return copied
 
 
-def refuse_to_pickle(model: PedestrianModel, protocol: Any) -> Any:
+def refuse_to_pickle(model: CrowdModel, protocol: Any) -> Any:
     """Raise ModelError: a model holds what no pickle can, such as compiled code."""
     raise ModelError(
         f"{type(model).__name__}: a model can be copied by copy.deepcopy, neither by copy.copy "

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesa_mobility.crowd.checkpoint.checking import check_alike
 from mesa_mobility.crowd.checkpoint.plain import Packer, Unpacker
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.people.pedestrian import last_number
 from mesa_mobility.errors import ModelError
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
 _FRAMEWORK = {"model", "unique_id", "row", "pos", "space", "_mesa_index"}
 """What every agent has."""
 
 
-def pack_people(model: PedestrianModel, packer: Packer) -> dict[str, Any]:
+def pack_people(model: CrowdModel, packer: Packer) -> dict[str, Any]:
     """Numbers of the agents inside, in order of their rows, and what subclasses add to them.
 
     Raises:
@@ -44,9 +42,7 @@ def pack_people(model: PedestrianModel, packer: Packer) -> dict[str, Any]:
     }
 
 
-def restore_attributes(
-    model: PedestrianModel, saved: Mapping[str, Any], unpacker: Unpacker
-) -> None:
+def restore_attributes(model: CrowdModel, saved: Mapping[str, Any], unpacker: Unpacker) -> None:
     """Give the agents their own attributes."""
     agents = {str(agent.row): agent for agent in model.space.active_agents}
     for row, packed in saved["own"].items():

@@ -18,10 +18,10 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility import distributions
 from mesa_mobility.crowd.insertion.source import Source
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.journeys.visit import Visit
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.fields import KINDS
-from mesa_mobility.crowd.tactics.visits.visit import Visit
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone
 from mesa_mobility.schema import Members, Whole, check

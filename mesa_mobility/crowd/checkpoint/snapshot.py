@@ -11,7 +11,7 @@ import hashlib
 import inspect
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -36,24 +36,22 @@ from mesa_mobility.crowd.checkpoint.checking import (
 )
 from mesa_mobility.crowd.checkpoint.people import pack_people, restore_attributes
 from mesa_mobility.crowd.checkpoint.plain import NotPlain, Packer, Unpacker, set_bits
-from mesa_mobility.crowd.hooks import Plugin, scheduled_events
-from mesa_mobility.crowd.mesa_clock import set_clock
+from mesa_mobility.crowd.hooks import Plugin
+from mesa_mobility.crowd.model.clock import scheduled_events, set_clock
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.mapfile import shipped_map_path
 from mesa_mobility.plugins import registry
 from mesa_mobility.schema import Anything, Members, check
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
-Model = TypeVar("Model", bound="PedestrianModel")
+Model = TypeVar("Model", bound="CrowdModel")
 
 SHIPPED = "able_bodied"
 """The map that a model without a map has."""
 
 
-def save_model(model: PedestrianModel, path: str | os.PathLike[str]) -> None:
+def save_model(model: CrowdModel, path: str | os.PathLike[str]) -> None:
     """Write a checkpoint, from which ``load`` goes on to the same trajectories.
 
     It holds the constructor's arguments and all that has changed since: people, behaviours,
@@ -104,7 +102,7 @@ def load_model(
     plugins: Iterable[Plugin],
     given: Mapping[str, Any],
 ) -> Model:
-    """The model of a checkpoint; see ``PedestrianModel.load``.
+    """The model of a checkpoint; see ``CrowdModel.load``.
 
     Args:
         kind: the class, or one above it.
@@ -167,7 +165,7 @@ def _load(
     check_crowd(model, states)
     check_ids(content["people"], model.inside)
     model.population.make_agents(
-        model, content["people"]["unique_ids"], content["people"]["last_id"]
+        model, content["people"]["unique_ids"], content["people"]["last_id"], model.frame
     )
     match_behaviours(model, content["behaviors"], plugins)
     objects.update(_names(model))
@@ -189,7 +187,7 @@ def _load(
     return model
 
 
-def own_attributes(model: PedestrianModel) -> list[str]:
+def own_attributes(model: CrowdModel) -> list[str]:
     """Names of the attributes that subclasses and users have added to a model."""
     return sorted(vars(model).keys() - model.framework_attributes)
 
@@ -211,11 +209,11 @@ class _Shipped(dict[Any, Any]):
         return MobilityMap.load(shipped_map_path(name[1]))
 
 
-def _references(model: PedestrianModel) -> list[tuple[object, Any]]:
+def _references(model: CrowdModel) -> list[tuple[object, Any]]:
     return [(thing, name) for name, thing in _names(model)]
 
 
-def _names(model: PedestrianModel) -> list[tuple[Any, Any]]:
+def _names(model: CrowdModel) -> list[tuple[Any, Any]]:
     """Objects that a constructor makes, by the names that values in the file have for them."""
     named: list[tuple[Any, Any]] = [
         ("model", model),
@@ -234,7 +232,7 @@ def _names(model: PedestrianModel) -> list[tuple[Any, Any]]:
     return named
 
 
-def _pack_arguments(model: PedestrianModel, packer: Packer) -> tuple[dict[str, Any], list[str]]:
+def _pack_arguments(model: CrowdModel, packer: Packer) -> tuple[dict[str, Any], list[str]]:
     """The constructor's arguments, and the names of those that the file cannot hold."""
     positional, keywords = model.made_with
     signature = inspect.signature(type(model).__init__)
@@ -274,7 +272,7 @@ def _may_hold_a_map(value: Any) -> bool:
     )
 
 
-def _refuse_functions(model: PedestrianModel) -> None:
+def _refuse_functions(model: CrowdModel) -> None:
     """Raise ModelError where functions of the user's are kept for later."""
     kind = type(model).__name__
     if model.waits.waiting_for_functions:
@@ -289,12 +287,12 @@ def _refuse_functions(model: PedestrianModel) -> None:
 _COLLECTED = ("model_vars", "_agent_records", "tables")
 
 
-def _collected(model: PedestrianModel) -> dict[str, Any]:
+def _collected(model: CrowdModel) -> dict[str, Any]:
     found = {name: getattr(model.datacollector, name) for name in _COLLECTED}
     return {name: dict(each) for name, each in found.items()}
 
 
-def _restore_collected(model: PedestrianModel, saved: Mapping[str, Any]) -> None:
+def _restore_collected(model: CrowdModel, saved: Mapping[str, Any]) -> None:
     check_collected(_collected(model), saved)
     for name in _COLLECTED:
         there = getattr(model.datacollector, name)
@@ -305,7 +303,7 @@ def _restore_collected(model: PedestrianModel, saved: Mapping[str, Any]) -> None
         model.datacollector.model_reporters[name] = _nothing
 
 
-def _nothing(model: PedestrianModel) -> None:
+def _nothing(model: CrowdModel) -> None:
     """What is collected in a column whose function is missing."""
 
 

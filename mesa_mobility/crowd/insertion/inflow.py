@@ -8,13 +8,13 @@ from typing import Any, ClassVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_types
 from mesa_mobility.crowd.insertion.source import MOST_PEOPLE, Source
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.people.pedestrian_type import indices_of
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.clearances import passing_of
+from mesa_mobility.crowd.types.pedestrian_type import indices_of
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan.entrance import Entrance, read_entrance
 from mesa_mobility.populations import Population

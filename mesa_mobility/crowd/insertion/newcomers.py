@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType, indices_of
+from mesa_mobility.crowd.journeys.visit import Route, Visit
+from mesa_mobility.crowd.journeys.waiting import frames_of
 from mesa_mobility.crowd.state.fields import field_column
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
-from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
-from mesa_mobility.crowd.tactics.waiting import frames_of
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType, indices_of
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_given, numbers_in

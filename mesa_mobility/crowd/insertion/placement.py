@@ -11,9 +11,9 @@ from mesa_mobility.crowd.insertion.free_space import too_close
 from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_column, distinct
 from mesa_mobility.crowd.insertion.suited_places import suited
 from mesa_mobility.crowd.options.shapes import ONE_DISC
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls

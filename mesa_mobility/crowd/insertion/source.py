@@ -11,10 +11,10 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
+from mesa_mobility.crowd.journeys.visit import Route
+from mesa_mobility.crowd.journeys.waiting import LONGEST_WAIT
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
-from mesa_mobility.crowd.tactics.visits.visit import Route
-from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_in

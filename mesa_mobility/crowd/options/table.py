@@ -20,6 +20,12 @@ SAMPLE_FRAMES = 3
 SAMPLES = 16
 """Samples of a path: the start and those of the longest option."""
 
+LONGEST_MOVEMENT = (SAMPLES - 1) * SAMPLE_FRAMES
+"""Frames of the longest option."""
+
+LONGEST_MOVEMENT_S = LONGEST_MOVEMENT / FRAMES_A_SECOND
+"""Seconds of the longest option."""
+
 LEVELS = (4, 8, 12, 15)
 """Samples, at 0.4, 0.8, 1.2 and 1.5 s, at which the broad phase tests whole groups."""
 

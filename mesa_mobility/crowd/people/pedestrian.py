@@ -6,24 +6,24 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
+import mesa
 import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpaceAgent
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates
+from mesa_mobility.crowd.journeys.visit import Route, Visit
+from mesa_mobility.crowd.journeys.waiting import waiting
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
 from mesa_mobility.crowd.state.fields import field_column
 from mesa_mobility.crowd.state.records import FALLBACK
-from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
-from mesa_mobility.crowd.tactics.waiting import waiting
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.settings import has_attribute, near_miss
 
 if TYPE_CHECKING:
     from mesa_mobility.bodies import BodyMotion, PoseBank
-    from mesa_mobility.crowd.model import PedestrianModel
 
 
 class _Counter:
@@ -51,13 +51,13 @@ _FOLLOWING = "agent_id_counter"
 """Where models of a newer Mesa keep the number of the next agent."""
 
 
-def last_number(model: PedestrianModel) -> int:
+def last_number(model: mesa.Model) -> int:
     """Number of the last agent that a model has got."""
     following: int | None = getattr(model, _FOLLOWING, None)
     return Pedestrian._ids[model].last if following is None else following - 1
 
 
-def number_from(model: PedestrianModel, last: int) -> None:
+def number_from(model: mesa.Model, last: int) -> None:
     """Let the numbers of a model's agents go on after ``last``."""
     Pedestrian._ids[model].last = last
     if hasattr(model, _FOLLOWING):
@@ -85,7 +85,7 @@ class Pedestrian(ContinuousSpaceAgent):
     # Mesa 3.3 keeps agent numbers in a dictionary that never frees a model.
     _ids = _Counters()
 
-    def __init__(self, model: PedestrianModel, row: int | None = None) -> None:
+    def __init__(self, model: Any, row: int | None = None) -> None:
         if not model.population.awaits(row):
             raise ModelError(
                 f"{type(self).__name__}(...): nobody stands on the floor for this agent, expected "
@@ -305,7 +305,8 @@ class Pedestrian(ContinuousSpaceAgent):
         """
         from mesa_mobility.crowd.people.body import body_now
 
-        return body_now(self, bank)
+        digest = self.pedestrian_type.mobility_map.digest
+        return body_now(self.model, self.row, digest, bank)
 
     def movement_options(self) -> Candidates:
         """The person's movement options, were it to decide here and now."""

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.paths import commit
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.floorplan.floor.geometry import point_segment_distance2

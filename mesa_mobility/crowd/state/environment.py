@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.clearances import clearance_of, passing_of
 from mesa_mobility.crowd.state.corners import Corners
 from mesa_mobility.crowd.state.records import FARTHEST

@@ -23,6 +23,8 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import entry_point, internal
 from mesa_mobility.crowd.state.people_grid import Grid, cells_within
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.walls.line_of_sight import unwalled
 from mesa_mobility.floorplan.walls.sight import Sight, sight_on
@@ -251,3 +253,17 @@ def _too_near(
             if total >= enough:
                 return total
     return total
+
+
+class Anticipation(Tactic):
+    """People who walk turn aside early for those whom they would come too near."""
+
+    name = "anticipation"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Turn the points of those for whom another course is better, or slow them down."""
+        if not desired.newcomers:
+            desired.points, desired.speeds = turn_aside(
+                deciding.pedestrians, deciding.inside.grid, deciding.frame, deciding.inside.crowd,
+                deciding.site.plan, desired.points, desired.speeds,
+            )  # fmt: skip

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
-from mesa_mobility.crowd.tactics.target_choice import Deciding
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.floorplan import Targets
 
 CAPACITY = 1.22
@@ -95,3 +96,13 @@ def _areas(
             k = queue[at]
             areas[k] = ahead * agenda[rows[k]]["speed"] / CAPACITY
     return last >= 0
+
+
+class SpreadAtCorners(Tactic):
+    """In a crowd, those behind pass a corner farther out."""
+
+    name = "corner_spreading"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Change the points of those who pass a corner after others."""
+        desired.points = spread_at_corners(deciding, desired.targets, deciding.inside.crowd)

@@ -13,15 +13,12 @@ from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import FARTHEST, Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
-from mesa_mobility.crowd.tactics.tactic import Desired, Tactic
-from mesa_mobility.crowd.tactics.target_choice import (
-    Deciding,
-    TargetChoice,
-    query_targets,
-)
-from mesa_mobility.crowd.unchanged import Given
+from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.crowd.tactics.target_choice import TargetChoice, query_targets
+from mesa_mobility.crowd.tactics.unchanged import Given
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.output import numbers_given

@@ -19,8 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.settling import settle
+from mesa_mobility.crowd.tactics.tactic import Tactic
 
 GETTING_NEARER = 0.25
 """Metres that somebody must come nearer for it to count as progress."""
@@ -156,3 +160,27 @@ def turn(
         dx, dy = state[i].target_x - state[i].x, state[i].target_y - state[i].y
         state[i].target_x = state[i].x + c * dx - s * dy
         state[i].target_y = state[i].y + s * dx + c * dy
+
+
+class Impatience(Tactic):
+    """People who make no progress look for a way round; long bodies back off as well."""
+
+    name = "impatience"
+
+    _has_long_body: NDArray[np.bool_]
+
+    def bind(self, model: World) -> None:
+        """Note which types have bodies of several discs."""
+        self._has_long_body = np.array([len(each.shape) > 1 for each in model.pedestrian_types])
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Turn the points of some who make no progress."""
+        rows, crowd = deciding.pedestrians, deciding.inside.crowd
+        settle(rows, desired.points, desired.speeds, crowd.records)
+        changed = perturb_targets(rows, crowd, deciding.elapsed, deciding.rng)
+        if self._has_long_body.any() and back_off(
+            rows, crowd, self._has_long_body, deciding.elapsed
+        ):
+            changed, desired.speeds = True, crowd.preferred[rows]
+        if changed:
+            desired.points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])

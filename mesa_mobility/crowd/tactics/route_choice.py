@@ -5,21 +5,19 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.tactics.target_choice import Deciding, TargetChoice
+from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.tactics.deciding import Deciding
+from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.annotations import Range
 from mesa_mobility.schema import Array, Kind
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
 
 AGAIN = Array("f8", high=1e9, infinite=True)
 """When each person chooses again, s, in a checkpoint: -inf before the first time."""
@@ -45,9 +43,9 @@ class RouteChoice(TargetChoice):
         self.interval = interval
         self._again = np.empty(0)
 
-    _model: PedestrianModel
+    _model: World
 
-    def bind(self, model: PedestrianModel) -> None:
+    def bind(self, model: World) -> None:
         """Keep the model, whose people it sends."""
         self._model = model
 

@@ -28,6 +28,8 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import entry_point, internal
 from mesa_mobility.crowd.state.people_grid import Grid, cells_within
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
 
 STANDING_GAP = 0.28
 """l: distance between the middles of two people who stand one behind the other, metres."""
@@ -114,3 +116,17 @@ def _allowed(i: int, ex: float, ey: float, own: float, grid: Grid, state: CrowdS
                 share = aside * (1.0 / HALF_WIDTH)
                 least = min(least, allowed + (own - allowed) * share)
     return least
+
+
+class AdaptSpeed(Tactic):
+    """People walk as fast as those ahead of them let them."""
+
+    name = "speed_adaptation"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Slow down those who have people ahead."""
+        if not desired.newcomers:
+            desired.speeds = adapt_speeds(
+                deciding.pedestrians, deciding.inside.grid, deciding.inside.crowd, desired.points,
+                desired.speeds,
+            )  # fmt: skip

@@ -14,8 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.options.table import FRAME_SECONDS, LONGEST_MOVEMENT_S
 from mesa_mobility.crowd.state.records import NO_OPTION, Crowd, CrowdState
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
 
 SLOWER, FASTER = 0.1, 0.2
 """A walker at most so much slower or faster than its preferred speed walks freely, m/s.
@@ -27,7 +29,7 @@ of people with a limp, sped up to those of a cane, leave some speeds out.
 MOST = 0.25
 """Greatest distance error that is kept, metres."""
 
-MAKES_UP = 1.5
+MAKES_UP = LONGEST_MOVEMENT_S
 """Seconds in which the error is corrected: the longest movement."""
 
 
@@ -75,3 +77,15 @@ def _keep_pace(
             behind = min(max(agenda[i]["behind"] + short, min(-MOST, short)), MOST)
         agenda[i]["behind"], agenda[i]["desired_speed"] = behind, speeds[k]
         kept[k] = max(speeds[k] + behind / MAKES_UP, 0.0) if speeds[k] > 0.0 else speeds[k]
+
+
+class CompensateSpeed(Tactic):
+    """Free walkers correct their accumulated distance error."""
+
+    name = "speed_compensation"
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Change the speeds of free walkers by little."""
+        desired.speeds = compensate_speed(
+            deciding.pedestrians, deciding.inside.crowd, desired.speeds
+        )

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Plugin
-from mesa_mobility.crowd.tactics.target_choice import Deciding
-from mesa_mobility.crowd.unchanged import Given
+from mesa_mobility.crowd.tactics.deciding import Deciding
+from mesa_mobility.crowd.tactics.unchanged import Given
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_given
 

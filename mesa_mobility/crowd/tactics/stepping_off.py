@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.options.shapes import ShapeRecords
+from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.options.shapes import ShapeRecords, shapes_of
 from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.floor.boundaries import opening_segments
 from mesa_mobility.floorplan.floor.geometry import point_segment_distance2
+from mesa_mobility.schema import Kind
 
 CLEAR = 1.0
 """Metres by which somebody aims beyond what is needed: a wheelchair does not set off for less. They
@@ -59,3 +67,38 @@ def step_off(
                     far = math.copysign(deep + CLEAR, aside) / length
                     points[k, 0] = state[i].x + far * nx
                     points[k, 1] = state[i].y + far * ny
+
+
+class StepOff(Tactic):
+    """People step off the line of a gate or exit that has closed on them, whatever else they want.
+
+    A door is no place to stand in, and people whose only way out has closed would stay there.
+    """
+
+    name = "stepping_off"
+
+    saved: ClassVar[Mapping[str, Kind]] = {}  # the plan and the types are the model's
+
+    _plan: FloorPlan
+    _shapes: ShapeRecords
+
+    def bind(self, model: World) -> None:
+        """Keep the floor plan, whose doors may close, and the bodies of all types."""
+        self._plan = model.floor_plan
+        self._shapes = shapes_of([each.shape for each in model.pedestrian_types])
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Send those away from the line who are across it."""
+        closed = self._plan.closed_openings()
+        if desired.newcomers or not closed:
+            return
+        lines, points = opening_segments(closed), desired.points.copy()
+        rows, crowd = deciding.pedestrians, deciding.inside.crowd
+        across = np.zeros(len(rows), dtype=np.bool_)
+        step_off(rows, lines, self._shapes, crowd.records, points, across)
+        if across.any():
+            # Those without a route would rather stand.
+            steps = points[across] - deciding.positions[across]
+            crowd.route[rows[across]] = np.hypot(steps[:, 0], steps[:, 1])
+            own = crowd.agenda["speed"][rows]
+            desired.points, desired.speeds = points, np.where(across, own, desired.speeds)

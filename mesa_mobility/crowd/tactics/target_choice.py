@@ -3,89 +3,22 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.hooks import Plugin
-from mesa_mobility.crowd.options.table import FRAME_SECONDS
-from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import FARTHEST, Crowd, CrowdState
-from mesa_mobility.crowd.state.view import CrowdView
-from mesa_mobility.crowd.tactics.waiting import HELD, wait_until, waiting
-from mesa_mobility.crowd.unchanged import Given
+from mesa_mobility.crowd.tactics.deciding import Deciding
+from mesa_mobility.crowd.tactics.unchanged import Given
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.output import numbers_given, whole_numbers_given
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.tactics.tactic import Desired
-
 _BAD_POINTS, _BAD_DISTANCES, _BAD_GATES, _BAD_CORNERS = 1, 2, 3, 4
 
 _NO_CORNERS = np.empty((0, 2), dtype=np.int64)
-
-
-class Deciding(NamedTuple):
-    """The pedestrians who decide in this frame.
-
-    Attributes:
-        pedestrians: (n,) rows in the crowd (``Pedestrian.row``).
-        positions: (n, 2) metres.
-        destinations: (n,) number of the set of exits by which each may leave.
-        elapsed: simulated seconds.
-        inside: everybody inside, the deciding pedestrians included.
-        rng: the model's generator.
-        site: the routes.  ``site.targets(positions, destinations)`` gives targets;
-            ``site.destination(exit_names, type)`` gives the number of a set of exits for a
-            pedestrian type, since routes depend on the core radius; ``site.exits(destination)``
-            gives the names of its exits.
-    """
-
-    pedestrians: NDArray[np.int64]
-    positions: NDArray[np.float64]
-    destinations: NDArray[np.int64]
-    elapsed: float
-    inside: CrowdView
-    rng: np.random.Generator
-    site: Environment
-
-    @property
-    def types(self) -> NDArray[np.int64]:
-        """(n,) index of the pedestrian type."""
-        return self.inside.types_of(self.pedestrians)
-
-    @property
-    def frame(self) -> int:
-        """Number of the frame, counted from 0 on."""
-        return round(self.elapsed / FRAME_SECONDS)
-
-    @property
-    def waiting(self) -> NDArray[np.bool_]:
-        """(n,) whether each waits: told to, at a place that it visits, or held by a behaviour."""
-        return waiting(self.pedestrians, self.frame, self.inside.crowd)
-
-    def hold(
-        self, desired: Desired, who: NDArray[Any], facing: NDArray[np.float64] | None = None
-    ) -> None:
-        """Let some wait where they are until they decide again, 0.4 s later.
-
-        As all who wait, they stay patient and count as people who stand, for others who look ahead
-        and for the test whether a run has stalled. A tactic that holds them at each decision lets
-        them wait for as long as it does.
-
-        Args:
-            desired: what all of them want so far.
-            who: which: (n,) of them true, or (k,) indices.
-            facing: (k, 2) points to which they turn meanwhile, metres; by default they stand as
-                they are. Who turns decides again at the end of that movement, 1.5 s later at most.
-        """
-        desired.stand(who, self.positions)
-        if facing is not None:
-            desired.points[who] = facing
-        wait_until(self.pedestrians[who], self.frame + HELD, self.inside.crowd)
 
 
 class TargetChoice(Plugin):

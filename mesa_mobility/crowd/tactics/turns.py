@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point, internal, kept
-from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import FOR_TWO, Passages, narrow_passages

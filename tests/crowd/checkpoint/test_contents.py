@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mesa_mobility import PedestrianModel, Tactic
-from mesa_mobility.crowd.stall import StallWatch
+from mesa_mobility.crowd.running.stall import StallWatch
 from mesa_mobility.crowd.state.aggregates import Aggregates
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.errors import ModelError

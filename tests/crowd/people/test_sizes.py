@@ -65,7 +65,9 @@ def test_all_keep_to_ways_for_the_widest():
         model_of(Uniform(0.15, 0.3), plan=plan).add_pedestrians([(1.0, 1.0)])
 
 
-@pytest.mark.parametrize("core", [Normal(0.2, 0.05), Uniform(-0.1, 0.2), Uniform(0.5, 1.2)])
+@pytest.mark.parametrize(
+    "core", [Normal(0.2, 0.05), Uniform(-0.1, 0.2), Uniform(0.5, 1.2), 1e-308, 0.01]
+)
 def test_radii_out_of_range_are_refused(core):
-    with pytest.raises(ModelError, match=r"core_radius .*, expected 0 to 1 m"):
+    with pytest.raises(ModelError, match=r"core_radius .*, expected 0\.02 to 1 m"):
         PedestrianType(mobility_map=shipped_map(), core_radius=core)

@@ -124,6 +124,7 @@ class Rooms(PedestrianModel):
         self.add_pedestrians([(6.0 + k, 2.6 + 0.7 * (k % 3)) for k in range(4)], exits=["east"])
 
 
+@pytest.mark.thorough
 def test_a_saved_model_goes_on_alike(tmp_path):
     model = Rooms(rng=1)
     model.run(max_seconds=2)

@@ -92,16 +92,17 @@ def test_what_a_tactic_gives_is_checked():
 
 
 def test_a_preset_of_ones_own_is_saved_with_the_figures():
-    mine = replace(PRESETS["default"], name="mine", terms={"target_distance": 2.0}, turns=False)
+    tactics = ("visits", "impatience")
+    mine = replace(PRESETS["default"], name="mine", terms={"target_distance": 2.0}, tactics=tactics)
     model = model_of(corridor(), strider(), preset=mine)
     assert model.preset == "mine"
     assert [(term.name, term.weight) for term in model.terms] == [("target_distance", 2.0)]
-    assert "taking_turns" not in names(model)
+    assert names(model) == ["visits", "impatience"]
     rules = model.summary()["rules"]
-    assert (rules["name"], rules["terms"], rules["turns"]) == (
+    assert (rules["name"], rules["terms"], rules["tactics"]) == (
         "mine",
         {"target_distance": 2.0},
-        False,
+        ["visits", "impatience"],
     )
     assert Preset(**rules) == mine
 
@@ -111,6 +112,8 @@ def test_a_preset_of_ones_own_is_saved_with_the_figures():
     ({"durations": ()}, r"durations \(\), expected frames"),
     ({"durations": (12, 0.5)}, "durations"),
     ({"terms": {"headway": float("nan")}}, "for the name of each a finite number"),
+    ({"tactics": "visits"}, "tactics 'visits', expected names of registered tactics"),
+    ({"tactics": ("visits", 1)}, "expected names of registered tactics"),
     ({"shares": ((1.0,),)}, "share 1.0, expected 0 or more and less than 1"),
 ])  # fmt: skip
 def test_presets_that_are_refused(changed, text):

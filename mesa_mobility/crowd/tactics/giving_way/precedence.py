@@ -20,8 +20,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.journeys.waiting import waiting
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.giving_way.making_room import ROOM, steps_aside
 from mesa_mobility.crowd.tactics.giving_way.openings import (
@@ -35,7 +36,6 @@ from mesa_mobility.crowd.tactics.giving_way.openings import (
     wait_clear,
     widths,
 )
-from mesa_mobility.crowd.tactics.waiting import waiting
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.routing.passages import narrow_mouths
 from mesa_mobility.schema import Array, Flag, Kind, check_shape

@@ -5,7 +5,7 @@ import pytest
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, Visit
-from mesa_mobility.crowd.tactics.visits.slowing import slow_down
+from mesa_mobility.crowd.tactics.visits import slow_down
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.scenes import model_of
 

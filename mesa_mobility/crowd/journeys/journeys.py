@@ -14,14 +14,14 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.journeys.crossings import find_crossings
+from mesa_mobility.crowd.journeys.place import Place
+from mesa_mobility.crowd.journeys.stays import Stays
+from mesa_mobility.crowd.journeys.visit import Route, Visit
 from mesa_mobility.crowd.options.table import OptionTable
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import FARTHEST, Crowd
-from mesa_mobility.crowd.tactics.visits.crossings import find_crossings
-from mesa_mobility.crowd.tactics.visits.place import Place
-from mesa_mobility.crowd.tactics.visits.stays import Stays
-from mesa_mobility.crowd.tactics.visits.visit import Route, Visit
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.schema import (

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import ClassVar
 
-from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.population import Population
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.advance import Moved
+from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.schema import Each, Kind, Maybe, Real, Several, Whole
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
 
 class Statistics(Saved):
     """Figures of a model, kept while it runs.
 
     Args:
-        model: the model.
+        population: its people.
+        crowd: their records.
 
     Attributes:
         occupancy: (seconds, people inside) each simulated second.
@@ -32,30 +32,30 @@ class Statistics(Saved):
         "_fallback_frames": Whole(),
     }
 
-    def __init__(self, model: PedestrianModel) -> None:
-        self._model = model
+    def __init__(self, population: Population, crowd: Crowd) -> None:
+        self._population, self._crowd = population, crowd
         self.occupancy: list[tuple[float, int]] = []
         self.last_left: float | None = None
         self._walked = 0.0
         self._person_frames = self._fallback_frames = 0
 
-    def count_people(self) -> None:
-        """Note how many are inside now."""
-        self.occupancy.append((self._model.elapsed, len(self._model.population.present)))
+    def count_people(self, elapsed: float) -> None:
+        """Note how many are inside now, ``elapsed`` seconds after the start."""
+        self.occupancy.append((elapsed, len(self._population.present)))
 
-    def add(self, moved: Moved, frames: int) -> None:
-        """Add the results of the last frames."""
+    def add(self, moved: Moved, frames: int, elapsed: float) -> None:
+        """Add the results of the last frames, up to ``elapsed`` seconds after the start."""
         for _ in range(frames):  # rounding must not depend on how many frames are skipped
             self._walked += moved.speeds
         self._person_frames += frames * (len(moved.stay) + len(moved.gone))
         self._fallback_frames += frames * moved.fallen
         if len(moved.gone):
-            self.last_left = self._model.elapsed
+            self.last_left = elapsed
 
     @property
     def mean_speed(self) -> float:
         """Mean speed of the movements under way after the last step, m/s; 0 if nobody is inside."""
-        now = self._model.population.aggregates
+        now = self._population.aggregates
         return now.speeds / now.people if now.people else 0.0
 
     @property
@@ -71,27 +71,6 @@ class Statistics(Saved):
     @property
     def fallback_decision_share(self) -> float:
         """Share of decisions that ended in the fallback."""
-        crowd = self._model.crowd
+        crowd = self._crowd
         total = int(crowd.decisions.sum())
         return float(crowd.fallbacks.sum()) / total if total else 0.0
-
-    def summary(self) -> dict[str, Any]:
-        """The figures of ``PedestrianModel.summary``."""
-        model, last_left = self._model, self.last_left
-        out = model.inside == 0 and last_left is not None and not model.sources.expecting
-        return {
-            "model": type(model).__name__,
-            "preset": model.preset,
-            "rules": model.rules.numbers(),
-            "pedestrians": model.population.count,
-            "simulated_s": round(model.elapsed, 6),
-            "egress_s": round(last_left or 0.0, 6) if out else None,
-            "left_inside": model.inside,
-            "stalled": model.stalled,
-            "stall_reason": model.stall_reason,
-            "decisions": int(model.crowd.decisions.sum()),
-            "fallback_decision_share": self.fallback_decision_share,
-            "fallback_time_share": self.fallback_time_share,
-            "mean_speed_mps": self.mean_speed_so_far,
-            "occupancy": [list(row) for row in self.occupancy],
-        }

@@ -10,7 +10,7 @@ import numpy as np
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.crowd.tactics.waiting import LONGEST_WAIT
+from mesa_mobility.crowd.journeys.waiting import LONGEST_WAIT
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan.floor.checks import read_wkt

@@ -1,8 +1,7 @@
-"""The Mesa model: a floor plan, a crowd on it, and time."""
+"""A Mesa model that runs a crowd on a floor plan."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
@@ -19,33 +18,27 @@ from mesa_mobility.crowd.arguments import (
     checked_attribute,
     read_scene,
 )
-from mesa_mobility.crowd.checkpoint.copying import copy_model, refuse_to_pickle
-from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
-from mesa_mobility.crowd.hooks import Plugin, Saved, check_behaviours, scheduled_events
-from mesa_mobility.crowd.insertion import adding
 from mesa_mobility.crowd.insertion.inflow import Sources
-from mesa_mobility.crowd.insertion.newcomers import Newcomers
-from mesa_mobility.crowd.mesa_clock import set_clock, tell_time
+from mesa_mobility.crowd.journeys.waiting import Waits
+from mesa_mobility.crowd.model.clock import scheduled_events, set_clock, tell_time
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
-from mesa_mobility.crowd.people.person_data import describe_people
+from mesa_mobility.crowd.people.space import space_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset
-from mesa_mobility.crowd.recorder import DecisionRecorder, Recorder, movements_under_way
-from mesa_mobility.crowd.reporters import REPORTERS, add_agent_reporter, add_reporter
-from mesa_mobility.crowd.space import space_of
-from mesa_mobility.crowd.stall import StallWatch, stall_reason
-from mesa_mobility.crowd.statistics import Statistics
+from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder, movements_under_way
+from mesa_mobility.crowd.running.stall import StallWatch, stall_reason
+from mesa_mobility.crowd.running.statistics import Statistics
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
-from mesa_mobility.crowd.tactics.waiting import Waits
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.occupants import add_occupants
@@ -54,73 +47,17 @@ from mesa_mobility.plugins.seeds import seed_of
 from mesa_mobility.plugins.settings import making
 from mesa_mobility.populations import Population
 
+REPORTERS: dict[str, Any] = {
+    "elapsed": "elapsed",
+    "inside": "inside",
+    "mean_speed": lambda model: model.statistics.mean_speed,
+    "fallback_time_share": lambda model: model.statistics.fallback_time_share,
+}
+"""What is collected of every model."""
 
-class PedestrianModel(mesa.Model):
-    """Pedestrians on a floor plan, driven by recorded movement.
 
-    Concrete models build a floor plan, call this constructor and then
-    ``add_pedestrians``.
-
-    Args:
-        floor_plan: where people walk.
-        preset: "default", "paper", or rules of one's own.
-        mobility_map: a map, its file, or None for the able-bodied one that ships; stands
-            for a single pedestrian type with default speeds.
-        pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
-        population: the shares of types that people are drawn from, instead of either: a
-            ``Population``, shares by type, or a text such as "mixed" (see ``Population.of``).
-        behaviors: cost terms instead of the preset's.
-        target_choice: where people go; by default everybody leaves by the nearest exit.
-        pedestrian_class: class of the agents, ``Pedestrian`` or one derived from it.
-        fields: type (bool, int or float) of each number that every person has in addition, by
-            name; agents, behaviours and results see them.
-        frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
-        record: keep every frame in ``recorder``; "decisions" also keeps who has taken which option
-            in ``decisions``, from which bodies are drawn.
-        rng: seed, also as text, or NumPy generator.
-
-    Attributes:
-        preset: name of the preset.
-        rules: the preset.
-        space: Mesa's continuous space with everybody inside.
-        crowd: the crowd's arrays; see ``Crowd``.
-        population: who has come and who is inside; see ``Population``.
-        statistics: the figures of the run so far; see ``Statistics``.
-        dynamics: what happens in each frame; see ``Dynamics``.
-        sources: an ``Inflow`` for each ``add_source``.
-        journeys: the routes of people who cross gates and visit places in order.
-        speed_rules: behaviours that change preferred speeds; the preset's rule for groups is added
-            with the first group. May be changed at run time.
-        tactics: the steps from a target to what somebody wants of its next movement, in order; may
-            be removed, replaced and added to at run time.
-        terms: the cost terms; may be added to, removed and re-weighted at run time.
-        frame: frames since the start.
-        time: ``elapsed``, and between two steps the time of Mesa's events, seconds.
-        stalled: whether for a minute nobody has left and people have come no nearer to an exit;
-            ``stall_reason`` says why, and ``go_on`` and ``run`` give it another minute.
-        watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
-        events_at_first: events that Mesa itself has scheduled.
-        framework_attributes: names of the attributes that this class has made.
-        datacollector: time, people inside, mean speed and fallback share after each step.
-
-    Raises:
-        ModelError: an unknown preset or a parameter out of range.
-        MapError: an unusable map file.
-
-    Examples:
-        >>> from mesa_mobility import Exit, FloorPlan, PedestrianModel
-        >>> plan = FloorPlan(
-        ...     "POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))", exits=[Exit("door", (6, 1.5), (6, 2.5))]
-        ... )
-        >>> model = PedestrianModel(plan, rng=1)
-        >>> people = model.add_pedestrians([(1.0, 2.0), (2.0, 1.0)], preferred_speeds=1.2)
-        >>> model.step()
-        >>> model.inside, round(model.elapsed, 3)
-        (2, 0.1)
-        >>> model.run(max_seconds=30)
-        >>> model.inside
-        0
-    """
+class CrowdModel(mesa.Model):
+    """A Mesa model that runs a crowd; see ``PedestrianModel``, which can do more with it."""
 
     reference_occupancy: dict[float, int] | None = None
     """People inside at given seconds as published for this scenario, if any."""
@@ -189,7 +126,7 @@ class PedestrianModel(mesa.Model):
         self.space = space_of(floor_plan, float(scene.repertoire.reach.max()), self.random)
         self.population = People(scene, self.space, pedestrian_class)
         self.sources = Sources(scene)
-        self.statistics = Statistics(self)
+        self.statistics = Statistics(self.population, self.crowd)
         self.waits = Waits()
         self.dynamics = Dynamics(self, scene)
         self._stall_watch, self.stalled = StallWatch(), False
@@ -279,40 +216,10 @@ class PedestrianModel(mesa.Model):
         """Why the evacuation has stalled, in a few words; None if it has not."""
         return stall_reason(self.floor_plan, self.population.aggregates) if self.stalled else None
 
-    # Functions of a model are methods as they are.
-    add_pedestrians = adding.add_pedestrians
-    add_source = adding.add_source
-    person_data = describe_people
-    add_reporter = add_reporter
-    add_agent_reporter = add_agent_reporter
-    save = save_model
-    __deepcopy__ = copy_model
-    __reduce_ex__ = refuse_to_pickle
-
-    def draw_types(self, n: int) -> NDArray[np.int64]:
-        """(n,) indices of types, drawn from the model's population; 0 where it has none.
-
-        For models that place people by type; ``add_pedestrians`` draws by itself.
-        """
-        return Newcomers(population=self._scene.shares).draw_types(
-            n, self.pedestrian_types, self.rng
-        )
-
     def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
         """Take people out of the model."""
         self.population.remove(people)
         self.population.look_over(self.frame)
-
-    def add_tactic(self, tactic: Tactic) -> None:
-        """Add a tactic behind the one that it names in ``after``, or else at the end.
-
-        Raises:
-            ModelError: it is no tactic, such as the class of one.
-        """
-        check_behaviours("add_tactic", [tactic], Tactic)
-        names = [each.name for each in self.tactics]
-        at = names.index(tactic.after) + 1 if tactic.after in names else len(names)
-        self.tactics.insert(at, tactic)
 
     def step(self) -> None:
         """Advance ``frames_per_step`` frames.
@@ -409,22 +316,21 @@ class PedestrianModel(mesa.Model):
             ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy``
             ([[t, inside], ...] each second).
         """
-        return self.statistics.summary()
-
-    @classmethod
-    def load(
-        cls, path: str | os.PathLike[str], *, plugins: Iterable[Plugin] = (), **arguments: Any
-    ) -> Self:
-        """The model of a checkpoint, in this process or another.
-
-        Args:
-            path: the file.
-            plugins: behaviours that the model had, and that are neither installed nor made by its
-                constructor.
-            arguments: constructor's arguments that the file cannot hold, such as a mobility map.
-
-        Raises:
-            ModelError: a file that cannot be read or is another model's, other mobility maps, or
-                missing arguments or behaviours.
-        """
-        return load_model(cls, path, plugins, arguments)
+        last_left = self.statistics.last_left
+        out = self.inside == 0 and last_left is not None and not self.sources.expecting
+        return {
+            "model": type(self).__name__,
+            "preset": self.preset,
+            "rules": self.rules.numbers(),
+            "pedestrians": self.population.count,
+            "simulated_s": round(self.elapsed, 6),
+            "egress_s": round(last_left or 0.0, 6) if out else None,
+            "left_inside": self.inside,
+            "stalled": self.stalled,
+            "stall_reason": self.stall_reason,
+            "decisions": int(self.crowd.decisions.sum()),
+            "fallback_decision_share": self.statistics.fallback_decision_share,
+            "fallback_time_share": self.statistics.fallback_time_share,
+            "mean_speed_mps": self.statistics.mean_speed_so_far,
+            "occupancy": [list(row) for row in self.statistics.occupancy],
+        }

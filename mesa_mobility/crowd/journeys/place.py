@@ -9,8 +9,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.crowd.journeys.visit import Visit
 from mesa_mobility.crowd.state.clearances import passing_of
-from mesa_mobility.crowd.tactics.visits.visit import Visit
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, line_of_sight, lines_of_sight
 

@@ -8,16 +8,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import MethodType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
 EARLY = 1e-6
 """Seconds by which a step comes before its end: sums of tenths, which ``run_for`` works with, may
 fall short of it by the rounding."""
+
+
+def scheduled_events(model: object) -> int:
+    """Events that a model of a newer Mesa has to come; models of Mesa 3.3 keep none."""
+    owner = getattr(model, "_scheduler", model)
+    events = getattr(owner, "_event_list", ())
+    return len(events) if hasattr(events, "__len__") else 0
 
 
 def tell_time(model: Any) -> None:
@@ -29,7 +33,7 @@ def tell_time(model: Any) -> None:
         model.time = model.elapsed
 
 
-def set_clock(model: PedestrianModel) -> None:
+def set_clock(model: Any) -> None:
     """Let the next step come when its frames are over, and each other one after it.
 
     Does nothing where Mesa has no events.
@@ -43,10 +47,10 @@ def set_clock(model: PedestrianModel) -> None:
     )
     steps.start()
     # Mesa's own goes on by 1.0.
-    model.step = MethodType(_step, model)  # type: ignore[method-assign]
+    model.step = MethodType(_step, model)
 
 
-def _interval(model: PedestrianModel) -> float:
+def _interval(model: Any) -> float:
     """Seconds until the next step; the frames that one has may change at any time."""
     return model.elapsed + model.frames_per_step * FRAME_SECONDS - EARLY - model.time
 

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.options.shapes import ONE_DISC, Discs, check_discs, core_of
-from mesa_mobility.crowd.people.free_speeds import free_speeds
+from mesa_mobility.crowd.types.free_speeds import free_speeds
 from mesa_mobility.distributions.base import EXTREMES, Distribution
 from mesa_mobility.errors import ModelError
+from mesa_mobility.human_limits import SLIMMEST_CORE
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.populations import Population
@@ -52,16 +53,18 @@ class PedestrianType:
             object.__setattr__(self, "discs", check_discs(self.discs, self.name))
         if not isinstance(self.core_radius, Distribution) and not is_number(self.core_radius):
             raise ModelError(
-                f"type {self.name!r}: core_radius {self.core_radius!r:.60}, expected 0 to 1 m"
+                f"type {self.name!r}: core_radius {self.core_radius!r:.60}, "
+                f"expected {SLIMMEST_CORE} to 1 m"
             )
         if self.core_radius == 0.0:
             body = self.mobility_map.metadata.get("body", {})
             core = float(body.get("core_radius_m", CORE_RADIUS))
             core = core_of(tuple(self.discs)) if len(self.discs) else core
             object.__setattr__(self, "core_radius", core)
-        if not (self._bound(_LEAST) > 0.0 and self._bound(_GREATEST) < 1.0):
+        if not (self._bound(_LEAST) >= SLIMMEST_CORE and self._bound(_GREATEST) < 1.0):
             raise ModelError(
-                f"type {self.name!r}: core_radius {self.core_radius}, expected 0 to 1 m"
+                f"type {self.name!r}: core_radius {self.core_radius}, "
+                f"expected {SLIMMEST_CORE} to 1 m"
             )
         if self.preferred_speed is None:
             object.__setattr__(self, "preferred_speed", free_speeds(self.mobility_map))

@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.errors import ModelError
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
-REPORTERS: dict[str, Any] = {
-    "elapsed": "elapsed",
-    "inside": "inside",
-    "mean_speed": lambda model: model.statistics.mean_speed,
-    "fallback_time_share": lambda model: model.statistics.fallback_time_share,
-}
-"""What is collected of every model."""
 
 Reporter = Callable[..., Any] | str
 """A function of a model or an agent, or the name of an attribute."""
 
 
-def add_reporter(model: PedestrianModel, name: str, reporter: Reporter) -> None:
+def add_reporter(model: CrowdModel, name: str, reporter: Reporter) -> None:
     """Collect a value of the model after each step from now on.
 
     Earlier rows have None. A reporter of this name is replaced, and its values stay: after
@@ -46,7 +36,7 @@ def add_reporter(model: PedestrianModel, name: str, reporter: Reporter) -> None:
     )
 
 
-def add_agent_reporter(model: PedestrianModel, name: str, reporter: Reporter) -> None:
+def add_agent_reporter(model: CrowdModel, name: str, reporter: Reporter) -> None:
     """Collect a value of each agent after each step from now on.
 
     Earlier rows have None. People are agents, and so are those of other classes.

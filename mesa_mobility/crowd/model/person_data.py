@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.distributions import Distribution
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
 
-
-def describe_people(model: PedestrianModel) -> dict[str, ArrayLike]:
+def describe_people(model: CrowdModel) -> dict[str, ArrayLike]:
     """What trajectories say of each person besides its place; models may add to it.
 
     Returns:

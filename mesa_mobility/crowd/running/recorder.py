@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
 from mesa_mobility.schema import Array, Each, Either, Kind
 

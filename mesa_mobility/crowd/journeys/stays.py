@@ -9,12 +9,12 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.hooks import Saved
+from mesa_mobility.crowd.journeys.place import Place
+from mesa_mobility.crowd.journeys.visit import Visit
+from mesa_mobility.crowd.journeys.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
-from mesa_mobility.crowd.tactics.visits.place import Place
-from mesa_mobility.crowd.tactics.visits.visit import Visit
-from mesa_mobility.crowd.tactics.waiting import end_wait, frames_of, wait_until
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.schema import Array, Kind
 

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
 from mesa_mobility.crowd.insertion.inflow import Inflow
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.insertion.source import Source
+from mesa_mobility.crowd.journeys.visit import Route
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
-from mesa_mobility.crowd.people.pedestrian_type import PedestrianType
-from mesa_mobility.crowd.tactics.visits.visit import Route
+from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.populations import Population
 
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.model import PedestrianModel
-
 
 def add_pedestrians(
-    model: PedestrianModel,
+    model: CrowdModel,
     positions: ArrayLike,
     *,
     headings: ArrayLike | None = None,
@@ -80,7 +77,7 @@ def add_pedestrians(
     return people
 
 
-def add_source(model: PedestrianModel, source: Source) -> Inflow:
+def add_source(model: CrowdModel, source: Source) -> Inflow:
     """Let people in over time.
 
     Each appears at a random place of the source's area with room for its body. While there is

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import Plugin, ships
+from mesa_mobility.crowd.tactics.deciding import Deciding
 from mesa_mobility.errors import ModelError
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.tactics.target_choice import Deciding
 
 _UNCHANGED = "pedestrians", "positions", "destinations", "inside.pedestrians"
 

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.hooks import Saved
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, FRAMES_A_SECOND
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.aggregates import Aggregates
 from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
 from mesa_mobility.floorplan import FloorPlan

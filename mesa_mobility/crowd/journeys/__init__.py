@@ -1,0 +1,1 @@
+"""Routes with gates to cross and places to visit, and waits."""

@@ -1,0 +1,1 @@
+"""The Mesa model, its space and its clock."""

@@ -1,1 +1,0 @@
-"""Places that people visit on their way."""
