@@ -22,6 +22,10 @@ from mesa_mobility.behaviors.routes.familiar_routes import FamiliarRoutes
 from mesa_mobility.behaviors.routes.hazards import Hazard, Hazards
 from mesa_mobility.behaviors.routes.signs import Sign, Signs
 from mesa_mobility.behaviors.sideways import Sideways
+from mesa_mobility.behaviors.steering.anticipation import Anticipation
+from mesa_mobility.behaviors.steering.corner_spreading import SpreadAtCorners
+from mesa_mobility.behaviors.steering.speed_adaptation import AdaptSpeed
+from mesa_mobility.behaviors.steering.speed_compensation import CompensateSpeed
 from mesa_mobility.behaviors.stepping import Stepping
 from mesa_mobility.behaviors.target import FacingDeviation, TargetDistance
 from mesa_mobility.behaviors.velocity import (
@@ -33,10 +37,13 @@ from mesa_mobility.behaviors.velocity import (
 from mesa_mobility.behaviors.yielding import Yielding
 
 __all__ = [
+    "AdaptSpeed",
+    "Anticipation",
     "Attraction",
     "Attractions",
     "BlockedWays",
     "Choosing",
+    "CompensateSpeed",
     "CongestionRouting",
     "Counter",
     "Displacement",
@@ -62,6 +69,7 @@ __all__ = [
     "Sign",
     "Signs",
     "SocialInfluence",
+    "SpreadAtCorners",
     "Stepping",
     "TargetDistance",
     "VelocityChange",

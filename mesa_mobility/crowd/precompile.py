@@ -14,8 +14,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
-from shapely import box
 
 from mesa_mobility.compiled.threads import THREADS
 from mesa_mobility.crowd.costs.candidates import Moment
@@ -32,15 +30,8 @@ from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.crowd.state.advance import move
 from mesa_mobility.crowd.state.aggregates import aggregate, split_active
 from mesa_mobility.crowd.state.departed import merge, move_on, walk_on
-from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.surroundings import Surroundings
-from mesa_mobility.crowd.tactics.anticipation import turn_aside
-from mesa_mobility.crowd.tactics.impatience import pick, turn
-from mesa_mobility.crowd.tactics.speed_adaptation import adapt_speeds
-from mesa_mobility.crowd.tactics.turns import find_mouths, give_turns
-from mesa_mobility.floorplan import Exit, FloorPlan
-from mesa_mobility.floorplan.routing.passages import Passages
 from mesa_mobility.interrupts import cleaning_up, deaf_children
 
 _COMMAND = """
@@ -92,37 +83,19 @@ def _start() -> subprocess.Popen[bytes]:
 
 
 def compile_the_rest() -> None:
-    """Compile the rest that a run needs: movement, aggregates and cost terms."""
-    nobody, nothing, crowd = np.empty(0, dtype=np.int64), np.empty(0), Crowd(2)
+    """Compile the rest that a run needs: movement, aggregates, tactics and cost terms."""
+    nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
     select_due(nobody, 0, crowd.records, nobody)
     move(nobody, 0, 1, _table(), crowd.records)
     walk_on(nobody, 0, np.empty((0, 4)), np.empty((3, 2)), crowd.records)
     move_on(nobody, 0, crowd.records)
     merge(nobody, nobody, nobody)
-    pick(nothing, nobody, nothing)
-    turn(nobody, nothing, nothing, crowd.records)
     aggregate(nobody, 0, crowd, np.empty((0, 2)))
     split_active(nobody, crowd.records, nobody, nobody)
-    _compile_turns(nobody, crowd)
-    _compile_looking_ahead(nobody, crowd)
-    compile_terms(preset_named("default").make_terms())
-
-
-def _compile_turns(nobody: NDArray[np.int64], crowd: Crowd) -> None:
-    ends = np.zeros(1, dtype=np.int64)
-    passages = Passages(np.empty((0, 6)), ends, np.empty((0, 2)), ends, np.empty((0, 4)))
-    find_mouths(nobody, passages, crowd.records, crowd.agenda, np.empty((0, 2)))
-    allowed = np.empty(0, dtype=np.bool_)
-    give_turns(nobody, 0.0, passages, crowd.agenda, nobody, np.empty(0), allowed)
-
-
-def _compile_looking_ahead(nobody: NDArray[np.int64], crowd: Crowd) -> None:
-    offsets = np.zeros(2, dtype=np.int64)
-    grid = Grid(0.0, 0.0, 1, 1, 1.0, offsets, nobody, np.empty(0), np.empty(0))
-    nowhere, speeds = np.empty((0, 2)), np.empty(0)
-    plan = FloorPlan(box(0.0, 0.0, 1.0, 1.0), exits=[Exit("door", (0.0, 0.0), (0.0, 1.0))])
-    turn_aside(nobody, grid, 0, crowd, plan, nowhere, speeds)
-    adapt_speeds(nobody, grid, crowd, nowhere, speeds)
+    preset = preset_named("default")
+    for tactic in preset.make_tactics():
+        tactic.compile_ahead()
+    compile_terms(preset.make_terms())
 
 
 def _table() -> OptionTable:

@@ -184,3 +184,9 @@ class Impatience(Tactic):
             changed, desired.speeds = True, crowd.preferred[rows]
         if changed:
             desired.points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
+
+    def compile_ahead(self) -> None:
+        """Compile the choice of another way."""
+        nobody, nothing = np.empty(0, dtype=np.int64), np.empty(0)
+        pick(nothing, nobody, nothing)
+        turn(nobody, nothing, nothing, Crowd(2).records)

@@ -30,3 +30,9 @@ class Tactic(Plugin):
             deciding: the pedestrians who decide.
             desired: what they want so far.
         """
+
+    def compile_ahead(self) -> None:
+        """Compile what ``apply`` calls, with nobody; called before a run, which then need not wait.
+
+        It may be called without ``bind``.
+        """

@@ -12,8 +12,9 @@ from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.giving_way.precedence import WIDE, Precedence
 from mesa_mobility.crowd.tactics.tactic import Tactic
-from mesa_mobility.crowd.tactics.turns import Turns
+from mesa_mobility.crowd.tactics.turns import Turns, find_mouths, give_turns
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
+from mesa_mobility.floorplan.routing.passages import Passages
 from mesa_mobility.schema import Kind
 
 
@@ -59,6 +60,15 @@ class TakeTurns(_OfTheCrowd):
                 deciding.pedestrians, deciding.inside.pedestrians, deciding.frame, self._crowd,
                 desired.points, desired.speeds,
             )  # fmt: skip
+
+    def compile_ahead(self) -> None:
+        """Compile the search for those before a passage."""
+        nobody, crowd = np.empty(0, dtype=np.int64), Crowd(2)
+        ends = np.zeros(1, dtype=np.int64)
+        passages = Passages(np.empty((0, 6)), ends, np.empty((0, 2)), ends, np.empty((0, 4)))
+        find_mouths(nobody, passages, crowd.records, crowd.agenda, np.empty((0, 2)))
+        allowed = np.empty(0, dtype=np.bool_)
+        give_turns(nobody, 0.0, passages, crowd.agenda, nobody, np.empty(0), allowed)
 
 
 class GiveWay(_OfTheCrowd):

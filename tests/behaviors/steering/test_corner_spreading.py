@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from mesa_mobility.behaviors.steering.corner_spreading import _areas
 from shapely import Polygon
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
 from mesa_mobility.crowd.state.records import Crowd
-from mesa_mobility.crowd.tactics.corner_spreading import _areas
 
 SPEED = 1.5
 CAPACITY = 1.22  # Weidmann's capacity of a level way, persons/(m s)

@@ -11,11 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import kept
-from mesa_mobility.crowd.state.records import Crowd, CrowdState
-from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
-from mesa_mobility.crowd.tactics.tactic import Tactic
-from mesa_mobility.floorplan import Targets
+from mesa_mobility import Deciding, Desired, Tactic, Targets
+from mesa_mobility.steering import Crowd, CrowdState, kept
 
 CAPACITY = 1.22
 """Capacity of a level way, people a second and metre of width

@@ -13,11 +13,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.options.table import FRAME_SECONDS, LONGEST_MOVEMENT_S
-from mesa_mobility.crowd.state.records import NO_OPTION, Crowd, CrowdState
-from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
-from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility import Deciding, Desired, Tactic
+from mesa_mobility.steering import (
+    FRAME_SECONDS,
+    LONGEST_MOVEMENT_S,
+    NO_OPTION,
+    Crowd,
+    CrowdState,
+    compiled,
+)
 
 SLOWER, FASTER = 0.1, 0.2
 """A walker at most so much slower or faster than its preferred speed walks freely, m/s.
@@ -53,7 +57,7 @@ def compensate_speed(
     return kept
 
 
-@entry_point()
+@compiled()
 def _keep_pace(
     rows: NDArray[np.int64],
     speeds: NDArray[np.float64],

@@ -25,11 +25,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import entry_point, internal
-from mesa_mobility.crowd.state.people_grid import Grid, cells_within
-from mesa_mobility.crowd.state.records import Crowd, CrowdState
-from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
-from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility import Deciding, Desired, Tactic
+from mesa_mobility.steering import Crowd, CrowdState, Grid, cells_within, compiled, inner, nobody
 
 STANDING_GAP = 0.28
 """l: distance between the middles of two people who stand one behind the other, metres."""
@@ -75,7 +72,7 @@ def adapt_speeds(
     return speeds
 
 
-@entry_point()
+@compiled()
 def _adapt_speeds(
     rows: NDArray[np.int64],
     grid: Grid,
@@ -92,7 +89,7 @@ def _adapt_speeds(
             speeds[k] = _allowed(i, dx / away, dy / away, speeds[k], grid, state)
 
 
-@internal()
+@inner()
 def _allowed(i: int, ex: float, ey: float, own: float, grid: Grid, state: CrowdState) -> float:
     """Speed of pedestrian i, who would walk at ``own`` along (ex, ey), m/s."""
     px, py = state[i].x, state[i].y
@@ -130,3 +127,8 @@ class AdaptSpeed(Tactic):
                 deciding.pedestrians, deciding.inside.grid, deciding.inside.crowd, desired.points,
                 desired.speeds,
             )  # fmt: skip
+
+    def compile_ahead(self) -> None:
+        """Compile the look at those ahead."""
+        inside, _ = nobody()
+        adapt_speeds(inside.pedestrians, inside.grid, inside.crowd, np.empty((0, 2)), np.empty(0))

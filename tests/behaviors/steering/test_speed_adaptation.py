@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mesa_mobility.behaviors.steering.speed_adaptation import adapt_speeds
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.view import CrowdView
-from mesa_mobility.crowd.tactics.speed_adaptation import adapt_speeds
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.scenes import model_of
 

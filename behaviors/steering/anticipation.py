@@ -20,14 +20,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import entry_point, internal
-from mesa_mobility.crowd.state.people_grid import Grid, cells_within
-from mesa_mobility.crowd.state.records import Crowd, CrowdState
-from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
-from mesa_mobility.crowd.tactics.tactic import Tactic
-from mesa_mobility.floorplan import FloorPlan
-from mesa_mobility.floorplan.walls.line_of_sight import unwalled
-from mesa_mobility.floorplan.walls.sight import Sight, sight_on
+from mesa_mobility import Deciding, Desired, FloorPlan, Tactic
+from mesa_mobility.steering import (
+    Crowd,
+    CrowdState,
+    Grid,
+    Sight,
+    cells_within,
+    compiled,
+    inner,
+    nobody,
+    sight_on,
+    unwalled,
+)
 
 ROOM = 0.65
 """Metres between the middles of two people who pass each other freely."""
@@ -105,7 +110,7 @@ def turn_aside(
     return points, speeds
 
 
-@entry_point()
+@compiled()
 def _turn_aside(
     rows: NDArray[np.int64],
     frame: int,
@@ -139,7 +144,7 @@ def _turn_aside(
         speeds[k] *= share
 
 
-@internal()
+@inner()
 def _in_the_way(
     i: int,
     ex: float,
@@ -177,7 +182,7 @@ def _in_the_way(
     return count
 
 
-@internal()
+@inner()
 def _goes_along(
     j: int, ex: float, ey: float, frame: int, state: CrowdState, agenda: NDArray[np.void]
 ) -> bool:
@@ -190,7 +195,7 @@ def _goes_along(
     return bool(dx * ex + dy * ey > SAME_WAY * math.sqrt(dx * dx + dy * dy))
 
 
-@internal()
+@inner()
 def _in_view(
     i: int, sight: Sight, state: CrowdState, others: NDArray[np.float64], count: int
 ) -> int:
@@ -205,7 +210,7 @@ def _in_view(
     return seen
 
 
-@internal()
+@inner()
 def _best_course(
     ex: float, ey: float, speed: float, horizon: float, others: NDArray[np.float64], count: int
 ) -> tuple[float, float]:
@@ -228,7 +233,7 @@ def _best_course(
     return best_angle, best_share
 
 
-@internal()
+@inner()
 def _too_near(
     ux: float, uy: float, horizon: float, others: NDArray[np.float64], count: int, enough: float
 ) -> float:
@@ -267,3 +272,8 @@ class Anticipation(Tactic):
                 deciding.pedestrians, deciding.inside.grid, deciding.frame, deciding.inside.crowd,
                 deciding.site.plan, desired.points, desired.speeds,
             )  # fmt: skip
+
+    def compile_ahead(self) -> None:
+        """Compile the comparison of courses."""
+        (inside, plan), nowhere = nobody(), np.empty((0, 2))
+        turn_aside(inside.pedestrians, inside.grid, 0, inside.crowd, plan, nowhere, np.empty(0))

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mesa_mobility.behaviors.steering.anticipation import turn_aside
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.view import CrowdView
-from mesa_mobility.crowd.tactics.anticipation import turn_aside
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.oracles.counting import overlaps
 from tests.fixtures.scenes import model_of

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from mesa_mobility.crowd.state.records import NO_OPTION, Crowd
-from mesa_mobility.crowd.tactics.speed_compensation import (
+from mesa_mobility.behaviors.steering.speed_compensation import (
     FASTER,
     MAKES_UP,
     MOST,
     SLOWER,
     compensate_speed,
 )
+
+from mesa_mobility.crowd.state.records import NO_OPTION, Crowd
 from tests.fixtures.maps import make_map, stand, straight
 from tests.fixtures.scenes import corridor, model_of, put
 
