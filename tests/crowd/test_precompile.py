@@ -1,12 +1,13 @@
 """Precompilation covers the functions that runs need."""
 
 import pytest
+from mesa_mobility.behaviors.steering import anticipation, speed_adaptation
 from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd import precompile
 from mesa_mobility.crowd.planning import decision, decision_order, grid
 from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
-from mesa_mobility.crowd.tactics import anticipation, impatience, speed_adaptation, turns
+from mesa_mobility.crowd.tactics import impatience, turns
 
 FUNCTIONS = [
     decision.decide,

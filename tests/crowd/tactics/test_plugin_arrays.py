@@ -8,7 +8,7 @@ from mesa_mobility.behaviors import NearestExit
 
 from mesa_mobility import PedestrianModel, SpeedRule, Targets
 from mesa_mobility.errors import ModelError
-from tests.crowd.tactics.test_corner_spreading import halls
+from tests.behaviors.steering.test_corner_spreading import halls
 
 PLACES = [(8.0 + 1.5 * (k % 5), 30.0 + 1.5 * (k // 5)) for k in range(20)]
 
