@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from copy import deepcopy
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.crowd.checkpoint.copying import copy_model, refuse_to_pickle
 from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.model import adding
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
-from mesa_mobility.crowd.model.person_data import describe_people
 from mesa_mobility.crowd.model.reporters import add_agent_reporter, add_reporter
+from mesa_mobility.crowd.people.pedestrian import last_number, number_from
 from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.distributions import Distribution
+from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan.occupants import add_occupants
 
 
 class PedestrianModel(CrowdModel):
@@ -90,12 +93,52 @@ class PedestrianModel(CrowdModel):
     # Functions of a model are methods as they are.
     add_pedestrians = adding.add_pedestrians
     add_source = adding.add_source
-    person_data = describe_people
     add_reporter = add_reporter
     add_agent_reporter = add_agent_reporter
     save = save_model
-    __deepcopy__ = copy_model
-    __reduce_ex__ = refuse_to_pickle
+
+    def person_data(self) -> dict[str, ArrayLike]:
+        """What trajectories say of each person besides their place; models may add to it.
+
+        Returns:
+            (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.
+            The group is an empty text for people without one. Where a type's core radii are drawn
+            from a distribution, ``core_radius``, metres, as well.
+        """
+        crowd, count = self.crowd, self.population.count
+        types = np.array([kind.name for kind in self.pedestrian_types])
+        groups = np.array(["", *map(str, self.population.groups)])
+        data: dict[str, ArrayLike] = {
+            "type": types[crowd.type_index[:count]],
+            "group": groups[crowd.agenda["group"][:count]],
+        }
+        if any(isinstance(kind.core_radius, Distribution) for kind in self.pedestrian_types):
+            data["core_radius"] = self.core_radii
+        return data
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """An independent copy that continues exactly as the model would.
+
+        Both share the mobility map and compiled code, which neither changes.
+
+        Args:
+            memo: copies made so far, as for ``copy.deepcopy``.
+        """
+        copied = type(self).__new__(type(self))
+        memo[id(self)] = copied
+        # Its agents go into registers that use their model's number.
+        number_from(copied, last_number(self))
+        for name, value in vars(self).items():
+            copied.__dict__[name] = value if name == "made_with" else deepcopy(value, memo)
+        add_occupants(copied.floor_plan, copied.population)
+        return copied
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Raise ModelError: a model holds what no pickle can, such as compiled code."""
+        raise ModelError(
+            f"{type(self).__name__}: a model can be copied by copy.deepcopy, neither by copy.copy "
+            "nor by pickle; expected its parameters and seed, which make it anew"
+        )
 
     def draw_types(self, n: int) -> NDArray[np.int64]:
         """(n,) indices of types, drawn from the model's population; 0 where it has none.

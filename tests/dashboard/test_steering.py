@@ -13,7 +13,7 @@ from tests.fixtures.waiting import until
 
 pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz,test]'")
 
-from mesa_mobility.dashboard.session.by_hand import ByHand
+from mesa_mobility.dashboard.session.run import ByHand
 
 BOX = "document.querySelector('.mm-bodies .mm-box')"
 BODIES = f"{BOX}.shown()"

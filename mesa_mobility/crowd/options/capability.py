@@ -11,12 +11,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.options.accelerations import without_abrupt
 from mesa_mobility.crowd.options.option_groups import alike, group
 from mesa_mobility.crowd.options.shortened import with_shortened
-from mesa_mobility.crowd.options.table import option_table, padded_paths
+from mesa_mobility.crowd.options.table import Parts, option_table, padded_paths
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
+from mesa_mobility.mobility.standing.accelerations import has_acceleration, peak_accelerations
 
 
 class Capability:
@@ -96,3 +96,19 @@ def _in_groups(
     bounds = np.concatenate([[0], np.flatnonzero(changes) + 1, [len(sort)]])
     order, starts = group(features[sort], bounds.astype(np.int64))
     return sort[order], starts
+
+
+def without_abrupt(mobility_map: MobilityMap, parts: Parts, most: float) -> Parts:
+    """The options, whole or shortened, whose acceleration nowhere exceeds ``most`` (m/s2).
+
+    Those too short to have an acceleration are kept, and so are those of clusters that have no
+    other.
+    """
+    peaks = peak_accelerations(
+        mobility_map.durations, mobility_map.path_offsets, mobility_map.paths
+    )
+    long = has_acceleration(mobility_map.durations)
+    gentle = ~long[parts.rows] | (parts.share * peaks[parts.rows] <= most)
+    cluster = np.searchsorted(mobility_map.offsets, parts.rows, side="right") - 1
+    left = np.bincount(cluster[gentle], minlength=mobility_map.n_clusters)
+    return parts.taken(np.flatnonzero(gentle | (left[cluster] == 0)))

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from mesa_mobility.capture import LoadedClips, Manifest, Recording, load_clips, mirror
-from mesa_mobility.mobility.poses import pose_table
-from mesa_mobility.mobility.preparing.symmetry import SYMMETRIC, mirrored_share
+from mesa_mobility.mobility.graph import THRESHOLD
+from mesa_mobility.mobility.poses import PoseTable, pose_table
 
 STANDING_TYPE = "standing"
 """Type of a manifest's clips that are added for people of whom no clip shows them standing."""
@@ -93,3 +95,26 @@ def prepare_recordings(
             f"{len(added.recordings)} of type {STANDING_TYPE!r} added"
         )
     return prepared
+
+
+SYMMETRIC = 0.3
+"""Least share of moving poses with a look-alike in the mirror images of a symmetric gait."""
+
+
+def mirrored_share(poses: PoseTable, mirrored: PoseTable) -> float:
+    """Share of the moving poses that look like a pose of the mirror images.
+
+    Args:
+        poses: of the recordings.
+        mirrored: of their mirror images.
+
+    Returns:
+        Between 0 and 1; 1 if nobody moves.
+    """
+    from scipy.spatial import cKDTree
+
+    moving = poses.features[~poses.is_standing()]
+    if not len(moving):
+        return 1.0
+    nearest = cKDTree(mirrored.features).query(moving, distance_upper_bound=THRESHOLD)[0]
+    return float(np.isfinite(nearest).mean())
