@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from mesa_mobility.commands.console import say
+from mesa_mobility.commands.models.making import MODEL_HELP
 from mesa_mobility.errors import MobilityError, ModelError
 
 OPENING, PLAN_MODEL = "doorway", "floor_plan"
@@ -17,10 +18,7 @@ OPENING, PLAN_MODEL = "doorway", "floor_plan"
 def dashboard(
     model: Annotated[
         str | None,
-        typer.Argument(
-            metavar="[MODEL]",
-            help="Name of a model; `mesa-mobility models` has them. Or FILE.py, or FILE.py:NAME.",
-        ),
+        typer.Argument(metavar="[MODEL]", help=MODEL_HELP),
     ] = None,
     plan: Annotated[
         Path | None,

@@ -24,6 +24,8 @@ from mesa_mobility.commands.models.behaviors import use_behaviors
 from mesa_mobility.commands.models.making import (
     Behaviors,
     MapFile,
+    ModelName,
+    PresetName,
     Seed,
     Settings,
     create_model,
@@ -36,10 +38,7 @@ STALLED = 1
 
 
 def run(
-    model: Annotated[
-        str,
-        typer.Argument(metavar="MODEL", help="Name of a model; `mesa-mobility models` lists them."),
-    ],
+    model: ModelName,
     seconds: Annotated[
         float | None,
         typer.Option(help="Simulated time at most; without it until everybody is out."),
@@ -47,7 +46,7 @@ def run(
     seed: Seed = None,
     settings: Settings = None,
     behaviors: Behaviors = None,
-    preset: Annotated[str, typer.Option(help="default or paper.")] = "default",
+    preset: PresetName = None,
     population: Annotated[
         str | None,
         typer.Option(
@@ -87,7 +86,7 @@ def run(
     with progress_bar(shown=not no_progress) as report, nothing_collected():
         report("loading")
         from mesa_mobility.crowd.precompile import compiling_ahead, is_compiled
-        from mesa_mobility.plugins.registry import load_model
+        from mesa_mobility.plugins.model_files import find_model
 
         report("preparing" if is_compiled() else "compiling, once after installation")
         with compiling_ahead():
@@ -95,7 +94,7 @@ def run(
             if population is not None:
                 settings.append(f"population={population}")
             simulation, given = create_model(
-                load_model(model),
+                find_model(model),
                 model,
                 settings,
                 preset=preset,
@@ -130,7 +129,7 @@ def run(
             summary = {
                 **simulation.summary(),
                 "model": model,
-                "preset": preset,
+                "preset": preset or getattr(simulation, "preset", "default"),
                 "seed": seed,
                 "by_type": table.reset_index().to_dict("records"),
                 **origin_of(given, simulation),

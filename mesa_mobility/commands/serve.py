@@ -14,27 +14,22 @@ from mesa_mobility.commands.models.behaviors import use_behaviors
 from mesa_mobility.commands.models.making import (
     Behaviors,
     MapFile,
+    ModelName,
+    PresetName,
     Seed,
     Settings,
     create_model,
-    find_model,
 )
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.interrupts import INTERRUPTED
 
 
 def serve(
-    model: Annotated[
-        str,
-        typer.Argument(
-            metavar="MODEL",
-            help="Name of a model; `mesa-mobility models` has them. Or FILE.py, or FILE.py:NAME.",
-        ),
-    ],
+    model: ModelName,
     seed: Seed = None,
     settings: Settings = None,
     behaviors: Behaviors = None,
-    preset: Annotated[str | None, typer.Option(help="default or paper.")] = None,
+    preset: PresetName = None,
     map_file: MapFile = None,
     rate: Annotated[int, typer.Option(help="Frames a second; a divisor of 30.")] = 30,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
@@ -72,6 +67,7 @@ def serve(
     with nothing_collected():
         from mesa_mobility.crowd import PedestrianModel
         from mesa_mobility.crowd.precompile import compiling_ahead
+        from mesa_mobility.plugins.model_files import find_model
 
         with compiling_ahead():
             simulation, _ = create_model(
@@ -79,8 +75,8 @@ def serve(
                 model,
                 settings or [],
                 map_file=map_file,
+                preset=preset,
                 rng=seed,
-                **({} if preset is None else {"preset": preset}),
             )
             if not isinstance(simulation, PedestrianModel):
                 raise ModelError(f"model {model}: expected a subclass of PedestrianModel")

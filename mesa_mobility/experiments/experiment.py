@@ -19,6 +19,7 @@ from mesa_mobility.experiments.points import (
     plain_value,
 )
 from mesa_mobility.experiments.storing.rows import SERIES
+from mesa_mobility.plugins.model_files import find_model
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.plugins.registry import did_you_mean
 
@@ -126,26 +127,7 @@ def model_class(model: type | str) -> type:
     Raises:
         ModelError: it cannot be found, or loaded.
     """
-    if isinstance(model, type):
-        return model
-    from mesa_mobility.plugins.model_files import is_model_file, load_model_file
-    from mesa_mobility.plugins.registry import load_model
-
-    if is_model_file(model):
-        return load_model_file(model)
-    if ":" not in model:
-        return load_model(model)
-    from importlib import import_module
-
-    module, _, name = model.partition(":")
-    try:
-        found = getattr(import_module(module), name)
-    # A module of somebody else may fail in any way when it is imported.
-    except Exception as error:
-        raise ModelError(f"model {model}: cannot be loaded: {error}") from error
-    if not isinstance(found, type):
-        raise ModelError(f"model {model}: is not a class")
-    return found
+    return model if isinstance(model, type) else find_model(model)
 
 
 def check_parameters(experiment: Experiment) -> None:

@@ -1,4 +1,4 @@
-"""Models in Python files of one's own: `my_models.py`, or `my_models.py:Room`."""
+"""Models by name: installed ones, and those of Python files and of modules."""
 
 from __future__ import annotations
 
@@ -10,9 +10,30 @@ from pathlib import Path
 from types import ModuleType
 
 from mesa_mobility.errors import ModelError
+from mesa_mobility.plugins import registry
 from mesa_mobility.plugins.registry import did_you_mean
 
 _FILE = re.compile(r"(?P<path>.*\.py)(?::(?P<name>[^:/\\]*))?")
+
+
+def find_model(text: str) -> type:
+    """The class of a model, however it is named.
+
+    Args:
+        text: the name of an installed model, ``FILE.py``, ``FILE.py:NAME``, or ``module:NAME`` of
+            a module that can be imported.
+
+    Raises:
+        ModelError: there is no such model, or it cannot be loaded.
+    """
+    if is_installed_name(text):
+        return registry.load_model(text)
+    return load_model_file(text) if is_model_file(text) else _of_module(text)
+
+
+def is_installed_name(text: str) -> bool:
+    """Whether a text names an installed model rather than one of a file or a module."""
+    return ":" not in text and not is_model_file(text)
 
 
 def is_model_file(text: str) -> bool:
@@ -57,6 +78,21 @@ def load_model_file(text: str) -> type:
             f"{path}: has no model {name!r}{did_you_mean(name, models)}; it has {listed}"
         )
     return models[name]
+
+
+def _of_module(text: str) -> type:
+    name, _, attribute = text.partition(":")
+    try:
+        found = getattr(importlib.import_module(name), attribute)
+    # A module of somebody else may fail in any way when it is imported.
+    except Exception as error:
+        reason = " ".join(str(error).split())
+        raise ModelError(
+            f"model {text}: cannot be loaded: {type(error).__name__}: {reason}"
+        ) from error
+    if not isinstance(found, type):
+        raise ModelError(f"model {text}: is not a class")
+    return found
 
 
 def _execute(path: Path) -> ModuleType:

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import Distribution, EntryPoint, entry_points
+from pathlib import Path
 
 from mesa_mobility.errors import ModelError
 
@@ -120,8 +121,12 @@ def _find(name: str, group: str) -> Plugin:
     if name in plugins:
         return plugins[name]
     installed = ", ".join(plugins) or "none"
+    file = f"{name}.py"
+    beside = [file] if group == MODELS and Path(file).is_file() else []
+    known = dict.fromkeys([*plugins, *beside])
     raise ModelError(
-        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, plugins)}; installed: {installed}"
+        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, known)}; installed: {installed}"
+        + ("; a model of your own is FILE.py or FILE.py:NAME" if group == MODELS else "")
     )
 
 

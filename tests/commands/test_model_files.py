@@ -1,6 +1,8 @@
 """Models in files of one's own, and floor plans without a model."""
 
+import json
 import sys
+from importlib.util import find_spec
 
 import pytest
 from mesa_mobility.models import FloorPlanEgress
@@ -60,14 +62,73 @@ def test_imported_models_do_not_count_and_neighbours_are_found(tmp_path):
         ("raise SystemExit(3)\n", "", "room.py:1: cannot be loaded: SystemExit: 3"),
     ],
 )  # fmt: skip
-def test_bad_model_files_give_one_line(tmp_path, monkeypatch, command, text, name, message):
-    pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
+def test_bad_model_files_give_the_same_line_in_every_command(
+    tmp_path, monkeypatch, command, text, name, message
+):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "room.py").write_text(text)
-    ended = command("dashboard", f"room.py{name}", "--port", free_port())
-    assert ended.status == 2
-    assert ended.err.startswith(f"error: {message}")
-    assert ended.err.count("\n") == 1
+    for ended in every_command(command, tmp_path, f"room.py{name}"):
+        assert ended.status == 2
+        # An experiment knows a file by its whole path.
+        said = ended.err.replace(f"{tmp_path}/", "")
+        assert said.startswith(f"error: {message}")
+        assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("dorway", "unknown model 'dorway', did you mean 'doorway'?; installed: "),
+        ("room", "unknown model 'room', did you mean 'room.py'?; installed: "),
+        ("none.py", "none.py: no such file, expected a Python file with a model"),
+        ("no_such:Room", "model no_such:Room: cannot be loaded: ModuleNotFoundError: No module"),
+        ("math:pi", "model math:pi: is not a class"),
+    ],
+)
+def test_a_model_that_is_not_there_gives_the_same_line_in_every_command(
+    tmp_path, monkeypatch, command, name, message
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "room.py").write_text(ROOM)
+    for ended in every_command(command, tmp_path, name):
+        assert (ended.status, ended.err.count("\n")) == (2, 1)
+        assert ended.err.replace(f"{tmp_path}/", "").startswith(f"error: {message}")
+
+
+def every_command(command, folder, model):
+    """What the commands that take a model say of one that there is not."""
+    (folder / "many.toml").write_text(f'model = "{model}"\n')
+    yield command("run", model, "--no-progress")
+    yield command("experiment", "run", folder / "many.toml", "--no-progress")
+    if find_spec("solara") is not None:
+        yield command("dashboard", model, "--port", free_port())
+    if find_spec("websockets") is not None:
+        yield command("serve", model, "--port", 0)
+
+
+def test_a_model_in_a_file_runs_with_its_own_parameters(tmp_path, command):
+    (tmp_path / "own_room.py").write_text(
+        "from mesa_mobility import Exit, FloorPlan, PedestrianModel\n"
+        "class Room(PedestrianModel):\n"
+        "    def __init__(self, people: int = 2, rng=None):\n"
+        "        plan = FloorPlan('POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))',\n"
+        "                         exits=[Exit('door', (6, 1.5), (6, 2.5))])\n"
+        "        super().__init__(plan, rng=rng)\n"
+        "        self.add_pedestrians([(1 + i, 2) for i in range(people)])\n"
+    )
+    file, out = tmp_path / "own_room.py", tmp_path / "out"
+    done = command("run", file, "--set", "people=3", "--seconds", 1, "--out", out, "--json",
+                   "--record", "decisions", "--seed", 4)  # fmt: skip
+    assert done.status == 0, done.err
+    summary = json.loads(done.out.splitlines()[-1])
+    said = {"model": str(file), "pedestrians": 3, "preset": "default", "parameters": {"people": 3}}
+    assert {key: summary[key] for key in said} == said
+    # The run is repeated from the file.
+    assert command("explain", out, "--person", 0, "--time", 0.5).status == 0
+    wrong = command("run", file, "--set", "peple=3")
+    assert f"model {file}: unknown parameter 'peple', did you mean 'people'?" in wrong.err
+    refused = command("run", file, "--preset", "paper")
+    assert "its constructor does not take preset (--preset)" in refused.err
 
 
 def free_port():

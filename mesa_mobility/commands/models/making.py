@@ -12,6 +12,11 @@ import typer
 from mesa_mobility.commands.console import some_path
 from mesa_mobility.errors import ModelError
 
+MODEL_HELP = "Name of a model; `mesa-mobility models` lists them. Or FILE.py, or FILE.py:NAME."
+ModelName = Annotated[str, typer.Argument(metavar="MODEL", help=MODEL_HELP)]
+PresetName = Annotated[
+    str | None, typer.Option("--preset", help="default or paper; without it the model's own.")
+]
 Seed = Annotated[
     int | None,
     typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
@@ -40,24 +45,14 @@ MapFile = Annotated[
 ]
 
 
-def find_model(name: str) -> type:
-    """The class of an installed model, or of the one in a Python file.
-
-    Raises:
-        ModelError: there is none, or it is broken.
-    """
-    from mesa_mobility.plugins.model_files import is_model_file, load_model_file
-    from mesa_mobility.plugins.registry import load_model
-
-    return load_model_file(name) if is_model_file(name) else load_model(name)
-
-
 def create_model(
     kind: type,
     name: str,
     settings: Iterable[str],
     *,
     map_file: Path | None,
+    preset: str | None = None,
+    record: bool | str = False,
     **keywords: Any,
 ) -> tuple[Any, dict[str, Any]]:
     """The model, and its own parameters with the values that they have.
@@ -67,17 +62,27 @@ def create_model(
         name: what the user calls it.
         settings: texts NAME=VALUE.
         map_file: a mobility map, or None for the model's own.
+        preset: rules by which people move, or None for the model's own.
+        record: what the model records; a `PedestrianModel` does so even where its constructor does
+            not take ``record``.
         keywords: further arguments of the constructor.
 
     Raises:
         ModelError: a parameter that the constructor does not take, or a value that it refuses.
     """
+    from mesa_mobility import PedestrianModel
     from mesa_mobility.plugins.parameters import NOT_SETTABLE, OWN_OPTION, chosen, parameters
 
     keywords = {**chosen(kind, name, settings), **keywords}
     if map_file is not None:
         keywords["mobility_map"] = str(map_file)
+    if preset is not None:
+        keywords["preset"] = preset
     taken = parameters(kind)
+    # A model of one's own need not mention it.
+    recorded_later = record and "record" not in taken and issubclass(kind, PedestrianModel)
+    if record and not recorded_later:
+        keywords["record"] = record
     missing = [key for key in keywords if key not in taken]
     if missing:
         asked = [f"{key} ({OWN_OPTION[key]})" if key in OWN_OPTION else key for key in missing]
@@ -88,13 +93,16 @@ def create_model(
         if key not in NOT_SETTABLE
     }
     try:
-        return kind(**keywords), given
+        model = kind(**keywords)
     except ModelError as error:
         parameter, colon, rest = str(error).partition(":")
         if not colon or parameter not in OWN_OPTION or parameter not in keywords:
             raise
         # In the words of the user, who has typed no parameter's name.
         raise ModelError(f"{OWN_OPTION[parameter]}:{rest}") from error
+    if recorded_later:
+        model.start_recording(record)
+    return model, given
 
 
 def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:

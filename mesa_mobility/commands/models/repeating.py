@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesa_mobility.commands.models.behaviors import use_behaviors
-from mesa_mobility.commands.models.making import create_model, find_model, origin_of
+from mesa_mobility.commands.models.making import create_model, origin_of
 from mesa_mobility.crowd import Explanation, PedestrianModel, Watch
 from mesa_mobility.errors import ModelError, ResultsError
+from mesa_mobility.plugins.model_files import find_model
+from mesa_mobility.plugins.parameters import parameters
 from mesa_mobility.results import Trajectories
 from mesa_mobility.results.run import Run
 
@@ -129,7 +131,7 @@ def _make(summary: Mapping[str, Any], name: Path, map_file: Path | None) -> Pede
         (),
         map_file=map_file,
         **_parameters(kind, summary["parameters"]),
-        preset=summary["preset"],
+        preset=summary["preset"] if "preset" in parameters(kind) else None,
         rng=summary["seed"],
         record="decisions",
     )
@@ -151,8 +153,6 @@ def _make(summary: Mapping[str, Any], name: Path, map_file: Path | None) -> Pede
 def _parameters(kind: type, values: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments of a constructor, of which a summary has numbers as they are and all else as
     texts; those that are as by default are left out."""
-    from mesa_mobility.plugins.parameters import parameters
-
     taken, arguments = parameters(kind), {}
     for key, value in values.items():
         known = taken.get(key)

@@ -119,9 +119,7 @@ class CrowdModel(mesa.Model):
         self.tactics: list[Tactic] = self.rules.make_tactics()
         self.target_choice = target_choice or self.rules.make_target_choice()
         self.frame, self.time = 0, 0.0
-        declared = {name: values.dtype for name, values in scene.crowd.fields.items()}
-        self.recorder = Recorder(declared) if record else None
-        self.decisions = DecisionRecorder() if record == "decisions" else None
+        self.start_recording(record)
         self.watch: Watch | None = None
         self.space = space_of(floor_plan, float(scene.repertoire.reach.max()), self.random)
         self.population = People(scene, self.space, pedestrian_class)
@@ -220,6 +218,26 @@ class CrowdModel(mesa.Model):
         """Take people out of the model."""
         self.population.remove(people)
         self.population.look_over(self.frame)
+
+    def start_recording(self, record: bool | str = True) -> None:
+        """Record this run, where the constructor was not told to.
+
+        Args:
+            record: True, False or "decisions", as in the constructor.
+
+        Raises:
+            ModelError: something else, or the model has taken a step: tracks would lack their
+                beginnings.
+        """
+        check_record(record)
+        if self.frame:
+            raise ModelError(
+                f"start_recording: the model has run for {self.elapsed:.1f} s, expected a call "
+                "before its first step"
+            )
+        declared = {name: values.dtype for name, values in self.crowd.fields.items()}
+        self.recorder = Recorder(declared) if record else None
+        self.decisions = DecisionRecorder() if record == "decisions" else None
 
     def step(self) -> None:
         """Advance ``frames_per_step`` frames.

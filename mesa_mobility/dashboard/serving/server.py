@@ -17,8 +17,7 @@ from mesa_mobility.dashboard.session.notices import hand_out_warnings
 from mesa_mobility.errors import MobilityError
 from mesa_mobility.live.access import TOKEN, address_of, is_loopback, listen, own_token
 from mesa_mobility.mobility import MobilityMap
-from mesa_mobility.plugins.model_files import is_model_file, load_model_file
-from mesa_mobility.plugins.registry import load_model
+from mesa_mobility.plugins.model_files import find_model, is_installed_name
 
 if TYPE_CHECKING:
     from mesa_mobility import PedestrianModel
@@ -77,8 +76,7 @@ def serve(
         name="mesa-mobility start",
         daemon=True,
     ).start()
-    own = is_model_file(model)
-    kind = load_model_file(model) if own else load_model(model)
+    kind = find_model(model)
     loaded.set_result(kind)
     # A browser takes a while to start, which it can do while Solara is imported.
     listening.listen()
@@ -92,7 +90,7 @@ def serve(
     from mesa_mobility.dashboard import page
     from mesa_mobility.dashboard.serving.connections import PromptProtocol
 
-    page.opening = kind if own else model
+    page.opening = model if is_installed_name(model) else kind
     page.given = given or {}
     # Who is on the network is to execute no file that nobody has named.
     page.model_files = is_loopback(host)

@@ -7,7 +7,7 @@ import pedpy
 import pytest
 
 from mesa_mobility import Trajectories
-from mesa_mobility.errors import ResultsError
+from mesa_mobility.errors import ModelError, ResultsError
 from tests.fixtures.maps import shipped_map, strider
 from tests.fixtures.oracles.counting import track
 from tests.fixtures.scenes import advance, corridor, model_of, put, two_doors
@@ -145,3 +145,14 @@ def test_summary_of_people_still_inside():
     assert summary["left_inside"] == 1
     assert summary["mean_speed_mps"] == pytest.approx(1.25)
     assert summary["occupancy"] == [[0.0, 1], [1.0, 1]]
+
+
+def test_recording_may_be_asked_for_before_the_first_step():
+    model = model_of(corridor(), strider(), rng=1, record=False)
+    put(model, 1.0, 1.0)
+    model.start_recording("decisions")
+    advance(model, 3)
+    assert model.recorder.arrays()["frame"].tolist() == [0, 1, 2, 3]
+    assert model.decided() is not None
+    with pytest.raises(ModelError, match=r"has run for 0\.1 s, expected a call before"):
+        model.start_recording()
