@@ -10,6 +10,7 @@ import numpy as np
 from mesa_mobility import Files, FloorPlan, MobilityMap, PedestrianModel, Range
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan import plan_suffixes
 from mesa_mobility.populations import Population
 
 
@@ -17,7 +18,7 @@ class FloorPlanEgress(PedestrianModel):
     """People all over a floor plan leave by the nearest exit.
 
     Args:
-        plan: file of the floor plan: GeoJSON, lines of WKT, or DXF.
+        plan: file of the floor plan, such as GeoJSON, lines of WKT, or DXF.
         pedestrians: people, at random places all over the free floor.
         pre_movement: seconds before people set off, or their distribution.
         preset: "default" or "paper".
@@ -30,7 +31,7 @@ class FloorPlanEgress(PedestrianModel):
 
     def __init__(
         self,
-        plan: Annotated[Path | str | None, Files("*.geojson", "*.wkt", "*.dxf")] = None,
+        plan: Annotated[Path | str | None, Files(*patterns())] = None,
         pedestrians: Annotated[int, Range(1, 500)] = 50,
         pre_movement: Distribution | float = 0.0,
         preset: str = "default",
@@ -56,6 +57,11 @@ class FloorPlanEgress(PedestrianModel):
         self.add_pedestrians(places, pre_movement=pre_movement)
 
 
+def patterns() -> list[str]:
+    """Shell patterns of files that may hold a floor plan."""
+    return [f"*{suffix}" for suffix in plan_suffixes()]
+
+
 def read_plan(path: Path | str | None) -> FloorPlan:
     """The floor plan of a file.
 
@@ -64,7 +70,8 @@ def read_plan(path: Path | str | None) -> FloorPlan:
         FloorPlanError: the file cannot be read, or is no floor plan.
     """
     if path is None:
-        raise ModelError("plan: got none, expected a file of a floor plan (.geojson, .wkt or .dxf)")
+        known = ", ".join(plan_suffixes())
+        raise ModelError(f"plan: got none, expected a file of a floor plan ({known})")
     plan = FloorPlan.from_file(path)
     if not plan.exits:
         raise ModelError(f"plan: {path} has no exit, expected one to leave by")

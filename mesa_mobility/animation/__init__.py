@@ -11,8 +11,9 @@ if TYPE_CHECKING:
     from mesa_mobility.animation.film import write_film
     from mesa_mobility.animation.gltf import write_glb
     from mesa_mobility.animation.page import write_page
-    from mesa_mobility.animation.people import Selection, walkers
+    from mesa_mobility.animation.people import walkers
     from mesa_mobility.animation.usd import write_usd
+    from mesa_mobility.results.excerpts import Selection
 
 _MODULES = {
     "Selection": "people",

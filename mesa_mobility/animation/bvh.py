@@ -4,22 +4,47 @@ from __future__ import annotations
 
 import os
 import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from mesa_mobility.animation.people import walkers
 from mesa_mobility.bodies import BodyMotion
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.capture.motion import FILE_TO_WORLD
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.formats.output_format import OutputFormat
+
+if TYPE_CHECKING:
+    from mesa_mobility.results.excerpts import Excerpt
 
 UNITS_PER_METRE = 100.0
 """Files hold centimetres."""
 
 _TURNS = "Zrotation Xrotation Yrotation"
+
+
+class Bvh(OutputFormat):
+    """Folder with one BVH file for each person, for tools of motion capture."""
+
+    name = "bvh"
+    suffixes = (".bvh",)
+
+    def write(self, excerpt: Excerpt, path: Path) -> None:
+        """Write ``person_NUMBER.bvh`` for each person into a folder; see ``write_bvh``."""
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ResultsError(f"{path}: expected a folder for one file a person") from error
+        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank)
+        for done, walker in enumerate(people, start=1):
+            write_bvh(walker.motion, path / f"person_{walker.person}.bvh")
+            excerpt.person_done(done)
 
 
 def write_bvh(motion: BodyMotion, path: str | os.PathLike[str]) -> None:

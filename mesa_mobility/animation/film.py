@@ -8,21 +8,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.animation import FFMpegWriter, PillowWriter
-from matplotlib.collections import EllipseCollection, LineCollection
 from numpy.typing import NDArray
 
-from mesa_mobility.animation.people import Selection
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results import Trajectories
-from mesa_mobility.results.floor import draw_floor, floor_figure
+from mesa_mobility.results.excerpts import Selection
+from mesa_mobility.results.formats.output_format import OutputFormat
 
 if TYPE_CHECKING:
-    from mesa_mobility.floorplan import FloorPlan
+    from matplotlib.collections import EllipseCollection, LineCollection
 
-FILMS = (".mp4", ".gif", ".webp")
-"""Suffixes of films."""
+    from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.results.excerpts import Excerpt
 
 PICTURES_A_SECOND = 15
 FASTEST = 1.6
@@ -32,6 +30,24 @@ SPEED_OVER = 15
 """Frames over which a person's speed is taken."""
 
 DPI = 100
+
+
+class Film(OutputFormat):
+    """Film from above, people coloured by speed; `.mp4` needs ffmpeg."""
+
+    name = "film"
+    suffixes = (".mp4", ".gif", ".webp")
+
+    def write(self, excerpt: Excerpt, path: Path, *, speed: float = 1.0) -> None:
+        """See ``write_film``."""
+        write_film(
+            excerpt.trajectories,
+            excerpt.plan,
+            path,
+            excerpt.selection,
+            speed=speed,
+            progress=excerpt.progress,
+        )
 
 
 def write_film(
@@ -48,7 +64,7 @@ def write_film(
     Args:
         trajectories: the run.
         plan: its floor plan.
-        path: the film; its suffix is one of ``FILMS``. MP4 needs ffmpeg.
+        path: the film; its suffix is one of ``Film.suffixes``. MP4 needs ffmpeg.
         selection: whom and when; all of it by default.
         speed: how many times as fast as it was.
         progress: called as ``progress(pictures done, pictures)``.
@@ -56,10 +72,16 @@ def write_film(
     Raises:
         ResultsError: another suffix, no ffmpeg, nobody to show, or the file cannot be written.
     """
+    # Matplotlib takes half a second to load.
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+    from matplotlib.collections import EllipseCollection, LineCollection
+
+    from mesa_mobility.results.floor import draw_floor, floor_figure
+
     selection = selection or Selection()
     suffix = Path(path).suffix.lower()
-    if suffix not in FILMS:
-        raise ResultsError(f"{path}: films end with {', '.join(FILMS)}")
+    if suffix not in Film.suffixes:
+        raise ResultsError(f"{path}: films end with {', '.join(Film.suffixes)}")
     if suffix == ".mp4" and not FFMpegWriter.isAvailable():
         raise ResultsError(f"{path}: MP4 needs ffmpeg on the path; .gif and .webp do not")
     if not (np.isfinite(speed) and speed > 0):

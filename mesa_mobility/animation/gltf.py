@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,20 +17,34 @@ from scipy.spatial.transform import Rotation
 
 from mesa_mobility.animation.aids import aid_of, figure_with
 from mesa_mobility.animation.figure import rest_positions
-from mesa_mobility.animation.people import Walker
+from mesa_mobility.animation.people import Walker, walkers
 from mesa_mobility.animation.scenery import COLOURS, linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.formats.output_format import OutputFormat
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.results.excerpts import Excerpt
 
 _UP = Rotation.from_euler("x", -90, degrees=True).as_quat().tolist()
 """From z up to glTF's y up."""
 
 _FLOAT, _SHORT, _USHORT, _UBYTE = 5126, 5122, 5123, 5121
+
+
+class Glb(OutputFormat):
+    """Figures in glTF, for Blender and the web. Needs the extra `animation`."""
+
+    name = "glb"
+    suffixes = (".glb",)
+
+    def write(self, excerpt: Excerpt, path: Path) -> None:
+        """See ``write_glb``."""
+        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank)
+        write_glb(people, excerpt.plan, path, progress=excerpt.person_done)
 
 
 def write_glb(

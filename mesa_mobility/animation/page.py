@@ -6,6 +6,7 @@ import html
 import os
 from collections.abc import Callable
 from importlib.resources import files
+from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Any
 
@@ -15,16 +16,18 @@ from numpy.typing import NDArray
 from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
 from mesa_mobility.animation.floor import drawn_floor
-from mesa_mobility.animation.people import Selection
 from mesa_mobility.bodies import PoseBank
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.sequence import stretches
 from mesa_mobility.errors import MapError, ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.excerpts import Selection
+from mesa_mobility.results.formats.output_format import OutputFormat
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
     from mesa_mobility.results import Decisions, Trajectories
+    from mesa_mobility.results.excerpts import Excerpt
 
 EVERY = 3
 """Frames between two places of a person: 0.1 s, as of the options' own paths."""
@@ -33,6 +36,25 @@ PLACE_STEP, TURN_STEP = 0.001, 0.001
 """Metres and radians in which places and headings are stored."""
 
 SHARE_STEP = 0.001
+
+
+class Page(OutputFormat):
+    """Page that plays the run in three dimensions and needs no network."""
+
+    name = "html"
+    suffixes = (".html",)
+
+    def write(self, excerpt: Excerpt, path: Path) -> None:
+        """See ``write_page``."""
+        write_page(
+            excerpt.trajectories,
+            excerpt.plan,
+            path,
+            excerpt.selection,
+            title=excerpt.title,
+            bank=excerpt.bank,
+            progress=excerpt.person_done,
+        )
 
 
 def viewer_part(name: str) -> str:

@@ -1,4 +1,4 @@
-"""The people of a run that are shown, and when."""
+"""The people of a run, and their bodies in the frames that are shown."""
 
 from __future__ import annotations
 
@@ -12,57 +12,9 @@ from scipy.spatial.transform import Rotation
 from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.bodies import BodyMotion, PoseBank
 from mesa_mobility.bodies.seated import seated_motion
-from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories
 from mesa_mobility.results.bodies import track_of
-
-
-@dataclass(frozen=True)
-class Selection:
-    """Whom to show of a run, and when.
-
-    Attributes:
-        people: numbers of people; everybody if None.
-        start: seconds from which on.
-        end: seconds until when; the end of the run if None.
-    """
-
-    people: tuple[int, ...] | None = None
-    start: float = 0.0
-    end: float | None = None
-
-    def frames_of(self, trajectories: Trajectories) -> tuple[int, int]:
-        """First and last frame shown.
-
-        Raises:
-            ResultsError: times outside the run, or in the wrong order.
-        """
-        end = trajectories.duration if self.end is None else self.end
-        if not 0.0 <= self.start < end <= trajectories.duration + 1e-9:
-            raise ResultsError(
-                f"from {self.start:g} to {end:g} s: expected rising times within the run's "
-                f"{trajectories.duration:g} s"
-            )
-        return round(self.start * trajectories.frame_rate), round(end * trajectories.frame_rate)
-
-    def people_of(self, trajectories: Trajectories) -> list[int]:
-        """Numbers of those shown who are there at that time.
-
-        Raises:
-            ResultsError: a number that the run does not have, or nobody is there.
-        """
-        if self.people is not None:
-            known = np.unique(trajectories.person)
-            absent = np.setdiff1d(self.people, known)
-            if len(absent):
-                raise ResultsError(f"person {absent[0]}: not among the run's {len(known)} people")
-        first, last = self.frames_of(trajectories)
-        there = (trajectories.frame >= first) & (trajectories.frame <= last)
-        present = np.flatnonzero(np.bincount(trajectories.person[there]))
-        shown = present if self.people is None else np.intersect1d(present, self.people)
-        if not len(shown):
-            raise ResultsError(f"nobody is there from frame {first} to {last}")
-        return [int(each) for each in shown]
+from mesa_mobility.results.excerpts import Selection
 
 
 @dataclass(frozen=True)

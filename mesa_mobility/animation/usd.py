@@ -16,21 +16,32 @@ from numpy.typing import NDArray
 
 from mesa_mobility.animation.aids import aid_of, figure_with
 from mesa_mobility.animation.figure import rest_positions
-from mesa_mobility.animation.people import Walker
+from mesa_mobility.animation.people import Walker, walkers
 from mesa_mobility.animation.scenery import COLOURS, FLOOR, WALL, linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.formats.output_format import OutputFormat
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
-
-SUFFIXES = (".usd", ".usda", ".usdc")
-"""Of the files; ``.usda`` is text, the others are binary."""
+    from mesa_mobility.results.excerpts import Excerpt
 
 _AROUND_JOINTS = 0.35
 """Metres by which a body reaches beyond its joints at most."""
+
+
+class OpenUsd(OutputFormat):
+    """Figures in OpenUSD (UsdSkel); `.usda` is text. Needs the extra `usd`."""
+
+    name = "usd"
+    suffixes = (".usd", ".usda", ".usdc")
+
+    def write(self, excerpt: Excerpt, path: Path) -> None:
+        """See ``write_usd``."""
+        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank)
+        write_usd(people, excerpt.plan, path, progress=excerpt.person_done)
 
 
 def write_usd(
@@ -47,14 +58,14 @@ def write_usd(
     Args:
         people: those shown.
         plan: floor and walls.
-        path: the file; its suffix is one of ``SUFFIXES``.
+        path: the file; its suffix is one of ``OpenUsd.suffixes``.
         progress: called with the number of people done.
 
     Raises:
         ResultsError: another suffix, the file cannot be written, or usd-core is not installed.
     """
-    if Path(path).suffix not in SUFFIXES:
-        raise ResultsError(f"{path}: expected a name that ends with {', '.join(SUFFIXES)}")
+    if Path(path).suffix not in OpenUsd.suffixes:
+        raise ResultsError(f"{path}: expected a name that ends with {', '.join(OpenUsd.suffixes)}")
     try:
         from pxr import Tf, Usd, UsdGeom
     except ImportError as error:

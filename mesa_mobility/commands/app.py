@@ -8,9 +8,9 @@ from __future__ import annotations
 import typer
 
 from mesa_mobility.commands import experiment
-from mesa_mobility.commands.animate import animate, render
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.explain import explain
+from mesa_mobility.commands.export import export
 from mesa_mobility.commands.maps.app import app as maps
 from mesa_mobility.commands.plan import plan
 from mesa_mobility.commands.plugins import listing, new
@@ -36,8 +36,10 @@ app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("dashboard")(dashboard)
 app.command("serve")(serve)
-app.command("animate")(animate)
-app.command("render")(render)
+app.command("export")(export)
+# Other names of the same.
+app.command("animate", hidden=True)(export)
+app.command("render", hidden=True)(export)
 app.command("replay")(replay)
 app.command("explain")(explain)
 app.command("plan")(plan)
@@ -46,3 +48,4 @@ app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")
 app.command("models")(listing.models)
 app.command("behaviors")(listing.behaviors)
+app.command("formats")(listing.formats)

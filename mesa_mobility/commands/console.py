@@ -28,6 +28,14 @@ from mesa_mobility.interrupts import INTERRUPTED, Stopped, cleaning_up, gentle_i
 EVERY_S = 10.0
 """Seconds from one line of progress to the next, where no bar can be drawn."""
 
+FormatSettings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="An option of the file's format; repeatable. `mesa-mobility formats NAME` lists them.",
+    ),
+]
 NoProgress = Annotated[bool, typer.Option("--no-progress", help="No progress on standard error.")]
 
 

@@ -22,7 +22,10 @@ def dashboard(
     ] = None,
     plan: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Floor plan to put people on: .geojson, .wkt or .dxf."),
+        typer.Option(
+            metavar="FILE",
+            help="Floor plan to put people on; `mesa-mobility formats` lists formats.",
+        ),
     ] = None,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8765,

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.animate import RunDir
 from mesa_mobility.commands.console import (
     NoProgress,
     answer_json,
@@ -16,6 +15,7 @@ from mesa_mobility.commands.console import (
     progress_bar,
     some_path,
 )
+from mesa_mobility.commands.export import RunDir
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd import Explanation, PedestrianModel

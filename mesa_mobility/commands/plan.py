@@ -1,4 +1,4 @@
-"""`mesa-mobility plan`: what a floor plan's file holds, and the same as GeoJSON."""
+"""`mesa-mobility plan`: what a floor plan's file holds, and the same in another format."""
 
 from __future__ import annotations
 
@@ -7,15 +7,28 @@ from typing import Annotated
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, answer_table, say, some_path
+from mesa_mobility.commands.console import (
+    FormatSettings,
+    answer_json,
+    answer_table,
+    say,
+    some_path,
+)
 
 
 def plan(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A .geojson, .wkt or .dxf.")],
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="FILE", help="A floor plan; `mesa-mobility formats` lists formats."),
+    ],
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", help="GeoJSON to write.", parser=some_path, metavar="FILE.geojson"
+            "-o",
+            "--output",
+            help="File to write, such as a .geojson.",
+            parser=some_path,
+            metavar="FILE",
         ),
     ] = None,
     layers: Annotated[
@@ -23,29 +36,31 @@ def plan(
         typer.Option(
             "--layer",
             metavar="LAYER=KIND",
-            help="What a layer of a DXF holds: walkable, obstacle, gate or exit, and a name, as "
-            "'A-DOOR=exit street'; repeatable.",
+            help="What a layer of a drawing holds: walkable, obstacle, gate or exit, and a name, "
+            "as 'A-DOOR=exit street'; repeatable.",
         ),
     ] = None,
     unit: Annotated[
-        str | None, typer.Option(help="Unit of a DXF that does not say it: mm, cm, m, in, ft.")
+        str | None, typer.Option(help="Unit of a drawing that does not say it: mm, cm, m, in, ft.")
     ] = None,
+    settings: FormatSettings = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead.")] = False,
 ) -> None:
-    """Check a floor plan and say what it holds; -o writes it as GeoJSON.
+    """Check a floor plan and say what it holds; -o writes it to another file.
 
     DXF needs the extra `cad`.
     """
     from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.floorplan.formats.plan_format import PLANS
+    from mesa_mobility.plugins.formats import READ, WRITE
 
-    if file.suffix.lower() == ".dxf":
-        found = FloorPlan.from_dxf(file, layers=_kinds(layers), unit=unit)
-    elif layers or unit:
-        raise typer.BadParameter(f"--layer and --unit are for DXF, got {file}")
-    else:
-        found = FloorPlan.from_file(file)
+    given = {"layers": _kinds(layers), "unit": unit}
+    options = PLANS.chosen_options(PLANS.of(file, READ), READ, given, settings or ())
     if output is not None:
-        found.write_geojson(output)
+        PLANS.of(output, WRITE)  # before anything is read
+    found = FloorPlan.from_file(file, **options)
+    if output is not None:
+        found.to_file(output)
     low, high = found.bounds[:2], found.bounds[2:]
     exits = {each.name: each.length for each in found.exits}
     gates = {each.name: each.length for each in found.gates}

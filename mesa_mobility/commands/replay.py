@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from mesa_mobility.commands.animate import End, People, Poses, RunDir, Start, numbers
 from mesa_mobility.commands.console import NoProgress, progress_bar, say, some_path
+from mesa_mobility.commands.export import End, People, Poses, RunDir, Start, numbers
 
 
 def replay(

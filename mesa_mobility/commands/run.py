@@ -66,7 +66,7 @@ def run(
         str | None,
         typer.Option(
             metavar="decisions",
-            help="Also write who has taken which option: animate and replay show bodies by it.",
+            help="Also write who has taken which option: export and replay show bodies by it.",
         ),
     ] = None,
     as_json: Annotated[

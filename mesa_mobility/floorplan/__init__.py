@@ -3,6 +3,8 @@
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
+from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.plan_format import PlanFormat, plan_suffixes
 from mesa_mobility.floorplan.plan import FloorPlan
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.routing.targets import Targets
@@ -10,13 +12,16 @@ from mesa_mobility.floorplan.walls.line_of_sight import line_of_sight, lines_of_
 
 __all__ = [
     "CellTable",
+    "Content",
     "Exit",
     "FloorPlan",
     "Gate",
+    "PlanFormat",
     "Router",
     "SpeedZone",
     "Targets",
     "WallIndex",
     "line_of_sight",
     "lines_of_sight",
+    "plan_suffixes",
 ]

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable, Mapping
 from copy import copy
+from pathlib import Path
 from typing import Any
 
 import networkx as nx
@@ -18,9 +19,11 @@ from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.wall_index import WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
-from mesa_mobility.floorplan.formats import by_suffix, dxf, geojson
+from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.plan_format import PLANS
 from mesa_mobility.floorplan.routing.router import Router
+from mesa_mobility.plugins.formats import READ, WRITE
 from mesa_mobility.schema import Flag, Kind, Object, Several, Text, Whole, check
 
 
@@ -142,17 +145,44 @@ class FloorPlan(Floor):
             FloorPlanError: no DXF, no unit, no such layer, an open outline, or no floor plan.
             MobilityError: ezdxf is not installed.
         """
+        from mesa_mobility.floorplan.formats import dxf
+
         return cls._of(dxf.read(path, layers, unit), str(path))
 
     @classmethod
-    def from_file(cls, path: "str | os.PathLike[str]") -> "FloorPlan":
-        """Read a plan from a file: .geojson, .json, .wkt (parts line by line) or .dxf.
+    def from_file(cls, path: "str | os.PathLike[str]", **options: Any) -> "FloorPlan":
+        """Read a plan from a file, in the format that the end of its name says.
+
+        GeoJSON, WKT and DXF ship; other packages may add formats. `mesa-mobility formats` lists
+        them.
+
+        Args:
+            path: the file.
+            options: those of the format, such as ``unit="mm"`` of a DXF.
 
         Raises:
-            FloorPlanError: the file is of another kind, cannot be read, or is no floor plan.
+            FloorPlanError: no format reads such a file, it cannot be read, or is no floor plan; or
+                the format does not take an option.
             MobilityError: a DXF, and ezdxf is not installed.
         """
-        return cls._of(by_suffix.read(path), str(path))
+        chosen: Any = PLANS.of(path, READ)
+        options = PLANS.chosen_options(chosen, READ, options)
+        return cls._of(chosen.read(Path(path), **options), str(path))
+
+    def to_file(self, path: "str | os.PathLike[str]", **options: Any) -> None:
+        """Write the plan to a file, in the format that the end of its name says.
+
+        Args:
+            path: the file.
+            options: those of the format.
+
+        Raises:
+            FloorPlanError: no format writes such a file, it cannot be written, or the format does
+                not take an option.
+        """
+        chosen: Any = PLANS.of(path, WRITE)
+        options = PLANS.chosen_options(chosen, WRITE, options)
+        chosen.write(self, Path(path), **options)
 
     @classmethod
     def _of(cls, content: Content, where: str) -> "FloorPlan":

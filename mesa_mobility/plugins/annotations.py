@@ -77,7 +77,7 @@ class ListOf:
 
 @dataclass(frozen=True, init=False)
 class Files:
-    """The files that a page offers: ``plan: Annotated[Path | None, Files("*.geojson")] = None``.
+    """The files that a page offers: ``plan: Annotated[Path | None, Files("*.csv")] = None``.
 
     Args:
         patterns: shell patterns of the file names.

@@ -58,8 +58,13 @@ class Parameter:
     entries: ListOf | None = None
 
     def __str__(self) -> str:
-        text = f"{self.name}: {_kinds_text(self.kinds)}"
+        text = f"{self.name}: {self.takes}"
         return text if self.default is inspect.Parameter.empty else f"{text} = {self.default!r}"
+
+    @property
+    def takes(self) -> str:
+        """The kinds of values that it takes, in a few words."""
+        return _kinds_text(self.kinds)
 
     def convert(self, text: str) -> Any:
         """The value that a text stands for.
@@ -142,32 +147,51 @@ def chosen(model: type, name: str, settings: Iterable[str]) -> dict[str, Any]:
             what the parameter takes.
     """
     taken = {key: each for key, each in parameters(model).items() if key not in NOT_SETTABLE}
+    settings = list(settings)
+    for setting in settings:
+        key = setting.partition("=")[0].strip()
+        option = OWN_OPTION.get("rng" if key == "seed" and key not in taken else key)
+        if option is not None and "=" in setting:
+            raise ModelError(f"--set {setting}: use {option}")
+    return values_of(taken, f"model {name}", settings)
+
+
+def values_of(
+    taken: Mapping[str, Parameter], whose: str, settings: Iterable[str], called: str = "parameter"
+) -> dict[str, Any]:
+    """Values from texts NAME=VALUE.
+
+    Args:
+        taken: the parameters that may be set, by name.
+        whose: they are, for messages.
+        settings: the texts.
+        called: what the parameters are, for messages.
+
+    Raises:
+        ModelError: a text without =, an unknown name, a name set twice, or a value that is not
+            what the parameter takes.
+    """
     values: dict[str, Any] = {}
     for setting in settings:
         key, equals, text = setting.partition("=")
         key = key.strip()
         if not equals:
             raise ModelError(f"--set {setting}: expected NAME=VALUE")
-        if key in OWN_OPTION:
-            raise ModelError(f"--set {setting}: use {OWN_OPTION[key]}")
-        if key == "seed" and key not in taken:
-            raise ModelError(f"--set {setting}: use {OWN_OPTION['rng']}")
         if key not in taken:
-            raise ModelError(
-                f"model {name}: unknown parameter {key!r}{did_you_mean(key, taken)}; "
-                f"it takes {_listing(taken)}"
-            )
+            raise ModelError(unknown(whose, key, taken, called))
         if key in values:
             raise ModelError(f"--set {setting}: {key} is set twice")
         try:
             values[key] = taken[key].convert(text)
         except ModelError as error:
-            raise ModelError(f"model {name}: {error}") from None
+            raise ModelError(f"{whose}: {error}") from None
     return values
 
 
-def _listing(parameters: Mapping[str, Parameter]) -> str:
-    return "; ".join(str(parameter) for parameter in parameters.values()) or "none"
+def unknown(whose: str, name: str, taken: Mapping[str, Parameter], called: str) -> str:
+    """The message for a name that is not among those that are taken."""
+    listed = "; ".join(str(parameter) for parameter in taken.values()) or "none"
+    return f"{whose}: unknown {called} {name!r}{did_you_mean(name, taken)}; it takes {listed}"
 
 
 def _annotation(model: type, parameter: inspect.Parameter) -> Any:

@@ -1,7 +1,7 @@
-"""Models and behaviours that are installed, plug-ins of other packages included.
+"""What is installed, plug-ins of other packages included: models, behaviours, formats of files.
 
-A package offers a model or a behaviour by an entry point in the group `mesa_mobility.models` or
-`mesa_mobility.behaviors`; each is imported when it is first loaded by name.
+A package offers a model, for instance, by an entry point in the group `mesa_mobility.models`; each
+is imported when it is first loaded by name.
 """
 
 from __future__ import annotations
@@ -17,12 +17,19 @@ from mesa_mobility.errors import ModelError
 
 MODELS = "mesa_mobility.models"
 BEHAVIORS = "mesa_mobility.behaviors"
-_KINDS = {MODELS: "model", BEHAVIORS: "behavior"}
+PLAN_FORMATS = "mesa_mobility.plan_formats"
+OUTPUT_FORMATS = "mesa_mobility.output_formats"
+_KINDS = {
+    MODELS: "model",
+    BEHAVIORS: "behavior",
+    PLAN_FORMATS: "plan format",
+    OUTPUT_FORMATS: "output format",
+}
 
 
 @dataclass(frozen=True)
 class Plugin:
-    """An installed model or behaviour.
+    """An installed plug-in.
 
     Attributes:
         name: by which it is chosen.
@@ -37,6 +44,9 @@ class Plugin:
     rival: str
     _entry: EntryPoint
 
+    def __str__(self) -> str:
+        return f"{_KINDS[self._entry.group]} {self.name} ({self.target}, from {self.package})"
+
     def load(self) -> type:
         """Import the class.
 
@@ -44,36 +54,31 @@ class Plugin:
             ModelError: the plug-in cannot be imported, what it names is not a class, or two
                 packages offer its name.
         """
-        kind = _KINDS[self._entry.group]
         if self.rival:
             raise ModelError(
-                f"{kind} {self.name} is offered both by {self.package} and by {self.rival}: "
-                "remove one of them"
+                f"{_KINDS[self._entry.group]} {self.name} is offered both by {self.package} and by "
+                f"{self.rival}: remove one of them"
             )
         try:
             loaded = self._entry.load()
         # A plug-in may fail in any way; the user always needs its name.
         except Exception as error:
             reason = " ".join(str(error).split())
-            raise ModelError(
-                f"{kind} {self.name} ({self.target}, from {self.package}) cannot be loaded: "
-                f"{type(error).__name__}: {reason}"
-            ) from error
+            said = f"{self} cannot be loaded: {type(error).__name__}: {reason}"
+            raise ModelError(said) from error
         if not isinstance(loaded, type):
-            raise ModelError(
-                f"{kind} {self.name} ({self.target}, from {self.package}) is not a class"
-            )
+            raise ModelError(f"{self} is not a class")
         return loaded
 
 
 def models() -> dict[str, Plugin]:
     """Installed models by name, in alphabetical order; none of them is imported."""
-    return _installed(MODELS)
+    return installed(MODELS)
 
 
 def behaviors() -> dict[str, Plugin]:
     """Installed behaviours by name, in alphabetical order; none of them is imported."""
-    return _installed(BEHAVIORS)
+    return installed(BEHAVIORS)
 
 
 def load_model(name: str) -> type:
@@ -82,7 +87,7 @@ def load_model(name: str) -> type:
     Raises:
         ModelError: no model of that name (the message lists what is installed), or it is broken.
     """
-    return _find(name, MODELS).load()
+    return find(name, MODELS).load()
 
 
 def load_behavior(name: str) -> type:
@@ -92,10 +97,11 @@ def load_behavior(name: str) -> type:
         ModelError: no behaviour of that name (the message lists what is installed), or it is
             broken.
     """
-    return _find(name, BEHAVIORS).load()
+    return find(name, BEHAVIORS).load()
 
 
-def _installed(group: str) -> dict[str, Plugin]:
+def installed(group: str) -> dict[str, Plugin]:
+    """The plug-ins of a group by name, in alphabetical order; none of them is imported."""
     plugins: dict[str, Plugin] = {}
     entries = sorted(entry_points(group=group), key=lambda each: (each.name, each.value))
     # Reading a distribution's name opens a file, and most offer several plug-ins.
@@ -116,16 +122,21 @@ def _installed(group: str) -> dict[str, Plugin]:
 # Looking for what is installed opens a file of each package: without a cache, the terms of a preset
 # would take a third of the time of a run of 30 people. What is not found is looked for again.
 @cache
-def _find(name: str, group: str) -> Plugin:
-    plugins = _installed(group)
+def find(name: str, group: str) -> Plugin:
+    """The plug-in of a name; it is not imported.
+
+    Raises:
+        ModelError: there is none; the message lists what is installed.
+    """
+    plugins = installed(group)
     if name in plugins:
         return plugins[name]
-    installed = ", ".join(plugins) or "none"
+    names = ", ".join(plugins) or "none"
     file = f"{name}.py"
     beside = [file] if group == MODELS and Path(file).is_file() else []
     known = dict.fromkeys([*plugins, *beside])
     raise ModelError(
-        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, known)}; installed: {installed}"
+        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, known)}; installed: {names}"
         + ("; a model of your own is FILE.py or FILE.py:NAME" if group == MODELS else "")
     )
 

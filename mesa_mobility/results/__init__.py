@@ -3,8 +3,12 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from mesa_mobility.results.excerpts import Excerpt, Selection
 from mesa_mobility.results.files import check_writable
-from mesa_mobility.results.formats.export import to_pedpy, write_juelich_text, write_jupedsim_sqlite
+from mesa_mobility.results.formats.export import to_pedpy
+from mesa_mobility.results.formats.juelich import write_juelich_text
+from mesa_mobility.results.formats.jupedsim import write_jupedsim_sqlite
+from mesa_mobility.results.formats.output_format import OutputFormat
 from mesa_mobility.results.formats.parquet import write_parquet
 from mesa_mobility.results.measures.by_type import by_type, occupancy_by_type
 from mesa_mobility.results.measures.crossings import (
@@ -40,8 +44,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Crossings",
+    "Excerpt",
+    "OutputFormat",
     "Overlap",
     "SafetyReport",
+    "Selection",
     "SpeedsAlong",
     "Sway",
     "Trajectories",

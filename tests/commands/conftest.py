@@ -10,7 +10,8 @@ import pytest
 
 from mesa_mobility.cli import main
 from mesa_mobility.commands import console
-from mesa_mobility.plugins.registry import _find
+from mesa_mobility.plugins.formats import _load
+from mesa_mobility.plugins.registry import find
 from tests.fixtures.walker import walker_bvh
 
 PLUGIN = Path(__file__).parents[1] / "fixtures" / "plugin" / "corridor_plugin.py"
@@ -57,9 +58,11 @@ def install(tmp_path, monkeypatch) -> Iterator[Callable[[str, str], None]]:
         monkeypatch.syspath_prepend(str(folder))
 
     # What is installed does not change while a process runs, but here it does.
-    _find.cache_clear()
+    for cached in (find, _load):
+        cached.cache_clear()
     yield make
-    _find.cache_clear()
+    for cached in (find, _load):
+        cached.cache_clear()
 
 
 @pytest.fixture

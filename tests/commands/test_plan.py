@@ -47,6 +47,19 @@ def test_a_drawing_becomes_geojson(command, drawing, tmp_path):
     assert plan.exits[0].length == pytest.approx(1.2)
 
 
+def test_options_that_a_format_does_not_take_are_refused(command, tmp_path):
+    (tmp_path / "room.wkt").write_text(WKT)
+    for arguments, message in (
+        (["--unit", "mm"], "format wkt: unknown option 'unit'; it takes none"),
+        (["--set", "unit"], "--set unit: expected NAME=VALUE"),
+        (["-o", "room.shp"], "room.shp: expected a name that ends in .geojson, .json"),
+        (["-o", "room.wkt"], "room.wkt: expected a name that ends in .geojson, .json"),
+    ):
+        done = command("plan", tmp_path / "room.wkt", *arguments)
+        assert done.err == f"error: {message}\n"
+        assert done.status == 2
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -62,3 +62,39 @@ def test_its_own_tests_pass():
         capture_output=True, text=True, cwd=FOLDER, env={**os.environ, "PYTHONPATH": path},
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.usefixtures("extras")
+def test_its_formats_are_used_from_the_command_line(command, tmp_path):
+    from mesa_mobility import Exit, FloorPlan, PedestrianModel, Trajectories
+    from mesa_mobility.results import write_run
+
+    (tmp_path / "hall.rooms").write_text(
+        "room 0 0 600 400\nroom 600 100 900 300\ndoor the street 900 100 900 300\n"
+    )
+    plan = command("plan", tmp_path / "hall.rooms", "--set", "scale=0.01", "--json",
+                   "-o", tmp_path / "hall.geojson")  # fmt: skip
+    assert plan.status == 0, plan.err
+    assert json.loads(plan.out)["free_area_m2"] == 30.0
+    assert json.loads(plan.out)["exits"] == {"the street": 2.0}
+    wrong = command("plan", tmp_path / "hall.rooms", "--set", "scael=0.01")
+    assert "format rooms: unknown option 'scael', did you mean 'scale'?" in wrong.err
+    assert FloorPlan.from_file(tmp_path / "hall.rooms", scale=0.01).exits[0].length == 2.0
+
+    hall = FloorPlan.from_file(tmp_path / "hall.geojson")
+    assert isinstance(hall.exits[0], Exit)
+    model = PedestrianModel(hall, record=True, rng=1)
+    model.add_pedestrians([(1.0, 2.0), (2.0, 2.0)])
+    model.run(max_seconds=1)
+    tracks = Trajectories.of(model)
+    write_run(tmp_path / "run", summary=model.summary(), trajectories=tracks, plan=hall)
+    out = tmp_path / "run.csv"
+    done = command("export", tmp_path / "run", "-o", out, "--people", 1, "--set", "every=15")
+    assert done.status == 0, done.err
+    lines = out.read_text().splitlines()
+    assert lines[:2] == ["time,person,x,y", "0.000,1,2.000,2.000"]
+    assert [line.split(",")[0] for line in lines[1:]] == ["0.000", "0.500", "1.000"]
+    listed = command("formats")
+    assert any(line.startswith("rooms ") for line in listed.out.splitlines())
+    assert any(line.startswith("csv ") for line in listed.out.splitlines())
+    assert listed.err == ""

@@ -20,10 +20,22 @@ KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
 
 @dataclass
 class Content:
-    """The parts of a floor plan."""
+    """The parts of a floor plan, as a file has them; distances in metres.
+
+    Attributes:
+        walkable: the walkable area.
+        name: of the plan.
+        exits: lines on the edge of the walkable area.
+        gates: lines within it.
+        obstacles: areas to subtract.
+        zones: areas where people walk more slowly.
+        closed: names of the exits and gates that are closed.
+        cut_off: whether obstacles may cut pieces off from every exit.
+        simplify: metres by which walls may recede.
+    """
 
     walkable: Polygon
-    name: str
+    name: str = ""
     exits: list[Exit] = field(default_factory=list)
     gates: list[Gate] = field(default_factory=list)
     obstacles: list[Polygon] = field(default_factory=list)

@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from shapely import Polygon
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.content import Content, content_of
 from mesa_mobility.floorplan.formats.drawing import Curve, Drawing
+from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 
 KINDS = ("walkable", "obstacle", "gate", "exit")
 """What a layer can hold."""
@@ -21,6 +23,23 @@ JOINED = 0.001
 """Metres between the ends of two lines that meet."""
 
 _LAYER = re.compile(rf"({'|'.join(KINDS)})(?:[ _-]+(.+))?", re.IGNORECASE)
+
+
+class Dxf(PlanFormat):
+    """CAD drawing in DXF whose layers say what is drawn on them. Needs the extra `cad`."""
+
+    name = "dxf"
+    suffixes = (".dxf",)
+
+    def read(
+        self,
+        path: Path,
+        *,
+        layers: Mapping[str, str] | None = None,
+        unit: str | None = None,
+    ) -> Content:
+        """See ``FloorPlan.from_dxf``."""
+        return read(path, layers, unit)
 
 
 def read(

@@ -14,6 +14,22 @@ from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.formats.content import Content, content_of
+from mesa_mobility.floorplan.formats.plan_format import PlanFormat
+
+
+class GeoJson(PlanFormat):
+    """GeoJSON: one FeatureCollection, coordinates in metres."""
+
+    name = "geojson"
+    suffixes = (".geojson", ".json")
+
+    def read(self, path: Path) -> Content:
+        """See ``read`` of this module."""
+        return read(path)
+
+    def write(self, plan: Floor, path: Path) -> None:
+        """See ``FloorPlan.write_geojson``."""
+        write(plan, path)
 
 
 def feature_collection(plan: Floor) -> dict[str, Any]:

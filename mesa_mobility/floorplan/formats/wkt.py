@@ -12,11 +12,23 @@ import shapely
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.checks import read_wkt
 from mesa_mobility.floorplan.formats.content import KINDS, Content, content_of
+from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 
 _PART = re.compile(
     r"(?P<kind>\w+)\s+(?P<words>.*?)\s*(?P<wkt>(?:MULTI)?(?:POLYGON|LINESTRING)\b.*)", re.IGNORECASE
 )
 _PROPERTY = re.compile(r"(?P<name>\w+)=(?P<value>\S+)$")
+
+
+class Wkt(PlanFormat):
+    """Text: a line for each part, its geometry as WKT in metres."""
+
+    name = "wkt"
+    suffixes = (".wkt",)
+
+    def read(self, path: Path) -> Content:
+        """See ``read`` of this module."""
+        return read(path)
 
 
 def read(path: "str | os.PathLike[str]") -> Content:

@@ -10,17 +10,12 @@ do not tell them apart.
 
 from __future__ import annotations
 
-import os
-import sqlite3
-import zlib
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import shapely
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.columns import COLUMNS
 
 if TYPE_CHECKING:
@@ -29,20 +24,10 @@ if TYPE_CHECKING:
 
     from mesa_mobility.results.trajectories import Trajectories
 
-JUPEDSIM_VERSION = 2
 BEYOND = 3
 """Frames for which people walk on beyond the exit."""
 # Rows handed over together: bounds the Python objects alive at a time.
 CHUNK = 100_000
-
-JUPEDSIM_TABLES = """
-CREATE TABLE trajectory_data (
-    frame INTEGER NOT NULL, id INTEGER NOT NULL, pos_x REAL NOT NULL, pos_y REAL NOT NULL,
-    ori_x REAL NOT NULL, ori_y REAL NOT NULL);
-CREATE TABLE metadata (key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE geometry (hash INTEGER NOT NULL, wkt TEXT NOT NULL);
-CREATE TABLE frame_data (frame INTEGER NOT NULL, geometry_hash INTEGER NOT NULL);
-"""
 
 
 def to_pandas(trajectories: Trajectories) -> pd.DataFrame:
@@ -76,7 +61,7 @@ def to_pedpy(trajectories: Trajectories) -> pedpy.TrajectoryData:
         import pedpy
     except ImportError as error:
         raise ResultsError("PedPy is not installed: pip install pedpy") from error
-    trajectories = _walked_on(trajectories)
+    trajectories = walked_on(trajectories)
     data = pd.DataFrame(
         {
             "id": trajectories.person.astype(np.int64),
@@ -88,122 +73,10 @@ def to_pedpy(trajectories: Trajectories) -> pedpy.TrajectoryData:
     return pedpy.TrajectoryData(data=data, frame_rate=trajectories.frame_rate)
 
 
-def write_jupedsim_sqlite(
-    trajectories: Trajectories,
-    path: str | os.PathLike[str],
-    walkable: shapely.Geometry,
-) -> None:
-    """Write a JuPedSim trajectory database, version 2, as its viewer, jupedsim and PedPy read it.
-
-    A table ``person_data`` beside JuPedSim's own has the type of each person and the like. People
-    who left walk on for ``BEYOND`` frames, as in ``to_pedpy``.
-
-    Args:
-        trajectories: the run; the direction that each person faces goes into ori_x, ori_y.
-        path: file to write.
-        walkable: area that people can stand on, metres (`FloorPlan.free`).
-
-    Raises:
-        ResultsError: no rows, or the file cannot be written.
-    """
-    trajectories = _walked_on(trajectories)
-    wkt = shapely.to_wkt(walkable, rounding_precision=-1)
-    # JuPedSim only matches this number between its tables; its own, Python's hash(), changes
-    # from process to process.
-    geometry = zlib.crc32(wkt.encode())
-    metadata = {
-        "version": JUPEDSIM_VERSION,
-        "fps": float(trajectories.frame_rate),
-        "xmin": float(trajectories.x.min()),
-        "xmax": float(trajectories.x.max()),
-        "ymin": float(trajectories.y.min()),
-        "ymax": float(trajectories.y.max()),
-    }
-    with replacing(path, ResultsError) as temporary:
-        try:
-            connection = sqlite3.connect(temporary)
-            try:
-                with connection:
-                    connection.executescript(JUPEDSIM_TABLES)
-                    connection.executemany("INSERT INTO metadata VALUES (?, ?)", metadata.items())
-                    connection.execute("INSERT INTO geometry VALUES (?, ?)", (geometry, wkt))
-                    connection.executemany(
-                        "INSERT INTO frame_data VALUES (?, ?)",
-                        ((frame, geometry) for frame in range(trajectories.frames)),
-                    )
-                    _insert_rows(connection, trajectories)
-                    _insert_people(connection, trajectories)
-                    connection.execute("CREATE INDEX frame_id_idx ON trajectory_data (frame, id)")
-            finally:
-                connection.close()
-        except sqlite3.Error as error:
-            raise ResultsError(f"{path}: cannot be written: {error}") from error
-
-
-def _insert_rows(connection: sqlite3.Connection, trajectories: Trajectories) -> None:
-    for first in range(0, len(trajectories), CHUNK):
-        rows = slice(first, first + CHUNK)
-        columns = (
-            trajectories.frame[rows],
-            trajectories.person[rows],
-            trajectories.x[rows],
-            trajectories.y[rows],
-            np.cos(trajectories.heading[rows]),
-            np.sin(trajectories.heading[rows]),
-        )
-        connection.executemany(
-            "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?)",
-            zip(*(column.tolist() for column in columns), strict=True),
-        )
-
-
-def _insert_people(connection: sqlite3.Connection, trajectories: Trajectories) -> None:
-    names = list(trajectories.person_data)
-    if not names:
-        return
-    # Names are identifiers: see ``checked_person_data``.
-    columns = "".join(f', "{name}"' for name in names)
-    connection.execute(f"CREATE TABLE person_data (id INTEGER NOT NULL PRIMARY KEY{columns})")
-    people = np.unique(trajectories.person)
-    values = [trajectories.person_data[name][people].tolist() for name in names]
-    marks = ", ".join("?" * (1 + len(names)))
-    connection.executemany(
-        f"INSERT INTO person_data VALUES ({marks})", zip(people.tolist(), *values, strict=True)
-    )
-
-
-def write_juelich_text(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
-    """Write the text form of the Juelich data archive: lines of ID, frame, x, y, z in metres.
-
-    Coordinates are rounded to 0.1 mm and z is 0. PedPy and JPSreport read it. People who left walk
-    on for ``BEYOND`` frames, as in ``to_pedpy``.
-
-    Raises:
-        ResultsError: no rows, or the file cannot be written.
-    """
-    trajectories = _walked_on(trajectories)
-    order = trajectories.by_person
-    with (
-        replacing(path, ResultsError) as temporary,
-        temporary.open("w", encoding="utf-8", newline="\n") as file,
-    ):
-        file.write(f"# framerate: {trajectories.frame_rate:g}\n# id frame x/m y/m z/m\n")
-        for first in range(0, len(order), CHUNK):
-            rows = order[first : first + CHUNK]
-            columns = (
-                trajectories.person[rows],
-                trajectories.frame[rows],
-                trajectories.x[rows],
-                trajectories.y[rows],
-            )
-            file.writelines(
-                f"{person} {frame} {x:.4f} {y:.4f} 0\n"
-                for person, frame, x, y in zip(*(c.tolist() for c in columns), strict=True)
-            )
-
-
-def _walked_on(trajectories: Trajectories) -> Trajectories:
+def walked_on(trajectories: Trajectories) -> Trajectories:
     """The rows, and those of people who walk on beyond an exit; for export alone.
+
+    See this module's docstring for why.
 
     Raises:
         ResultsError: no rows.

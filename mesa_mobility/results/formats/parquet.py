@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.results.formats.output_format import OutputFormat
 from mesa_mobility.results.formats.seal import FIELD, UNSEALED, check_seal, seal
 
 if TYPE_CHECKING:
+    from mesa_mobility.results.excerpts import Excerpt
     from mesa_mobility.results.trajectories import Trajectories
 
 FORMAT_VERSION = 2
@@ -30,6 +32,17 @@ SCHEMA = pa.schema(
         ("heading", pa.float64()),
     ]
 )
+
+
+class Parquet(OutputFormat):
+    """Table in Parquet, which pandas and R read: a row for each person and frame."""
+
+    name = "parquet"
+    suffixes = (".parquet",)
+
+    def write(self, excerpt: Excerpt, path: Path) -> None:
+        """See ``write_parquet``."""
+        write_parquet(excerpt.tracks(), path)
 
 
 def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:

@@ -60,7 +60,7 @@ def test_everybody_who_leaves_crosses_the_line_of_the_exit(run, room, pedpy, tmp
 
 def test_a_person_of_a_single_row_does_not_walk_on(walk):
     run = walk({0: (2, [(1.0, 1.0)])}, inside_at_end=np.empty(0, dtype=int), last_frame=4)
-    assert len(export._walked_on(run)) == 1
+    assert len(export.walked_on(run)) == 1
 
 
 def test_pedpy_gets_every_row(run, pedpy):

@@ -25,11 +25,11 @@ def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
     assert (outcome.status, outcome.out) == (0, "")
     assert "2 people written" in outcome.err
     assert (tmp_path / "crowd.glb").read_bytes()[:4] == b"glTF"
-    outcome = command("animate", run_dir, "-o", tmp_path / "bvh", "--format", "bvh",
+    outcome = command("export", run_dir, "-o", tmp_path / "bvh", "--format", "bvh",
                       "--people", "1")  # fmt: skip
     assert outcome.status == 0
     assert [each.name for each in (tmp_path / "bvh").iterdir()] == ["person_1.bvh"]
-    outcome = command("animate", run_dir, "-o", tmp_path / "crowd.html", "--format", "html")
+    outcome = command("export", run_dir, "-o", tmp_path / "crowd.html")
     assert outcome.status == 0
     # One file: nothing is asked for from elsewhere.
     page = (tmp_path / "crowd.html").read_text()
@@ -43,6 +43,22 @@ def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
         assert (outcome.status, (tmp_path / name).is_file()) == (0, True), outcome.err
 
 
+def test_a_run_becomes_tables(command, run_dir, tmp_path):
+    from mesa_mobility.results import read_parquet
+
+    for name in ("all.parquet", "all.sqlite", "all.txt"):
+        outcome = command("export", run_dir, "-o", tmp_path / name)
+        assert (outcome.status, (tmp_path / name).is_file()) == (0, True), outcome.err
+    arguments = ("--people", "1", "--from", 0.5, "--to", 0.8)
+    assert command("export", run_dir, "-o", tmp_path / "part.parquet", *arguments).status == 0
+    part = read_parquet(tmp_path / "part.parquet")
+    assert part.frame.tolist() == list(range(15, 25))
+    assert part.person.tolist() == [1] * 10
+    assert part.remaining.tolist() == [1]
+    whole = read_parquet(run_dir / "trajectories.parquet")
+    assert len(read_parquet(tmp_path / "all.parquet")) == len(whole)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -52,7 +68,11 @@ def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
         (("animate", "nowhere", "-o", "x.glb"), "no summary.json"),
         (("animate", "{run}", "-o", "x.glb", "--poses", "absent.npz"), "no such file"),
         (("animate", "{run}", "-o", "x.glb", "--format", "usd"), "ends with .usd"),
-        (("render", "{run}", "-o", "x.avi"), "expected .mp4"),
+        (("render", "{run}", "-o", "x.avi"), "x.avi: expected a name that ends in .bvh, .mp4"),
+        (("export", "{run}", "-o", "x.glb", "--format", "gbl"), "unknown output format 'gbl', did"),
+        (("export", "{run}", "-o", "x.glb", "--speed", "2"), "format glb: unknown option 'speed'"),
+        (("export", "{run}", "-o", "x.gif", "--set", "speed=x"), "speed: got 'x', expected a num"),
+        (("export", "{run}", "-o", "x.png", "--at", "a"), "at: got 'a', expected numbers"),
     ],
 )
 def test_bad_input_gives_one_line(command, run_dir, tmp_path, monkeypatch, arguments, said):

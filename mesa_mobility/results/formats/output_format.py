@@ -1,0 +1,36 @@
+"""What a format of files of a run is, and all that are installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.plugins.formats import Format, Formats
+from mesa_mobility.plugins.registry import OUTPUT_FORMATS
+
+if TYPE_CHECKING:
+    from mesa_mobility.results.excerpts import Excerpt
+
+
+class OutputFormat(Format):
+    """A kind of file that a run is written to: a class with ``write``.
+
+    Keyword-only parameters of ``write`` are the options of the format.
+    """
+
+    def write(self, excerpt: Excerpt, path: Path) -> None:
+        """Write a run or a part of it, complete or not at all.
+
+        Args:
+            excerpt: what to write.
+            path: the file, or the folder where a format has several files.
+
+        Raises:
+            ResultsError: the file cannot be written, or the run lacks what it takes.
+        """
+        raise NotImplementedError
+
+
+OUTPUTS = Formats(OUTPUT_FORMATS, OutputFormat, ResultsError)
+"""The installed formats of runs."""
