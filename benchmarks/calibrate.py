@@ -13,7 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,8 @@ from mesa_mobility.crowd.presets import PRESETS
 from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.plugins.registry import load_behavior
 from mesa_mobility.results.files import json_text
+from mesa_mobility.runs.jobs import Failed, run_jobs
+from mesa_mobility.runs.workers import Processes
 from mesa_mobility.validation.bottleneck import DENSITY_IN_FRONT, bottleneck
 from mesa_mobility.validation.corridor import RECORDED
 from mesa_mobility.verification.references import (
@@ -84,8 +86,9 @@ def rules(changes: dict[str, float]) -> dict[str, Any]:
     return {"behaviors": terms, "pedestrian_types": [adults]}
 
 
-def measure(changes: dict[str, float], seed: int) -> dict[str, float]:
-    """The figures of one setting; nan where people got stuck."""
+def measure(setting: tuple[dict[str, float], int]) -> dict[str, float]:
+    """The figures of one setting with a seed; nan where people got stuck."""
+    changes, seed = setting
     figures: dict[str, Any] = {}
     for width in (*WIDTHS, IN_FRONT_OF):
         run = bottleneck(seed, width=width, **rules(changes))
@@ -122,7 +125,7 @@ def main() -> None:
     parser.add_argument("file", type=Path, help="one JSON line a setting and seed")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--minutes", type=float, default=9.0, help="wait for no result after this")
+    parser.add_argument("--minutes", type=float, default=9.0, help="begin no run after this")
     parser.add_argument("--no-progress", action="store_true", help="no progress on standard error")
     given = parser.parse_args()
     lines = given.file.read_text(encoding="utf-8").splitlines() if given.file.exists() else []
@@ -132,21 +135,26 @@ def main() -> None:
     asked = [(each, seed) for each in settings() for seed in range(1, given.seeds + 1)]
     missing = [(each, seed) for each, seed in asked if (json_text(each), seed) not in done]
     until = time.monotonic() + 60.0 * given.minutes
+
+    def in_time() -> Iterator[tuple[dict[str, float], int]]:
+        for setting in missing:
+            if time.monotonic() > until:
+                return
+            yield setting
+
     with (
         given.file.open("a", encoding="utf-8") as file,
-        ProcessPoolExecutor(given.jobs) as pool,
         progress_bar(shown=not given.no_progress) as told,
     ):
-        while missing and time.monotonic() < until:
-            told("runs", len(asked) - len(missing), len(asked))
-            batch, missing = missing[: given.jobs], missing[given.jobs :]
-            running = {pool.submit(measure, each, seed): (each, seed) for each, seed in batch}
-            for future in as_completed(running):
-                each, seed = running[future]
-                row = {"changes": each, "seed": seed, "figures": future.result()}
-                file.write(json_text(row) + "\n")
-                file.flush()
-                done[json_text(each), seed] = row["figures"]
+        told("runs", len(done), len(asked))
+        for (each, seed), figures in run_jobs(measure, in_time(), Processes(given.jobs)):
+            if isinstance(figures, Failed):
+                raise SystemExit(f"{json_text(each)}, seed {seed}: {figures.error}")
+            row = {"changes": each, "seed": seed, "figures": figures}
+            file.write(json_text(row) + "\n")
+            file.flush()
+            done[json_text(each), seed] = figures
+            told("runs", len(done), len(asked))
     report(done)
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import product
 from typing import Any, TypeAlias
@@ -14,13 +13,9 @@ import mesa
 from tqdm.auto import tqdm
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.interrupts import deaf_children
-from mesa_mobility.processes import (
-    available_processors,
-    check_importable,
-    one_thread_each,
-    spawned_pool,
-)
+from mesa_mobility.processes import available_processors, check_importable
+from mesa_mobility.runs.choice import workers_for
+from mesa_mobility.runs.jobs import Failed, run_jobs
 
 _Rows: TypeAlias = list[dict[str, Any]]
 
@@ -54,8 +49,8 @@ def batch_run(
         has one row with its parameters and ``error``, and gives a warning.
 
     Raises:
-        ModelError: ``rng`` is among the parameters, another process cannot import the model, or
-            all runs fail.
+        ModelError: ``rng`` is among the parameters, fewer than one process, another process cannot
+            import the model, or all runs fail.
     """
     if "rng" in parameters:
         raise ModelError("batch_run: rng is among the parameters, expected seeds as rng=[...]")
@@ -63,16 +58,17 @@ def batch_run(
         check_importable(model_class, "batch_run")
     run = partial(_run, model_class, max_steps, data_collection_period)
     runs = list(product(enumerate(rng), _combinations(parameters)))
-    results: list[_Rows | str] = [""] * len(runs)
+    alone = (number_processes or available_processors()) == 1
+    workers, _ = workers_for("serial" if alone else "processes", number_processes)
+    results: dict[int, _Rows | Failed] = {}
     with tqdm(total=len(runs), disable=not display_progress) as bar:
-        processes = number_processes or available_processors()
-        for number, rows in _results(run, runs, processes):
+        for (number, _), rows in run_jobs(run, enumerate(runs), workers):
             results[number] = rows
             bar.update()
-    failed = [number for number, rows in enumerate(results) if isinstance(rows, str)]
+    failed = [each for _, each in sorted(results.items()) if isinstance(each, Failed)]
     if failed:
         said = f"batch_run: {len(failed)} of {len(runs)} runs fail, the first with "
-        said += str(results[failed[0]])
+        said += failed[0].error
         if len(failed) == len(runs):
             raise ModelError(said)
         warnings.warn(said, RuntimeWarning, stacklevel=2)
@@ -80,8 +76,8 @@ def batch_run(
     for number, ((iteration, seed), values) in enumerate(runs):
         found = results[number]
         where = {"RunId": number, "iteration": iteration}
-        if isinstance(found, str):
-            found = [{"Step": None, "rng": seed, **values, "error": found}]
+        if isinstance(found, Failed):
+            found = [{"Step": None, "rng": seed, **values, "error": found.error}]
         rows_of_all += [{**row, **where} for row in found]
     return rows_of_all
 
@@ -95,23 +91,9 @@ def _combinations(parameters: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [dict(zip(parameters, values, strict=True)) for values in product(*lists)]
 
 
-def _results(
-    run: Callable[[Any], _Rows | str], runs: Sequence[Any], processes: int
-) -> Iterator[tuple[int, _Rows | str]]:
-    """Number and rows, or error, of each run as soon as it is there."""
-    if processes == 1:
-        yield from enumerate(map(run, runs))
-        return
-    with one_thread_each(), spawned_pool(processes) as pool:
-        with deaf_children():
-            futures = {pool.submit(run, each): number for number, each in enumerate(runs)}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
-
-
-def _run(model_class: type[mesa.Model], max_steps: int, period: int, each: Any) -> _Rows | str:
-    """The rows that Mesa gives for one run, or what is wrong with it."""
-    (_, seed), values = each
+def _run(model_class: type[mesa.Model], max_steps: int, period: int, each: Any) -> _Rows:
+    """The rows that Mesa gives for one run."""
+    _, ((_, seed), values) = each
     options: dict[str, Any] = {
         "max_steps": max_steps,
         "number_processes": 1,
@@ -120,9 +102,8 @@ def _run(model_class: type[mesa.Model], max_steps: int, period: int, each: Any) 
     }
     # In lists, or Mesa would take a list of values for several runs.
     keywords = {name: [value] for name, value in values.items()}
-    try:
-        if "rng" in inspect.signature(mesa.batch_run).parameters:
-            return mesa.batch_run(model_class, keywords, rng=[seed], **options)
-        return mesa.batch_run(model_class, {**keywords, "rng": [seed]}, **options)
-    except Exception as error:
-        return " ".join(f"{type(error).__name__}: {error}".split())
+    if "rng" in inspect.signature(mesa.batch_run).parameters:
+        rows: _Rows = mesa.batch_run(model_class, keywords, rng=[seed], **options)
+        return rows
+    rows = mesa.batch_run(model_class, {**keywords, "rng": [seed]}, **options)
+    return rows

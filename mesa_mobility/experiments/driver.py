@@ -8,6 +8,7 @@ import uuid
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -26,13 +27,15 @@ from mesa_mobility.experiments.workers.batches import (
     Finished,
     Journal,
     rows_of_lost_workers,
+    run_batch,
     salvage,
 )
-from mesa_mobility.experiments.workers.choice import workers_for
-from mesa_mobility.experiments.workers.executors import WorkerDied, Workers
 from mesa_mobility.experiments.workers.one_run import Setup
 from mesa_mobility.plugins.model_files import is_model_file
 from mesa_mobility.processes import check_importable, check_main
+from mesa_mobility.runs.choice import workers_for
+from mesa_mobility.runs.jobs import in_flight
+from mesa_mobility.runs.workers import WorkerDied, Workers
 
 BATCH_SECONDS = 5.0
 """Seconds that a batch should take at least: long beside its message, short beside a run lost."""
@@ -141,18 +144,17 @@ class _Driver:
         self,
         experiment: Experiment,
         store: Store,
-        workers: Workers | None,
+        workers: Workers,
         told: Callable[[Progress], None],
     ) -> None:
         self._experiment, self._store, self._told = experiment, store, told
         self._workers = workers
         self._attempts: Counter[str] = Counter()
         self._per_run: float | None = None
-        self.progress = Progress(address=workers.address if workers else "")
+        self.progress = Progress(address=workers.address)
 
     def run(self) -> None:
         """Do what is missing, round by round."""
-        assert self._workers is not None
         setup = self._setup(self._workers.own_processes)
         while True:
             count, runs = missing_runs(self._experiment, self._store)
@@ -165,22 +167,14 @@ class _Driver:
                 return
 
     def _do(self, setup: Setup, runs: Runs) -> None:
-        workers = self._workers
-        assert workers is not None
-        under_way = 0
         loose = 0
         again: list[Batch] = []
-        while True:
-            while under_way < 2 * workers.count:
-                batch = again.pop() if again else self._batch(runs)
-                if batch is None:
-                    break
-                workers.submit(setup, batch)
-                under_way += 1
-            if not under_way:
-                return
-            for batch, answer in workers.ended(1.0):
-                under_way -= 1
+
+        def following() -> Batch | None:
+            return again.pop() if again else self._batch(runs)
+
+        for ended in in_flight(partial(run_batch, setup), following, self._workers, each=2):
+            for batch, answer in ended:
                 if isinstance(answer, Finished):
                     self._attempts.pop(batch.name, None)
                     self._check_kept(batch)
@@ -211,7 +205,6 @@ class _Driver:
         """The next batch; the first ones are single runs, which tell how long a run takes."""
         size = 1
         if self._per_run is not None:
-            assert self._workers is not None
             seconds = max(BATCH_SECONDS, self._workers.count / _BATCHES)
             size = max(1, min(_MOST_RUNS, math.floor(seconds / max(self._per_run, 1e-6))))
             left = self.progress.total - self.progress.ended

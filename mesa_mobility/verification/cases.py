@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from itertools import islice
+from functools import partial
 from typing import Any, TypeAlias
 
-from mesa_mobility.interrupts import deaf_children
-from mesa_mobility.processes import one_thread_each, spawned_pool
+from mesa_mobility.runs.jobs import Failed, run_jobs
+from mesa_mobility.runs.workers import Processes
 from mesa_mobility.verification.drawings import first_run_drawn
 
 Figures: TypeAlias = dict[str, Any]
@@ -87,36 +85,15 @@ def run_units(
 
     Units are begun in their order; one is taken when a process is free for it.
     """
-    ahead = iter(units)
-    with one_thread_each(), _pool(jobs) as pool:
-        # Processes are started when a unit is submitted.
-        with deaf_children():
-            waiting = {pool.submit(_run, *unit, drawn): unit for unit in islice(ahead, jobs)}
-        while waiting:
-            done, _ = wait(waiting, return_when=FIRST_COMPLETED)
-            for future in done:
-                unit = waiting.pop(future)
-                for following in islice(ahead, 1):
-                    waiting[pool.submit(_run, *following, drawn)] = following
-                yield (*unit, future.result())
+    for (each, seed), found in run_jobs(partial(_run, drawn), units, Processes(jobs)):
+        # A scenario that raises fails its own test, not the whole suite.
+        yield each, seed, {"error": found.error} if isinstance(found, Failed) else found
 
 
-def _run(each: Case, seed: int, drawn: bool) -> Figures:
-    # A scenario that raises fails its own test, not the whole suite.
-    try:
-        if not drawn:
-            return each(seed)
-        with first_run_drawn() as drawings:
-            figures = each(seed)
-        return {**figures, "drawing": drawings[0]} if drawings else figures
-    except Exception as error:
-        return {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
-
-
-@contextmanager
-def _pool(jobs: int) -> Iterator[ProcessPoolExecutor]:
-    pool = spawned_pool(jobs)
-    try:
-        yield pool
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+def _run(drawn: bool, unit: tuple[Case, int]) -> Figures:
+    each, seed = unit
+    if not drawn:
+        return each(seed)
+    with first_run_drawn() as drawings:
+        figures = each(seed)
+    return {**figures, "drawing": drawings[0]} if drawings else figures

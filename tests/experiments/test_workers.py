@@ -10,7 +10,7 @@ pytestmark = pytest.mark.slow
 
 def test_workers_that_come_later_are_counted(monkeypatch):
     distributed = pytest.importorskip("distributed", reason="needs the extra cluster")
-    from mesa_mobility.experiments.workers import dask_workers
+    from mesa_mobility.runs import dask_workers
 
     monkeypatch.setattr(dask_workers, "_COUNT_AGAIN", 0.0)
     with distributed.LocalCluster(

@@ -18,6 +18,7 @@ from mesa_mobility.experiments.points import Point, point_key, run_name, seed_of
 from mesa_mobility.experiments.storing.rows import DONE, FAILED, SERIES, STALLED, TIMED_OUT, Row
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.reports.inputs import inputs_of
+from mesa_mobility.runs.jobs import one_line
 
 _LONGEST_ERROR = 500
 
@@ -75,7 +76,7 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
         raise
     # A model of somebody else may fail in any way, and end with SystemExit as a script does.
     except BaseException as error:
-        row |= {"status": FAILED, "error": one_line(error)}
+        row |= {"status": FAILED, "error": _short(error)}
     row["wall_s"] = time.perf_counter() - wall
     row["cpu_s"] = time.process_time() - cpu
     return row, model
@@ -99,9 +100,9 @@ def first_columns(setup: Setup, point: Point, replication: int) -> Row:
     }
 
 
-def one_line(error: BaseException) -> str:
-    """An error's type and message on one line."""
-    text = _plain(" ".join(f"{type(error).__name__}: {error}".split()))
+def _short(error: BaseException) -> str:
+    """An error on one line that a file can hold, and not all of a long one."""
+    text = _plain(one_line(error))
     return text if len(text) <= _LONGEST_ERROR else text[:_LONGEST_ERROR] + "..."
 
 

@@ -1,4 +1,4 @@
-"""Batches on Dask: a client, a scheduler's address, a cluster, or a cluster on this machine."""
+"""Jobs on Dask: a client, a scheduler's address, a cluster, or a cluster on this machine."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from contextlib import ExitStack, suppress
 from typing import Any
 
 from mesa_mobility.errors import ModelError, ResultsError
-from mesa_mobility.experiments.workers.batches import Batch, run_batch
-from mesa_mobility.experiments.workers.executors import Ended, Futures, WorkerDied
-from mesa_mobility.experiments.workers.one_run import Setup
 from mesa_mobility.processes import THREADS, available_processors
+from mesa_mobility.runs.workers import Ended, Function, Futures, WorkerDied
 
 _PATIENCE = 30.0
 """Seconds for which a scheduler may be out of reach."""
@@ -21,7 +19,7 @@ _COUNT_AGAIN = 10.0
 
 
 class DaskWorkers(Futures):
-    """Batches as tasks of a Dask client.
+    """Jobs as tasks of a Dask client.
 
     Args:
         client: of ``dask.distributed``.
@@ -36,17 +34,16 @@ class DaskWorkers(Futures):
         )
         self._count()
 
-    def _task(self, setup: Setup, batch: Batch) -> Any:
+    def _task(self, function: Function, job: Any) -> Any:
+        # Keys are of the attempt: a key that has failed would not be run again.
+        key = f"{getattr(job, 'name', 'job')}-{time.monotonic_ns()}"
         try:
-            # Keys are of the attempt: a key that has failed would not be run again.
-            return self._client.submit(
-                run_batch, setup, batch, key=f"{batch.name}-{time.monotonic_ns()}", pure=False
-            )
+            return self._client.submit(function, job, key=key, pure=False)
         except Exception as error:
             raise self._lost() from error
 
     def ended(self, seconds: float) -> list[Ended]:
-        """Batches that have ended.
+        """Jobs that have ended.
 
         Raises:
             ResultsError: the scheduler is out of reach.
@@ -64,7 +61,7 @@ class DaskWorkers(Futures):
         return found
 
     def error_of(self, error: BaseException) -> BaseException:
-        """An error as the driver takes it."""
+        """An error as callers take it."""
         from concurrent.futures import CancelledError
 
         from distributed import KilledWorker

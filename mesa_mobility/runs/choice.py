@@ -1,4 +1,4 @@
-"""Which workers an experiment is run with."""
+"""Which workers do the jobs that a caller has."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from contextlib import ExitStack
 from typing import Any
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.experiments.workers.batches import run_batch
-from mesa_mobility.experiments.workers.executors import Futures, Processes, Serial, Workers
 from mesa_mobility.processes import available_processors
+from mesa_mobility.runs.workers import Futures, Processes, Serial, Workers
 
 
 def workers_for(executor: Any, count: int | None) -> tuple[Workers, ExitStack]:
@@ -34,12 +33,10 @@ def workers_for(executor: Any, count: int | None) -> tuple[Workers, ExitStack]:
         given = executor
         known = getattr(given, "_max_workers", None) or available_processors()
         workers = Futures(
-            lambda setup, batch: given.submit(run_batch, setup, batch),
-            count or known,
-            own_processes=False,
+            lambda function, job: given.submit(function, job), count or known, own_processes=False
         )
     else:
-        from mesa_mobility.experiments.workers.dask_workers import dask_workers
+        from mesa_mobility.runs.dask_workers import dask_workers
 
         workers = dask_workers(executor, count, closing)
     closing.callback(workers.close)

@@ -1,4 +1,4 @@
-"""Where batches run: in this process, in processes, in an executor of the caller's, or on Dask."""
+"""Workers: this process, processes of their own, or those behind futures of an executor."""
 
 from __future__ import annotations
 
@@ -10,21 +10,20 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from typing import Any, Protocol, TypeAlias
 
-from mesa_mobility.errors import ResultsError
-from mesa_mobility.experiments.workers.batches import Batch, Finished, run_batch
-from mesa_mobility.experiments.workers.one_run import Setup
 from mesa_mobility.interrupts import deaf_children
 from mesa_mobility.processes import one_thread_each, spawned_pool
 
-Ended: TypeAlias = tuple[Batch, Finished | BaseException]
+Function: TypeAlias = Callable[[Any], Any]
+Ended: TypeAlias = tuple[Any, Any]
+"""A job, and its result or the error with which it has ended."""
 
 
 class WorkerDied(Exception):
-    """The process that had a batch has ended without an answer."""
+    """The process that had a job has ended without an answer."""
 
 
 class Workers(Protocol):
-    """What does batches.
+    """What does jobs.
 
     Attributes:
         count: workers, as far as known.
@@ -36,37 +35,37 @@ class Workers(Protocol):
     own_processes: bool
     address: str
 
-    def submit(self, setup: Setup, batch: Batch) -> None:
-        """Have a batch done."""
+    def submit(self, function: Function, job: Any) -> None:
+        """Have a job done by a function of it."""
 
     def ended(self, seconds: float) -> list[Ended]:
-        """Batches that have ended, each with its answer or error; none after so many seconds."""
+        """Jobs that have ended, each with its result or error; none after so many seconds."""
 
     def close(self) -> None:
-        """End the work; batches that have not ended are dropped."""
+        """End the work; jobs that have not ended are dropped."""
 
 
 class Serial:
-    """Batches one after the other in this process."""
+    """Jobs one after the other in this process."""
 
     count, own_processes, address = 1, False, ""
 
     def __init__(self) -> None:
-        self._waiting: deque[tuple[Setup, Batch]] = deque()
+        self._waiting: deque[tuple[Function, Any]] = deque()
 
-    def submit(self, setup: Setup, batch: Batch) -> None:
-        """Have a batch done."""
-        self._waiting.append((setup, batch))
+    def submit(self, function: Function, job: Any) -> None:
+        """Have a job done."""
+        self._waiting.append((function, job))
 
     def ended(self, seconds: float) -> list[Ended]:
-        """The next batch, done now."""
+        """The next job, done now."""
         if not self._waiting:
             return []
-        setup, batch = self._waiting.popleft()
+        function, job = self._waiting.popleft()
         try:
-            return [(batch, run_batch(setup, batch))]
-        except ResultsError as error:
-            return [(batch, error)]
+            return [(job, function(job))]
+        except Exception as error:
+            return [(job, error)]
 
     def close(self) -> None:
         """Drop what has not been done."""
@@ -74,10 +73,10 @@ class Serial:
 
 
 class Futures:
-    """Batches as futures, whose ends are put in a queue.
+    """Jobs as futures, whose ends are put in a queue.
 
     Args:
-        start: submits a batch.
+        start: submits a job.
         count: workers.
         own_processes: whether a worker may be ended without harm to anything else.
         address: of a page that shows what the workers do.
@@ -85,7 +84,7 @@ class Futures:
 
     def __init__(
         self,
-        start: Callable[[Setup, Batch], Any],
+        start: Callable[[Function, Any], Any],
         count: int,
         *,
         own_processes: bool,
@@ -94,16 +93,16 @@ class Futures:
         self.count, self.own_processes, self.address = count, own_processes, address
         self._start = start
         self._ends: queue.Queue[Any] = queue.Queue()
-        self._batches: dict[Any, Batch] = {}
+        self._jobs: dict[Any, Any] = {}
 
-    def submit(self, setup: Setup, batch: Batch) -> None:
-        """Have a batch done."""
-        future = self._start(setup, batch)
-        self._batches[future] = batch
+    def submit(self, function: Function, job: Any) -> None:
+        """Have a job done."""
+        future = self._start(function, job)
+        self._jobs[future] = job
         future.add_done_callback(self._ends.put)
 
     def ended(self, seconds: float) -> list[Ended]:
-        """Batches that have ended."""
+        """Jobs that have ended."""
         found: list[Ended] = []
         try:
             found.append(self._answer(self._ends.get(timeout=seconds)))
@@ -114,19 +113,19 @@ class Futures:
 
     def close(self) -> None:
         """Drop what has not been begun."""
-        for future in self._batches:
+        for future in self._jobs:
             future.cancel()
 
     def error_of(self, error: BaseException) -> BaseException:
-        """An error as the driver takes it."""
+        """An error as callers take it."""
         return error
 
     def _answer(self, future: Any) -> Ended:
-        batch = self._batches.pop(future)
+        job = self._jobs.pop(future)
         try:
-            return batch, future.result()
+            return job, future.result()
         except (Exception, CancelledError) as error:
-            return batch, self.error_of(error)
+            return job, self.error_of(error)
 
 
 class Processes(Futures):
@@ -141,7 +140,7 @@ class Processes(Futures):
         self._around = ExitStack()
         self._around.enter_context(one_thread_each())
         self._pools = [spawned_pool(1) for _ in range(count)]
-        self._held: list[set[Future[Finished]]] = [set() for _ in range(count)]
+        self._held: list[set[Future[Any]]] = [set() for _ in range(count)]
 
     def close(self) -> None:
         """End the processes."""
@@ -151,27 +150,27 @@ class Processes(Futures):
         self._around.close()
 
     def error_of(self, error: BaseException) -> BaseException:
-        """An error as the driver takes it."""
+        """An error as callers take it."""
         return WorkerDied() if isinstance(error, BrokenProcessPool) else error
 
-    def _to_the_idlest(self, setup: Setup, batch: Batch) -> Future[Finished]:
+    def _to_the_idlest(self, function: Function, job: Any) -> Future[Any]:
         for held in self._held:
             held.difference_update([future for future in held if future.done()])
         at = min(range(self.count), key=lambda k: len(self._held[k]))
-        # Processes are started when a batch is submitted.
+        # Processes are started when a job is submitted.
         with deaf_children():
             try:
-                future = self._pools[at].submit(run_batch, setup, batch)
+                future = self._pools[at].submit(function, job)
             except BrokenProcessPool:
                 self._pools[at].shutdown(wait=False)
                 self._pools[at] = spawned_pool(1)
-                future = self._pools[at].submit(run_batch, setup, batch)
+                future = self._pools[at].submit(function, job)
         self._held[at].add(future)
         return future
 
 
 def _kill(pool: ProcessPoolExecutor) -> None:
-    """End a pool's process at once: what it has finished is in its journal."""
+    """End a pool's process at once."""
     processes = list((getattr(pool, "_processes", None) or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:
