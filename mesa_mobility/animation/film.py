@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
-from mesa_mobility.results import Trajectories
 from mesa_mobility.results.excerpts import Selection
 from mesa_mobility.results.formats.output_format import OutputFormat
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from matplotlib.collections import EllipseCollection, LineCollection
@@ -51,7 +51,7 @@ class Film(OutputFormat):
 
 
 def write_film(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     plan: FloorPlan,
     path: str | os.PathLike[str],
     selection: Selection | None = None,
@@ -122,7 +122,7 @@ def write_film(
 def _place(
     bodies: EllipseCollection,
     strokes: LineCollection,
-    trajectories: Trajectories,
+    trajectories: Tracks,
     rows: NDArray[np.int64],
 ) -> NDArray[np.int64]:
     """Draw the bodies of some rows; returns (d,) the index among them of the body of each disc."""
@@ -139,7 +139,7 @@ def _place(
     return whose
 
 
-def _speeds(trajectories: Trajectories) -> NDArray[np.float64]:
+def _speeds(trajectories: Tracks) -> NDArray[np.float64]:
     """(n,) speed of each row: its way over the frames before, m/s."""
     ordered = trajectories.by_person
     before = np.maximum(np.arange(len(ordered)) - SPEED_OVER, 0)

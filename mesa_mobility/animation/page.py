@@ -23,10 +23,11 @@ from mesa_mobility.errors import MapError, ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.excerpts import Selection
 from mesa_mobility.results.formats.output_format import OutputFormat
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
-    from mesa_mobility.results import Decisions, Trajectories
+    from mesa_mobility.results import Decisions
     from mesa_mobility.results.excerpts import Excerpt
 
 EVERY = 3
@@ -64,7 +65,7 @@ def viewer_part(name: str) -> str:
 
 
 def write_page(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     plan: FloorPlan,
     path: str | os.PathLike[str],
     selection: Selection | None = None,
@@ -98,7 +99,7 @@ def write_page(
 
 
 def page_text(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     plan: FloorPlan,
     selection: Selection | None = None,
     *,
@@ -122,7 +123,7 @@ def page_text(
 
 
 def run_parts(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     selection: Selection,
     bank: PoseBank | None = None,
     progress: Callable[[int], None] | None = None,
@@ -191,7 +192,7 @@ def _banks(decisions: Decisions, given: PoseBank | None) -> dict[str, PoseBank]:
 
 
 def _track(
-    trajectories: Trajectories, rows: NDArray[np.int64], first: int, last: int
+    trajectories: Tracks, rows: NDArray[np.int64], first: int, last: int
 ) -> NDArray[np.int64]:
     """(n, 4) frames, x, y and heading of a person, the differences of successive rows in steps."""
     rows = rows[(trajectories.frame[rows] >= first) & (trajectories.frame[rows] <= last)]

@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.bodies import BodyMotion, PoseBank
 from mesa_mobility.bodies.seated import seated_motion
-from mesa_mobility.results import Trajectories
-from mesa_mobility.results.bodies import track_of
+from mesa_mobility.results.bodies import body_of, track_of
 from mesa_mobility.results.excerpts import Selection
+from mesa_mobility.results.tracks import Tracks
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Walker:
 
 
 def walkers(
-    trajectories: Trajectories, selection: Selection, bank: PoseBank | None = None
+    trajectories: Tracks, selection: Selection, bank: PoseBank | None = None
 ) -> Iterator[Walker]:
     """The people shown, one after the other; those in wheelchairs sit.
 
@@ -73,7 +73,7 @@ def walkers(
         if aid_of(name) == "wheelchair":
             motion = seated_motion(*track_of(trajectories, person))
         else:
-            motion = trajectories.poses(person, bank=bank)
+            motion = body_of(trajectories, person, bank=bank)
         there = np.flatnonzero((motion.frames >= first) & (motion.frames <= last))
         part = BodyMotion(
             frames=motion.frames[there],

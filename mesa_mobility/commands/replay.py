@@ -37,7 +37,8 @@ def replay(
     from mesa_mobility.animation import Selection
     from mesa_mobility.animation.page import write_page
     from mesa_mobility.bodies import PoseBank
-    from mesa_mobility.results.run import read_run, title_of
+    from mesa_mobility.results.excerpts import title_of
+    from mesa_mobility.results.run import read_run
 
     page = output or run / "replay.html"
     found = read_run(run)

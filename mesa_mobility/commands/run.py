@@ -85,8 +85,8 @@ def run(
     seed = secrets.randbelow(2**31) if seed is None else seed
     with progress_bar(shown=not no_progress) as report, nothing_collected():
         report("loading")
+        from mesa_mobility.crowd.model_files import find_model
         from mesa_mobility.crowd.precompile import compiling_ahead, is_compiled
-        from mesa_mobility.plugins.model_files import find_model
 
         report("preparing" if is_compiled() else "compiling, once after installation")
         with compiling_ahead():

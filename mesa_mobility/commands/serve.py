@@ -66,8 +66,8 @@ def serve(
     seed = secrets.randbelow(2**31) if seed is None else seed
     with nothing_collected():
         from mesa_mobility.crowd import PedestrianModel
+        from mesa_mobility.crowd.model_files import find_model
         from mesa_mobility.crowd.precompile import compiling_ahead
-        from mesa_mobility.plugins.model_files import find_model
 
         with compiling_ahead():
             simulation, _ = create_model(

@@ -6,9 +6,9 @@ import ast
 import threading
 from pathlib import Path
 
+from mesa_mobility.crowd.model_files import load_model_file, path_and_name
 from mesa_mobility.dashboard import offered
 from mesa_mobility.errors import ModelError
-from mesa_mobility.plugins.model_files import load_model_file, path_and_name
 
 LARGEST = 1_000_000
 """Bytes of a file that is looked into."""

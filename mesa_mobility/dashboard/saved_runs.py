@@ -9,7 +9,8 @@ from mesa_mobility.dashboard import offered
 from mesa_mobility.dashboard.widgets.fields import Choice
 from mesa_mobility.dashboard.widgets.text import Note, heading
 from mesa_mobility.errors import MobilityError, ResultsError
-from mesa_mobility.results.run import SUMMARY, TRAJECTORIES, read_run, title_of
+from mesa_mobility.results.excerpts import title_of
+from mesa_mobility.results.run import SUMMARY, TRAJECTORIES, read_run
 
 LARGEST = 60_000_000
 """Letters of a page that is shown inside another one."""

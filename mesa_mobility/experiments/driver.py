@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from mesa_mobility.crowd.model_files import is_model_file
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.experiment import Experiment, check_parameters
 from mesa_mobility.experiments.missing import Runs, missing_runs
@@ -31,7 +32,6 @@ from mesa_mobility.experiments.workers.batches import (
     salvage,
 )
 from mesa_mobility.experiments.workers.one_run import Setup
-from mesa_mobility.plugins.model_files import is_model_file
 from mesa_mobility.processes import check_importable, check_main
 from mesa_mobility.runs.choice import workers_for
 from mesa_mobility.runs.jobs import in_flight

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from mesa_mobility.crowd.model_files import find_model
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.convergence import Precision
 from mesa_mobility.experiments.designs import Design, Grid
@@ -19,7 +20,6 @@ from mesa_mobility.experiments.points import (
     plain_value,
 )
 from mesa_mobility.experiments.storing.rows import SERIES
-from mesa_mobility.plugins.model_files import find_model
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.plugins.registry import did_you_mean
 

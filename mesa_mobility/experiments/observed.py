@@ -8,6 +8,7 @@ right-censored, as an infinite value.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,8 +19,6 @@ from mesa_mobility.experiments.storing.rows import COMPUTING, FAILED, STALLED, T
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from mesa_mobility.experiments.store import Store
 
 
 def is_time(column: str) -> bool:
@@ -50,9 +49,8 @@ def observed(runs: pd.DataFrame, column: str) -> NDArray[np.float64]:
     return values
 
 
-def warn_of_failed(store: Store) -> None:
-    """Warn of runs that have failed, whose figures an analysis does without."""
-    statuses = store.table([])["status"].to_pylist()
+def warn_of_failed(store: object, statuses: Sequence[str]) -> None:
+    """Warn of runs of a store that have failed, whose figures an analysis does without."""
     if failed := statuses.count(FAILED):
         said = f"{store}: {failed} of {len(statuses)} runs have failed, and are left out"
         warnings.warn(said, RuntimeWarning, stacklevel=4)

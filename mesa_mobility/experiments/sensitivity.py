@@ -96,7 +96,7 @@ def _values(store: Store, figure: str) -> NDArray[np.float64]:
             f"{store}: {len(means) - len(known)} of {len(means)} points have no mean {figure}, as "
             "runs are missing, failed or did not reach it; expected all of them"
         )
-    warn_of_failed(store)
+    warn_of_failed(store, store.table([])["status"].to_pylist())
     return np.array(known)
 
 

@@ -11,9 +11,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from mesa_mobility.crowd.model_files import is_model_file, path_and_name
 from mesa_mobility.errors import MapError, ModelError
 from mesa_mobility.experiments.experiment import Experiment, model_class, model_name
-from mesa_mobility.plugins.model_files import is_model_file, path_and_name
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.populations import Population
 from mesa_mobility.reports.inputs import digest_of, given_files, given_population

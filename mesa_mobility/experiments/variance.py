@@ -83,7 +83,7 @@ def variance_components(
             f"{store}: {lacking} of {len(runs)} runs have no {figure}: they stalled, timed out or "
             "ended with people inside; expected a figure that all have"
         )
-    warn_of_failed(store)
+    warn_of_failed(store, store.table([])["status"].to_pylist())
     groups = _groups(runs, levels)
     counts = [len(np.unique(of)) for of in groups]
     for name, outer, inner in zip((*levels, CHANCE), counts[:-1], counts[1:], strict=True):

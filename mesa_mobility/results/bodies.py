@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.bodies import BodyMotion, PoseBank, body_motion
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.errors import ResultsError
-
-if TYPE_CHECKING:
-    from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 
 def body_of(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     person: int,
     frames: ArrayLike | None = None,
     *,
@@ -56,9 +52,7 @@ def body_of(
     return motion if frames is None else motion.at(frames)
 
 
-def track_of(
-    trajectories: Trajectories, person: int
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def track_of(trajectories: Tracks, person: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Where one person is: (k,) frames, and (k, 3) x, y (metres) and heading (radians) in them."""
     rows = trajectories.rows_of(person)
     columns = (trajectories.x, trajectories.y, trajectories.heading)

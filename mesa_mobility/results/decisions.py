@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
-from mesa_mobility.results.formats.seal import FIELD, UNSEALED, check_seal, seal
+from mesa_mobility.results.seal import FIELD, UNSEALED, check_seal, seal
 from mesa_mobility.schema import Array, Several, Text, check
 
 if TYPE_CHECKING:

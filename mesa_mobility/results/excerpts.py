@@ -11,12 +11,11 @@ import numpy as np
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.columns import COLUMNS
-from mesa_mobility.results.run import title_of
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.bodies import PoseBank
     from mesa_mobility.floorplan import FloorPlan
-    from mesa_mobility.results.trajectories import Trajectories
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ class Selection:
     start: float = 0.0
     end: float | None = None
 
-    def frames_of(self, trajectories: Trajectories) -> tuple[int, int]:
+    def frames_of(self, trajectories: Tracks) -> tuple[int, int]:
         """First and last frame shown.
 
         Raises:
@@ -47,7 +46,7 @@ class Selection:
             )
         return round(self.start * trajectories.frame_rate), round(end * trajectories.frame_rate)
 
-    def people_of(self, trajectories: Trajectories) -> list[int]:
+    def people_of(self, trajectories: Tracks) -> list[int]:
         """Numbers of those shown who are there at that time.
 
         Raises:
@@ -80,7 +79,7 @@ class Excerpt:
         progress: called as ``progress(done, of)``.
     """
 
-    trajectories: Trajectories
+    trajectories: Tracks
     plan: FloorPlan
     selection: Selection = field(default_factory=Selection)
     summary: Mapping[str, Any] = field(default_factory=dict)
@@ -101,7 +100,7 @@ class Excerpt:
         """Report progress: so many people are done."""
         self.progress(done, len(self.people))
 
-    def tracks(self) -> Trajectories:
+    def tracks(self) -> Tracks:
         """The trajectories of this part alone, in the frames of the whole run."""
         whole = self.trajectories
         if self.selection == Selection():
@@ -118,3 +117,17 @@ class Excerpt:
             inside_at_end=now[whole.exit_frames[now] != last],
             decisions=None,
         )
+
+
+def title_of(summary: Mapping[str, Any], trajectories: Tracks) -> str:
+    """One line that says what a run was."""
+    egress = summary.get("egress_s")
+    left = summary.get("left_inside", 0)
+    ending = (
+        f"all out after {egress:.0f} s"
+        if egress is not None
+        else f"{left} still inside after {trajectories.duration:.0f} s"
+    )
+    run = ", ".join(f"{key} {summary[key]}" for key in ("preset", "seed") if key in summary)
+    name = str(summary.get("model", "run")).replace("_", " ")
+    return f"{name}: {trajectories.people} people, {ending}" + (f" ({run})" if run else "")

@@ -25,7 +25,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.floor import draw_floor, floor_figure
 from mesa_mobility.results.measures.by_type import people_by
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
@@ -52,7 +52,7 @@ STILL_INSIDE: dict[str, Any] = {
 
 
 def plot_trajectories(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     plan: FloorPlan,
     path: str | os.PathLike[str],
     *,
@@ -92,7 +92,7 @@ def plot_trajectories(
 
 
 def plot_snapshots(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     plan: FloorPlan,
     path: str | os.PathLike[str],
     *,
@@ -218,12 +218,12 @@ def plot_occupancy(
     _save(figure, path)
 
 
-def _inside_at(trajectories: Trajectories, frame: int) -> NDArray[np.int64]:
+def _inside_at(trajectories: Tracks, frame: int) -> NDArray[np.int64]:
     rows = np.arange(*trajectories.frame_offsets[frame : frame + 2])
     return rows[trajectories.exit_frames[trajectories.person[rows]] != frame]
 
 
-def _tracks(trajectories: Trajectories) -> LineCollection:
+def _tracks(trajectories: Tracks) -> LineCollection:
     every = max(1, round(trajectories.frame_rate / 10), -(-len(trajectories) // MOST_PIECES))
     start, end = trajectories.steps(every)
     # Each person's every-th row only: its pieces then join end to end.
@@ -260,7 +260,7 @@ def _colours(types: Mapping[str, NDArray[np.int64]], people: int) -> NDArray[np.
 
 
 def _draw_bodies(
-    axes: Axes, trajectories: Trajectories, rows: NDArray[np.int64], colours: NDArray[np.str_]
+    axes: Axes, trajectories: Tracks, rows: NDArray[np.int64], colours: NDArray[np.str_]
 ) -> None:
     radius = trajectories.radii[trajectories.person[rows]]
     centre = np.column_stack((trajectories.x[rows], trajectories.y[rows]))

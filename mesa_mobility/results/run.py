@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.excerpts import title_of
 from mesa_mobility.results.files import all_or_none, json_text
 from mesa_mobility.results.measures.by_type import occupancy_by_type
 from mesa_mobility.results.measures.occupancy import egress_time, occupancy
@@ -132,17 +133,3 @@ def _curves_by_type(trajectories: Trajectories) -> dict[str, list[list[float]]] 
         return None
     curves = occupancy_by_type(trajectories)
     return curves if len(curves) > 1 else None
-
-
-def title_of(summary: Mapping[str, Any], trajectories: Trajectories) -> str:
-    """One line that says what a run was."""
-    egress = summary.get("egress_s")
-    left = summary.get("left_inside", 0)
-    ending = (
-        f"all out after {egress:.0f} s"
-        if egress is not None
-        else f"{left} still inside after {trajectories.duration:.0f} s"
-    )
-    run = ", ".join(f"{key} {summary[key]}" for key in ("preset", "seed") if key in summary)
-    name = str(summary.get("model", "run")).replace("_", " ")
-    return f"{name}: {trajectories.people} people, {ending}" + (f" ({run})" if run else "")

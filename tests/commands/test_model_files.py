@@ -8,8 +8,8 @@ import pytest
 from mesa_mobility.models import FloorPlanEgress
 
 from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
+from mesa_mobility.crowd.model_files import is_model_file, load_model_file
 from mesa_mobility.errors import ModelError
-from mesa_mobility.plugins.model_files import is_model_file, load_model_file
 from tests.fixtures.maps import strider
 
 ROOM = "from mesa_mobility import PedestrianModel\n\n\nclass Room(PedestrianModel):\n    pass\n"

@@ -13,8 +13,8 @@ import numpy as np
 from mesa_mobility.commands.models.behaviors import use_behaviors
 from mesa_mobility.commands.models.making import create_model, origin_of
 from mesa_mobility.crowd import Explanation, PedestrianModel, Watch
+from mesa_mobility.crowd.model_files import find_model
 from mesa_mobility.errors import ModelError, ResultsError
-from mesa_mobility.plugins.model_files import find_model
 from mesa_mobility.plugins.parameters import parameters
 from mesa_mobility.results import Trajectories
 from mesa_mobility.results.run import Run

@@ -12,12 +12,12 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility._startup import nothing_collected
+from mesa_mobility.crowd.model_files import find_model, is_installed_name
 from mesa_mobility.dashboard.serving.guard import Guard
 from mesa_mobility.dashboard.session.notices import hand_out_warnings
 from mesa_mobility.errors import MobilityError
 from mesa_mobility.live.access import TOKEN, address_of, is_loopback, listen, own_token
 from mesa_mobility.mobility import MobilityMap
-from mesa_mobility.plugins.model_files import find_model, is_installed_name
 
 if TYPE_CHECKING:
     from mesa_mobility import PedestrianModel

@@ -20,7 +20,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.storing.rows import DONE, FAILED, STALLED, TIMED_OUT, Row
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.parquet import METADATA_KEY
-from mesa_mobility.results.formats.seal import FIELD, UNSEALED, check_open, seal_open
+from mesa_mobility.results.seal import FIELD, UNSEALED, check_open, seal_open
 
 RUN_COLUMNS: dict[str, pa.DataType] = {
     "run": pa.string(),

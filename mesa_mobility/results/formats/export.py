@@ -17,12 +17,12 @@ import numpy as np
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.columns import COLUMNS
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     import pandas as pd
     import pedpy
 
-    from mesa_mobility.results.trajectories import Trajectories
 
 BEYOND = 3
 """Frames for which people walk on beyond the exit."""
@@ -30,7 +30,7 @@ BEYOND = 3
 CHUNK = 100_000
 
 
-def to_pandas(trajectories: Trajectories) -> pd.DataFrame:
+def to_pandas(trajectories: Tracks) -> pd.DataFrame:
     """Trajectories as a data frame; see ``Trajectories.to_pandas``."""
     import pandas as pd
 
@@ -47,7 +47,7 @@ def to_pandas(trajectories: Trajectories) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def to_pedpy(trajectories: Trajectories) -> pedpy.TrajectoryData:
+def to_pedpy(trajectories: Tracks) -> pedpy.TrajectoryData:
     """As PedPy's `TrajectoryData` (columns id, frame, x, y in metres), with rows beyond the exits.
 
     A person who left has ``BEYOND`` rows more than here, straight on at the velocity of the step
@@ -73,7 +73,7 @@ def to_pedpy(trajectories: Trajectories) -> pedpy.TrajectoryData:
     return pedpy.TrajectoryData(data=data, frame_rate=trajectories.frame_rate)
 
 
-def walked_on(trajectories: Trajectories) -> Trajectories:
+def walked_on(trajectories: Tracks) -> Tracks:
     """The rows, and those of people who walk on beyond an exit; for export alone.
 
     See this module's docstring for why.

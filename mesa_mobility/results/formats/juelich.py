@@ -10,10 +10,10 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.export import CHUNK, walked_on
 from mesa_mobility.results.formats.output_format import OutputFormat
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.results.excerpts import Excerpt
-    from mesa_mobility.results.trajectories import Trajectories
 
 
 class Juelich(OutputFormat):
@@ -27,7 +27,7 @@ class Juelich(OutputFormat):
         write_juelich_text(excerpt.tracks(), path)
 
 
-def write_juelich_text(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
+def write_juelich_text(trajectories: Tracks, path: str | os.PathLike[str]) -> None:
     """Write the text form of the Juelich data archive: lines of ID, frame, x, y, z in metres.
 
     Coordinates are rounded to 0.1 mm and z is 0. PedPy and JPSreport read it. People who left walk

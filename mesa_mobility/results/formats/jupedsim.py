@@ -15,10 +15,10 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.export import CHUNK, walked_on
 from mesa_mobility.results.formats.output_format import OutputFormat
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.results.excerpts import Excerpt
-    from mesa_mobility.results.trajectories import Trajectories
 
 JUPEDSIM_VERSION = 2
 
@@ -44,7 +44,7 @@ class JuPedSim(OutputFormat):
 
 
 def write_jupedsim_sqlite(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     path: str | os.PathLike[str],
     walkable: shapely.Geometry,
 ) -> None:
@@ -95,7 +95,7 @@ def write_jupedsim_sqlite(
             raise ResultsError(f"{path}: cannot be written: {error}") from error
 
 
-def _insert_rows(connection: sqlite3.Connection, trajectories: Trajectories) -> None:
+def _insert_rows(connection: sqlite3.Connection, trajectories: Tracks) -> None:
     for first in range(0, len(trajectories), CHUNK):
         rows = slice(first, first + CHUNK)
         columns = (
@@ -112,7 +112,7 @@ def _insert_rows(connection: sqlite3.Connection, trajectories: Trajectories) -> 
         )
 
 
-def _insert_people(connection: sqlite3.Connection, trajectories: Trajectories) -> None:
+def _insert_people(connection: sqlite3.Connection, trajectories: Tracks) -> None:
     names = list(trajectories.person_data)
     if not names:
         return

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.output_format import OutputFormat
-from mesa_mobility.results.formats.seal import FIELD, UNSEALED, check_seal, seal
+from mesa_mobility.results.seal import FIELD, UNSEALED, check_seal, seal
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.results.excerpts import Excerpt
-    from mesa_mobility.results.trajectories import Trajectories
 
 FORMAT_VERSION = 2
 METADATA_KEY = b"mesa_mobility"
@@ -45,13 +45,13 @@ class Parquet(OutputFormat):
         write_parquet(excerpt.tracks(), path)
 
 
-def write_parquet(trajectories: Trajectories, path: str | os.PathLike[str]) -> None:
+def write_parquet(trajectories: Tracks, path: str | os.PathLike[str]) -> None:
     """Write columns frame, person, x (m), y (m), heading (rad), person_data and fields, with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
     last_frame, core_radius by person, discs if bodies have several, inside_at_end, names in
     person_data and of fields, and the sha256 of the file (see
-    ``mesa_mobility.results.formats.seal``). Pages have checksums, which others can check.
+    ``mesa_mobility.results.seal``). Pages have checksums, which others can check.
     Equal trajectories give equal bytes.
 
     Raises:

@@ -11,7 +11,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.measures.occupancy import occupancy
 from mesa_mobility.results.measures.speeds import mean_speed
 from mesa_mobility.results.measures.times import quantile_of_times
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 COLUMNS = ("people", "left", "mean_egress_s", "p95_egress_s", "mean_speed_mps")
 
 
-def by_type(trajectories: Trajectories, key: str = "type") -> pd.DataFrame:
+def by_type(trajectories: Tracks, key: str = "type") -> pd.DataFrame:
     """How many people of each type there were, how many left and when, and how fast they walked.
 
     Args:
@@ -59,7 +59,7 @@ def by_type(trajectories: Trajectories, key: str = "type") -> pd.DataFrame:
 
 
 def occupancy_by_type(
-    trajectories: Trajectories, every: float = 1.0, key: str = "type"
+    trajectories: Tracks, every: float = 1.0, key: str = "type"
 ) -> dict[str, list[list[float]]]:
     """``occupancy`` of the people of each type alone, by its name.
 
@@ -72,7 +72,7 @@ def occupancy_by_type(
     }
 
 
-def people_by(trajectories: Trajectories, key: str) -> dict[str, NDArray[np.int64]]:
+def people_by(trajectories: Tracks, key: str) -> dict[str, NDArray[np.int64]]:
     """The people who appear, by a value of ``person_data``, in order of the values.
 
     Raises:
@@ -86,7 +86,7 @@ def people_by(trajectories: Trajectories, key: str) -> dict[str, NDArray[np.int6
     return {str(value): people[values == value] for value in np.unique(values).tolist()}
 
 
-def _egress_seconds(trajectories: Trajectories) -> NDArray[np.float64]:
+def _egress_seconds(trajectories: Tracks) -> NDArray[np.float64]:
     """(m,) seconds from each person's first frame to its leaving; infinite for those inside."""
     left = trajectories.exit_frames
     first = np.zeros(len(left), dtype=np.int64)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 FloatArray = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ class Crossings:
     direction: NDArray[np.int8]
 
 
-def crossings(trajectories: Trajectories, a: ArrayLike, b: ArrayLike) -> Crossings:
+def crossings(trajectories: Tracks, a: ArrayLike, b: ArrayLike) -> Crossings:
     """Passages of people over the segment from a to b.
 
     A position exactly on the line counts as on its left, so that nobody is counted twice.

@@ -10,14 +10,12 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.measures.occupancy import frames_at
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 FloatArray = NDArray[np.float64]
 
 
-def density(
-    trajectories: Trajectories, area: shapely.Polygon, every: float = 1.0
-) -> list[list[float]]:
+def density(trajectories: Tracks, area: shapely.Polygon, every: float = 1.0) -> list[list[float]]:
     """People in an area divided by its size, as [[t, people / m2], ...].
 
     The classic density N / A; see `voronoi_density` for one without its jumps.
@@ -90,7 +88,7 @@ def individual_densities(
 
 
 def voronoi_density(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     area: shapely.Polygon,
     floor: BaseGeometry,
     every: float = 1.0,

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from mesa_mobility.results.measures.speeds import checked_direction, frames_in, wrapped
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 FloatArray = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class Steps:
 
 
 def steps_between(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     direction: ArrayLike,
     *,
     interval: float = 1.5,
@@ -100,7 +100,7 @@ def lateral_correlation(successive: ArrayLike) -> float:
 
 
 def accelerations(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     *,
     smoothing: float = 0.3,
     selection: Selection = WHOLE_RUN,
@@ -126,7 +126,7 @@ def accelerations(
 
 
 def speed_jumps(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     *,
     interval: float = 0.1,
     least_speed: float = 0.5,
@@ -157,7 +157,7 @@ def speed_jumps(
 
 
 def facing_angles(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     *,
     interval: float = 0.5,
     least_speed: float = 0.5,
@@ -185,7 +185,7 @@ def facing_angles(
     return _joined(found)
 
 
-def walked_back(trajectories: Trajectories, point: ArrayLike) -> FloatArray:
+def walked_back(trajectories: Tracks, point: ArrayLike) -> FloatArray:
     """How far each person has walked back from a point that it had come nearer to.
 
     Args:
@@ -205,9 +205,7 @@ def walked_back(trajectories: Trajectories, point: ArrayLike) -> FloatArray:
     return np.array(found)
 
 
-def _tracks(
-    trajectories: Trajectories, selection: Selection
-) -> Iterator[tuple[FloatArray, FloatArray]]:
+def _tracks(trajectories: Tracks, selection: Selection) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Places (n, 2) and headings (n,) of each unbroken piece of a track in the selection."""
     rows = trajectories.by_person
     kept = trajectories.frame[rows] >= selection.after * trajectories.frame_rate

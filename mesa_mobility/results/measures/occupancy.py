@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 FloatArray = NDArray[np.float64]
 
 
-def occupancy(trajectories: Trajectories, every: float = 1.0) -> list[list[float]]:
+def occupancy(trajectories: Tracks, every: float = 1.0) -> list[list[float]]:
     """How many people are inside, as [[t, inside], ...].
 
     Args:
@@ -25,7 +25,7 @@ def occupancy(trajectories: Trajectories, every: float = 1.0) -> list[list[float
     return [[time, int(inside[frame])] for time, frame in frames_at(trajectories, every)]
 
 
-def frames_at(trajectories: Trajectories, every: float) -> list[tuple[float, int]]:
+def frames_at(trajectories: Tracks, every: float) -> list[tuple[float, int]]:
     """(seconds, frame) from the start on, ``every`` seconds apart, none of them after the end.
 
     Raises:
@@ -40,13 +40,13 @@ def frames_at(trajectories: Trajectories, every: float) -> list[tuple[float, int
     return list(zip((ticks * every).tolist(), frames.tolist(), strict=True))
 
 
-def departures(trajectories: Trajectories) -> FloatArray:
+def departures(trajectories: Tracks) -> FloatArray:
     """Exit times, (k,) seconds in rising order: each is the first frame with the person outside."""
     frames = trajectories.exit_frames
     return np.sort(frames[frames >= 0]) / trajectories.frame_rate
 
 
-def egress_time(trajectories: Trajectories) -> float | None:
+def egress_time(trajectories: Tracks) -> float | None:
     """Seconds until the floor was empty; None when it was not, or nobody was ever inside."""
     if not len(trajectories) or len(trajectories.remaining):
         return None

@@ -9,12 +9,12 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.results.trajectories import Trajectories
+from mesa_mobility.results.tracks import Tracks
 
 FloatArray = NDArray[np.float64]
 
 
-def speeds(trajectories: Trajectories, window: float = 1.0) -> FloatArray:
+def speeds(trajectories: Tracks, window: float = 1.0) -> FloatArray:
     """Speed of everybody in every frame that has a position `window` seconds later.
 
     Returns:
@@ -46,7 +46,7 @@ class SpeedsAlong:
 
 
 def speeds_along(
-    trajectories: Trajectories,
+    trajectories: Tracks,
     direction: ArrayLike,
     *,
     window: float = 1.5,
@@ -106,14 +106,14 @@ def checked_direction(direction: ArrayLike, what: str) -> tuple[FloatArray, floa
     return along, length
 
 
-def mean_speed(trajectories: Trajectories, window: float = 1.0) -> float | None:
+def mean_speed(trajectories: Tracks, window: float = 1.0) -> float | None:
     """Mean of :func:`speeds` over people and frames, m/s; None where nobody stayed that long."""
     values = speeds(trajectories, window)
     return float(values.mean()) if len(values) else None
 
 
 def direction_changes(
-    trajectories: Trajectories, interval: float = 1.5, minimum_m: float = 0.3
+    trajectories: Tracks, interval: float = 1.5, minimum_m: float = 0.3
 ) -> FloatArray:
     """Changes of people's direction of travel from one interval to the next.
 
@@ -148,7 +148,7 @@ def wrapped(angles: FloatArray) -> FloatArray:
     return (angles + np.pi) % (2 * np.pi) - np.pi
 
 
-def frames_in(seconds: float, trajectories: Trajectories, name: str) -> int:
+def frames_in(seconds: float, trajectories: Tracks, name: str) -> int:
     """How many frames a time has, rounded.
 
     Raises:

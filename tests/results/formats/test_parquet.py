@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories, read_parquet
-from mesa_mobility.results.formats.seal import UNSEALED, seal
+from mesa_mobility.results.seal import UNSEALED, seal
 
 COLUMNS = ("frame", "person", "x", "y", "heading")
 number = st.floats(allow_nan=False, allow_infinity=False)

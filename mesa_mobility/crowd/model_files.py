@@ -133,7 +133,7 @@ def _line(path: Path, error: BaseException) -> str:
 
 def _models_of(module: ModuleType) -> dict[str, type]:
     """The models that a module defines itself, not those that it imports."""
-    from mesa_mobility import PedestrianModel
+    from mesa_mobility.crowd.pedestrian_model import PedestrianModel
 
     return {
         name: value
