@@ -5,32 +5,28 @@ from typing import Annotated
 
 from mesa_mobility.behaviors.stepping import STANDS
 
-from mesa_mobility import CompiledTerm, Range, pair_kernel
+from mesa_mobility import CompiledTerm, Me, Option, Other, Range, pair_kernel
 
 
 @pair_kernel
-def _headway(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
-    lead: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    mx = ux
-    my = uy
-    if speed * duration <= STANDS:
-        mx = tx - sx
-        my = ty - sy
+def _headway(option: Option, me: Me, other: Other, p: "Headway") -> float:
+    mx = option.facing_x
+    my = option.facing_y
+    if option.speed * option.duration <= STANDS:
+        mx = me.target_x - me.x
+        my = me.target_y - me.y
         way = math.sqrt(mx * mx + my * my)
         mx = mx / way if way > 0.0 else 0.0
         my = my / way if way > 0.0 else 0.0
-    dx = nx + nvx * duration - x
-    dy = ny + nvy * duration - y
+    dx = other.x + other.vx * option.duration - option.x
+    dy = other.y + other.vy * option.duration - option.y
     ahead = dx * mx + dy * my
     # By factors that all neighbours share: a processor does few divisions at a time.
-    share = 1.0 - abs(dy * mx - dx * my) * (1.0 / p[2])
-    excess = speed - (ahead - p[0]) * (1.0 / p[1])
+    share = 1.0 - abs(dy * mx - dx * my) * (1.0 / p.width)
+    excess = option.speed - (ahead - p.distance) * (1.0 / p.time)
     if ahead <= 0.0 or share <= 0.0 or excess <= 0.0:
         return 0.0
-    soft = p[3]
+    soft = p.softness
     counts = excess * excess * (0.5 / soft) if excess < soft else excess - 0.5 * soft
     return 1.5 * share * counts
 
@@ -81,7 +77,3 @@ class Headway(CompiledTerm):
         self.time = time
         self.width = width
         self.softness = softness
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(distance, time, width, softness)``."""
-        return (self.distance, self.time, self.width, self.softness)

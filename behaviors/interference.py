@@ -3,24 +3,18 @@
 import math
 from typing import Annotated
 
-from mesa_mobility import CompiledTerm, Range, pair_kernel
+from mesa_mobility import CompiledTerm, Option, Other, Range, pair_kernel
 
 
 @pair_kernel
-def _interference(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
-    lead: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    # Read first, so that it is read once for all neighbours.
-    a = p[0]
-    dx = nx + nvx * duration - x
-    dy = ny + nvy * duration - y
+def _interference(option: Option, other: Other, p: "Interference") -> float:
+    dx = other.x + other.vx * option.duration - option.x
+    dy = other.y + other.vy * option.duration - option.y
     # e to the -d as the 1024th power of a polynomial, to 1e-8 of itself: unlike a call of exp,
     # arithmetic alone runs for several neighbours at once. Beyond 40 (4e-18) it is nothing.
     # Factors and not divisions, of which a processor does few at a time.
-    d = math.sqrt(dx * dx + dy * dy) * (1.0 / (1024.0 * p[1] * speed))
-    counts = d < 40.0 / 1024.0 and dx * ux + dy * uy >= 0.0
+    d = math.sqrt(dx * dx + dy * dy) * (1.0 / (1024.0 * p.b * option.speed))
+    counts = d < 40.0 / 1024.0 and dx * option.facing_x + dy * option.facing_y >= 0.0
     d = d if counts else 0.0
     e = 1.0 - d * (1.0 - d * (1.0 / 2.0 - d * (1.0 / 6.0 - d * (1.0 / 24.0 - d * (1.0 / 120.0)))))
     e *= e
@@ -33,7 +27,7 @@ def _interference(
     e *= e
     e *= e
     e *= e
-    return a * e if counts else 0.0
+    return p.a * e if counts else 0.0
 
 
 class Interference(CompiledTerm):
@@ -65,7 +59,3 @@ class Interference(CompiledTerm):
         super().__init__(weight)
         self.a = a
         self.b = b
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(a, b)``."""
-        return (self.a, self.b)

@@ -3,20 +3,16 @@
 import math
 from typing import Annotated
 
-from mesa_mobility import CompiledTerm, Range, pair_kernel
+from mesa_mobility import CompiledTerm, Me, Option, Other, Range, pair_kernel
 
 
-@pair_kernel(fields=("group",))
-def _keep_distance(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
-    lead: float, group: float, their_group: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    if group > 0.0 and group == their_group:
+@pair_kernel
+def _keep_distance(option: Option, me: Me, other: Other, p: "KeepDistance") -> float:
+    if me.group > 0.0 and me.group == other.group:
         return 0.0
-    dx = nx + nvx * duration - x
-    dy = ny + nvy * duration - y
-    room = p[0] - math.sqrt(dx * dx + dy * dy)
+    dx = other.x + other.vx * option.duration - option.x
+    dy = other.y + other.vy * option.duration - option.y
+    room = p.distance - math.sqrt(dx * dx + dy * dy)
     return room if room > 0.0 else 0.0
 
 
@@ -47,7 +43,3 @@ class KeepDistance(CompiledTerm):
     ) -> None:
         super().__init__(weight)
         self.distance = distance
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(distance,)``."""
-        return (self.distance,)

@@ -3,7 +3,7 @@
 import math
 from typing import Annotated
 
-from mesa_mobility import CompiledTerm, Range, pair_kernel
+from mesa_mobility import CompiledTerm, Me, Option, Other, Range, pair_kernel
 from mesa_mobility.errors import ModelError
 
 # Cosine of the least angle between the ways of two people who come towards each other, 120 degrees:
@@ -12,29 +12,22 @@ OPPOSED = 0.5
 
 
 @pair_kernel
-def _right_of_way(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
-    lead: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    # Read first, so that they are read once for all neighbours.
-    width = p[0]
-    bias = p[1]
-    reach = p[2]
-    beside = p[3]
-    along = (x - nx) * nex + (y - ny) * ney
-    aside = (y - ny) * nex - (x - nx) * ney
-    ahead_x = tx - sx
-    ahead_y = ty - sy
-    against = -(ahead_x * nex + ahead_y * ney)
+def _right_of_way(option: Option, me: Me, other: Other, p: "RightOfWay") -> float:
+    dx = option.x - other.x
+    dy = option.y - other.y
+    along = dx * other.way_x + dy * other.way_y
+    aside = dy * other.way_x - dx * other.way_y
+    ahead_x = me.target_x - me.x
+    ahead_y = me.target_y - me.y
+    against = -(ahead_x * other.way_x + ahead_y * other.way_y)
     oncoming = against > OPPOSED * math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y)
-    counts = along > 0.0 and (oncoming or (lead > 0.0 and along < reach))
-    middle = bias if oncoming else 0.0
+    counts = along > 0.0 and (oncoming or (other.lead > 0.0 and along < p.ahead))
+    middle = p.bias if oncoming else 0.0
     # By factors that all neighbours share: a processor does few divisions at a time.
-    narrow = 1.0 / width
-    wide = 1.0 / (width + abs(bias))
+    narrow = 1.0 / p.width
+    wide = 1.0 / (p.width + abs(p.bias))
     off = abs(aside + middle) * (wide if oncoming else narrow)
-    return (1.0 if oncoming else beside) * max(1.0 - off, 0.0) if counts else 0.0
+    return (1.0 if oncoming else p.beside) * max(1.0 - off, 0.0) if counts else 0.0
 
 
 class RightOfWay(CompiledTerm):
@@ -89,7 +82,3 @@ class RightOfWay(CompiledTerm):
             raise ModelError(
                 f"right_of_way: width {self.width} m, expected more than the bias, {self.bias} m"
             )
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(width, bias, ahead, beside)``."""
-        return (self.width, self.bias, self.ahead, self.beside)

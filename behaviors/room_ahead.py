@@ -5,37 +5,37 @@ from typing import Annotated
 
 from mesa_mobility.behaviors.stepping import STANDS
 
-from mesa_mobility import CompiledTerm, Range, wall_kernel
+from mesa_mobility import CompiledTerm, Me, Option, Range, Wall, option_kernel
 
 
-@wall_kernel
-def _room_ahead(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, x1: float, y1: float, x2: float, y2: float, core: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    if speed * duration <= STANDS:
-        dx = tx - sx
-        dy = ty - sy
+@option_kernel
+def _room_ahead(option: Option, me: Me, wall: Wall, p: "RoomAhead") -> float:
+    ux = option.facing_x
+    uy = option.facing_y
+    if option.speed * option.duration <= STANDS:
+        dx = me.target_x - me.x
+        dy = me.target_y - me.y
         way = math.sqrt(dx * dx + dy * dy)
         if way > 0.0:
             ux = dx / way
             uy = dy / way
-    wx = x2 - x1
-    wy = y2 - y1
+    wx = wall.x2 - wall.x1
+    wy = wall.y2 - wall.y1
     length = math.sqrt(wx * wx + wy * wy)
     slope = ux * wy - uy * wx
     if abs(slope) <= 1e-9 * length:
         return 0.0
-    along = ((x1 - x) * wy - (y1 - y) * wx) / slope
-    where = ((x1 - x) * uy - (y1 - y) * ux) / slope * length
+    dx = wall.x1 - option.x
+    dy = wall.y1 - option.y
+    along = (dx * wy - dy * wx) / slope
+    where = (dx * uy - dy * ux) / slope * length
     # How far the way straight on passes beside the end of the wall, at right angles to the way.
     beside = max(-where, where - length, 0.0) * abs(slope) / length
-    if along <= 0.0 or beside >= core:
+    if along <= 0.0 or beside >= me.core:
         return 0.0
     # The body touches the wall earlier, the more so the more gently the two meet.
-    room = max(along - core * length / abs(slope), 0.0)
-    return (1.0 - beside / core) * max(1.0 - room / max(speed * p[0], p[1]), 0.0)
+    room = max(along - me.core * length / abs(slope), 0.0)
+    return (1.0 - beside / me.core) * max(1.0 - room / max(option.speed * p.time, p.least), 0.0)
 
 
 class RoomAhead(CompiledTerm):
@@ -48,8 +48,8 @@ class RoomAhead(CompiledTerm):
     passes, 0 if it crosses the wall: the more of the core misses the wall, the less the wall
     counts, or people would not find into gaps little wider than they are.  An option that covers no
     ground is judged by the way to the target, wherever one faces: people who turn on the spot in a
-    narrow door would else stay as they are, since halfway they face its jamb.  ``wall_kernel`` says
-    which walls are looked at.
+    narrow door would else stay as they are, since halfway they face its jamb.
+    ``option_kernel`` says which walls are looked at.
 
     Without this term people end movements beside a wall and facing it, in states from which every
     next movement but standing hits the wall: the inevitable collision states of motion planning
@@ -77,7 +77,3 @@ class RoomAhead(CompiledTerm):
         super().__init__(weight)
         self.time = time
         self.least = least
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(time, least)``."""
-        return (self.time, self.least)

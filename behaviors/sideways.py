@@ -3,34 +3,30 @@
 import math
 from typing import Annotated
 
-from mesa_mobility import CompiledTerm, Range, bound_kernel, option_kernel
+from mesa_mobility import CompiledTerm, Me, Option, Options, Range, option_kernel
 
 
 @option_kernel
-def _sideways(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = x - sx
-    dy = y - sy
-    back = max(-(dx * ux + dy * uy), 0.0)
-    return 1.5 * (abs(dx * uy - dy * ux) + p[0] * back) / duration
+def _sideways(option: Option, me: Me, p: "Sideways") -> float:
+    dx = option.x - me.x
+    dy = option.y - me.y
+    across = abs(dx * option.facing_y - dy * option.facing_x)
+    back = max(-(dx * option.facing_x + dy * option.facing_y), 0.0)
+    return 1.5 * (across + p.backwards * back) / option.duration
 
 
-@bound_kernel
-def _sideways_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = x - sx
-    dy = y - sy
+@option_kernel
+def _sideways_bound(options: Options, me: Me, p: "Sideways") -> float:
+    dx = options.x - me.x
+    dy = options.y - me.y
+    ux = options.facing_x
+    uy = options.facing_y
     # An angle changes its sine and cosine by no more than itself: by 2 at most, the amount of a
     # sine by 1.
-    far = math.sqrt(dx * dx + dy * dy) + radius
-    across = max(abs(dx * uy - dy * ux) - radius - far * min(turn, 1.0), 0.0)
-    back = max(-(dx * ux + dy * uy) - radius - far * min(turn, 2.0), 0.0)
-    return 1.5 * (across + p[0] * back) / duration
+    far = math.sqrt(dx * dx + dy * dy) + options.radius
+    across = max(abs(dx * uy - dy * ux) - options.radius - far * min(options.turn, 1.0), 0.0)
+    back = max(-(dx * ux + dy * uy) - options.radius - far * min(options.turn, 2.0), 0.0)
+    return 1.5 * (across + p.backwards * back) / options.duration
 
 
 class Sideways(CompiledTerm):
@@ -65,7 +61,3 @@ class Sideways(CompiledTerm):
     ) -> None:
         super().__init__(weight)
         self.backwards = backwards
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(backwards,)``."""
-        return (self.backwards,)

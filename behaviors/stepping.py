@@ -4,7 +4,7 @@ from typing import Annotated
 
 from numba import njit
 
-from mesa_mobility import CompiledTerm, Range, bound_kernel, option_kernel
+from mesa_mobility import CompiledTerm, Me, Option, Options, Range, option_kernel
 
 STANDS = 0.01
 """A person who covers no more ground than this in a movement stands, metres."""
@@ -20,22 +20,16 @@ def _length(preferred: float, length: float) -> float:
 
 
 @option_kernel
-def _stepping(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    ground = speed * duration
-    return max(1.0 - ground / _length(preferred, p[0]), 0.0) if ground > STANDS else 0.0
+def _stepping(option: Option, me: Me, p: "Stepping") -> float:
+    ground = option.speed * option.duration
+    share = ground / _length(me.preferred_speed, p.length)
+    return max(1.0 - share, 0.0) if ground > STANDS else 0.0
 
 
-@bound_kernel
-def _stepping_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    least = max(1.0 - fastest * duration / _length(preferred, p[0]), 0.0)
-    return least if slowest * duration > STANDS else 0.0
+@option_kernel
+def _stepping_bound(options: Options, me: Me, p: "Stepping") -> float:
+    share = options.fastest * options.duration / _length(me.preferred_speed, p.length)
+    return max(1.0 - share, 0.0) if options.slowest * options.duration > STANDS else 0.0
 
 
 class Stepping(CompiledTerm):
@@ -70,7 +64,3 @@ class Stepping(CompiledTerm):
     ) -> None:
         super().__init__(weight)
         self.length = length
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(length,)``."""
-        return (self.length,)

@@ -4,28 +4,21 @@ import math
 
 from numba import njit
 
-from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
+from mesa_mobility import CompiledTerm, Me, Option, Options, option_kernel
 
 
 @option_kernel
-def _distance(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = tx - x
-    dy = ty - y
+def _distance(option: Option, me: Me) -> float:
+    dx = me.target_x - option.x
+    dy = me.target_y - option.y
     return math.sqrt(dx * dx + dy * dy)
 
 
-@bound_kernel
-def _distance_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = tx - x
-    dy = ty - y
-    return max(math.sqrt(dx * dx + dy * dy) - radius, 0.0)
+@option_kernel
+def _distance_bound(options: Options, me: Me) -> float:
+    dx = me.target_x - options.x
+    dy = me.target_y - options.y
+    return max(math.sqrt(dx * dx + dy * dy) - options.radius, 0.0)
 
 
 @njit(error_model="numpy")
@@ -50,28 +43,26 @@ def _angle(along: float, across: float) -> float:
 
 
 @option_kernel
-def _deviation(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = tx - x
-    dy = ty - y
+def _deviation(option: Option, me: Me) -> float:
+    dx = me.target_x - option.x
+    dy = me.target_y - option.y
+    ux = option.facing_x
+    uy = option.facing_y
     return _angle(ux * dx + uy * dy, abs(ux * dy - uy * dx))
 
 
-@bound_kernel
-def _deviation_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = tx - x
-    dy = ty - y
+@option_kernel
+def _deviation_bound(options: Options, me: Me) -> float:
+    dx = me.target_x - options.x
+    dy = me.target_y - options.y
+    ux = options.facing_x
+    uy = options.facing_y
     # Seen from within the radius, the target is off by no more than the arc sine of share; its
     # tangent is more and needs no call.
-    share2 = radius * radius / max(dx * dx + dy * dy, 1e-300)
+    share2 = options.radius * options.radius / max(dx * dx + dy * dy, 1e-300)
     seen = math.sqrt(share2 / (1.0 - share2)) if share2 < 0.9 else math.pi
-    return max(_angle(ux * dx + uy * dy, abs(ux * dy - uy * dx)) - turn - seen, 0.0)
+    off = _angle(ux * dx + uy * dy, abs(ux * dy - uy * dx))
+    return max(off - options.turn - seen, 0.0)
 
 
 class TargetDistance(CompiledTerm):

@@ -3,41 +3,30 @@
 import math
 from typing import Annotated
 
-from mesa_mobility import CompiledTerm, Range, bound_kernel, option_kernel
+from numba import njit
+
+from mesa_mobility import CompiledTerm, Me, Option, Options, Range, option_kernel
 
 
 @option_kernel
-def _displacement(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    return -speed * duration
+def _displacement(option: Option) -> float:
+    return -option.speed * option.duration
 
 
 @option_kernel
-def _preferred_speed(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    return 1.5 * abs(speed - preferred)
+def _preferred_speed(option: Option, me: Me) -> float:
+    return 1.5 * abs(option.speed - me.preferred_speed)
 
 
-@bound_kernel
-def _displacement_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    return -fastest * duration
+@option_kernel
+def _displacement_bound(options: Options) -> float:
+    return -options.fastest * options.duration
 
 
-@bound_kernel
-def _preferred_speed_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    return 1.5 * max(slowest - preferred, preferred - fastest, 0.0)
+@option_kernel
+def _preferred_speed_bound(options: Options, me: Me) -> float:
+    slower = me.preferred_speed - options.fastest
+    return 1.5 * max(options.slowest - me.preferred_speed, slower, 0.0)
 
 
 class Displacement(CompiledTerm):
@@ -66,33 +55,33 @@ class PreferredSpeed(CompiledTerm):
     bound = _preferred_speed_bound
 
 
+@njit(error_model="numpy")
+def _off_preferred(vx: float, vy: float, dx: float, dy: float, preferred: float) -> float:
+    # How far a velocity is from the preferred one towards a target that is (dx, dy) away, m/s.
+    away = math.sqrt(dx * dx + dy * dy)
+    along = preferred / away if away > 0.0 else 0.0
+    vx = vx - along * dx
+    vy = vy - along * dy
+    return math.sqrt(vx * vx + vy * vy)
+
+
 @option_kernel
-def _preferred_velocity(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = tx - sx
-    dy = ty - sy
-    away = math.sqrt(dx * dx + dy * dy)
-    along = preferred / away if away > 0.0 else 0.0
-    vx = (x - sx) / duration - along * dx
-    vy = (y - sy) / duration - along * dy
-    return 1.5 * math.sqrt(vx * vx + vy * vy)
+def _preferred_velocity(option: Option, me: Me) -> float:
+    vx = (option.x - me.x) / option.duration
+    vy = (option.y - me.y) / option.duration
+    dx = me.target_x - me.x
+    dy = me.target_y - me.y
+    return 1.5 * _off_preferred(vx, vy, dx, dy, me.preferred_speed)
 
 
-@bound_kernel
-def _preferred_velocity_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    dx = tx - sx
-    dy = ty - sy
-    away = math.sqrt(dx * dx + dy * dy)
-    along = preferred / away if away > 0.0 else 0.0
-    vx = (x - sx) / duration - along * dx
-    vy = (y - sy) / duration - along * dy
-    return 1.5 * max(math.sqrt(vx * vx + vy * vy) - radius / duration, 0.0)
+@option_kernel
+def _preferred_velocity_bound(options: Options, me: Me) -> float:
+    vx = (options.x - me.x) / options.duration
+    vy = (options.y - me.y) / options.duration
+    dx = me.target_x - me.x
+    dy = me.target_y - me.y
+    off = _off_preferred(vx, vy, dx, dy, me.preferred_speed)
+    return 1.5 * max(off - options.radius / options.duration, 0.0)
 
 
 class PreferredVelocity(CompiledTerm):
@@ -109,36 +98,29 @@ class PreferredVelocity(CompiledTerm):
     bound = _preferred_velocity_bound
 
 
-@option_kernel(own_velocity=True)
-def _velocity_change(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, own_vx: float, own_vy: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    vx = (x - sx) / duration - own_vx
-    vy = (y - sy) / duration - own_vy
-    own2 = own_vx * own_vx + own_vy * own_vy
-    walking = min(math.sqrt(own2) * (1.0 / p[0]), 1.0)
-    across = vx * own_vy - vy * own_vx
-    turning2 = p[1] * across * across / own2 if own2 > 0.0 else 0.0
+@option_kernel
+def _velocity_change(option: Option, me: Me, p: "VelocityChange") -> float:
+    vx = (option.x - me.x) / option.duration - me.vx
+    vy = (option.y - me.y) / option.duration - me.vy
+    own2 = me.vx * me.vx + me.vy * me.vy
+    walking = min(math.sqrt(own2) * (1.0 / p.walking), 1.0)
+    across = vx * me.vy - vy * me.vx
+    turning2 = p.across * across * across / own2 if own2 > 0.0 else 0.0
     return walking * math.sqrt(vx * vx + vy * vy + turning2)
 
 
-@bound_kernel(own_velocity=True)
-def _velocity_change_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    own_vx: float, own_vy: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    vx = (x - sx) / duration - own_vx
-    vy = (y - sy) / duration - own_vy
-    own2 = own_vx * own_vx + own_vy * own_vy
-    walking = min(math.sqrt(own2) * (1.0 / p[0]), 1.0)
-    across = vx * own_vy - vy * own_vx
-    turning2 = p[1] * across * across / own2 if own2 > 0.0 else 0.0
+@option_kernel
+def _velocity_change_bound(options: Options, me: Me, p: "VelocityChange") -> float:
+    vx = (options.x - me.x) / options.duration - me.vx
+    vy = (options.y - me.y) / options.duration - me.vy
+    own2 = me.vx * me.vx + me.vy * me.vy
+    walking = min(math.sqrt(own2) * (1.0 / p.walking), 1.0)
+    across = vx * me.vy - vy * me.vx
+    turning2 = p.across * across * across / own2 if own2 > 0.0 else 0.0
     change2 = vx * vx + vy * vy
-    spread = radius / duration
+    spread = options.radius / options.duration
     # The norm grows by no more than the factor of turning a metre a second.
-    least = math.sqrt(change2 + turning2) - math.sqrt(1.0 + p[1]) * spread
+    least = math.sqrt(change2 + turning2) - math.sqrt(1.0 + p.across) * spread
     return walking * max(least, math.sqrt(change2) - spread, 0.0)
 
 
@@ -175,6 +157,7 @@ class VelocityChange(CompiledTerm):
         self.walking = walking
         self.turning = turning
 
-    def parameters(self) -> tuple[float, ...]:
-        """``walking``, and the square of ``turning`` less 1."""
-        return (self.walking, self.turning * self.turning - 1.0)
+    @property
+    def across(self) -> float:
+        """What the difference across the way adds to the square of the norm, as a factor."""
+        return self.turning * self.turning - 1.0

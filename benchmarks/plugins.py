@@ -19,6 +19,7 @@ from mesa_mobility import (
     Exit,
     FloorPlan,
     Gate,
+    Option,
     Pedestrian,
     PedestrianModel,
     pair_kernel,
@@ -44,13 +45,9 @@ class KeepLeft(CostTerm):
 
 
 @pair_kernel(fields=("infected",))
-def _avoid(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, nx: float, ny: float, nvx: float, nvy: float, nex: float, ney: float,
-    lead: float, mine: float, theirs: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    gap = 1.5 - ((nx - x) ** 2 + (ny - y) ** 2) ** 0.5
-    return theirs * gap if gap > 0.0 else 0.0
+def _avoid(option: Option, other: Any) -> float:
+    gap = 1.5 - ((other.x - option.x) ** 2 + (other.y - option.y) ** 2) ** 0.5
+    return other.infected * gap if gap > 0.0 else 0.0
 
 
 class Avoid(CompiledTerm):

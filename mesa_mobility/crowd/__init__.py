@@ -13,13 +13,8 @@ from mesa_mobility._lazy import names_of
 if TYPE_CHECKING:
     from mesa_mobility.crowd.costs.candidates import Candidates
     from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
-    from mesa_mobility.crowd.costs.kernel_decorators import (
-        bound_kernel,
-        option_kernel,
-        pair_bound_kernel,
-        pair_kernel,
-        wall_kernel,
-    )
+    from mesa_mobility.crowd.costs.kernel_decorators import option_kernel, pair_kernel
+    from mesa_mobility.crowd.costs.records import Me, Option, Options, Other, Wall
     from mesa_mobility.crowd.costs.terms import CostTerm
     from mesa_mobility.crowd.hooks import World
     from mesa_mobility.crowd.insertion.inflow import Inflow
@@ -38,10 +33,6 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 
 _MODULES = {
-    "FREE": "planning.explanation",
-    "PERSON": "planning.explanation",
-    "PRESETS": "presets",
-    "WALL": "planning.explanation",
     "Candidates": "costs.candidates",
     "Capability": "options.capability",
     "CompiledTerm": "costs.compiled_terms",
@@ -49,31 +40,33 @@ _MODULES = {
     "Deciding": "tactics.deciding",
     "Desired": "tactics.deciding",
     "Explanation": "planning.explanation",
+    "FREE": "planning.explanation",
     "Inflow": "insertion.inflow",
-    "RouteChoice": "tactics.route_choice",
-    "SpeedRule": "tactics.speed_rules",
+    "Me": "costs.records",
+    "Option": "costs.records",
+    "Options": "costs.records",
+    "Other": "costs.records",
+    "PERSON": "planning.explanation",
+    "PRESETS": "presets",
     "Pedestrian": "people.pedestrian",
     "PedestrianModel": "pedestrian_model",
     "PedestrianType": "types.pedestrian_type",
     "Preset": "presets",
+    "RouteChoice": "tactics.route_choice",
     "Source": "insertion.source",
+    "SpeedRule": "tactics.speed_rules",
     "Tactic": "tactics.tactic",
     "TargetChoice": "tactics.target_choice",
     "Visit": "journeys.visit",
+    "WALL": "planning.explanation",
+    "Wall": "costs.records",
     "Watch": "planning.explanation",
     "World": "hooks",
-    "bound_kernel": "costs.kernel_decorators",
     "option_kernel": "costs.kernel_decorators",
-    "pair_bound_kernel": "costs.kernel_decorators",
     "pair_kernel": "costs.kernel_decorators",
-    "wall_kernel": "costs.kernel_decorators",
 }
 
 __all__ = [
-    "FREE",
-    "PERSON",
-    "PRESETS",
-    "WALL",
     "Candidates",
     "Capability",
     "CompiledTerm",
@@ -81,7 +74,14 @@ __all__ = [
     "Deciding",
     "Desired",
     "Explanation",
+    "FREE",
     "Inflow",
+    "Me",
+    "Option",
+    "Options",
+    "Other",
+    "PERSON",
+    "PRESETS",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
@@ -92,13 +92,12 @@ __all__ = [
     "Tactic",
     "TargetChoice",
     "Visit",
+    "WALL",
+    "Wall",
     "Watch",
     "World",
-    "bound_kernel",
     "option_kernel",
-    "pair_bound_kernel",
     "pair_kernel",
-    "wall_kernel",
 ]
 
 __getattr__, __dir__ = names_of(__name__, _MODULES)

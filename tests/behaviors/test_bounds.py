@@ -16,6 +16,8 @@ from mesa_mobility.behaviors import (
     VelocityChange,
 )
 
+from tests.fixtures.records import me, option, options
+
 TERMS = [
     Displacement, FacingDeviation, PreferredSpeed, PreferredVelocity, Stepping, TargetDistance,
     VelocityChange, Sideways,
@@ -23,25 +25,25 @@ TERMS = [
 
 START = (0.25, 0.5)
 VELOCITY = (0.75, -0.5)
-OWN = {VelocityChange: VELOCITY}
-"""What a kernel with ``own_velocity`` takes as well."""
 
 angles = st.floats(-math.pi, math.pi)
 shares = st.floats(0.0, 1.0)
 
 
 def cost(term, x, y, angle, duration, speed, target, preferred):
-    return term.kernel.function(
-        x, y, math.cos(angle), math.sin(angle), duration, speed, *START, *target,
-        preferred, *OWN.get(term, ()), term().parameters() or (0.0,),
-    )  # fmt: skip
+    return term.kernel.value(
+        option=option(x, y, angle, duration, speed),
+        me=me(START, target, preferred, VELOCITY),
+        p=term(),
+    )
 
 
 def bound(term, x, y, radius, angle, turn, duration, slowest, fastest, target, preferred):
-    return term.bound.function(
-        x, y, radius, math.cos(angle), math.sin(angle), turn, duration, slowest, fastest, *START,
-        *target, preferred, *OWN.get(term, ()), term().parameters() or (0.0,),
-    )  # fmt: skip
+    return term.bound.value(
+        options=options(x, y, radius, angle, turn, duration, (slowest, fastest)),
+        me=me(START, target, preferred, VELOCITY),
+        p=term(),
+    )
 
 
 @pytest.mark.parametrize("term", TERMS)
@@ -51,15 +53,15 @@ def bound(term, x, y, radius, angle, turn, duration, slowest, fastest, target, p
     turn=st.floats(0.0, math.pi),
     speeds=st.tuples(st.floats(0.0, 2.0), st.floats(0.0, 2.0)).map(sorted),
     facing=angles,
-    option=st.tuples(angles, shares, st.floats(-1.0, 1.0), shares),
+    taken=st.tuples(angles, shares, st.floats(-1.0, 1.0), shares),
     target=st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)),
     preferred=st.floats(0.0, 2.0),
     duration=st.sampled_from([0.4, 0.8, 1.5]),
 )
 def test_no_option_of_a_group_costs_less(
-    term, radius, turn, speeds, facing, option, target, preferred, duration
+    term, radius, turn, speeds, facing, taken, target, preferred, duration
 ):
-    where, out, turned, faster = option
+    where, out, turned, faster = taken
     x, y = 1.0 + out * radius * math.cos(where), -0.5 + out * radius * math.sin(where)
     speed = speeds[0] + faster * (speeds[1] - speeds[0])
     least = bound(term, 1.0, -0.5, radius, facing, turn, duration, *speeds, target, preferred)

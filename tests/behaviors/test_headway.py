@@ -111,7 +111,6 @@ def test_default_numbers_are_used():
     neighbour = ((2.0 * term.distance / 3.0, 0.0), STILL)
     options = one_option(STANDING, target=(20.0, 0.0), neighbours=[neighbour])
     assert term.cost(options) == pytest.approx([expected])
-    assert term.parameters() == (term.distance, term.time, term.width, term.softness)
 
 
 @pytest.mark.parametrize("name", ["distance", "time", "width", "softness"])

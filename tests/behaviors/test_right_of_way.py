@@ -119,7 +119,6 @@ def test_neighbours_add_up_and_those_of_others_do_not_count():
 
 def test_default_numbers_are_used():
     term = RightOfWay()
-    assert term.parameters() == (term.width, term.bias, term.ahead, term.beside)
     halfway = one_option(
         Ending((-1.0, (term.width - term.bias) / 2.0)), target=GOAL,
         neighbours=[oncoming(-3.0, 0.0)],

@@ -131,7 +131,6 @@ def test_the_worst_wall_counts_and_those_of_others_do_not():
 
 def test_default_numbers_are_used():
     term = RoomAhead()
-    assert term.parameters() == (term.time, term.least)
     # Half of the room that a standing person wants, and half of what a walker wants.
     for ending, wanted in ((STANDING, term.least), (A_METRE_A_SECOND, max(term.time, term.least))):
         options = one_option(ending, core=CORE, walls=[across(CORE + wanted / 2.0)])

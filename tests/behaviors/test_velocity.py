@@ -6,18 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesa_mobility.behaviors import PreferredVelocity, VelocityChange
 
-from mesa_mobility import MobilityMap
-from mesa_mobility.crowd.options.option_groups import (
-    DURATION,
-    FASTEST,
-    RADIUS,
-    SLOWEST,
-    TURN,
-    UX,
-    UY,
-    X,
-    Y,
-)
+from mesa_mobility import MobilityMap, Options
 from mesa_mobility.crowd.options.repertoire import repertoire
 from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.errors import ModelError
@@ -31,6 +20,7 @@ from tests.fixtures.options import (
     turned_and_moved,
     turns,
 )
+from tests.fixtures.records import me, option, options
 
 angles = st.floats(-math.pi, math.pi)
 places = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
@@ -39,13 +29,13 @@ places = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 def cost(x, y, target, preferred, duration, start=(0.0, 0.0)):
     speed = math.dist((x, y), start) / duration
     return PreferredVelocity.kernel.function(
-        x, y, 1.0, 0.0, duration, speed, *start, *target, preferred, ()
+        option(x, y, 0.0, duration, speed), me(start, target, preferred)
     )
 
 
 def bound(x, y, radius, target, preferred, duration, start=(0.0, 0.0)):
     return PreferredVelocity.bound.function(
-        x, y, radius, 1.0, 0.0, 0.3, duration, 0.0, 2.0, *start, *target, preferred, ()
+        options(x, y, radius, 0.0, 0.3, duration, (0.0, 2.0)), me(start, target, preferred)
     )
 
 
@@ -144,11 +134,9 @@ def test_bounds_hold_for_the_groups_of_the_map_that_ships(preferred):
     rng = np.random.default_rng(3)
     bounds = np.append(known.table.groups, len(known.table.options))
     for g in rng.choice(len(known.table.groups), 300, replace=False).tolist():
-        of, target = known.groups.ends[:, g], rng.uniform(-3.0, 3.0, 2)
-        least = PreferredVelocity.bound.function(
-            of[X], of[Y], of[RADIUS], of[UX], of[UY], of[TURN], of[DURATION], of[SLOWEST],
-            of[FASTEST], 0.0, 0.0, *target, preferred, (),
-        )  # fmt: skip
+        target = rng.uniform(-3.0, 3.0, 2)
+        group_of = Options(*known.groups.ends[:, g])
+        least = PreferredVelocity.bound.function(group_of, me((0.0, 0.0), target, preferred))
         group = known.table.options[bounds[g] : bounds[g + 1]]
         costs = [
             cost(float(o.x), float(o.y), target, preferred, int(o.frames) / 30.0) for o in group
@@ -254,22 +242,9 @@ def test_a_change_does_not_depend_on_where_north_is(options, angle, by):
 
 def change_at_least(x, y, radius, duration, velocity):
     return VelocityChange.bound.function(
-        x,
-        y,
-        radius,
-        1.0,
-        0.0,
-        0.3,
-        duration,
-        0.0,
-        2.0,
-        0.0,
-        0.0,
-        9.0,
-        0.0,
-        1.0,
-        *velocity,
-        (0.6, 1.25),
+        options(x, y, radius, 0.0, 0.3, duration, (0.0, 2.0)),
+        me(velocity=velocity),
+        VelocityChange(),
     )
 
 

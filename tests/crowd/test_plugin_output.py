@@ -144,8 +144,8 @@ def test_costs(costs, message, whole):
 
 
 @option_kernel
-def scaled(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):
-    return p[0] * speed
+def scaled(option, p):
+    return p.number * option.speed
 
 
 class Scaled(CompiledTerm):
@@ -154,17 +154,18 @@ class Scaled(CompiledTerm):
 
     def __init__(self, number) -> None:
         super().__init__()
-        self._number = number
-
-    def parameters(self):
-        return (self._number,)
+        self.number = number
 
 
 @pytest.mark.parametrize(
     ("number", "message"),
-    [("a", "'scaled': gave parameters of type"), (np.nan, "not a number.*scaled")],
+    [
+        ("a", "'scaled': gave p.number of type"),
+        ((1.0, 2.0), r"'scaled': gave p.number of shape \(2,\), expected \(\)"),
+        (np.nan, "not a number.*scaled"),
+    ],
 )
-def test_parameters_of_kernels(number, message):
+def test_numbers_of_kernels(number, message):
     model = model_of(corridor(), strider())
     put(model, 2.0, 2.0)
     model.terms.append(Scaled(number))

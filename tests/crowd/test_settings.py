@@ -74,7 +74,8 @@ def test_a_setting_is_refused_in_one_line_and_the_old_one_stays(name, value, say
         setattr(term, name, value)
     assert str(refused.value).startswith(says)
     assert "\n" not in str(refused.value)
-    assert (term.weight, *term.parameters()) == (1.5, 0.36, 1.2, 0.35, 0.15)
+    assert term.settings() == Headway().settings()
+    assert term.weight == 1.5
     assert not hasattr(term, "tme")
 
 
@@ -90,7 +91,8 @@ def test_constructors_refuse_unknown_names_and_values_out_of_range():
 def test_set_values_reach_the_kernel():
     term = Headway(time=np.float32(2.0))
     term.time = 3
-    assert term.parameters() == (0.36, 3.0, 0.35, 0.15)
+    given = dict(zip(term.kernel.numbers, term.numbers(term.kernel), strict=True))
+    assert given == {"distance": 0.36, "time": 3.0, "width": 0.35, "softness": 0.15}
     assert type(term.time) is float
 
 

@@ -11,6 +11,7 @@ from shapely import LineString, Point
 from mesa_mobility.verification.scenarios.tracks.oval import Oval
 from mesa_mobility.verification.scenarios.tracks.single_file import InLine
 from tests.fixtures.options import Ending, one_option
+from tests.fixtures.records import option, options
 
 OVAL = Oval(straight=4.0, radius=3.0, width=0.8)
 # The line lies 3 m from the spine of the oval.
@@ -20,8 +21,8 @@ LINE = LineString([(-2.0, 0.0), (2.0, 0.0)]).buffer(3.0, quad_segs=4096).exterio
 @given(st.floats(-6.0, 6.0), st.floats(-4.0, 4.0))
 @settings(deadline=None)  # compiled at the first
 def test_an_end_costs_its_metres_from_the_line(x, y):
-    option = one_option(Ending((x, y)), target=(20.0, 0.0))
-    assert InLine(OVAL).cost(option) == pytest.approx([LINE.distance(Point(x, y))], abs=1e-5)
+    ending = one_option(Ending((x, y)), target=(20.0, 0.0))
+    assert InLine(OVAL).cost(ending) == pytest.approx([LINE.distance(Point(x, y))], abs=1e-5)
 
 
 @given(
@@ -30,13 +31,9 @@ def test_an_end_costs_its_metres_from_the_line(x, y):
 )  # fmt: skip
 def test_no_option_of_a_group_costs_less_than_its_bound(x, y, radius, angle, out):
     term = InLine(OVAL)
-    least = term.bound.function(
-        x, y, radius, 1.0, 0.0, 0.0, 0.4, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, term.parameters()
-    )
+    least = term.bound.function(options(x, y, radius), term)
     place = x + out * radius * math.cos(angle), y + out * radius * math.sin(angle)
-    own = term.kernel.function(
-        *place, 1.0, 0.0, 0.4, 0.5, 0.0, 0.0, 1.0, 0.0, 1.0, term.parameters()
-    )
+    own = term.kernel.function(option(*place), term)
     assert least <= own + 1e-9
     assert least >= 0.0
 

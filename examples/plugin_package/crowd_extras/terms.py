@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Candidates, CompiledTerm, CostTerm, Range, pair_kernel
+from mesa_mobility import Candidates, CompiledTerm, CostTerm, Option, Range, pair_kernel
 
 
 class KeepLeft(CostTerm):
@@ -27,18 +27,14 @@ class KeepLeft(CostTerm):
         return right
 
 
+# ``me`` and ``other`` are a Me and an Other with the field, a float: 1.0 for true.
 @pair_kernel(fields=("infected",))
-def _keep_away(
-    x: float, y: float, facing_x: float, facing_y: float, duration: float, speed: float,
-    start_x: float, start_y: float, target_x: float, target_y: float, their_x: float,
-    their_y: float, their_vx: float, their_vy: float, their_ex: float, their_ey: float,
-    lead: float, infected: float, their_infected: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    # Fields come as floats: 1.0 for true. Where the neighbour will be when the option ends:
-    dx = their_x + their_vx * duration - x
-    dy = their_y + their_vy * duration - y
-    room = p[0] - math.sqrt(dx * dx + dy * dy)
-    return (1.0 - infected) * their_infected * room if room > 0.0 else 0.0
+def _keep_away(option: Option, me: Any, other: Any, p: KeepAway) -> float:
+    # Where the neighbour will be when the option ends:
+    dx = other.x + other.vx * option.duration - option.x
+    dy = other.y + other.vy * option.duration - option.y
+    room = p.distance - math.sqrt(dx * dx + dy * dy)
+    return (1.0 - me.infected) * other.infected * room if room > 0.0 else 0.0
 
 
 class KeepAway(CompiledTerm):
@@ -56,13 +52,10 @@ class KeepAway(CompiledTerm):
     default_weight = 2.0
     kernel = _keep_away
 
-    # A parameter with a range is a setting: it is checked here and whenever it is set.
+    # A parameter with a range is a setting: it is checked here and whenever it is set. The kernel
+    # reads it as p.distance.
     def __init__(
         self, weight: float | None = None, distance: Annotated[float, Range(0.0, 10.0, "m")] = 1.5
     ) -> None:
         super().__init__(weight)
         self.distance = distance
-
-    def parameters(self) -> tuple[float, ...]:
-        """``(distance,)``."""
-        return (self.distance,)

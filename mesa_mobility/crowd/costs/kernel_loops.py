@@ -1,80 +1,94 @@
-"""Source of the loops that kernels are compiled with."""
+"""Source of the loops that kernels are compiled with.
+
+Arrays of several rows come as their first number and the length of a row. What does not change in
+a loop is read before it: a compiler does not know that results are written elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 
 OPTION_LOOP = """
-def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, mine,
-    at, p, weight, out
-):
+def {name}(n, ends, width, own, at, numbers, weight, out):
+    me, p = {me}, {p}
     for k in range(n):
-        out[k] += weight * each(
-            x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, preferred,
-            {own}{taken}p
-        )
+        option = {option}
+        out[k] += weight * each({arguments})
 """
 
 BOUND_LOOP = """
-def {name}(
-    n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, sx, sy, tx, ty,
-    preferred, own_vx, own_vy, p, weight, out
-):
+def {name}(n, ends, width, groups, row, own, at, numbers, weight, out):
+    me, p = {me}, {p}
     for k in range(n):
-        out[k] += weight * each(
-            x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
-            fastest[k], sx, sy, tx, ty, preferred, {own}p
+        options = Options(
+            ends[k], ends[width + k], groups[2 * row + k], ends[2 * width + k], ends[3 * width + k],
+            groups[5 * row + k], groups[6 * row + k], groups[7 * row + k], groups[8 * row + k]
         )
+        out[k] += weight * each({arguments})
 """
 
 PAIR_LOOP = """
-def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-    mine, theirs, width, at, p, out
-):
-    for k in range(n):
-        out[k] = each(
-            x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx[k], ny[k], nvx[k], nvy[k],
-            nex[k], ney[k], lead[k], {taken}p
-        )
+def {name}(n, ends, width, others, row, own, at, numbers, out):
+    k = 0
+    me, p, option = {me}, {p}, {option}
+    for a in range(n):
+        other = {other}
+        out[a] = each({arguments})
 """
 
 PAIRS_LOOP = """
-def {name}(
-    m, n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney,
-    lead, mine, theirs, width, at, p, weight, out
-):
+def {name}(m, n, ends, width, others, row, own, at, numbers, weight, out):
+    me, p = {me}, {p}
     for a in range(m):
-        ax, ay, avx, avy, aex, aey, alead = nx[a], ny[a], nvx[a], nvy[a], nex[a], ney[a], lead[a]
+        other = {other}
         for k in range(n):
-            out[k] += weight * each(
-                x[k], y[k], facing_x[k], facing_y[k], duration[k], speed[k], sx, sy, tx, ty, ax, ay,
-                avx, avy, aex, aey, alead, {taken}p
-            )
-"""
-
-PAIR_BOUND_LOOP = """
-def {name}(
-    m, n, x, y, radius, facing_x, facing_y, turn, duration, slowest, fastest, sx, sy, tx, ty, nx,
-    ny, nvx, nvy, nex, ney, lead, p, weight, out
-):
-    for a in range(m):
-        ax, ay, avx, avy, aex, aey, alead = nx[a], ny[a], nvx[a], nvy[a], nex[a], ney[a], lead[a]
-        for k in range(n):
-            out[k] += weight * each(
-                x[k], y[k], radius[k], facing_x[k], facing_y[k], turn[k], duration[k], slowest[k],
-                fastest[k], sx, sy, tx, ty, ax, ay, avx, avy, aex, aey, alead, p
-            )
+            option = {option}
+            out[k] += weight * each({arguments})
 """
 
 WALL_LOOP = """
-def {name}(
-    n, x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, core, walls, p
-):
+def {name}(n, ends, width, walls, row, own, at, numbers):
+    k = 0
+    me, p, option = {me}, {p}, {option}
     worst = 0.0
-    for k in range(n):
-        cost = each(
-            x, y, facing_x, facing_y, duration, speed, sx, sy, tx, ty, walls[5 * k],
-            walls[5 * k + 1], walls[5 * k + 2], walls[5 * k + 3], core, p
-        )
+    for a in range(n):
+        wall = Wall(walls[row * a], walls[row * a + 1], walls[row * a + 2], walls[row * a + 3])
+        cost = each({arguments})
         # A cost that is not a number stays the worst.
         worst = cost if worst == worst and not cost <= worst else worst
     return worst
 """
+
+OPTION = "Option({})".format(", ".join(f"ends[{row} * width + k]" for row in range(6)))
+"""Option k in the source of a loop."""
+
+
+def me_of(fields: Sequence[str], declared: Sequence[str]) -> str:
+    """The pedestrian in the source of a loop.
+
+    Args:
+        fields: those that are laid out for the kernel.
+        declared: those among them that the model declares.
+    """
+    known = [f"own[{row}]" for row in range(8)]
+    more = [_laid(name, fields, "own[at[{}]]") for name in (*KERNEL_FIELDS[1:], *declared)]
+    return f"Me({', '.join([*known, *more])})"
+
+
+def other_of(fields: Sequence[str], declared: Sequence[str]) -> str:
+    """Neighbour a in the source of a loop; arguments as for ``me_of``."""
+    known = [f"others[{row} * row + a]" for row in range(7)]
+    more = [_laid(name, fields, "others[at[{}] * row + a]") for name in (*KERNEL_FIELDS, *declared)]
+    return f"Other({', '.join([*known, *more])})"
+
+
+def numbers_of(names: Sequence[str]) -> str:
+    """The numbers of the term in the source of a loop; 0 where the kernel reads none."""
+    given = ", ".join(f"numbers[{k}]" for k in range(len(names)))
+    return f"Numbers({given})" if names else "0.0"
+
+
+def _laid(name: str, fields: Sequence[str], place: str) -> str:
+    return place.format(fields.index(name)) if name in fields else "0.0"

@@ -11,23 +11,18 @@ first. The result is exactly that of costing every option.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.intrinsics import prefetch
 from mesa_mobility.compiled.simd import place_of_least
-from mesa_mobility.crowd.collision.sampled import EgoPose
 from mesa_mobility.crowd.costs.layout import SPEED
-from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.planning.evaluation.lanes import pick_between
 from mesa_mobility.crowd.planning.evaluation.neighbour_costs import ENOUGH, LITTLE_LESS, pair_cost
 from mesa_mobility.crowd.planning.evaluation.opened_groups import NOT_A_NUMBER, open_groups
-from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, wall_cost
+from mesa_mobility.crowd.planning.evaluation.option_costs import wall_cost
 from mesa_mobility.crowd.planning.feasibility import option_gone_or_blocked
-from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
-from mesa_mobility.crowd.state.records import CrowdState
-from mesa_mobility.crowd.state.surroundings import Surroundings
+from mesa_mobility.crowd.planning.workspace import DecisionContext, FrameContext, Workspace
 
 NONE = -1
 
@@ -79,44 +74,21 @@ def _enough(most: float, cost: float) -> float:
 
 @force_inlined()
 def cheapest_free(
-    me: EgoPose,
-    now: DecisionContext,
-    first: int,
-    bounds: NDArray[np.float64],
-    lowest: float,
-    walls: NDArray[np.float64],
-    extra: NDArray[np.float64],
-    hard_bodies: bool,
-    table: OptionTable,
-    groups: OptionGroups,
-    state: CrowdState,
-    around: Surroundings,
-    terms: Terms,
-    work: Workspace,
+    now: DecisionContext, approximate: bool, scene: FrameContext, work: Workspace
 ) -> tuple[int, int]:
     """The cheapest option of a pedestrian that hits nothing.
 
     Args:
-        me: the pedestrian.
-        now: context of its decision.
-        first: the first group of its cluster.
-        bounds: lower bound of the costs in each group from there on; inf where all options are
-            certainly blocked.
-        lowest: the least of them.
-        walls: walls within reach, with squared distances.
-        extra: weighted costs of the NumPy terms, or empty.
-        hard_bodies: whether bodies are hard.
-        table: options of all capabilities.
-        groups: these options in groups, with the extent of each.
-        state: the crowd.
-        around: walls and exits.
-        terms: compiled terms.
+        now: its decision.
+        approximate: whether bounds count marked neighbours only.
+        scene: the frame.
         work: workspace, with the people around.
 
     Returns:
         The option's row in the table, that of the least turn if several cost the same, -1 if all
         hit something, -2 if a cost is not a number; the frame of leaving by an exit, or -1.
     """
+    table, terms, own, bounds, first = scene.table, scene.terms, now.own, now.bounds, now.first
     # Typed, as functions are compiled once more for literal numbers.
     best, leaving, most = NONE, -1, np.inf
     band, count, met, k = np.int64(0), np.int64(0), np.int64(0), np.int64(0)
@@ -134,15 +106,13 @@ def cheapest_free(
                 if best >= 0:
                     up_to = min(most, DEAREST)
                 elif band < BANDS and now.ranked:
-                    up_to = lowest + FIRST_BAND * WIDENING**band
+                    up_to = now.lowest + FIRST_BAND * WIDENING**band
                 else:
                     up_to = DEAREST
                 band += 1
                 opened = pick_between(bounds, above, up_to, first, work.picked)
             if opened > 0:
-                count = open_groups(
-                    me, now, count, opened, most, walls, extra, table, groups, state, terms, work
-                )
+                count = open_groups(now, approximate, scene, count, opened, most, work)
             if count < 0:
                 return NOT_A_NUMBER, -1
             if stays:
@@ -166,7 +136,7 @@ def cheapest_free(
         prefetch(table.options, work.rows[k], 32)
         if work.unwalled[this]:
             work.unwalled[this] = False
-            more = wall_cost(me, this, work.ends, walls, state, terms)
+            more = wall_cost(own, this, work.ends, now.walls, terms.wall)
             if not abs(more) < np.inf:
                 return NOT_A_NUMBER, -1
             work.costs[this] += more
@@ -177,28 +147,29 @@ def cheapest_free(
         if work.approximate[this]:
             # All relevant neighbours.
             work.approximate[this] = False
+            enough, count_all = _enough(most, work.costs[this]), now.foremost
             more = pair_cost(
-                me, this, work.ends, now.foremost, work.foremost,
-                _enough(most, work.costs[this]), state, terms, work.sums, work.most_selective_term,
-            )  # fmt: skip
+                own, this, work.ends, count_all, work.foremost, enough, terms.pair, work.sums
+            )
             if more == ENOUGH:
                 continue
             bound = work.costs[this] + LITTLE_LESS * more
             if min(dearest, most) < bound < np.inf:
                 work.least[this] = bound
                 continue
+        hard_bodies = scene.rules.hard_bodies
         gone, who = option_gone_or_blocked(
-            me, now, o, met, walls, hard_bodies, table, state, around, work
+            now, scene.frame, o, met, hard_bodies, table, scene.state, scene.around, work
         )
         met = np.int64(who)
         if gone < -1:
             continue
         cost = work.costs[this]
         if not now.has_negative_pairs:
+            enough, count_all = _enough(most, cost), now.neighbours
             more = pair_cost(
-                me, this, work.ends, now.neighbours, work.others, _enough(most, cost), state,
-                terms, work.sums, work.most_selective_term,
-            )  # fmt: skip
+                own, this, work.ends, count_all, work.others, enough, terms.pair, work.sums
+            )
             if more == ENOUGH:
                 continue
             cost += more

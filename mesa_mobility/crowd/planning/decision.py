@@ -16,13 +16,11 @@ from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_
 from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
 from mesa_mobility.crowd.collision.walls import walls_to_ego
 from mesa_mobility.crowd.costs.layout import FIELDS, LEAD
-from mesa_mobility.crowd.options.option_groups import OptionGroups
-from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
+from mesa_mobility.crowd.options.table import SAMPLE_FRAMES
 from mesa_mobility.crowd.planning.branch_and_bound import CROWD, FEW, NONE, cheapest_free
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, least
-from mesa_mobility.crowd.planning.evaluation.neighbour_costs import add_pair_bounds
 from mesa_mobility.crowd.planning.evaluation.opened_groups import NOT_A_NUMBER
-from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, group_bounds
+from mesa_mobility.crowd.planning.evaluation.option_costs import group_bounds, lay_self
 from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
     mark_relevant,
     select_relevant,
@@ -36,29 +34,18 @@ from mesa_mobility.crowd.planning.grid import (
     place_in,
 )
 from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
-from mesa_mobility.crowd.planning.workspace import DecisionContext, Rules, Workspace
+from mesa_mobility.crowd.planning.workspace import DecisionContext, FrameContext, Workspace
 from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import commit, to_world
-from mesa_mobility.crowd.state.people_grid import Grid
-from mesa_mobility.crowd.state.records import CrowdState
-from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
 @entry_point()
 def decide(
     rows: NDArray[np.int64],
     queue: Queue,
-    frame: int,
-    table: OptionTable,
-    groups: OptionGroups,
-    state: CrowdState,
-    grid: Grid,
-    around: Surroundings,
-    terms: Terms,
+    scene: FrameContext,
     extra: NDArray[np.float64],
     extra_offsets: NDArray[np.int64],
-    rules: Rules,
-    moving: NDArray[np.float64],
     work: Workspace,
 ) -> int:
     """Decide for the pedestrians in ``rows``, one after the other, and commit them.
@@ -70,32 +57,23 @@ def decide(
     Args:
         rows: pedestrians, in the order in which they decide.
         queue: shared by all threads, new.
-        frame: now.
-        table: options of all capabilities.
-        groups: these options in groups, with the extent of each.
-        state: the crowd; targets must be set.
-        grid: grid of people in this frame.
-        around: walls and exits.
-        terms: compiled terms.
+        scene: the frame.
         extra: weighted costs of the NumPy terms, options of each pedestrian in turn, or
             empty.
         extra_offsets: (len(rows) + 1,) where each pedestrian's part of ``extra`` starts.
-        rules: the model's constants.
-        moving: (8, people) in the order of the grid.  Velocities, directions and route lengths
-            are those at the beginning of the frame, also of those who have just decided.  The
-            circles that people cover are kept up to date.
         work: workspace of this thread.
 
     Returns:
         Index in ``rows`` of a pedestrian for whom a cost was not a number, or ``len(rows)``.  The
         least over all threads is the first such pedestrian.
     """
+    terms = scene.terms
     has_negative_pairs = False
-    for kind in range(len(terms.pair_weight)):
-        lowest = min(least(terms.pair_weight[kind]), least(terms.wall_weight[kind]))
+    for kind in range(len(terms.pair.weight)):
+        lowest = min(least(terms.pair.weight[kind]), least(terms.wall.weight[kind]))
         has_negative_pairs = has_negative_pairs or lowest < 0.0
     bounded = len(extra) == 0 and not has_negative_pairs
-    for address in terms.bound_address:
+    for address in terms.bound.address:
         bounded = bounded and address != 0
     n = len(rows)
     before = np.int64(0)
@@ -103,14 +81,11 @@ def decide(
         d = take_number(queue.next, 0)
         if d >= n:
             return n
-        before = await_neighbours(d, before, rows, queue, state, rules.search_radius)
+        before = await_neighbours(d, before, rows, queue, scene.state, scene.rules.search_radius)
         own_extra = extra
         if len(extra) > 0:
             own_extra = extra[extra_offsets[d] : extra_offsets[d + 1]]
-        fine = _decide_one(
-            rows[d], frame, table, groups, state, grid, around, terms, own_extra, rules, moving,
-            has_negative_pairs, bounded, work,
-        )  # fmt: skip
+        fine = _decide_one(rows[d], scene, own_extra, has_negative_pairs, bounded, work)
         store_release(queue.done, d, 1)
         if not fine:
             store_release(queue.next, 0, n)
@@ -120,25 +95,21 @@ def decide(
 @inlined()
 def _decide_one(
     i: int,
-    frame: int,
-    table: OptionTable,
-    groups: OptionGroups,
-    state: CrowdState,
-    grid: Grid,
-    around: Surroundings,
-    terms: Terms,
+    scene: FrameContext,
     extra: NDArray[np.float64],
-    rules: Rules,
-    moving: NDArray[np.float64],
     has_negative_pairs: bool,
     bounded: bool,
     work: Workspace,
 ) -> bool:
     """Decide for pedestrian i and commit it; False if a cost is not a number."""
+    frame, table, groups, state = scene.frame, scene.table, scene.groups, scene.state
+    grid, around, terms = scene.grid, scene.around, scene.terms
+    rules, moving = scene.rules, scene.moving
     cluster, destination = state.cluster[i], state.destination[i]
     x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
     overhang = overhang_of(i, table, state)
     me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core, overhang)
+    own = lay_self(me, state, terms, work.own)
     others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
     ranges = rules.interaction_ranges
     n_near, count = neighbours_within(
@@ -179,18 +150,10 @@ def _decide_one(
         bounds, dropped = work.bounds[: last - first], work.blocked
         bounds[:] = 0.0
         if bounded:
-            group_bounds(me, first, last, groups, state, terms, work.ends, bounds)
+            group_bounds(me, own, first, groups, terms.bound, work.ends, bounds)
         foremost = 0
-        if not has_negative_pairs and len(terms.pair_address) > 0:
-            foremost = select_relevant(
-                me, others, count, state, work.unsure, work.dropped, work.foremost
-            )
-            # In a jam they take longer than they save.
-            if bounded and foremost < CROWD:
-                add_pair_bounds(
-                    me, first, last, groups, foremost, work.foremost, state, terms, work.ends,
-                    work.lane_costs, bounds,
-                )  # fmt: skip
+        if not has_negative_pairs and len(terms.pair.address) > 0:
+            foremost = select_relevant(own, others, count, work.unsure, work.dropped, work.foremost)
         bad = 0
         for a in range(len(bounds)):
             bad |= int(dropped[a] == 0) & int(not abs(bounds[a]) < np.inf)
@@ -200,30 +163,29 @@ def _decide_one(
         # Padding: bounds are read this many at a time.
         work.bounds[len(bounds) : len(bounds) + AT_ONCE] = np.inf
         lowest = bounds[place_of_least(work.bounds, len(bounds))]
-        approximate = bounded and mark_relevant(
-            me, first, bounds, lowest, work.ends, groups, foremost, work.foremost, state, terms,
-            work.picked, work.marks,
-        )  # fmt: skip
         ranked = bounded and n > FEW
         # In a jam most people stay where they are, or nearly so.
         stay = spanned.stay if foremost >= CROWD else -1
-        setting = DecisionContext(
-            frame,
+        now = DecisionContext(
+            me,
+            own,
+            first,
+            bounds,
+            lowest,
+            walls,
+            extra,
             n_clear_walls,
             stay,
             found,
             touching,
             count,
             foremost,
-            approximate,
             exits_from,
             has_negative_pairs,
             ranked,
         )
-        option, gone = cheapest_free(
-            me, setting, first, bounds, lowest, walls, extra, rules.hard_bodies, table, groups,
-            state, around, terms, work,
-        )  # fmt: skip
+        approximate = bounded and mark_relevant(now, groups, terms.pair, work)
+        option, gone = cheapest_free(now, approximate, scene, work)
         if option == NOT_A_NUMBER:
             return False
     state.decisions[i] += 1

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import internal
 from mesa_mobility.crowd.collision.discs import body_collides, body_hits_wall, overhang_of
 from mesa_mobility.crowd.collision.exact import crosses_exit, gone_frame
-from mesa_mobility.crowd.collision.sampled import SLACK, EgoPose, sampled_collision
+from mesa_mobility.crowd.collision.sampled import SLACK, sampled_collision
 from mesa_mobility.crowd.collision.walls import path_off2
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
 from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
@@ -104,11 +104,10 @@ def path_gone_or_blocked(
 
 @internal()
 def option_gone_or_blocked(
-    me: EgoPose,
     now: DecisionContext,
+    frame: int,
     o: int,
     met: int,
-    walls: NDArray[np.float64],
     hard_bodies: bool,
     table: OptionTable,
     state: CrowdState,
@@ -118,11 +117,10 @@ def option_gone_or_blocked(
     """Whether a deciding pedestrian can walk an option; transforms it only if necessary.
 
     Args:
-        me: the pedestrian.
-        now: context of its decision.
+        now: the pedestrian's decision.
+        frame: now.
         o: the option's row.
         met: index of the close person to test first.
-        walls: walls within reach, with squared distances.
         hard_bodies: whether bodies are hard.
         table: options of all capabilities.
         state: the crowd.
@@ -133,6 +131,7 @@ def option_gone_or_blocked(
         -2 or -3 if it hits something, else the frame of leaving or -1; the index of the close
         person to test first for the next option.
     """
+    me, walls = now.me, now.walls
     reach, stride = np.float64(table.options[o].reach), np.float64(table.options[o].stride)
     exits_near = reach >= now.exits_from
     # Left to the exact tests: whether it hits a wall, and the people in doubt.
@@ -146,7 +145,7 @@ def option_gone_or_blocked(
         walled = now.n_clear_walls < len(walls) or off2 < most * most
         if hard_bodies:
             who, doubtful = sampled_collision(
-                me, now.frame, table.path[o], stride, now.found, met, table, state, work.close,
+                me, frame, table.path[o], stride, now.found, met, table, state, work.close,
                 work.unsure,
             )  # fmt: skip
             if who >= 0:
@@ -166,13 +165,13 @@ def option_gone_or_blocked(
     spacing = np.int64(SAMPLE_FRAMES)
     if walled:
         gone = path_gone_or_walled(
-            me.row, work.path, pieces, spacing, reach, now.frame, table, state, walls, around,
+            me.row, work.path, pieces, spacing, reach, frame, table, state, walls, around,
             exits_near,
         )  # fmt: skip
     if gone < -1 or doubtful == 0:
         return gone, met
     blocked = hits_anybody(
-        me.row, work.path, pieces, spacing, now.frame, gone, table, state,
+        me.row, work.path, pieces, spacing, frame, gone, table, state,
         work.unsure[:doubtful],
     )  # fmt: skip
     return -2 if blocked else gone, met

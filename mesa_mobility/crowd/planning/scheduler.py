@@ -24,7 +24,7 @@ from mesa_mobility.crowd.planning.evaluation.term_table import NO_EXTRA, Compile
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
 from mesa_mobility.crowd.planning.grid import headways
 from mesa_mobility.crowd.planning.thread_queue import new_queue
-from mesa_mobility.crowd.planning.workspace import Rules, Workspace, make_workspace
+from mesa_mobility.crowd.planning.workspace import FrameContext, Rules, Workspace, make_workspace
 from mesa_mobility.crowd.state.people_grid import Grid, build_grid
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.surroundings import Surroundings
@@ -91,7 +91,6 @@ class DecisionScheduler:
         """
         table, groups = self._repertoire.table, self._repertoire.groups
         compiled, others = self._compiled(terms, crowd)
-        frame = moment.frame
         extra, extra_offsets = NO_EXTRA
         grid = build_grid(rows, crowd.x, crowd.y)
         if others:
@@ -104,7 +103,11 @@ class DecisionScheduler:
                 order[:1], table, crowd, grid, around, self._rules, moment.aside()
             )
             check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
-        moving = headways(grid, table, crowd.records)
+        state = crowd.records
+        moving = headways(grid, table, state)
+        scene = FrameContext(
+            moment.frame, table, groups, state, grid, around, compiled, self._rules, moving
+        )
         threads = 1 if PLAIN else threads_for(len(order))
         fields = compiled.fields.shape[1]
         works = self._works_for(threads, len(rows), around, len(terms), fields)
@@ -114,10 +117,7 @@ class DecisionScheduler:
             queue = new_queue(len(people))
 
             def work_off(work: Workspace) -> int:
-                place: int = self._decide(
-                    people, queue, frame, table, groups, crowd.records, grid, around, compiled,
-                    extra, offsets, self._rules, moving, work,
-                )  # fmt: skip
+                place: int = self._decide(people, queue, scene, extra, offsets, work)
                 return place
 
             failed = min(in_threads(work_off, works))
@@ -151,14 +151,14 @@ class DecisionScheduler:
         if works and (
             people > len(works[0].marks)
             or walls > len(works[0].walls)
-            or terms > len(works[0].sums)
+            or terms > len(works[0].sums.by_term)
             or FIELDS + fields != len(works[0].others)
         ):
             works.clear()
         while len(works) < threads:
             if works:
                 people, walls = len(works[0].marks), len(works[0].walls)
-                terms = len(works[0].sums)
+                terms = len(works[0].sums.by_term)
             options = int(np.diff(self._repertoire.table.offsets).max())
             clusters = self._repertoire.groups.clusters
             most = int((clusters["last"] - clusters["first"]).max())

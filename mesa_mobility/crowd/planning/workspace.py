@@ -9,41 +9,116 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.simd import AT_ONCE, LANES, WIDE
 from mesa_mobility.crowd.collision.broad_phase import Bodies, Fences
-from mesa_mobility.crowd.collision.sampled import Close, make_close
+from mesa_mobility.crowd.collision.sampled import Close, EgoPose, make_close
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS
-from mesa_mobility.crowd.costs.layout import FIELDS, SPEED
-from mesa_mobility.crowd.options.table import LEVELS, SAMPLES
+from mesa_mobility.crowd.costs.layout import FIELDS, SPEED, Self, Terms
+from mesa_mobility.crowd.options.option_groups import OptionGroups
+from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
+from mesa_mobility.crowd.state.people_grid import Grid
+from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.state.surroundings import Surroundings
+
+
+class Rules(NamedTuple):
+    """Constants of the model.
+
+    Attributes:
+        search_radius: metres within which people may get in each other's way.
+        interaction_ranges: (types, types) metres within which somebody of a type counts in the
+            cost terms of somebody of another, by the type of who decides and that of the other:
+            whether a movement of each can bring them together.
+        hard_bodies: whether bodies may not overlap.
+        standing: by pedestrian type, its standing cluster.
+        first_option: by pedestrian type, its first row in the table.
+    """
+
+    search_radius: float
+    interaction_ranges: NDArray[np.float64]
+    hard_bodies: bool
+    standing: NDArray[np.int32]
+    first_option: NDArray[np.int64]
+
+
+class FrameContext(NamedTuple):
+    """What all decisions of a frame share.
+
+    Attributes:
+        frame: now.
+        table: options of all capabilities.
+        groups: these options in groups, with the extent of each.
+        state: the crowd; targets must be set.
+        grid: grid of people in this frame.
+        around: walls and exits.
+        terms: compiled terms.
+        rules: the model's constants.
+        moving: (8, people) in the order of the grid.  Velocities, directions and route lengths
+            are those at the beginning of the frame, also of those who have just decided.  The
+            circles that people cover are kept up to date.
+    """
+
+    frame: int
+    table: OptionTable
+    groups: OptionGroups
+    state: CrowdState
+    grid: Grid
+    around: Surroundings
+    terms: Terms
+    rules: Rules
+    moving: NDArray[np.float64]
 
 
 class DecisionContext(NamedTuple):
     """The inputs of the search for one decision.
 
     Attributes:
-        frame: now.
+        me: the pedestrian.
+        own: the same as cost terms see it.
+        first: the first group of its cluster.
+        bounds: lower bound of the costs in each group from there on; inf where all options are
+            certainly blocked.
+        lowest: the least of them.
+        walls: walls within reach, with squared distances.
+        extra: weighted costs of the NumPy terms, or empty.
         n_clear_walls: walls in ``Workspace.barriers`` that do not touch the body.
         stay: the group to test first, or -1.
         found: number of people at the start of ``Workspace.close``.
         touching: index of the first of those at its end, who touch the body already.
         neighbours: number of columns of ``Workspace.others``.
         foremost: number of columns of ``Workspace.foremost``.
-        approximate: whether bounds count marked neighbours only.
         exits_from: metres to the nearest open exit.
         has_negative_pairs: whether pair or wall terms may be negative, so that every option needs
             them.
         ranked: whether groups are opened in rising order of their bounds.
     """
 
-    frame: int
+    me: EgoPose
+    own: Self
+    first: int
+    bounds: NDArray[np.float64]
+    lowest: float
+    walls: NDArray[np.float64]
+    extra: NDArray[np.float64]
     n_clear_walls: int
     stay: int
     found: int
     touching: int
     neighbours: int
     foremost: int
-    approximate: bool
     exits_from: float
     has_negative_pairs: bool
     ranked: bool
+
+
+class PairSums(NamedTuple):
+    """Workspace for sums over neighbours.
+
+    Attributes:
+        by_term: cost by pair term.
+        first: (1,) the pair term to evaluate first.
+    """
+
+    by_term: NDArray[np.float64]
+    first: NDArray[np.int64]
 
 
 class Workspace(NamedTuple):
@@ -76,8 +151,8 @@ class Workspace(NamedTuple):
         least: lower bound of its whole cost.
         approximate: whether the bound can still be raised by more neighbours.
         unwalled: whether the wall terms are left out of the cost so far.
-        sums: cost by pair term.
-        most_selective_term: the pair term to evaluate first.
+        sums: of costs from neighbours.
+        own: the pedestrian as cost terms see it.
         path: one path.
     """
 
@@ -107,8 +182,8 @@ class Workspace(NamedTuple):
     least: NDArray[np.float64]
     approximate: NDArray[np.bool_]
     unwalled: NDArray[np.bool_]
-    sums: NDArray[np.float64]
-    most_selective_term: NDArray[np.int64]
+    sums: PairSums
+    own: NDArray[np.float64]
     path: NDArray[np.float64]
 
 
@@ -150,27 +225,7 @@ def make_workspace(
         least=np.empty(options + AT_ONCE),
         approximate=np.empty(options, np.bool_),
         unwalled=np.empty(options, np.bool_),
-        sums=np.empty(terms),
-        most_selective_term=np.zeros(1, np.int64),
+        sums=PairSums(np.empty(terms), np.zeros(1, np.int64)),
+        own=np.empty(FIELDS + fields),
         path=np.empty((3, SAMPLES)),
     )
-
-
-class Rules(NamedTuple):
-    """Constants of the model.
-
-    Attributes:
-        search_radius: metres within which people may get in each other's way.
-        interaction_ranges: (types, types) metres within which somebody of a type counts in the
-            cost terms of somebody of another, by the type of who decides and that of the other:
-            whether a movement of each can bring them together.
-        hard_bodies: whether bodies may not overlap.
-        standing: by pedestrian type, its standing cluster.
-        first_option: by pedestrian type, its first row in the table.
-    """
-
-    search_radius: float
-    interaction_ranges: NDArray[np.float64]
-    hard_bodies: bool
-    standing: NDArray[np.int32]
-    first_option: NDArray[np.int64]

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from mesa_mobility.behaviors import Interference, Stepping, TargetDistance
+from mesa_mobility.behaviors import Stepping, TargetDistance
 
-from mesa_mobility import CompiledTerm, CostTerm, pair_kernel, wall_kernel
+from mesa_mobility import CompiledTerm, CostTerm, option_kernel, pair_kernel
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import strider
+from tests.fixtures.plugin_terms import SameSpeed
 from tests.fixtures.scenes import corridor, model_of, put
 
 
@@ -37,10 +38,8 @@ def test_costs_that_are_not_one_finite_number_an_option_are_refused(wrong):
 
 
 @pair_kernel
-def _broken_beside_others(
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead, p
-):
-    return math.sqrt(-1.0 - lead * lead)
+def _broken_beside_others(other):
+    return math.sqrt(-1.0 - other.lead * other.lead)
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
@@ -74,9 +73,9 @@ def test_a_kernel_over_neighbours_that_gives_no_number_is_refused(away):
         model.step()
 
 
-@wall_kernel
-def _broken_beside_walls(x, y, ux, uy, duration, speed, sx, sy, tx, ty, x1, y1, x2, y2, core, p):
-    return 1.0 / math.sqrt(p[0] * (y1 - 2.0))
+@option_kernel
+def _broken_beside_walls(wall, p):
+    return 1.0 / math.sqrt(p.sign * (wall.y1 - 2.0))
 
 
 @pytest.mark.parametrize("weight", [1.0, -1.0])
@@ -87,9 +86,7 @@ def test_a_kernel_over_walls_that_gives_no_number_is_refused(sign, weight):
         name = "broken_kernel"
         kernel = _broken_beside_walls
 
-        def parameters(self):
-            return (sign,)
-
+    Broken.sign = sign
     model = model_of(corridor(), strider(), behaviors=[TargetDistance(), Broken(weight)])
     person = put(model, 5.0, 2.0)
     assert not np.isfinite(Broken().cost(person.movement_options())).any()
@@ -106,15 +103,22 @@ def test_a_term_must_say_what_it_costs():
         Vague()
 
 
-def test_a_bound_of_another_kind_of_kernel_is_refused():
+@pytest.mark.parametrize(
+    ("kernel", "bound", "says"),
+    [
+        (Stepping.kernel, Stepping.kernel, "its bound is a OptionKernel, expected a BoundKernel"),
+        (SameSpeed.kernel, Stepping.bound, "has a bound and a PairKernel, expected an Option"),
+        (Stepping.bound, None, "its kernel is a BoundKernel, expected what option_kernel or pair"),
+        (abs, None, "its kernel is a builtin_function_or_method, expected what option_kernel"),
+    ],
+)
+def test_kernels_of_another_kind_are_refused(kernel, bound, says):
     class Mixed(CompiledTerm):
         name = "mixed"
-        kernel = Interference.kernel
-        bound = Stepping.bound
+        length = 0.4
 
+    Mixed.kernel, Mixed.bound = kernel, bound
     model = model_of(corridor(), strider(), behaviors=[Mixed()])
     put(model, 2.0, 2.0)
-    with pytest.raises(
-        ModelError, match=r"^behaviour 'mixed': its bound is a BoundKernel, expected"
-    ):
+    with pytest.raises(ModelError, match=rf"^behaviour 'mixed': {says}"):
         model.step()

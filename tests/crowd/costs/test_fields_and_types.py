@@ -11,20 +11,15 @@ from tests.fixtures.scenes import advance, corridor, model_of
 
 
 @pair_kernel(fields=("mood", "infected"))
-def _avoid(
-    x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-    mood, infected, their_mood, their_infected, p,
-):  # fmt: skip
-    gap = p[0] - ((nx - x) ** 2 + (ny - y) ** 2) ** 0.5
-    return their_infected * (1.0 + mood) * gap if gap > 0.0 else 0.0
+def _avoid(option, me, other, p):
+    gap = p.distance - ((other.x - option.x) ** 2 + (other.y - option.y) ** 2) ** 0.5
+    return other.infected * (1.0 + me.mood) * gap if gap > 0.0 else 0.0
 
 
 class Avoid(CompiledTerm):
     name = "avoid"
     kernel = _avoid
-
-    def parameters(self):
-        return (1.5,)
+    distance = 1.5
 
 
 class AvoidInNumpy(CostTerm):
@@ -40,8 +35,8 @@ class AvoidInNumpy(CostTerm):
 
 
 @option_kernel(fields=("mood",))
-def _stay(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, mood, p):
-    return mood * speed
+def _stay(option, me):
+    return me.mood * option.speed
 
 
 class Stay(CompiledTerm):
@@ -102,12 +97,9 @@ def test_the_watched_decision_has_its_cost():
 
 
 def test_built_in_fields():
-    @pair_kernel(fields=("type", "group", "heading", "core"))
-    def kernel(
-        x, y, ux, uy, duration, speed, sx, sy, tx, ty, nx, ny, nvx, nvy, nex, ney, lead,
-        kind, group, heading, core, their_kind, their_group, their_heading, their_core, p,
-    ):  # fmt: skip
-        return 1000.0 * their_group + 100.0 * core + heading + their_heading
+    @pair_kernel
+    def kernel(me, other):
+        return 1000.0 * other.group + 100.0 * me.core + me.heading + other.heading
 
     class Sum(CompiledTerm):
         name = "sum"
@@ -285,11 +277,24 @@ def test_what_is_refused():
     with pytest.raises(ModelError, match="terms: two of them are named 'stay'"):
         crowd_of(Stay(), Stay()).step()
     with pytest.raises(ModelError, match=r"fields \('mood', 'mood'\), expected their names"):
-        pair_kernel(fields=("mood", "mood"))(lambda x: 0.0)
+        pair_kernel(fields=("mood", "mood"))(lambda me: 0.0)
+    with pytest.raises(ModelError, match=r"expected none that people have .*, such as me\.group"):
+        pair_kernel(fields=("mood", "group"))(lambda me: 0.0)
 
-    class Bounded(Stay):
-        name = "bounded"
-        bound = next(term.bound for term in crowd_of().terms if term.name == "target_distance")
 
-    with pytest.raises(ModelError, match="has a bound and a kernel with fields"):
-        crowd_of(Bounded()).step()
+@option_kernel(fields=("mood",))
+def _stay_at_least(options, me):
+    return me.mood * options.slowest
+
+
+class Bounded(Stay):
+    """With a bound that takes the field as well."""
+
+    bound = _stay_at_least
+
+
+def test_a_bound_may_take_fields():
+    bounded, without = crowd_of(Bounded(3.0)), crowd_of(Stay(3.0))
+    for model in (bounded, without):
+        advance(model, 60)
+    assert tracks(bounded) == tracks(without)

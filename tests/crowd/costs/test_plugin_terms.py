@@ -30,7 +30,7 @@ def test_a_term_changes_the_choice(term):
     assert turns_to([TargetDistance(), term(-0.5)]) == +1.0
 
 
-def test_parameters_reach_the_kernel():
+def test_settings_reach_the_kernel():
     # The line at y = 1: of 1.72 and 0.28 m beyond it only the right option's are cheap.
     assert turns_to([TargetDistance(), CompiledKeepRight(per_metre=0.5, line=1.0)]) == -1.0
     assert turns_to([TargetDistance(), CompiledKeepRight(per_metre=-0.5, line=1.0)]) == +1.0
@@ -100,9 +100,9 @@ def test_a_wall_term_changes_the_choice(weight, side):
     assert np.sign(person.position[1] - 1.5) == side
 
 
-@option_kernel(own_velocity=True)
-def _as_fast(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, own_vx, own_vy, p):
-    return p[0] * abs(speed - math.hypot(own_vx, own_vy))
+@option_kernel
+def _as_fast(option, me, p):
+    return p.factor * abs(option.speed - math.hypot(me.vx, me.vy))
 
 
 class AsFast(CompiledTerm):
@@ -110,9 +110,7 @@ class AsFast(CompiledTerm):
 
     name = "as_fast"
     kernel = _as_fast
-
-    def parameters(self):
-        return (2.0,)
+    factor = 2.0
 
 
 def test_kernels_may_take_the_velocity_of_the_movement_before(whole):

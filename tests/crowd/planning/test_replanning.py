@@ -112,8 +112,8 @@ def test_a_kernel_that_gives_no_number_is_refused():
     from mesa_mobility import CompiledTerm, option_kernel
 
     @option_kernel
-    def slowness(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):
-        return 1.0 / speed
+    def slowness(option):
+        return 1.0 / option.speed
 
     class Slowness(CompiledTerm):
         name = "slowness"

@@ -16,8 +16,8 @@ from mesa_mobility.errors import ModelError
 
 
 @option_kernel
-def _lost(x, y, ux, uy, duration, speed, sx, sy, tx, ty, preferred, p):
-    return math.nan if preferred > 1.6 else 0.0
+def _lost(me):
+    return math.nan if me.preferred_speed > 1.6 else 0.0
 
 
 class LostIfFast(CompiledTerm):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined
 from mesa_mobility.compiled.intrinsics import prefetch
@@ -18,17 +17,15 @@ from mesa_mobility.compiled.simd import (
     press_numbers,
 )
 from mesa_mobility.crowd.collision.broad_phase import ALL_LANES, free_options
-from mesa_mobility.crowd.collision.sampled import SLACK, EgoPose
+from mesa_mobility.crowd.collision.sampled import SLACK
 from mesa_mobility.crowd.collision.simd_transforms import lanes_to_world
 from mesa_mobility.crowd.costs.layout import END_ROWS
-from mesa_mobility.crowd.options.option_groups import DURATION, OptionGroups
-from mesa_mobility.crowd.options.table import OptionTable
+from mesa_mobility.crowd.options.option_groups import DURATION
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_ends
 from mesa_mobility.crowd.planning.evaluation.neighbour_costs import pair_cost, pair_costs_at_least
-from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, option_costs, wall_cost
-from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
+from mesa_mobility.crowd.planning.evaluation.option_costs import option_costs, wall_cost
+from mesa_mobility.crowd.planning.workspace import DecisionContext, FrameContext, Workspace
 from mesa_mobility.crowd.state.clearances import MARGIN
-from mesa_mobility.crowd.state.records import CrowdState
 
 NOT_A_NUMBER = -2
 
@@ -40,17 +37,12 @@ _AHEAD = 4
 
 @force_inlined()
 def open_groups(
-    me: EgoPose,
     now: DecisionContext,
+    approximate: bool,
+    scene: FrameContext,
     count: int,
     opened: int,
     most: float,
-    walls: NDArray[np.float64],
-    extra: NDArray[np.float64],
-    table: OptionTable,
-    groups: OptionGroups,
-    state: CrowdState,
-    terms: Terms,
     work: Workspace,
 ) -> int:
     """Bound the costs of the options in the first ``opened`` groups of ``work.picked``.
@@ -59,6 +51,7 @@ def open_groups(
 
     Returns the number of open options, ``count`` before this call; -2 if a cost is not a number.
     """
+    me, groups, terms = now.me, scene.groups, scene.terms
     picked, free = work.picked, work.free
     apart = me.core + MARGIN - SLACK
     # The cost is faster to test than blockage.
@@ -81,13 +74,13 @@ def open_groups(
         return count
     costs = work.lane_costs[: LANES * n]
     costs[:] = 0.0
-    if len(extra) > 0:
-        base = table.offsets[state.cluster[me.row]]
+    if len(now.extra) > 0:
+        base = scene.table.offsets[scene.state.cluster[me.row]]
         for q in range(n):
             row = groups.first[picked[q]]
             for lane in range(groups.first[picked[q] + 1] - row):
-                costs[LANES * q + lane] = extra[row + lane - base]
-    option_costs(me, 0, LANES * n, work.lanes, state, terms, costs)
+                costs[LANES * q + lane] = now.extra[row + lane - base]
+    option_costs(now.own, work.lanes, terms.option, costs)
     bad, kept = 0, count
     for q in range(n):
         g, bits = picked[q], free[q] & no_more_than(costs, LANES * q, most)
@@ -100,23 +93,19 @@ def open_groups(
         compress(work.lanes, 0, LANES * q, bits, work.ends, 0, kept, END_ROWS)
         kept += bits_set(bits)
     if now.has_negative_pairs:
+        count_all, others, sums = now.neighbours, work.others, work.sums
         for k in range(count, kept):
-            work.costs[k] += pair_cost(
-                me, k, work.ends, now.neighbours, work.others, np.inf, state, terms, work.sums,
-                work.most_selective_term,
-            ) + wall_cost(me, k, work.ends, walls, state, terms)  # fmt: skip
+            pairs = pair_cost(now.own, k, work.ends, count_all, others, np.inf, terms.pair, sums)
+            work.costs[k] += pairs + wall_cost(now.own, k, work.ends, now.walls, terms.wall)
             bad |= int(not abs(work.costs[k]) < np.inf)
     if bad != 0:
         return NOT_A_NUMBER
-    has_walls = len(terms.wall_address) > 0 and not now.has_negative_pairs
+    has_walls = len(terms.wall.address) > 0 and not now.has_negative_pairs
     fill_ends(count, kept, work.ends)
-    pair_costs_at_least(
-        me, count, kept, work.ends, now.foremost, now.approximate, work.foremost, work.marks,
-        work.some, state, terms, work.least,
-    )  # fmt: skip
+    pair_costs_at_least(now, approximate, count, kept, terms, work)
     for k in range(count, kept):
         work.least[k] += work.costs[k]
-        work.approximate[k] = now.approximate
+        work.approximate[k] = approximate
         work.unwalled[k] = has_walls
     for k in range(kept, kept + AT_ONCE):
         work.least[k] = np.inf

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,50 +12,26 @@ from mesa_mobility.crowd.costs.kernel_calls import (
     call_option_loop,
     call_wall_loop,
 )
-from mesa_mobility.crowd.costs.layout import END_UX, END_UY, END_X, END_Y, SECONDS, SPEED
-from mesa_mobility.crowd.options.option_groups import (
-    DURATION,
-    FASTEST,
-    RADIUS,
-    SLOWEST,
-    TURN,
-    UX,
-    UY,
-    OptionGroups,
-    X,
-    Y,
+from mesa_mobility.crowd.costs.layout import (
+    END_UX,
+    END_UY,
+    END_X,
+    END_Y,
+    FIELDS,
+    ME_CORE,
+    ME_PREFERRED,
+    ME_TARGET_X,
+    ME_TARGET_Y,
+    ME_VX,
+    ME_VY,
+    ME_X,
+    ME_Y,
+    KernelTable,
+    Self,
+    Terms,
 )
-from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
+from mesa_mobility.crowd.options.option_groups import UX, UY, OptionGroups, X, Y
 from mesa_mobility.crowd.state.records import CrowdState
-
-
-class Terms(NamedTuple):
-    """Compiled cost terms: addresses, weights and parameters (row per term).
-
-    ``bound_address`` belongs to the option terms, 0 for those without a lower bound.
-    ``pairs_address`` belongs to the pair terms: the loop over some neighbours and many options;
-    so does ``pair_bound_address``, 0 for those without a lower bound.
-    Wall terms count the worst wall. Weights are by pedestrian type and term.
-
-    ``fields`` (people, fields) are the values that any of the terms takes, ``option_fields`` and
-    ``pair_fields`` which of them each term takes.
-    """
-
-    bound_address: NDArray[np.int64]
-    option_address: NDArray[np.int64]
-    option_weight: NDArray[np.float64]
-    option_parameters: NDArray[np.float64]
-    option_fields: NDArray[np.int64]
-    pair_address: NDArray[np.int64]
-    pair_weight: NDArray[np.float64]
-    pair_parameters: NDArray[np.float64]
-    pair_fields: NDArray[np.int64]
-    pairs_address: NDArray[np.int64]
-    pair_bound_address: NDArray[np.int64]
-    wall_address: NDArray[np.int64]
-    wall_weight: NDArray[np.float64]
-    wall_parameters: NDArray[np.float64]
-    fields: NDArray[np.float64]
 
 
 @internal()
@@ -66,106 +40,83 @@ def preferred_now(i: int, state: CrowdState) -> float:
     return state.preferred[i] if state.route[i] < np.inf else 0.0
 
 
-@internal()
-def lay_ends(
-    me: EgoPose, rows: NDArray[np.int64], table: OptionTable, to: NDArray[np.float64], at: int
-) -> None:
-    """Write the ends (6, n) of a pedestrian's options in ``rows``, from column ``at`` on."""
-    c, s, px, py = me.c, me.s, me.x, me.y
-    to_x, to_y, to_duration = to[END_X, at:], to[END_Y, at:], to[SECONDS, at:]
-    to_ux, to_uy, to_speed = to[END_UX, at:], to[END_UY, at:], to[SPEED, at:]
-    for k in range(len(rows)):
-        o = table.options[rows[k]]
-        to_x[k] = px + c * o.x - s * o.y
-        to_y[k] = py + s * o.x + c * o.y
-        to_ux[k] = c * o.ux - s * o.uy
-        to_uy[k] = s * o.ux + c * o.uy
-        to_duration[k] = o.frames * FRAME_SECONDS
-        to_speed[k] = o.speed
+@force_inlined()
+def lay_self(me: EgoPose, state: CrowdState, terms: Terms, record: NDArray[np.float64]) -> Self:
+    """The pedestrian as cost terms see it; ``record`` (8 + fields,) is written."""
+    i = me.row
+    record[ME_X], record[ME_Y] = me.x, me.y
+    record[ME_TARGET_X], record[ME_TARGET_Y] = state.target_x[i], state.target_y[i]
+    record[ME_PREFERRED] = preferred_now(i, state)
+    record[ME_VX], record[ME_VY] = state.vx[i], state.vy[i]
+    record[ME_CORE] = me.core
+    for field in range(terms.fields.shape[1]):
+        record[FIELDS + field] = terms.fields[i, field]
+    return Self(state.type_index[i], record)
 
 
 @force_inlined()
 def group_bounds(
     me: EgoPose,
+    own: Self,
     first: int,
-    last: int,
     groups: OptionGroups,
-    state: CrowdState,
-    terms: Terms,
+    table: KernelTable,
     ends: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """Write lower bounds of the option terms in groups ``first`` to ``last``.
+    """Write lower bounds of the option terms in ``len(out)`` groups from ``first`` on.
 
-    ``ends`` (6, n) is workspace.  All terms must have bounds.
+    ``ends`` (6, n) gets the ends of the groups.  All terms must have bounds.
     """
     c, s, px, py = me.c, me.s, me.x, me.y
-    of = groups.ends
-    x, y, ux, uy = of[X, first:], of[Y, first:], of[UX, first:], of[UY, first:]
+    of, n = groups.ends[:, first:], len(out)
+    x, y, ux, uy = of[X], of[Y], of[UX], of[UY]
     to_x, to_y, to_ux, to_uy = ends[END_X], ends[END_Y], ends[END_UX], ends[END_UY]
-    for k in range(last - first):
+    for k in range(n):
         to_x[k] = px + c * x[k] - s * y[k]
         to_y[k] = py + s * x[k] + c * y[k]
         to_ux[k] = c * ux[k] - s * uy[k]
         to_uy[k] = s * ux[k] + c * uy[k]
         out[k] = 0.0
-    preferred, kind = preferred_now(me.row, state), state.type_index[me.row]
-    for t in range(len(terms.bound_address)):
+    for t in range(len(table.address)):
+        weight = table.weight[own.kind, t]
         call_bound_loop(
-            terms.bound_address[t], last - first, to_x, to_y, of[RADIUS, first:], to_ux, to_uy,
-            of[TURN, first:], of[DURATION, first:], of[SLOWEST, first:], of[FASTEST, first:],
-            px, py, state.target_x[me.row], state.target_y[me.row], preferred, state.vx[me.row],
-            state.vy[me.row], terms.option_parameters[t], terms.option_weight[kind, t], out,
-        )  # fmt: skip
+            table.address[t],
+            (n, ends, of, own.record, table.fields[t], table.numbers[t], weight, out),
+        )
 
 
 @force_inlined()
 def option_costs(
-    me: EgoPose,
-    first: int,
-    last: int,
-    ends: NDArray[np.float64],
-    state: CrowdState,
-    terms: Terms,
-    out: NDArray[np.float64],
+    own: Self, ends: NDArray[np.float64], table: KernelTable, out: NDArray[np.float64]
 ) -> None:
-    """Add the weighted sum of the option terms to ``out``, for rows ``first`` to ``last``."""
-    preferred, kind = preferred_now(me.row, state), state.type_index[me.row]
-    for t in range(len(terms.option_address)):
+    """Add the weighted sum of the option terms to ``out``, one number for each option."""
+    n = len(out)
+    for t in range(len(table.address)):
+        weight = table.weight[own.kind, t]
         call_option_loop(
-            terms.option_address[t], last - first, ends[END_X, first:], ends[END_Y, first:],
-            ends[END_UX, first:], ends[END_UY, first:], ends[SECONDS, first:], ends[SPEED, first:],
-            me.x, me.y, state.target_x[me.row], state.target_y[me.row], preferred,
-            state.vx[me.row], state.vy[me.row], terms.fields[me.row], terms.option_fields[t],
-            terms.option_parameters[t], terms.option_weight[kind, t], out[first:],
-        )  # fmt: skip
+            table.address[t],
+            (n, ends, own.record, table.fields[t], table.numbers[t], weight, out),
+        )
 
 
 @internal()
 def wall_cost(
-    me: EgoPose,
-    k: int,
-    ends: NDArray[np.float64],
-    walls: NDArray[np.float64],
-    state: CrowdState,
-    terms: Terms,
+    own: Self, k: int, ends: NDArray[np.float64], walls: NDArray[np.float64], table: KernelTable
 ) -> float:
     """Weighted sum of the wall terms of option k, each for its worst wall.
 
     Args:
-        me: the pedestrian.
+        own: the pedestrian.
         k: the option.
         ends: (6, n) ends of options.
         walls: (w, 5) walls within reach, with squared distances.
-        state: the crowd.
-        terms: compiled terms.
+        table: the wall terms.
     """
-    total, kind = 0.0, state.type_index[me.row]
-    for t in range(len(terms.wall_address)):
-        total += terms.wall_weight[kind, t] * call_wall_loop(
-            terms.wall_address[t], len(walls), ends[END_X, k], ends[END_Y, k], ends[END_UX, k],
-            ends[END_UY, k], ends[SECONDS, k], ends[SPEED, k], me.x, me.y,
-            state.target_x[me.row], state.target_y[me.row], me.core, walls,
-            terms.wall_parameters[t],
-        )  # fmt: skip
+    total, option = 0.0, ends[:, k:]
+    for t in range(len(table.address)):
+        total += table.weight[own.kind, t] * call_wall_loop(
+            table.address[t],
+            (len(walls), option, walls, own.record, table.fields[t], table.numbers[t]),
+        )
     return total

@@ -8,27 +8,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined, internal
-from mesa_mobility.crowd.collision.sampled import EgoPose
 from mesa_mobility.crowd.costs.kernel_calls import call_pair_loop
 from mesa_mobility.crowd.costs.layout import (
     COST,
-    END_UX,
-    END_UY,
-    END_X,
-    END_Y,
-    FIELDS,
-    LEAD,
+    ME_PREFERRED,
+    ME_TARGET_X,
+    ME_TARGET_Y,
+    ME_X,
+    ME_Y,
     OTHER_EX,
     OTHER_EY,
     OTHER_VX,
     OTHER_VY,
     OTHER_X,
     OTHER_Y,
+    SECONDS,
+    SPEED,
+    KernelTable,
+    Self,
 )
 from mesa_mobility.crowd.options.option_groups import DURATION, FASTEST, SLOWEST, OptionGroups
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, in_lanes, pick_between
-from mesa_mobility.crowd.planning.evaluation.option_costs import Terms, preferred_now
-from mesa_mobility.crowd.state.records import CrowdState
+from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
 
 AHEAD = 1.5
 """Look-ahead in seconds for people who come near: the longest option."""
@@ -52,56 +53,42 @@ NEAR = 0.6
 
 @force_inlined()
 def mark_relevant(
-    me: EgoPose,
-    first: int,
-    bounds: NDArray[np.float64],
-    lowest: float,
-    ends: NDArray[np.float64],
-    groups: OptionGroups,
-    count: int,
-    others: NDArray[np.float64],
-    state: CrowdState,
-    terms: Terms,
-    likely: NDArray[np.int64],
-    marks: NDArray[np.int64],
+    now: DecisionContext, groups: OptionGroups, table: KernelTable, work: Workspace
 ) -> bool:
-    """Mark for each of the first ``count`` neighbours the pair terms to which it is relevant.
+    """Mark for each of the foremost neighbours the pair terms to which it is relevant.
 
-    A few groups from ``first`` on that are likely to be opened are probed, each as if it were one
-    option. ``ends`` has their ends, ``likely`` is workspace.
+    A few groups that are likely to be opened are probed, each as if it were one option. ``work``
+    has their ends.
 
     Returns:
         False if there are too few neighbours to leave any out.
     """
-    if count <= FEW_NEIGHBOURS or len(terms.pair_address) > MOST_TERMS:
+    count, own, others, marks = now.foremost, now.own, work.foremost, work.marks
+    if count <= FEW_NEIGHBOURS or len(table.address) > MOST_TERMS:
         return False
-    n = pick_between(bounds, -np.inf, lowest + LIKELY, 0, likely)
+    n = pick_between(now.bounds, -np.inf, now.lowest + LIKELY, 0, work.picked)
     marks[:count] = 0
-    costs, kind = others[COST], state.type_index[me.row]
+    costs, ends, of, lanes = others[COST], work.ends, groups.ends, in_lanes(count)
     for asked in range(PROBE_GROUPS):
-        a = likely[(2 * asked + 1) * n // (2 * PROBE_GROUPS)]
-        seconds = groups.ends[DURATION, first + a]
-        speed = 0.5 * (groups.ends[SLOWEST, first + a] + groups.ends[FASTEST, first + a])
-        for t in range(len(terms.pair_address)):
+        a = work.picked[(2 * asked + 1) * n // (2 * PROBE_GROUPS)]
+        g = now.first + a
+        ends[SECONDS, a] = of[DURATION, g]
+        ends[SPEED, a] = 0.5 * (of[SLOWEST, g] + of[FASTEST, g])
+        for t in range(len(table.address)):
             call_pair_loop(
-                terms.pair_address[t], in_lanes(count), ends[END_X, a], ends[END_Y, a],
-                ends[END_UX, a], ends[END_UY, a], seconds, speed, me.x, me.y,
-                state.target_x[me.row], state.target_y[me.row], others[OTHER_X], others[OTHER_Y],
-                others[OTHER_VX], others[OTHER_VY], others[OTHER_EX], others[OTHER_EY],
-                others[LEAD], terms.fields[me.row], others[FIELDS:], others.shape[1],
-                terms.pair_fields[t], terms.pair_parameters[t], costs,
-            )  # fmt: skip
+                table.address[t],
+                (lanes, ends[:, a:], others, own.record, table.fields[t], table.numbers[t], costs),
+            )
             for b in range(count):
-                marks[b] |= int(costs[b] * terms.pair_weight[kind, t] > WORTH_MENTION) << t
+                marks[b] |= int(costs[b] * table.weight[own.kind, t] > WORTH_MENTION) << t
     return True
 
 
 @internal()
 def select_relevant(
-    me: EgoPose,
+    own: Self,
     others: NDArray[np.float64],
     count: int,
-    state: CrowdState,
     picked: NDArray[np.int64],
     dropped: NDArray[np.int32],
     to: NDArray[np.float64],
@@ -112,10 +99,9 @@ def select_relevant(
     towards it. A sum of pair terms over them alone is a lower bound of the sum over all.
 
     Args:
-        me: the pedestrian.
+        own: the pedestrian.
         others: (8 + fields, n) its neighbours.
         count: their number.
-        state: the crowd.
         picked: workspace.
         dropped: workspace.
         to: (8 + fields, n) gets a copy.
@@ -123,10 +109,11 @@ def select_relevant(
     Returns:
         Their number.
     """
-    ex, ey = state.target_x[me.row] - me.x, state.target_y[me.row] - me.y
+    own_x, own_y = own.record[ME_X], own.record[ME_Y]
+    ex, ey = own.record[ME_TARGET_X] - own_x, own.record[ME_TARGET_Y] - own_y
     away = math.sqrt(ex * ex + ey * ey)
-    along = preferred_now(me.row, state) / away if away > 0.0 else 0.0
-    own_x, own_y, own_vx, own_vy = me.x, me.y, along * ex, along * ey
+    along = own.record[ME_PREFERRED] / away if away > 0.0 else 0.0
+    own_vx, own_vy = along * ex, along * ey
     x, y, vx, vy = others[OTHER_X], others[OTHER_Y], others[OTHER_VX], others[OTHER_VY]
     to_x, to_y = others[OTHER_EX], others[OTHER_EY]
     for a in range(count):

@@ -7,7 +7,7 @@ notice. So terms of others are looked at in the first decision and in ever fewer
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,13 +15,8 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
-from mesa_mobility.crowd.costs.kernels import (
-    BoundKernel,
-    OptionKernel,
-    PairBoundKernel,
-    PairKernel,
-    WallKernel,
-)
+from mesa_mobility.crowd.costs.kernels import CostKernel, PairKernel, WallKernel
+from mesa_mobility.crowd.costs.records import Option, Options, Wall
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import SHIPPED
 from mesa_mobility.crowd.options.option_groups import OptionGroups
@@ -78,10 +73,8 @@ def check_terms(
     for term in terms:
         if isinstance(term.kernel, PairKernel | WallKernel):
             _check_sign(term, candidates)
-        if isinstance(term.bound, BoundKernel) and isinstance(term.kernel, OptionKernel):
+        if term.bound is not None:
             _check_bound(term, term.bound, candidates, groups, cluster)
-        elif isinstance(term.bound, PairBoundKernel):
-            _check_pair_bound(term, term.bound, candidates, groups, cluster)
 
 
 def _check_sign(term: CompiledTerm, candidates: Candidates) -> None:
@@ -89,12 +82,13 @@ def _check_sign(term: CompiledTerm, candidates: Candidates) -> None:
     whole = isinstance(term.kernel, PairKernel)
     others = _nearest(candidates) if whole else range(min(len(candidates.walls), WALLS))
     for k in np.unique(np.linspace(0, n - 1, min(n, OPTIONS)).astype(int)).tolist():
+        option = _option(candidates, k)
         for other in others:
-            cost = (
-                _pair_cost(term, candidates, k, other)
-                if whole
-                else _wall_cost(term, candidates, k, other)
-            )
+            if whole:
+                beside = {"other": _neighbour(term.kernel, candidates, other)}
+            else:
+                beside = {"wall": Wall(*candidates.walls[other].tolist())}
+            cost = _value(term, term.kernel, candidates, option=option, **beside)
             if cost < -ROUNDING:
                 what = "neighbour" if whole else "wall"
                 raise ModelError(
@@ -105,33 +99,15 @@ def _check_sign(term: CompiledTerm, candidates: Candidates) -> None:
 
 def _check_bound(
     term: CompiledTerm,
-    bound: BoundKernel,
+    bound: CostKernel,
     candidates: Candidates,
     groups: OptionGroups,
     cluster: int,
 ) -> None:
     costs = term.cost(candidates)
-    own = [candidates.preferred_speeds[0]]
-    if bound.own_velocity:
-        own += candidates.velocities[0].tolist()
     for first, last, group in _groups(groups, cluster):
-        least = _value(bound.function, *_extent(group, candidates), *own, _numbers(term))
+        least = _value(term, bound, candidates, options=_extent(group, candidates))
         _compare(term, least, costs[first:last], first, candidates)
-
-
-def _check_pair_bound(
-    term: CompiledTerm,
-    bound: PairBoundKernel,
-    candidates: Candidates,
-    groups: OptionGroups,
-    cluster: int,
-) -> None:
-    for first, last, group in _groups(groups, cluster)[:OPTIONS]:
-        for other in _nearest(candidates):
-            costs = [_pair_cost(term, candidates, k, other) for k in range(first, last)]
-            extent, them = _extent(group, candidates), _neighbour(candidates, other)
-            least = _value(bound.function, *extent, *them, _numbers(term))
-            _compare(term, least, np.array(costs), first, candidates)
 
 
 def _compare(
@@ -156,59 +132,37 @@ def _groups(groups: OptionGroups, cluster: int) -> list[tuple[int, int, NDArray[
     ]
 
 
-def _extent(group: NDArray[np.float64], candidates: Candidates) -> list[float]:
-    """The arguments of a bound up to the target."""
+def _extent(group: NDArray[np.float64], candidates: Candidates) -> Options:
+    """A group of options where the pedestrian stands."""
     x, y, radius, ux, uy, turn, duration, slowest, fastest = group.tolist()
     heading = float(candidates.facings[0])
-    c, s = np.cos(heading), np.sin(heading)
-    px, py = candidates.positions[0]
-    return [
-        px + c * x - s * y, py + s * x + c * y, radius, c * ux - s * uy, s * ux + c * uy, turn,
-        duration, slowest, fastest, px, py, *candidates.targets[0],
-    ]  # fmt: skip
+    c, s = float(np.cos(heading)), float(np.sin(heading))
+    px, py = candidates.positions[0].tolist()
+    facing = c * ux - s * uy, s * ux + c * uy
+    place = px + c * x - s * y, py + s * x + c * y
+    return Options(*place, radius, *facing, turn, duration, slowest, fastest)
 
 
-def _option(candidates: Candidates, k: int) -> list[float]:
-    """The arguments of a kernel up to the target."""
+def _option(candidates: Candidates, k: int) -> Option:
     heading = float(candidates.headings[k])
-    return [
-        *candidates.points[k], np.cos(heading), np.sin(heading), candidates.durations[k],
-        candidates.speeds[k], *candidates.positions[0], *candidates.targets[0],
-    ]  # fmt: skip
+    x, y = candidates.points[k].tolist()
+    facing = float(np.cos(heading)), float(np.sin(heading))
+    return Option(x, y, *facing, float(candidates.durations[k]), float(candidates.speeds[k]))
 
 
-def _neighbour(candidates: Candidates, other: int) -> list[float]:
-    return [
-        *candidates.neighbour_positions[other], *candidates.neighbour_velocities[other],
-        *candidates.neighbour_directions[other], candidates.leads[other],
-    ]  # fmt: skip
+def _me(kernel: CostKernel, of: Candidates) -> Any:
+    places = [*of.positions[0], *of.targets[0]]
+    values = [*places, of.preferred_speeds[0], *of.velocities[0], of.cores[0], of.facings[0]]
+    declared = [of.field(name)[0] for name in kernel.declared]
+    return kernel.kinds["me"](*map(float, [*values, of.types[0], of.groups[0], *declared]))
 
 
-def _pair_cost(term: CompiledTerm, candidates: Candidates, k: int, other: int) -> float:
-    mine = [candidates.field(name)[0] for name in term.kernel.fields]
-    theirs = [candidates.neighbour_field(name)[other] for name in term.kernel.fields]
-    return _value(
-        term.kernel.function,
-        *_option(candidates, k),
-        *_neighbour(candidates, other),
-        *mine,
-        *theirs,
-        _numbers(term),
-    )
-
-
-def _wall_cost(term: CompiledTerm, candidates: Candidates, k: int, wall: int) -> float:
-    return _value(
-        term.kernel.function,
-        *_option(candidates, k),
-        *candidates.walls[wall],
-        candidates.cores[0],
-        _numbers(term),
-    )
-
-
-def _numbers(term: CompiledTerm) -> tuple[float, ...]:
-    return tuple(term.parameters()) or (0.0,)
+def _neighbour(kernel: CostKernel, of: Candidates, k: int) -> Any:
+    moving = [*of.neighbour_positions[k], *of.neighbour_velocities[k]]
+    values = [*moving, *of.neighbour_directions[k], of.leads[k], of.neighbour_cores[k]]
+    kinds = [of.neighbour_facings[k], of.neighbour_types[k], of.neighbour_groups[k]]
+    declared = [of.neighbour_field(name)[k] for name in kernel.declared]
+    return kernel.kinds["other"](*map(float, [*values, *kinds, *declared]))
 
 
 def _nearest(candidates: Candidates) -> list[int]:
@@ -217,13 +171,13 @@ def _nearest(candidates: Candidates) -> list[int]:
     return order
 
 
-def _value(function: Callable[..., float], *given: Any) -> float:
+def _value(term: CompiledTerm, kernel: CostKernel, candidates: Candidates, **records: Any) -> float:
     """What a kernel's Python function gives; nan where compiled code divides by zero and goes on.
 
     The search itself refuses what is not a number.
     """
     try:
         with np.errstate(all="ignore"):
-            return float(function(*given))
+            return float(kernel.value(me=_me(kernel, candidates), p=term, **records))
     except (ZeroDivisionError, ValueError, OverflowError):
         return float("nan")

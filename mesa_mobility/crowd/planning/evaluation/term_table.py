@@ -10,18 +10,17 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
-from mesa_mobility.crowd.costs.kernel_reads import parameters_read
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
     CostKernel,
-    PairBoundKernel,
+    OptionKernel,
     PairKernel,
     WallKernel,
 )
+from mesa_mobility.crowd.costs.layout import FIELDS, KernelTable, Terms
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates, pairs_of
-from mesa_mobility.crowd.planning.evaluation.option_costs import Terms
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd
@@ -32,9 +31,6 @@ from mesa_mobility.plugins.output import numbers_given
 NO_EXTRA = np.empty(0), np.zeros(1, dtype=np.int64)
 """What ``extra_costs`` returns without NumPy terms."""
 
-PAST_THE_END = 8
-"""Parameters behind those of a term that are no numbers."""
-
 BATCH_PAIRS = 2_000_000
 """Pairs of an option and a neighbour laid out at once for terms in NumPy; bounds memory."""
 
@@ -42,62 +38,67 @@ BATCH_PAIRS = 2_000_000
 def compile_terms(
     terms: Sequence[CostTerm], types: Sequence[str] = ("",)
 ) -> tuple[Terms, list[CostTerm]]:
-    """Split terms into a table of compiled terms and a list of the others.
+    """Split terms into tables of compiled terms and a list of the others.
 
     Args:
         terms: the terms.
         types: names of the model's pedestrian types.
 
     Raises:
-        ModelError: a bound of another kind, of a kernel with fields, or a weight for an unknown
-            type.
+        ModelError: a kernel or a bound of the wrong kind, a term without an attribute that its
+            kernel reads, or a weight for an unknown type.
     """
-    option: list[CompiledTerm] = []
-    pair: list[CompiledTerm] = []
-    wall: list[CompiledTerm] = []
-    others: list[CostTerm] = []
-    for term in terms:
-        if not isinstance(term, CompiledTerm):
-            others.append(term)
-        elif isinstance(term.kernel, PairKernel):
-            pair.append(term)
-        elif isinstance(term.kernel, WallKernel):
-            wall.append(term)
-        else:
-            option.append(term)
-    pairs_address = [
-        term.kernel.pairs_address for term in pair if isinstance(term.kernel, PairKernel)
-    ]
-    names = fields_of(terms)
-    option_bounds = _bounds(option, BoundKernel, types)
-    pair_bounds = _bounds(pair, PairBoundKernel, types)
-    compiled = Terms(
-        np.array(option_bounds, dtype=np.int64),
-        *_table(option, types),
-        _taken(option, names),
-        *_table(pair, types),
-        _taken(pair, names),
-        np.array(pairs_address, dtype=np.int64),
-        np.array(pair_bounds, dtype=np.int64),
-        *_table(wall, types),
-        np.empty((1, 0)),
+    compiled = [term for term in terms if isinstance(term, CompiledTerm)]
+    names = fields_of(compiled)
+    option, pair, wall = (
+        [term for term in compiled if isinstance(term.kernel, kind)]
+        for kind in (OptionKernel, PairKernel, WallKernel)
     )
-    return compiled, others
+    # A negative weight makes a lower bound an upper one.
+    bounds = [term.bound if (term.weights(types) >= 0.0).all() else None for term in option]
+    pairs = [term.kernel.pairs_address for term in pair if isinstance(term.kernel, PairKernel)]
+    tables = Terms(
+        option=_table(option, [term.kernel for term in option], types, names),
+        bound=_table(option, bounds, types, names),
+        pair=_table(pair, [term.kernel for term in pair], types, names),
+        pairs_address=np.array(pairs, dtype=np.int64),
+        wall=_table(wall, [term.kernel for term in wall], types, names),
+        fields=np.empty((1, 0)),
+    )
+    return tables, [term for term in terms if not isinstance(term, CompiledTerm)]
 
 
 def fields_of(terms: Sequence[CostTerm]) -> list[str]:
     """Names of the fields that any of the compiled terms takes."""
     compiled = [term for term in terms if isinstance(term, CompiledTerm)]
-    return list(dict.fromkeys(name for term in compiled for name in term.kernel.fields))
+    kernels = [kernel for term in compiled for kernel in kernels_of(term)]
+    return list(dict.fromkeys(name for kernel in kernels for name in kernel.fields))
 
 
-def _taken(terms: Sequence[CompiledTerm], names: list[str]) -> NDArray[np.int64]:
-    """(terms, most) which of the named fields each term takes."""
-    width = max([1] + [len(term.kernel.fields) for term in terms])
-    taken = np.zeros((len(terms), width), dtype=np.int64)
-    for row, term in enumerate(terms):
-        taken[row, : len(term.kernel.fields)] = [names.index(name) for name in term.kernel.fields]
-    return taken
+def kernels_of(term: CompiledTerm) -> list[CostKernel]:
+    """The kernel of a term, and its bound if it has one.
+
+    Raises:
+        ModelError: one of them is of the wrong kind.
+    """
+    kernel, bound, called = term.kernel, term.bound, f"behaviour {term.name!r}"
+    if not isinstance(kernel, OptionKernel | PairKernel | WallKernel):
+        raise ModelError(
+            f"{called}: its kernel is a {type(kernel).__name__}, expected what option_kernel or "
+            "pair_kernel gives for one option"
+        )
+    if bound is None:
+        return [kernel]
+    if not isinstance(bound, BoundKernel):
+        raise ModelError(
+            f"{called}: its bound is a {type(bound).__name__}, expected a BoundKernel: an "
+            "option_kernel that asks for options"
+        )
+    if not isinstance(kernel, OptionKernel):
+        raise ModelError(
+            f"{called}: has a bound and a {type(kernel).__name__}, expected an OptionKernel"
+        )
+    return [kernel, bound]
 
 
 def field_values(names: Sequence[str], crowd: Crowd) -> NDArray[np.float64]:
@@ -124,24 +125,6 @@ def field_values(names: Sequence[str], crowd: Crowd) -> NDArray[np.float64]:
     return values
 
 
-def _bounds(
-    terms: Sequence[CompiledTerm], kind: type[CostKernel], types: Sequence[str]
-) -> list[int]:
-    """Addresses of the lower bounds; 0 for none, or where a negative weight turns one over."""
-    for term in terms:
-        if not isinstance(term.bound, kind | None):
-            raise ModelError(
-                f"behaviour {term.name!r}: its bound is a {type(term.bound).__name__}, "
-                f"expected a {kind.__name__}"
-            )
-        if term.bound is not None and term.kernel.fields:
-            raise ModelError(
-                f"behaviour {term.name!r}: has a bound and a kernel with fields, expected no bound"
-            )
-    bounds = [term.bound if (term.weights(types) >= 0.0).all() else None for term in terms]
-    return [0 if bound is None else bound.address for bound in bounds]
-
-
 class CompiledTerms:
     """``compile_terms``, cached until a term, a weight or a parameter changes.
 
@@ -162,7 +145,7 @@ class CompiledTerms:
             self._compiled = [term for term in terms if isinstance(term, CompiledTerm)]
         key = (
             [(term.weight, term.weight_by_type, term.for_types) for term in self._terms],
-            [term.parameters() for term in self._compiled],
+            [term.numbers(each) for term in self._compiled for each in kernels_of(term)],
         )
         if key != self._key:
             self._key = key
@@ -175,33 +158,32 @@ class CompiledTerms:
 
 
 def _table(
-    terms: Sequence[CompiledTerm], types: Sequence[str]
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Address of each term, its weights by type, and its parameters."""
-    # An index that is computed and past the end gives no number, which the search refuses.
-    width = max([0] + [len(term.parameters()) for term in terms]) + PAST_THE_END
-    parameters = np.full((len(terms), width), np.nan)
-    for row, term in enumerate(terms):
-        own = term.parameters()
-        for kernel in (term.kernel, term.bound):
-            _check_reads(term, kernel, len(own))
-        parameters[row, : len(own)] = numbers_given(
-            f"behaviour {term.name!r}", "parameters", own, (len(own),)
-        )
-    addresses = np.array([term.kernel.address for term in terms], dtype=np.int64)
+    terms: Sequence[CompiledTerm],
+    kernels: Sequence[CostKernel | None],
+    types: Sequence[str],
+    names: list[str],
+) -> KernelTable:
+    """The table of a kernel of each term, where it has one; ``names`` are the fields laid out."""
+    numbers, fields = [], []
+    for term, kernel in zip(terms, kernels, strict=True):
+        numbers.append(np.zeros(1) if kernel is None else term.checked_numbers(kernel))
+        taken = () if kernel is None else kernel.fields
+        fields.append(np.array([FIELDS + names.index(name) for name in taken], dtype=np.int64))
     weights = np.array([term.weights(types) for term in terms]).reshape(len(terms), len(types))
-    return addresses, np.ascontiguousarray(weights.T), parameters
+    return KernelTable(
+        np.array([0 if each is None else each.address for each in kernels], dtype=np.int64),
+        np.ascontiguousarray(weights.T),
+        _rows(numbers, np.float64),
+        _rows(fields, np.int64),
+    )
 
 
-def _check_reads(term: CompiledTerm, kernel: CostKernel | None, given: int) -> None:
-    """Raise ModelError where a kernel reads parameters that the term does not give."""
-    read = set() if kernel is None else parameters_read(kernel.function)
-    wrong = sorted(index for index in read if not 0 <= index < given)
-    if wrong:
-        raise ModelError(
-            f"behaviour {term.name!r}: its kernel reads parameters[{wrong[-1]}], but parameters() "
-            f"gives {given} numbers"
-        )
+def _rows(rows: Sequence[NDArray[Any]], kind: type) -> NDArray[Any]:
+    """Rows of unequal lengths as an array, filled up with 0."""
+    filled: NDArray[Any] = np.zeros((len(rows), max([1, *map(len, rows)])), dtype=kind)
+    for at, row in enumerate(rows):
+        filled[at, : len(row)] = row
+    return filled
 
 
 def extra_costs(

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from mesa_mobility import CompiledTerm, bound_kernel, option_kernel
+from mesa_mobility import CompiledTerm, Option, Options, option_kernel
 from mesa_mobility.verification.cases import case
 from mesa_mobility.verification.runs import Run
 from mesa_mobility.verification.scenarios.tracks.oval import Oval, oval_model
@@ -26,22 +26,16 @@ PEOPLE = (6, 10, 14, 19, 23, 28, 33, 38, 43, 48)
 
 
 @option_kernel
-def _off_line(
-    x: float, y: float, ux: float, uy: float, duration: float, speed: float, sx: float, sy: float,
-    tx: float, ty: float, preferred: float, p: tuple[float, ...],
-) -> float:  # fmt: skip
-    beside = max(abs(x) - p[0], 0.0)
-    return abs(math.sqrt(beside * beside + y * y) - p[1])
+def _off_line(option: Option, p: InLine) -> float:
+    beside = max(abs(option.x) - p.half_straight, 0.0)
+    return abs(math.sqrt(beside * beside + option.y * option.y) - p.radius)
 
 
-@bound_kernel
-def _off_line_bound(
-    x: float, y: float, radius: float, ux: float, uy: float, turn: float, duration: float,
-    slowest: float, fastest: float, sx: float, sy: float, tx: float, ty: float, preferred: float,
-    p: tuple[float, ...],
-) -> float:  # fmt: skip
-    beside = max(abs(x) - p[0], 0.0)
-    return max(abs(math.sqrt(beside * beside + y * y) - p[1]) - radius, 0.0)
+@option_kernel
+def _off_line_bound(options: Options, p: InLine) -> float:
+    beside = max(abs(options.x) - p.half_straight, 0.0)
+    off = abs(math.sqrt(beside * beside + options.y * options.y) - p.radius)
+    return max(off - options.radius, 0.0)
 
 
 class InLine(CompiledTerm):
@@ -59,11 +53,8 @@ class InLine(CompiledTerm):
 
     def __init__(self, oval: Oval, weight: float | None = None) -> None:
         super().__init__(weight)
-        self.oval = oval
-
-    def parameters(self) -> tuple[float, ...]:
-        """Half the length of the straights, and the radius of the half circles, metres."""
-        return (self.oval.straight / 2, self.oval.radius)
+        self.half_straight = oval.straight / 2
+        self.radius = oval.radius
 
 
 def single_file(seed: int, *, people: int) -> dict[str, Any]:

@@ -5,20 +5,21 @@ import pytest
 from mesa_mobility.behaviors import Headway, Interference, RightOfWay
 from numba import njit
 
-from mesa_mobility.crowd.collision.sampled import EgoPose
+from mesa_mobility import Option, Other
+from mesa_mobility.crowd.costs.layout import Self
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, pick_between
 from mesa_mobility.crowd.planning.evaluation.neighbour_costs import ENOUGH, pair_cost
 from mesa_mobility.crowd.planning.evaluation.term_table import compile_terms
-from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.planning.workspace import PairSums
+from tests.fixtures.records import me
 
 NEIGHBOURS = 21
 
 
 @njit
-def _cost(x, y, ends, count, others, enough, state, terms, sums, most_selective_term):
+def _cost(own, ends, count, others, enough, table, sums):
     fill_lane(count, others)
-    me = EgoPose(0, x, y, 1.0, 0.0, 0.14)
-    return pair_cost(me, 0, ends, count, others, enough, state, terms, sums, most_selective_term)
+    return pair_cost(own, 0, ends, count, others, enough, table, sums)
 
 
 @njit
@@ -30,8 +31,7 @@ def _pick(bounds, above, up_to, first, picked):
 def cost():
     """A function of what is enough and of the term to begin with, and the costs by term."""
     rng = np.random.default_rng(8)
-    crowd = Crowd(1)
-    crowd.target_x[0] = 5.0
+    own = Self(0, np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14]))
     ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
     others = np.zeros((8, 32))
     others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
@@ -39,26 +39,20 @@ def cost():
     others[6, :NEIGHBOURS] = 1.0
     terms = [Interference(weight=1000.0), Headway(weight=2.0), RightOfWay(weight=3.0)]
     compiled, _ = compile_terms(terms)
-    sums = np.zeros(3)
 
     def of(enough, first):
-        most_selective_term = np.array([first])
-        given = (
-            ends,
-            NEIGHBOURS,
-            others,
-            enough,
-            crowd.records,
-            compiled,
-            sums,
-            most_selective_term,
-        )
-        return _cost(0.0, 0.0, *given), most_selective_term[0]
+        sums = PairSums(np.zeros(3), np.array([first]))
+        return _cost(own, ends, NEIGHBOURS, others, enough, compiled.pair, sums), sums.first[0]
 
     each = [
         term.weight
         * sum(
-            term.kernel.function(*ends[:, 0], 0.0, 0.0, 5.0, 0.0, *others[:7, a], term.parameters())
+            term.kernel.value(
+                option=Option(*ends[:, 0]),
+                me=me(),
+                other=Other(*others[:7, a], 0.0, 0.0, 0.0, 0.0),
+                p=term,
+            )
             for a in range(NEIGHBOURS)
         )
         for term in terms
