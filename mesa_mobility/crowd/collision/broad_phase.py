@@ -18,10 +18,16 @@ from mesa_mobility.compiled.simd import LANES, WIDE
 from mesa_mobility.crowd.collision.sampled import SLACK, Close, EgoPose, lay_ahead, off_box2
 from mesa_mobility.crowd.collision.simd_boxes import extent, levels_within
 from mesa_mobility.crowd.collision.simd_tests import drop_within, places_within
-from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS, drop_beside, places_beside
+from mesa_mobility.crowd.collision.walls import (
+    BARRIER_FIELDS,
+    Barriers,
+    drop_beside,
+    places_beside,
+)
 from mesa_mobility.crowd.options.option_groups import AT_X, AT_Y, LANE_FIELDS, OptionGroups
 from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
 from mesa_mobility.crowd.state.clearances import MARGIN
+from mesa_mobility.crowd.state.paths import Box
 from mesa_mobility.crowd.state.records import CrowdState
 
 ALL_LANES = 2**LANES - 1
@@ -52,21 +58,29 @@ class Fences(NamedTuple):
     at: NDArray[np.float32]
 
 
+class Blocks(NamedTuple):
+    """What blocks the groups of a cluster.
+
+    ``bodies`` and ``fences`` at the levels; ``dropped`` (groups and padding,) 1 for groups that are
+    certainly blocked.
+    """
+
+    bodies: Bodies
+    fences: Fences
+    dropped: NDArray[np.int32]
+
+
 @force_inlined()
 def cull_groups(
     me: EgoPose,
     frame: int,
     close: Close,
-    count: int,
-    barriers: NDArray[np.float32],
-    n_clear_walls: int,
+    barriers: Barriers,
     exits_from: float,
     table: OptionTable,
     groups: OptionGroups,
     state: CrowdState,
-    bodies: Bodies,
-    fences: Fences,
-    dropped: NDArray[np.int32],
+    to: Blocks,
 ) -> int:
     """Find groups that are not certainly blocked, and the bodies and walls that matter to them.
 
@@ -74,21 +88,19 @@ def cull_groups(
         me: the pedestrian.
         frame: now.
         close: people who may come in the way.
-        count: their number.
-        barriers: (5, n) walls within reach, in the pedestrian's coordinates.
-        n_clear_walls: number of walls that do not touch the body.
+        barriers: walls within reach that do not touch the body.
         exits_from: metres to the nearest open exit.  Levels by which options may reach it are not
             tested: the pedestrian may have left.
         table: options of all capabilities.
         groups: these options in groups, with the extent of each.
         state: the crowd.
-        bodies: is written.
-        fences: is written.
-        dropped: is written: 1 for groups of the cluster that are certainly blocked.
+        to: is written.
 
     Returns:
         The number of groups that are not certainly blocked.
     """
+    bodies, fences, dropped = to.bodies, to.fences, to.dropped
+    count = close.known[0]
     spanned = groups.clusters[state.cluster[me.row]]
     first, last = spanned.first, spanned.last
     n = last - first
@@ -122,12 +134,10 @@ def cull_groups(
             drop_within(
                 circles, at, row, n, bodies.at, 3 * level * size, size, bodies.known[level], dropped
             )
-        if n_clear_walls > 0:
+        if barriers.known > 0:
             span = spanned.spans
-            _keep_fences(
-                span[0, level], span[1, level], span[2, level], span[3, level], keep, barriers,
-                n_clear_walls, level, fences,
-            )  # fmt: skip
+            spans = span[0, level], span[1, level], span[2, level], span[3, level]
+            _keep_fences(spans, keep, barriers.at, barriers.known, level, fences)
             drop_beside(
                 circles, at, row, n, fences.at, BARRIER_FIELDS * level * far, far,
                 fences.known[level], keep, dropped,
@@ -139,30 +149,27 @@ def cull_groups(
         for level in range(levels):
             walls = fences.known[level]
             if bodies.known[level] + walls > 0:
-                x0, y0, x1, y1 = extent(circles, 3 * level * row + first, row, n, dropped)
-                _keep_bodies(x0, y0, x1, y1, level, bodies)
-                _keep_fences(x0, y0, x1, y1, keep, fences.at[level], walls, level, fences)
+                box = extent(circles, 3 * level * row + first, row, n, dropped)
+                _keep_bodies(box, level, bodies)
+                _keep_fences(box, keep, fences.at[level], walls, level, fences)
     return free
 
 
 @internal()
-def _keep_bodies(x0: float, y0: float, x1: float, y1: float, level: int, bodies: Bodies) -> None:
+def _keep_bodies(box: Box, level: int, bodies: Bodies) -> None:
     """Drop the bodies at a level that no option within a box can hit."""
     kept = 0
     at = bodies.at[level]
     for m in range(bodies.known[level]):
         x, y, apart = at[0, m], at[1, m], at[2, m]
         at[0, kept], at[1, kept], at[2, kept] = x, y, apart
-        kept += int(off_box2(x, y, x0, y0, x1, y1) < apart * apart)
+        kept += int(off_box2(x, y, box) < apart * apart)
     bodies.known[level] = kept
 
 
 @internal()
 def _keep_fences(
-    x0: float,
-    y0: float,
-    x1: float,
-    y1: float,
+    box: Box,
     apart: float,
     barriers: NDArray[np.float32],
     count: int,
@@ -173,6 +180,7 @@ def _keep_fences(
 
     ``barriers`` (5, n) may be the arrays of the level itself.
     """
+    x0, y0, x1, y1 = box
     kept = 0
     to = fences.at[level]
     for w in range(count):
@@ -189,12 +197,13 @@ def _keep_fences(
 
 @internal()
 def free_options(
-    group: int, wanted: int, bodies: Bodies, fences: Fences, apart: float, groups: OptionGroups
+    group: int, wanted: int, blocks: Blocks, apart: float, groups: OptionGroups
 ) -> int:
     """Bits of the ``wanted`` ones of a group's 8 options that are free at all levels.
 
     A free option is within no body, and no closer than ``apart`` to a wall.
     """
+    bodies, fences = blocks.bodies, blocks.fences
     # Lanes without an option do not count.
     free = wanted & ((1 << (groups.first[group + 1] - groups.first[group])) - 1)
     start = group * LANE_FIELDS * LANES

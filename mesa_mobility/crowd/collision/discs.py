@@ -8,6 +8,7 @@ Bodies of one disc get the tests of ``exact``.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,15 @@ from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import box_of, facing_at_waypoint, position_at
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.floorplan.floor.geometry import segment_segment_distance2
+
+
+class Apart(NamedTuple):
+    """Where pedestrian i is from pedestrian j, metres, and the facings of the two, radians."""
+
+    x: float
+    y: float
+    facing: float
+    theirs: float
 
 
 @internal()
@@ -146,7 +156,7 @@ def _discs_collide(
     x, y, facing = path[0, 0], path[1, 0], path[2, 0]
     jx, jy = position_at(state, table, j, frame)
     their_facing = _facing_at(state, table, j, frame)
-    first_x, first_y, first, their_first = x - jx, y - jy, facing, their_facing
+    begin = Apart(x - jx, y - jy, facing, their_facing)
     t = frame
     while t < stop:
         k, p = min((t - frame) // spacing, pieces), min((t - start) // step, last)
@@ -164,10 +174,11 @@ def _discs_collide(
         to_x, to_y, to_facing = _pose_on(path, pieces, spacing, following - frame)
         to_jx, to_jy = position_at(state, table, j, following)
         to_theirs = _facing_at(state, table, j, following)
-        if _comes_within(x - jx, y - jy, to_x - to_jx, to_y - to_jy, apart * apart) and _discs_meet(
-            i, j, first_x, first_y, first, their_first, x - jx, y - jy, facing, their_facing,
-            to_x - to_jx, to_y - to_jy, to_facing, to_theirs, table, state,
-        ):  # fmt: skip
+        here = Apart(x - jx, y - jy, facing, their_facing)
+        there = Apart(to_x - to_jx, to_y - to_jy, to_facing, to_theirs)
+        if _comes_within(here.x, here.y, there.x, there.y, apart * apart) and _discs_meet(
+            i, j, begin, here, there, table, state
+        ):
             return True
         x, y, facing, jx, jy, their_facing = to_x, to_y, to_facing, to_jx, to_jy, to_theirs
         t = following
@@ -178,44 +189,35 @@ def _discs_collide(
 def _discs_meet(
     i: int,
     j: int,
-    first_x: float,
-    first_y: float,
-    first: float,
-    their_first: float,
-    x: float,
-    y: float,
-    facing: float,
-    their_facing: float,
-    to_x: float,
-    to_y: float,
-    to_facing: float,
-    to_theirs: float,
+    begin: Apart,
+    here: Apart,
+    there: Apart,
     table: OptionTable,
     state: CrowdState,
 ) -> bool:
-    """Whether discs of two people meet while these move from one pose to another.
+    """Whether discs of two people meet while these move from ``here`` to ``there``.
 
-    Positions are those of pedestrian i from j.  The first pose is that at the start of the path:
-    discs that are closer than allowed to begin with may stay, but not come closer.
+    ``begin`` is the start of the path: discs that are closer than allowed to begin with may stay,
+    but not come closer.
     """
     mine, theirs = table.shapes[state.type_index[i]], table.shapes[state.type_index[j]]
     core, their_core = state.core[i], state.core[j]
-    c0, s0, e0, f0 = math.cos(first), math.sin(first), math.cos(their_first), math.sin(their_first)
-    c1, s1 = math.cos(facing), math.sin(facing)
-    e1, f1 = math.cos(their_facing), math.sin(their_facing)
-    c2, s2 = math.cos(to_facing), math.sin(to_facing)
-    e2, f2 = math.cos(to_theirs), math.sin(to_theirs)
+    c0, s0 = math.cos(begin.facing), math.sin(begin.facing)
+    e0, f0 = math.cos(begin.theirs), math.sin(begin.theirs)
+    c1, s1 = math.cos(here.facing), math.sin(here.facing)
+    e1, f1 = math.cos(here.theirs), math.sin(here.theirs)
+    c2, s2 = math.cos(there.facing), math.sin(there.facing)
+    e2, f2 = math.cos(there.theirs), math.sin(there.theirs)
     for a in range(mine.discs):
         off = core * mine.offset[a]
         for b in range(theirs.discs):
             other = their_core * theirs.offset[b]
             r = core * mine.radius[a] + their_core * theirs.radius[b] + MARGIN
-            dx, dy = first_x + off * c0 - other * e0, first_y + off * s0 - other * f0
+            dx, dy = begin.x + off * c0 - other * e0, begin.y + off * s0 - other * f0
             limit = min(r * r, (dx * dx + dy * dy) * (1.0 - 1e-9))
-            if _comes_within(
-                x + off * c1 - other * e1, y + off * s1 - other * f1,
-                to_x + off * c2 - other * e2, to_y + off * s2 - other * f2, limit,
-            ):  # fmt: skip
+            x, y = here.x + off * c1 - other * e1, here.y + off * s1 - other * f1
+            to_x, to_y = there.x + off * c2 - other * e2, there.y + off * s2 - other * f2
+            if _comes_within(x, y, to_x, to_y, limit):
                 return True
     return False
 

@@ -20,7 +20,7 @@ from mesa_mobility.crowd.collision.simd_boxes import near_box
 from mesa_mobility.crowd.collision.simd_transforms import samples_to_ego
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable, in_lines
 from mesa_mobility.crowd.state.clearances import MARGIN
-from mesa_mobility.crowd.state.paths import box_of, position_at
+from mesa_mobility.crowd.state.paths import Box, box_of, position_at
 from mesa_mobility.crowd.state.records import CrowdState
 
 SLACK = 1e-5
@@ -61,9 +61,12 @@ class Close(NamedTuple):
 
     Fields: ``people`` (n,) records of ``NEARBY``.  In the deciding pedestrian's coordinates,
     metres: ``sweeps`` (3, n and padding) x, y and radius of circles around their remaining paths,
-    the distance to keep included; ``ahead`` (n, 2, 16) their positions at the sample times.
+    the distance to keep included; ``ahead`` (n, 2, 16) their positions at the sample times;
+    ``known`` (2,) how many of ``people`` may come in the way, and from which index on to the end
+    are those who are too close already.
     """
 
+    known: NDArray[np.int64]
     people: NDArray[np.void]
     sweeps: NDArray[np.float32]
     ahead: NDArray[np.float32]
@@ -72,6 +75,7 @@ class Close(NamedTuple):
 def make_close(people: int) -> Close:
     """Arrays for a number of people."""
     return Close(
+        np.zeros(2, np.int64),
         np.empty(people, NEARBY),
         np.zeros((3, people + WIDE), np.float32),
         in_lines((people, 2, SAMPLES), np.float32),
@@ -79,8 +83,9 @@ def make_close(people: int) -> Close:
 
 
 @internal()
-def off_box2(x: float, y: float, x0: float, y0: float, x1: float, y1: float) -> float:
+def off_box2(x: float, y: float, box: Box) -> float:
     """Squared distance from (x, y) to a box, m2; 0 within it."""
+    x0, y0, x1, y1 = box
     dx, dy = max(x0 - x, x - x1, 0.0), max(y0 - y, y - y1, 0.0)
     return dx * dx + dy * dy
 
@@ -90,24 +95,17 @@ def broad_phase_neighbours(
     me: EgoPose,
     near: NDArray[np.int64],
     sweeps: NDArray[np.float64],
-    x0: float,
-    y0: float,
-    x1: float,
-    y1: float,
+    box: Box,
     table: OptionTable,
     state: CrowdState,
     picked: NDArray[np.int64],
     dropped: NDArray[np.int32],
     to: Close,
-) -> tuple[int, int]:
+) -> None:
     """Write those of ``near`` who may come into a box in the pedestrian's coordinates.
 
-    ``sweeps`` (3, n) has x, y and radius of circles around their paths; ``picked`` and ``dropped``
-    are workspace.
-
-    Returns:
-        Their number, and the index in ``to.people`` from which to its end are those who are too
-        close already.  For them the exact test has a rule of its own.
+    For those who are too close already the exact test has a rule of its own. ``sweeps`` (3, n) has
+    x, y and radius of circles around their paths; ``picked`` and ``dropped`` are workspace.
     """
     sweep_x, sweep_y, radius = sweeps[0], sweeps[1], sweeps[2]
     px, py, c, s = me.x, me.y, me.c, me.s
@@ -116,7 +114,7 @@ def broad_phase_neighbours(
         dx, dy = sweep_x[a] - px, sweep_y[a] - py
         x, y = c * dx + s * dy, c * dy - s * dx
         sweep = radius[a] + own
-        dropped[a] = np.int32(off_box2(x, y, x0, y0, x1, y1) >= sweep * sweep)
+        dropped[a] = np.int32(off_box2(x, y, box) >= sweep * sweep)
     n = 0
     for a in range(len(near)):
         picked[n] = a
@@ -145,7 +143,7 @@ def broad_phase_neighbours(
         somebody.overhang = over
         somebody.laid = False
         count += 1
-    return count, touching
+    to.known[0], to.known[1] = count, touching
 
 
 @internal()
@@ -165,10 +163,10 @@ def lay_ahead(
         share = min((past - SAMPLE_FRAMES * first) / SAMPLE_FRAMES, 1.0)
         dx, dy = state.from_x[j] - me.x, state.from_y[j] - me.y
         c, s = state.from_c[j], state.from_s[j]
-        samples_to_ego(
-            table.path, state.option[j], first, share, me.c * c + me.s * s, me.c * s - me.s * c,
-            me.c * dx + me.s * dy, me.c * dy - me.s * dx, ahead, 2 * SAMPLES * a, SAMPLES,
-        )  # fmt: skip
+        turn = me.c * c + me.s * s, me.c * s - me.s * c
+        place = me.c * dx + me.s * dy, me.c * dy - me.s * dx
+        at = 2 * SAMPLES * a
+        samples_to_ego(table.path, state.option[j], first, share, turn, place, ahead, at)
         return
     for k in range(SAMPLES):
         jx, jy = position_at(state, table, j, frame + SAMPLE_FRAMES * k)
@@ -182,7 +180,6 @@ def sampled_collision(
     frame: int,
     own: NDArray[np.float32],
     stride: float,
-    count: int,
     first: int,
     table: OptionTable,
     state: CrowdState,
@@ -196,7 +193,6 @@ def sampled_collision(
         frame: now.
         own: (3, 16) the path at the sample times, in the pedestrian's coordinates.
         stride: greatest distance between two successive samples, metres.
-        count: number of close people.
         first: index of the person to test first: options close in rank mostly hit the same
             person.
         table: options of all capabilities.
@@ -207,7 +203,7 @@ def sampled_collision(
     Returns:
         Index of a person who is certainly hit, or -1; number of rows in ``unsure``.
     """
-    doubtful = 0
+    doubtful, count = 0, close.known[0]
     half = np.float32(0.5 * stride + me.overhang + 3.0 * SLACK)
     x0, y0, x1, y1 = box_of(own, SAMPLES - 1)
     own_x, own_y = own[0], own[1]

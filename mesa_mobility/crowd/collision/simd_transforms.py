@@ -32,12 +32,10 @@ def _plain_lanes_to_world(
     group: int,
     ends: NDArray[np.float64],
     at: int,
-    c: float,
-    s: float,
-    px: float,
-    py: float,
+    pose: tuple[float, float, float, float],
     seconds: float,
 ) -> None:
+    px, py, c, s = pose
     for lane in range(LANES):
         x, y = np.float64(lanes[group, 0, lane]), np.float64(lanes[group, 1, lane])
         ux, uy = np.float64(lanes[group, 2, lane]), np.float64(lanes[group, 3, lane])
@@ -48,11 +46,12 @@ def _plain_lanes_to_world(
 
 
 @with_twin(_plain_lanes_to_world)
-def lanes_to_world(typingctx, lanes, group, ends, at, c, s, px, py, seconds):
+def lanes_to_world(typingctx, lanes, group, ends, at, pose, seconds):
     """Write where the 8 options of a group end, in the world, from column ``at`` of ``ends`` on.
 
     ``lanes`` (groups, fields, 8), C-contiguous, with the fields x, y, ux, uy and speed first;
-    ``ends`` (6, n), C-contiguous, gets x, y, ux, uy, the seconds that they all take and the speed.
+    ``ends`` (6, n), C-contiguous, gets x, y, ux, uy, the seconds that they all take and the speed;
+    ``pose`` is where the pedestrian stands, and cosine and sine of its heading.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -69,7 +68,8 @@ def lanes_to_world(typingctx, lanes, group, ends, at, c, s, px, py, seconds):
             fields.append(builder.fpext(field, ir.VectorType(DOUBLE, LANES)))
             of = builder.add(of, ir.Constant(LONG, LANES))
         x, y, ux, uy, speed = fields
-        c, s, px, py, seconds = (spread(builder, args[k], LANES) for k in range(4, 9))
+        pose = (builder.extract_value(args[4], k) for k in range(4))
+        px, py, c, s, seconds = (spread(builder, each, LANES) for each in (*pose, args[5]))
         add, sub, mul = builder.fadd, builder.fsub, builder.fmul
         rows = (
             sub(add(px, mul(c, x)), mul(s, y)),
@@ -84,7 +84,8 @@ def lanes_to_world(typingctx, lanes, group, ends, at, c, s, px, py, seconds):
             at = builder.add(at, row)
         return context.get_dummy_value()
 
-    return types.void(lanes, group, ends, at, *[types.float64] * 5), codegen
+    given = [types.UniTuple(types.float64, 4), types.float64]
+    return types.void(lanes, group, ends, at, *given), codegen
 
 
 @force_inlined()
@@ -93,13 +94,10 @@ def samples_to_ego(
     path: int,
     first: int,
     share: float,
-    c: float,
-    s: float,
-    x: float,
-    y: float,
+    turn: tuple[float, float],
+    place: tuple[float, float],
     to: NDArray[np.float32],
     at: int,
-    row: int,
 ) -> None:
     """Write where somebody on a path is at the sample times to come, 16 of them.
 
@@ -109,21 +107,18 @@ def samples_to_ego(
         path: which one.
         first: sample that comes before now, 15 at most.
         share: how much of the way from there to the next one is behind, 0 to 1.
-        c: cosine of what the path is turned by.
-        s: its sine.
-        x: where it begins, metres.
-        y: where it begins, metres.
-        to: C-contiguous; gets x from place ``at`` on and y ``row`` places farther on.
+        turn: cosine and sine of what the path is turned by.
+        place: where it begins, metres.
+        to: C-contiguous; gets x from place ``at`` on and then y.
         at: place.
-        row: places.
     """
     target = to.flat
-    along, cosine, sine = np.float32(share), np.float32(c), np.float32(s)
-    from_x, from_y = np.float32(x), np.float32(y)
+    along, cosine, sine = np.float32(share), np.float32(turn[0]), np.float32(turn[1])
+    from_x, from_y = np.float32(place[0]), np.float32(place[1])
     for k in range(SAMPLES):
         here, there = min(first + k, SAMPLES - 1), min(first + k + 1, SAMPLES - 1)
         px, py = paths[path, 0, here], paths[path, 1, here]
         own_x = px + along * (paths[path, 0, there] - px)
         own_y = py + along * (paths[path, 1, there] - py)
         target[at + k] = from_x + (cosine * own_x - sine * own_y)
-        target[at + row + k] = from_y + (sine * own_x + cosine * own_y)
+        target[at + SAMPLES + k] = from_y + (sine * own_x + cosine * own_y)

@@ -10,7 +10,7 @@ farther away than it can move between samples does not. Only what is left needs 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
@@ -45,6 +45,14 @@ from mesa_mobility.crowd.collision.sampled import EgoPose
 BARRIER_FIELDS = 5
 """Rows of barriers: x and y of one end, x and y from there to the other, the inverse square of its
 length."""
+
+
+class Barriers(NamedTuple):
+    """Walls in a pedestrian's coordinates: ``at`` (5, n), of which the first ``known`` count."""
+
+    at: NDArray[np.float32]
+    known: int
+
 
 NOTHING, ALL = np.float32(0.0), np.float32(1.0)
 

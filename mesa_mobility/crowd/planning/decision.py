@@ -14,7 +14,7 @@ from mesa_mobility.crowd.collision.broad_phase import cull_groups
 from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
-from mesa_mobility.crowd.collision.walls import walls_to_ego
+from mesa_mobility.crowd.collision.walls import Barriers, walls_to_ego
 from mesa_mobility.crowd.costs.layout import FIELDS, LEAD
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES
 from mesa_mobility.crowd.planning.branch_and_bound import CROWD, FEW, NONE, cheapest_free
@@ -26,6 +26,7 @@ from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
     select_relevant,
 )
 from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
+from mesa_mobility.crowd.planning.feasibility import Obstacles
 from mesa_mobility.crowd.planning.grid import (
     cover_in,
     farthest_range,
@@ -129,25 +130,24 @@ def _decide_one(
     farthest = table.farthest[cluster]
     reach = wall_reach(farthest, core + overhang)
     walls = work.walls[: near_walls(around, x, y, destination, reach, work.walls)]
-    n_clear_walls = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
+    n_clear = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
+    barriers = Barriers(work.barriers, n_clear)
     exits_from = exit_distance(around, x, y, destination)
     # The box that the options and the fallback can reach.
     aside = state.preferred[i] * FALLBACK_SECONDS
     spanned = groups.clusters[cluster]
     whole = spanned.whole
-    found, touching = broad_phase_neighbours(
-        me, near if rules.hard_bodies else near[:0], sweeps, min(whole[0], -aside),
-        min(whole[1], -aside), max(whole[2], aside), max(whole[3], aside), table, state,
-        work.unsure, work.dropped, work.close,
-    )  # fmt: skip
-    n = cull_groups(
-        me, frame, work.close, found, work.barriers, n_clear_walls, exits_from, table, groups,
-        state, work.bodies, work.fences, work.blocked,
-    )  # fmt: skip
+    x0, y0 = min(whole[0], -aside), min(whole[1], -aside)
+    box = x0, y0, max(whole[2], aside), max(whole[3], aside)
+    hard = near if rules.hard_bodies else near[:0]
+    broad_phase_neighbours(
+        me, hard, sweeps, box, table, state, work.unsure, work.dropped, work.close
+    )
+    n = cull_groups(me, frame, work.close, barriers, exits_from, table, groups, state, work.blocks)
     option, gone = NONE, -1
     if n > 0:
         first, last = spanned.first, spanned.last
-        bounds, dropped = work.bounds[: last - first], work.blocked
+        bounds, dropped = work.bounds[: last - first], work.blocks.dropped
         bounds[:] = 0.0
         if bounded:
             group_bounds(me, own, first, groups, terms.bound, work.ends, bounds)
@@ -174,10 +174,8 @@ def _decide_one(
             lowest,
             walls,
             extra,
-            n_clear_walls,
+            barriers,
             stay,
-            found,
-            touching,
             count,
             foremost,
             exits_from,
@@ -204,15 +202,15 @@ def _decide_one(
         )
     else:
         standing = rules.standing[state.type_index[i]]
-        people, near = work.close.people, work.unsure
-        for a in range(found):
+        people, near, count = work.close.people, work.unsure, work.close.known[0]
+        for a in range(count):
             near[a] = people[a].who
-        for a in range(touching, len(people)):
-            near[found] = people[a].who
-            found += 1
-        fall_back(
-            i, frame, table, state, walls, around, near[:found], exits_from <= farthest,
-            rules.hard_bodies, standing, work.path,
-        )  # fmt: skip
+        for a in range(work.close.known[1], len(people)):
+            near[count] = people[a].who
+            count += 1
+        obstacles = Obstacles(
+            walls, around, near[:count], exits_from <= farthest, rules.hard_bodies
+        )
+        fall_back(i, frame, table, state, obstacles, standing, work.path)
     cover_in(moving, place, i, table, state)
     return True

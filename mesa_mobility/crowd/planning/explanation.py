@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
-from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
+from mesa_mobility.crowd.planning.feasibility import Obstacles, Trial, path_gone_or_blocked
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.paths import to_world
 from mesa_mobility.crowd.state.people_grid import Grid
@@ -145,10 +146,9 @@ def judge(
     near = weighed.candidates.neighbours
     verdicts, blockers = weighed.verdicts.copy(), weighed.blockers.copy()
     walls = np.empty((len(around.segments) + len(around.exits), 5))
-    _judge(
-        row, options, weighed.frame, table, crowd.records, around, near, rules.hard_bodies,
-        walls, weighed.paths, weighed.knots, verdicts, blockers,
-    )  # fmt: skip
+    given = Obstacles(walls, around, near, False, rules.hard_bodies)
+    found = _Found(weighed.paths, weighed.knots, verdicts, blockers)
+    _judge(row, options, weighed.frame, table, crowd.records, given, found)
     totals = np.where(verdicts == FREE, weighed.totals, np.inf)
     # The cheapest; of several the one that turns least.
     order = np.lexsort((np.abs(table.heading[options]), totals))
@@ -161,6 +161,15 @@ def judge(
     )
 
 
+class _Found(NamedTuple):
+    """Paths, their numbers of samples, verdicts and blockers of options, as of ``Explanation``."""
+
+    paths: NDArray[np.float64]
+    knots: NDArray[np.int64]
+    verdicts: NDArray[np.int8]
+    blockers: NDArray[np.int64]
+
+
 @entry_point()
 def _judge(
     i: int,
@@ -168,41 +177,32 @@ def _judge(
     frame: int,
     table: OptionTable,
     state: CrowdState,
-    around: Surroundings,
-    near: NDArray[np.int64],
-    hard_bodies: bool,
-    walls: NDArray[np.float64],
-    paths: NDArray[np.float64],
-    knots: NDArray[np.int64],
-    verdicts: NDArray[np.int8],
-    blockers: NDArray[np.int64],
+    given: Obstacles,
+    found: _Found,
 ) -> None:
-    x, y, destination = state.x[i], state.y[i], state.destination[i]
+    """Write the verdicts; the walls of ``given`` are workspace."""
+    x, y, destination, around = state.x[i], state.y[i], state.destination[i], given.around
     core = state.core[i] + overhang_of(i, table, state)
     reach = wall_reach(table.farthest[state.cluster[i]], core)
-    count = near_walls(around, x, y, destination, reach, walls)
+    walls = given.walls[: near_walls(around, x, y, destination, reach, given.walls)]
     exits_from = exit_distance(around, x, y, destination)
-    spacing = np.int64(SAMPLE_FRAMES)
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+    near, hard = given.near, given.hard_bodies
     for k in range(len(options)):
         o = options[k]
-        pieces = to_world(i, o, c, s, table, state, paths[k])
-        knots[k] = pieces + 1
+        pieces = to_world(i, o, c, s, table, state, found.paths[k])
+        found.knots[k] = pieces + 1
         reach = np.float64(table.options[o].reach)
+        trial = Trial(found.paths[k], pieces, np.int64(SAMPLE_FRAMES), reach)
         exits_near = reach >= exits_from
-        gone = path_gone_or_blocked(
-            i, paths[k], pieces, spacing, reach, frame, table, state, walls[:count], around, near,
-            exits_near, hard_bodies,
-        )  # fmt: skip
+        everybody = Obstacles(walls, around, near, exits_near, hard)
+        gone = path_gone_or_blocked(i, trial, frame, table, state, everybody)
         if gone >= -1:
             continue
-        verdicts[k] = WALL if gone == -3 else PERSON
+        found.verdicts[k] = WALL if gone == -3 else PERSON
         if gone == -2:
             for a in range(len(near)):
-                alone = path_gone_or_blocked(
-                    i, paths[k], pieces, spacing, reach, frame, table, state, walls[:count], around,
-                    near[a : a + 1], exits_near, hard_bodies,
-                )  # fmt: skip
-                if alone == -2:
-                    blockers[k] = near[a]
+                one = Obstacles(walls, around, near[a : a + 1], exits_near, hard)
+                if path_gone_or_blocked(i, trial, frame, table, state, one) == -2:
+                    found.blockers[k] = near[a]
                     break

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import internal
 from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
-from mesa_mobility.crowd.planning.feasibility import path_gone_or_blocked
+from mesa_mobility.crowd.planning.feasibility import Obstacles, Trial, path_gone_or_blocked
 from mesa_mobility.crowd.state.paths import commit
 from mesa_mobility.crowd.state.records import FALLBACK, CrowdState
-from mesa_mobility.crowd.state.surroundings import Surroundings
 
 FALLBACK_FRAMES = 4
 """Frames of the fallback (section 6 of the paper)."""
@@ -33,18 +32,14 @@ def fall_back(
     frame: int,
     table: OptionTable,
     state: CrowdState,
-    walls: NDArray[np.float64],
-    around: Surroundings,
-    near: NDArray[np.int64],
-    exits_near: bool,
-    hard_bodies: bool,
+    obstacles: Obstacles,
     standing: int,
-    trial: NDArray[np.float64],
+    path: NDArray[np.float64],
 ) -> None:
     """Commit pedestrian i to four frames straight towards its target, as far as nothing is hit.
 
     A body of several discs can neither step aside nor turn without room: it stays as it is.
-    It ends in the standing cluster.  ``trial`` is workspace for a path.
+    It ends in the standing cluster.  ``path`` is workspace.
     """
     dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
     distance = math.hypot(dx, dy)
@@ -57,18 +52,16 @@ def fall_back(
         turn = math.atan2(math.sin(turn), math.cos(turn))
         most = FALLBACK_TURN_RATE * FALLBACK_SECONDS
         turn = min(max(turn, -most), most)
-    trial[0, 0], trial[1, 0], trial[2, 0] = state.x[i], state.y[i], state.heading[i]
-    trial[2, 1] = state.heading[i] + turn
+    path[0, 0], path[1, 0], path[2, 0] = state.x[i], state.y[i], state.heading[i]
+    path[2, 1] = state.heading[i] + turn
     gone = -1
     for share in FALLBACK_STEPS:
         length = min(share * state.preferred[i] * FALLBACK_SECONDS, distance)
-        trial[0, 1], trial[1, 1] = state.x[i] + length * dx, state.y[i] + length * dy
+        path[0, 1], path[1, 1] = state.x[i] + length * dx, state.y[i] + length * dy
         if length == 0.0:
             break
-        gone = path_gone_or_blocked(
-            i, trial, np.int64(1), np.int64(FALLBACK_FRAMES), length, frame, table, state, walls,
-            around, near, exits_near, hard_bodies,
-        )  # fmt: skip
+        trial = Trial(path, np.int64(1), np.int64(FALLBACK_FRAMES), length)
+        gone = path_gone_or_blocked(i, trial, frame, table, state, obstacles)
         if gone >= -1:
             break
     state.fallbacks[i] += 1
@@ -80,6 +73,6 @@ def fall_back(
         np.int64(FALLBACK_FRAMES),
         max(gone, -1),
         standing,
-        trial,
+        path,
         state,
     )

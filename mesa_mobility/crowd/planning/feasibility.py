@@ -5,6 +5,8 @@ Walls and people are tested apart, as the search makes the faster test first.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,13 +23,44 @@ from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
+class Trial(NamedTuple):
+    """A path on trial.
+
+    Attributes:
+        path: (3, n) x, y and facing at its waypoints.
+        pieces: pieces between them.
+        spacing: frames that a piece takes.
+        reach: the farthest that it leads, metres.
+    """
+
+    path: NDArray[np.float64]
+    pieces: int | np.int64
+    spacing: int | np.int64
+    reach: float
+
+
+class Obstacles(NamedTuple):
+    """What a path may hit.
+
+    Attributes:
+        walls: (w, 5) walls within reach, with squared distances.
+        around: walls and exits.
+        near: rows of people.
+        exits_near: whether an open exit is within reach.
+        hard_bodies: whether bodies are hard.
+    """
+
+    walls: NDArray[np.float64]
+    around: Surroundings
+    near: NDArray[np.int64]
+    exits_near: bool
+    hard_bodies: bool
+
+
 @internal()
 def path_gone_or_walled(
     i: int,
-    path: NDArray[np.float64],
-    pieces: int,
-    spacing: int,
-    reach: float,
+    trial: Trial,
     frame: int,
     table: OptionTable,
     state: CrowdState,
@@ -36,23 +69,20 @@ def path_gone_or_walled(
     exits_near: bool,
 ) -> int:
     """-3 if the path hits a wall, else the frame of leaving or -1."""
-    gone = -1
-    walked = pieces
+    gone, walked, spacing = -1, trial.pieces, trial.spacing
     if exits_near:
-        piece, where = crosses_exit(path, pieces, around, state.destination[i])
+        piece, where = crosses_exit(trial.path, trial.pieces, around, state.destination[i])
         if piece >= 0:
             gone = gone_frame(frame, spacing, piece, where)
             walked = piece + 1
-    hit = body_hits_wall(i, path, walked, spacing, walls, reach, table, state)
+    hit = body_hits_wall(i, trial.path, walked, spacing, walls, trial.reach, table, state)
     return -3 if hit else gone
 
 
 @internal()
 def hits_anybody(
     i: int,
-    path: NDArray[np.float64],
-    pieces: int,
-    spacing: int,
+    trial: Trial,
     frame: int,
     gone: int,
     table: OptionTable,
@@ -60,6 +90,7 @@ def hits_anybody(
     near: NDArray[np.int64],
 ) -> bool:
     """Whether the path of pedestrian i hits one of those in rows ``near``."""
+    path, pieces, spacing = trial.path, trial.pieces, trial.spacing
     x0, y0, x1, y1 = box_of(path, pieces)
     own = state.core[i] + overhang_of(i, table, state) + 0.001
     for j in near:
@@ -78,27 +109,14 @@ def hits_anybody(
 
 @internal()
 def path_gone_or_blocked(
-    i: int,
-    path: NDArray[np.float64],
-    pieces: int,
-    spacing: int,
-    reach: float,
-    frame: int,
-    table: OptionTable,
-    state: CrowdState,
-    walls: NDArray[np.float64],
-    around: Surroundings,
-    near: NDArray[np.int64],
-    exits_near: bool,
-    hard_bodies: bool,
+    i: int, trial: Trial, frame: int, table: OptionTable, state: CrowdState, obstacles: Obstacles
 ) -> int:
     """-3 if the path hits a wall, -2 if it hits a person, else the frame of leaving or -1."""
-    gone = path_gone_or_walled(
-        i, path, pieces, spacing, reach, frame, table, state, walls, around, exits_near
-    )
-    if gone == -3 or not hard_bodies:
+    walls, around = obstacles.walls, obstacles.around
+    gone = path_gone_or_walled(i, trial, frame, table, state, walls, around, obstacles.exits_near)
+    if gone == -3 or not obstacles.hard_bodies:
         return gone
-    blocked = hits_anybody(i, path, pieces, spacing, frame, gone, table, state, near)
+    blocked = hits_anybody(i, trial, frame, gone, table, state, obstacles.near)
     return -2 if blocked else gone
 
 
@@ -137,41 +155,34 @@ def option_gone_or_blocked(
     # Left to the exact tests: whether it hits a wall, and the people in doubt.
     walled, doubtful, gone = True, 0, -1
     if not exits_near:
-        off2 = path_off2(table.path, o, work.barriers, now.n_clear_walls)
+        off2 = path_off2(table.path, o, now.barriers.at, now.barriers.known)
         least = me.core + MARGIN - SLACK
         if off2 < least * least:
             return -3, met
         most = me.core + me.overhang + MARGIN + 0.5 * stride + 3.0 * SLACK
-        walled = now.n_clear_walls < len(walls) or off2 < most * most
+        walled = now.barriers.known < len(walls) or off2 < most * most
         if hard_bodies:
             who, doubtful = sampled_collision(
-                me, frame, table.path[o], stride, now.found, met, table, state, work.close,
-                work.unsure,
-            )  # fmt: skip
+                me, frame, table.path[o], stride, met, table, state, work.close, work.unsure
+            )
             if who >= 0:
                 return -2, who
     elif hard_bodies:
         # People who leave on the way may miss those ahead: the exact test decides.
-        doubtful = now.found
-        for a in range(now.found):
+        doubtful = work.close.known[0]
+        for a in range(doubtful):
             work.unsure[a] = work.close.people[a].who
     if hard_bodies:
-        for a in range(now.touching, len(work.close.people)):
+        for a in range(work.close.known[1], len(work.close.people)):
             work.unsure[doubtful] = work.close.people[a].who
             doubtful += 1
     if not walled and doubtful == 0:
         return gone, met
     pieces = to_world(me.row, o, me.c, me.s, table, state, work.path)
-    spacing = np.int64(SAMPLE_FRAMES)
+    trial = Trial(work.path, pieces, np.int64(SAMPLE_FRAMES), reach)
     if walled:
-        gone = path_gone_or_walled(
-            me.row, work.path, pieces, spacing, reach, frame, table, state, walls, around,
-            exits_near,
-        )  # fmt: skip
+        gone = path_gone_or_walled(me.row, trial, frame, table, state, walls, around, exits_near)
     if gone < -1 or doubtful == 0:
         return gone, met
-    blocked = hits_anybody(
-        me.row, work.path, pieces, spacing, frame, gone, table, state,
-        work.unsure[:doubtful],
-    )  # fmt: skip
+    blocked = hits_anybody(me.row, trial, frame, gone, table, state, work.unsure[:doubtful])
     return -2 if blocked else gone, met

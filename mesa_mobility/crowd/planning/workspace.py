@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.simd import AT_ONCE, LANES, WIDE
-from mesa_mobility.crowd.collision.broad_phase import Bodies, Fences
+from mesa_mobility.crowd.collision.broad_phase import Blocks, Bodies, Fences
 from mesa_mobility.crowd.collision.sampled import Close, EgoPose, make_close
-from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS
+from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS, Barriers
 from mesa_mobility.crowd.costs.layout import FIELDS, SPEED, Self, Terms
 from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
@@ -79,10 +79,8 @@ class DecisionContext(NamedTuple):
         lowest: the least of them.
         walls: walls within reach, with squared distances.
         extra: weighted costs of the NumPy terms, or empty.
-        n_clear_walls: walls in ``Workspace.barriers`` that do not touch the body.
+        barriers: those that do not touch the body, in the pedestrian's coordinates.
         stay: the group to test first, or -1.
-        found: number of people at the start of ``Workspace.close``.
-        touching: index of the first of those at its end, who touch the body already.
         neighbours: number of columns of ``Workspace.others``.
         foremost: number of columns of ``Workspace.foremost``.
         exits_from: metres to the nearest open exit.
@@ -98,10 +96,8 @@ class DecisionContext(NamedTuple):
     lowest: float
     walls: NDArray[np.float64]
     extra: NDArray[np.float64]
-    n_clear_walls: int
+    barriers: Barriers
     stay: int
-    found: int
-    touching: int
     neighbours: int
     foremost: int
     exits_from: float
@@ -135,12 +131,11 @@ class Workspace(NamedTuple):
         some: the marked columns of ``foremost``.
         dropped: by neighbour, whether it is out of reach.
         close: neighbours who may come in the way.
-        bodies: their positions at each level of time.
-        fences: the walls at each level.
+        blocks: their positions, and the walls, at each level of time; groups that certainly hit
+            something.
         walls: walls in reach.
         barriers: the same in the pedestrian's coordinates.
         bounds: lower bound of the cost of each group.
-        blocked: groups that certainly hit something.
         picked: groups just opened.
         free: bits of their options that hit nobody in the sampled test.
         lanes: ends of the 8 options of each group.
@@ -166,12 +161,10 @@ class Workspace(NamedTuple):
     some: NDArray[np.float64]
     dropped: NDArray[np.int32]
     close: Close
-    bodies: Bodies
-    fences: Fences
+    blocks: Blocks
     walls: NDArray[np.float64]
     barriers: NDArray[np.float32]
     bounds: NDArray[np.float64]
-    blocked: NDArray[np.int32]
     picked: NDArray[np.int64]
     free: NDArray[np.int64]
     lanes: NDArray[np.float64]
@@ -204,17 +197,20 @@ def make_workspace(
         some=np.empty((FIELDS + fields, people + LANES)),
         dropped=np.empty(people, np.int32),
         close=make_close(people),
-        bodies=Bodies(
-            np.empty(len(LEVELS), np.int64), np.empty((len(LEVELS), 3, people + 1), np.float32)
-        ),
-        fences=Fences(
-            np.empty(len(LEVELS), np.int64),
-            np.empty((len(LEVELS), BARRIER_FIELDS, walls), np.float32),
+        blocks=Blocks(
+            Bodies(
+                np.empty(len(LEVELS), np.int64),
+                np.empty((len(LEVELS), 3, people + 1), np.float32),
+            ),
+            Fences(
+                np.empty(len(LEVELS), np.int64),
+                np.empty((len(LEVELS), BARRIER_FIELDS, walls), np.float32),
+            ),
+            np.empty(groups + WIDE, np.int32),
         ),
         walls=np.empty((walls, 5)),
         barriers=np.empty((BARRIER_FIELDS, walls), np.float32),
         bounds=np.empty(groups + AT_ONCE),
-        blocked=np.empty(groups + WIDE, np.int32),
         picked=np.empty(groups + LANES, np.int64),
         free=np.empty(groups, np.int64),
         lanes=np.empty((SPEED + 1, lanes)),

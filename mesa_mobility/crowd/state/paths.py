@@ -7,6 +7,7 @@ the option table, bit for bit as they were when they were tested.
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import internal
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.state.records import CrowdState
+
+Box: TypeAlias = tuple[float, float, float, float]
+"""Least x and y, and greatest x and y, metres."""
 
 
 @internal()
@@ -54,8 +58,8 @@ def position_at(state: CrowdState, table: OptionTable, j: int, time: float) -> t
 
 
 @internal()
-def box_of(path: NDArray[np.float64], pieces: int) -> tuple[float, float, float, float]:
-    """Least x, least y, greatest x and greatest y of a path."""
+def box_of(path: NDArray[np.float64], pieces: int) -> Box:
+    """The box around a path."""
     x0 = x1 = path[0, 0]
     y0 = y1 = path[1, 0]
     for k in range(1, pieces + 1):

@@ -100,12 +100,12 @@ def _little(values, at, most):
 
 @njit
 def _lay(lanes, group, ends, at, c, s, x, y, seconds):
-    lanes_to_world(lanes, group, ends, at, c, s, x, y, seconds)
+    lanes_to_world(lanes, group, ends, at, (x, y, c, s), seconds)
 
 
 @njit
-def _sample(paths, path, first, share, c, s, x, y, to, at, row):
-    samples_to_ego(paths, path, first, share, c, s, x, y, to, at, row)
+def _sample(paths, path, first, share, turn, place, to, at):
+    samples_to_ego(paths, path, first, share, turn, place, to, at)
 
 
 @pytest.fixture
@@ -270,7 +270,7 @@ def test_samples_to_come_lie_between_those_of_the_path(rng, first, share):
     paths = rng.uniform(-1.0, 1.0, (3, 3, SAMPLES)).astype(np.float32)
     to = np.zeros((2, 2, SAMPLES), dtype=np.float32)
     c, s = np.cos(-2.0), np.sin(-2.0)
-    _sample(paths, 1, first, share, c, s, 0.5, 1.5, to, 2 * SAMPLES, SAMPLES)
+    _sample(paths, 1, first, share, (c, s), (0.5, 1.5), to, 2 * SAMPLES)
     when = np.minimum(first + share + np.arange(SAMPLES), SAMPLES - 1.0)
     x, y = (np.interp(when, np.arange(SAMPLES), paths[1, axis]) for axis in (0, 1))
     expected = [0.5 + c * x - s * y, 1.5 + s * x + c * y]

@@ -93,7 +93,7 @@ def test_which_lanes_are_pressed_together(seed, bits, at, place):
 
 @njit
 def _lay_by_hand(lanes, group, ends, at, c, s, x, y, seconds):
-    simd_transforms.lanes_to_world(lanes, group, ends, at, c, s, x, y, seconds)
+    simd_transforms.lanes_to_world(lanes, group, ends, at, (x, y, c, s), seconds)
 
 
 @given(seeds, st.integers(0, 2), st.integers(0, 12), st.floats(-4.0, 4.0))
@@ -103,7 +103,8 @@ def test_where_options_end(seed, group, at, angle):
     one, other = np.zeros((6, 20)), np.zeros((6, 20))
     where = np.cos(angle), np.sin(angle), 3.25, -1.5, 0.8
     _lay_by_hand(lanes, group, one, at, *where)
-    _lay(lanes, group, other, at, *where)
+    c, s, x, y, seconds = where
+    _lay(lanes, group, other, at, (x, y, c, s), seconds)
     assert (one == other).all()
     assert other[4, at : at + LANES].tolist() == [0.8] * LANES
 

@@ -53,7 +53,7 @@ def open_groups(
     """
     me, groups, terms = now.me, scene.groups, scene.terms
     picked, free = work.picked, work.free
-    apart = me.core + MARGIN - SLACK
+    apart, pose = me.core + MARGIN - SLACK, (me.x, me.y, me.c, me.s)
     # The cost is faster to test than blockage.
     has_cost_limit = most < np.inf
     for q in range(min(opened, _AHEAD)):
@@ -64,10 +64,9 @@ def open_groups(
             prefetch(groups.lanes, picked[q + _AHEAD], 416)
         g, bits = picked[q], ALL_LANES
         if not has_cost_limit:
-            bits = free_options(g, bits, work.bodies, work.fences, apart, groups)
-        lanes_to_world(
-            groups.lanes, g, work.lanes, LANES * n, me.c, me.s, me.x, me.y, groups.ends[DURATION, g]
-        )
+            bits = free_options(g, bits, work.blocks, apart, groups)
+        seconds = groups.ends[DURATION, g]
+        lanes_to_world(groups.lanes, g, work.lanes, LANES * n, pose, seconds)
         picked[n], free[n] = g, bits
         n += int(bits != 0)
     if n == 0:
@@ -85,7 +84,7 @@ def open_groups(
     for q in range(n):
         g, bits = picked[q], free[q] & no_more_than(costs, LANES * q, most)
         if has_cost_limit and bits != 0:
-            bits = free_options(g, bits, work.bodies, work.fences, apart, groups)
+            bits = free_options(g, bits, work.blocks, apart, groups)
         # Only values that are not numbers compare as no more than the least number.
         bad |= bits & no_more_than(costs, LANES * q, _LEAST)
         press_numbers(groups.first[g], bits, work.rows, kept)
