@@ -34,8 +34,8 @@ if TYPE_CHECKING:
         Tactic,
         TargetChoice,
         Visit,
-        World,
         Wall,
+        World,
         option_kernel,
         pair_kernel,
     )

@@ -36,6 +36,14 @@ def whole(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     return context.cast(builder, value, kind, types.int64)
 
 
+def wholes(context: Any, builder: Any, kind: Any, value: Any) -> list[Any]:
+    """Numbers of a tuple, as 64-bit integers."""
+    return [
+        whole(context, builder, each, builder.extract_value(value, k))
+        for k, each in enumerate(kind)
+    ]
+
+
 def place_in(builder: Any, start: Start, at: Any, kind: Any | None = None) -> Any:
     """Pointer to element ``at``, as a pointer to ``kind``, by default the element's type."""
     place = builder.gep(start.pointer, [at], source_etype=start.element)

@@ -67,6 +67,10 @@ _MODULES = {
 }
 
 __all__ = [
+    "FREE",
+    "PERSON",
+    "PRESETS",
+    "WALL",
     "Candidates",
     "Capability",
     "CompiledTerm",
@@ -74,14 +78,11 @@ __all__ = [
     "Deciding",
     "Desired",
     "Explanation",
-    "FREE",
     "Inflow",
     "Me",
     "Option",
     "Options",
     "Other",
-    "PERSON",
-    "PRESETS",
     "Pedestrian",
     "PedestrianModel",
     "PedestrianType",
@@ -92,7 +93,6 @@ __all__ = [
     "Tactic",
     "TargetChoice",
     "Visit",
-    "WALL",
     "Wall",
     "Watch",
     "World",

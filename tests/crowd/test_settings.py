@@ -32,6 +32,7 @@ from mesa_mobility import (
     SpeedRule,
     Tactic,
 )
+from mesa_mobility.crowd.costs.compiled_terms import numbers_of
 from mesa_mobility.distributions import Normal
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.registry import behaviors, load_behavior
@@ -91,7 +92,7 @@ def test_constructors_refuse_unknown_names_and_values_out_of_range():
 def test_set_values_reach_the_kernel():
     term = Headway(time=np.float32(2.0))
     term.time = 3
-    given = dict(zip(term.kernel.numbers, term.numbers(term.kernel), strict=True))
+    given = dict(zip(term.kernel.numbers, numbers_of(term, term.kernel), strict=True))
     assert given == {"distance": 0.36, "time": 3.0, "width": 0.35, "softness": 0.15}
     assert type(term.time) is float
 

@@ -129,19 +129,16 @@ def cull_groups(
     circles, row, size, far = groups.at, groups.at.shape[2], bodies.at.shape[2], fences.at.shape[2]
     keep = me.core + MARGIN - SLACK
     for level in range(levels):
-        at = 3 * level * row + first
+        which = 3 * level * row + first, row, n
         if bodies.known[level] > 0:
-            drop_within(
-                circles, at, row, n, bodies.at, 3 * level * size, size, bodies.known[level], dropped
-            )
+            there = 3 * level * size, size, bodies.known[level]
+            drop_within(circles, which, bodies.at, there, dropped)
         if barriers.known > 0:
             span = spanned.spans
             spans = span[0, level], span[1, level], span[2, level], span[3, level]
             _keep_fences(spans, keep, barriers.at, barriers.known, level, fences)
-            drop_beside(
-                circles, at, row, n, fences.at, BARRIER_FIELDS * level * far, far,
-                fences.known[level], keep, dropped,
-            )  # fmt: skip
+            known = BARRIER_FIELDS * level * far, far, fences.known[level]
+            drop_beside(circles, which, fences.at, known, keep, dropped)
     free = n
     for a in range(n):
         free -= dropped[a]
@@ -184,9 +181,8 @@ def _keep_fences(
     kept = 0
     to = fences.at[level]
     for w in range(count):
-        ax, ay, ex, ey, inverse = (
-            barriers[0, w], barriers[1, w], barriers[2, w], barriers[3, w], barriers[4, w]
-        )  # fmt: skip
+        ax, ay, ex, ey = barriers[0, w], barriers[1, w], barriers[2, w], barriers[3, w]
+        inverse = barriers[4, w]
         off_x = max(x0 - max(ax, ax + ex), min(ax, ax + ex) - x1, 0.0)
         off_y = max(y0 - max(ay, ay + ey), min(ay, ay + ey) - y1, 0.0)
         to[0, kept], to[1, kept], to[2, kept], to[3, kept] = ax, ay, ex, ey
@@ -212,10 +208,8 @@ def free_options(
     for level in range(len(LEVELS)):
         at = start + (AT_X + level) * LANES
         if fences.known[level] > 0 and free != 0:
-            free &= ~places_beside(
-                groups.lanes, at, row, fences.at, BARRIER_FIELDS * level * far, far,
-                fences.known[level], apart,
-            )  # fmt: skip
+            first, known = BARRIER_FIELDS * level * far, fences.known[level]
+            free &= ~places_beside(groups.lanes, at, row, fences.at, first, far, known, apart)
         if bodies.known[level] > 0 and free != 0:
             free &= ~places_within(
                 groups.lanes, at, row, bodies.at, 3 * level * size, size, bodies.known[level]

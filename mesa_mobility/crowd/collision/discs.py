@@ -96,10 +96,9 @@ def _discs_hit_wall(
                 to_c, to_s = math.cos(facing + u * turn), math.sin(facing + u * turn)
                 for d in range(shape.discs):
                     off, r = core * shape.offset[d], core * shape.radius[d] + MARGIN
-                    away2 = segment_segment_distance2(
-                        x + off * c, y + off * s, to_x + off * to_c, to_y + off * to_s,
-                        ax, ay, bx, by,
-                    )  # fmt: skip
+                    sx, sy = x + off * c, y + off * s
+                    ex, ey = to_x + off * to_c, to_y + off * to_s
+                    away2 = segment_segment_distance2(sx, sy, ex, ey, ax, ay, bx, by)
                     if away2 < r * r:
                         # A disc that touches a wall at the start may stay as close.
                         fx, fy = path[0, 0] + off * first_c, path[1, 0] + off * first_s

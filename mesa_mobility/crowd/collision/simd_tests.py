@@ -35,6 +35,7 @@ from mesa_mobility.compiled.vectors import (
     start_of,
     store,
     whole,
+    wholes,
 )
 
 NOTHING = np.float32(0.0)
@@ -52,15 +53,13 @@ def _away2(builder: Any, x: Any, y: Any, bodies: Start, at: Any, row: Any) -> tu
 
 def _plain_drop_within(
     circles: NDArray[np.float32],
-    at: int,
-    row: int,
-    n: int,
+    which: tuple[int, int, int],
     bodies: NDArray[np.float32],
-    first: int,
-    size: int,
-    known: int,
+    there: tuple[int, int, int],
     dropped: NDArray[np.int32],
 ) -> None:
+    at, row, n = which
+    first, size, known = there
     of, body = circles.flat, bodies.flat
     for k in range(n):
         x, y, radius = of[at + k], of[at + row + k], of[at + 2 * row + k]
@@ -74,29 +73,25 @@ def _plain_drop_within(
 
 
 @with_twin(_plain_drop_within)
-def drop_within(typingctx, circles, at, row, n, bodies, first, size, known, dropped):
+def drop_within(typingctx, circles, which, bodies, there, dropped):
     """Set ``dropped`` of those of n circles that lie wholly within a body.
 
     Args:
-        circles: C-contiguous: x of the first circle at place ``at``, its y ``row`` places and its
-            radius twice as many farther on.
-        at: place.
-        row: places.
-        n: how many circles.
-        bodies: C-contiguous: x of the first body at place ``first``, its y ``size`` places and its
-            distance to keep twice as many farther on.
-        first: place.
-        size: places.
-        known: number of bodies.
+        circles: C-contiguous.
+        which: ``(at, row, n)``: x of the first circle at place ``at``, its y ``row`` places and its
+            radius twice as many farther on; how many circles.
+        bodies: C-contiguous.
+        there: ``(first, size, known)``: x of the first body at place ``first``, its y ``size``
+            places and its distance to keep twice as many farther on; how many bodies.
         dropped: by circle.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
-        bodies = start_of(context, builder, sig.args[4], args[4])
-        marks = start_of(context, builder, sig.args[8], args[8])
-        at, row, n = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2, 3))
-        first, size, known = (whole(context, builder, sig.args[k], args[k]) for k in (5, 6, 7))
+        bodies = start_of(context, builder, sig.args[2], args[2])
+        marks = start_of(context, builder, sig.args[4], args[4])
+        at, row, n = wholes(context, builder, sig.args[1], args[1])
+        first, size, known = wholes(context, builder, sig.args[3], args[3])
         wide = ir.Constant(LONG, WIDE)
         found = cgutils.alloca_once(builder, ir.VectorType(BIT, WIDE))
         with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
@@ -113,7 +108,7 @@ def drop_within(typingctx, circles, at, row, n, bodies, first, size, known, drop
             store(builder, dropped, marks, block)
         return context.get_dummy_value()
 
-    return types.void(circles, at, row, n, bodies, first, size, known, dropped), codegen
+    return types.void(circles, which, bodies, there, dropped), codegen
 
 
 def _plain_places_within(

@@ -39,6 +39,7 @@ from mesa_mobility.compiled.vectors import (
     start_of,
     store,
     whole,
+    wholes,
 )
 from mesa_mobility.crowd.collision.sampled import EgoPose
 
@@ -140,16 +141,14 @@ def _least_off2(
 
 def _plain_drop_beside(
     circles: NDArray[np.float32],
-    at: int,
-    row: int,
-    n: int,
+    which: tuple[int, int, int],
     barriers: NDArray[np.float32],
-    first: int,
-    size: int,
-    known: int,
+    there: tuple[int, int, int],
     apart: float,
     dropped: NDArray[np.int32],
 ) -> None:
+    at, row, n = which
+    first, size, known = there
     of, barrier = circles.flat, barriers.flat
     keep = np.float32(apart)
     for k in range(n):
@@ -163,31 +162,27 @@ def _plain_drop_beside(
 
 
 @with_twin(_plain_drop_beside)
-def drop_beside(typingctx, circles, at, row, n, barriers, first, size, known, apart, dropped):
+def drop_beside(typingctx, circles, which, barriers, there, apart, dropped):
     """Set ``dropped`` of those of n circles that lie wholly within ``apart`` of a barrier.
 
     Args:
-        circles: C-contiguous: x of the first circle at place ``at``, its y ``row`` places and its
-            radius twice as many farther on.
-        at: place.
-        row: places.
-        n: how many circles.
-        barriers: C-contiguous: the first field of the first barrier at place ``first``, each of
-            the others ``size`` places farther on.
-        first: place.
-        size: places.
-        known: how many barriers.
+        circles: C-contiguous.
+        which: ``(at, row, n)``: x of the first circle at place ``at``, its y ``row`` places and its
+            radius twice as many farther on; how many circles.
+        barriers: C-contiguous.
+        there: ``(first, size, known)``: the first field of the first barrier at place ``first``,
+            each of the others ``size`` places farther on; how many barriers.
         apart: metres.
         dropped: by circle.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
-        barriers = start_of(context, builder, sig.args[4], args[4])
-        marks = start_of(context, builder, sig.args[9], args[9])
-        at, row, n = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2, 3))
-        of = [whole(context, builder, sig.args[k], args[k]) for k in (5, 6, 7)]
-        keep = spread(builder, builder.fptrunc(args[8], FLOAT), WIDE)
+        barriers = start_of(context, builder, sig.args[2], args[2])
+        marks = start_of(context, builder, sig.args[5], args[5])
+        at, row, n = wholes(context, builder, sig.args[1], args[1])
+        of = wholes(context, builder, sig.args[3], args[3])
+        keep = spread(builder, builder.fptrunc(args[4], FLOAT), WIDE)
         wide = ir.Constant(LONG, WIDE)
         with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
             x, y, radius = load_three(builder, begin, builder.add(at, block), row, WIDE)
@@ -199,8 +194,7 @@ def drop_beside(typingctx, circles, at, row, n, barriers, first, size, known, ap
             store(builder, builder.zext(found, ir.VectorType(INT, WIDE)), marks, block)
         return context.get_dummy_value()
 
-    given = [circles, at, row, n, barriers, first, size, known, types.float64, dropped]
-    return types.void(*given), codegen
+    return types.void(circles, which, barriers, there, types.float64, dropped), codegen
 
 
 def _plain_places_beside(
@@ -229,8 +223,8 @@ def _plain_places_beside(
 def places_beside(typingctx, places, at, row, barriers, first, size, known, apart):
     """Bits of those of 8 places closer than ``apart`` to a barrier.
 
-    ``places`` C-contiguous: x of the first at place ``at``, its y ``row`` places farther on; the
-    others as of ``drop_beside``.
+    ``places`` C-contiguous: x of the first at place ``at``, its y ``row`` places farther on;
+    ``first``, ``size`` and ``known`` as of ``drop_beside``.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:

@@ -41,33 +41,6 @@ class CompiledTerm(CostTerm):
     kernel: ClassVar[CostKernel]
     bound: ClassVar[CostKernel | None] = None
 
-    def numbers(self, kernel: CostKernel) -> list[Any]:
-        """The attributes that a kernel reads by ``p``.
-
-        Raises:
-            ModelError: the term does not have one of them.
-        """
-        for name in kernel.numbers:
-            if not hasattr(self, name):
-                known = dict.fromkeys(each for each in dir(self) if not each.startswith("_"))
-                raise ModelError(
-                    f"behaviour {self.name!r}: its kernel reads p.{name}, but it has no attribute "
-                    f"{name!r}{did_you_mean(name, known)}"
-                )
-        return [getattr(self, name) for name in kernel.numbers]
-
-    def checked_numbers(self, kernel: CostKernel) -> NDArray[np.float64]:
-        """The same as an array, with a number that is not read at the end.
-
-        Raises:
-            ModelError: an attribute that is no number.
-        """
-        giver, names = f"behaviour {self.name!r}", kernel.numbers
-        numbers = np.zeros(len(names) + 1)
-        for at, (name, value) in enumerate(zip(names, self.numbers(kernel), strict=True)):
-            numbers[at] = numbers_given(giver, f"p.{name}", value, ())
-        return numbers
-
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
         """Cost of each option, by calling the kernel on each row."""
         kernel, of = self.kernel, candidates
@@ -84,7 +57,7 @@ class CompiledTerm(CostTerm):
             ]
         )
         at = np.arange(FIELDS, own.shape[1] + 1)
-        numbers = self.checked_numbers(kernel)
+        numbers = checked_numbers(self, kernel)
         if isinstance(kernel, PairKernel):
             others = np.array(
                 [
@@ -102,6 +75,35 @@ class CompiledTerm(CostTerm):
             offsets = of.wall_offsets
             return _each_wall(kernel.address, of.owner, ends, offsets, of.walls, own, at, numbers)
         return _each_option(kernel.address, of.offsets, ends, own, at, numbers)
+
+
+def numbers_of(term: CompiledTerm, kernel: CostKernel) -> list[Any]:
+    """The attributes of a term that a kernel reads by ``p``.
+
+    Raises:
+        ModelError: the term does not have one of them.
+    """
+    for name in kernel.numbers:
+        if not hasattr(term, name):
+            known = dict.fromkeys(each for each in dir(term) if not each.startswith("_"))
+            raise ModelError(
+                f"behaviour {term.name!r}: its kernel reads p.{name}, but it has no attribute "
+                f"{name!r}{did_you_mean(name, known)}"
+            )
+    return [getattr(term, name) for name in kernel.numbers]
+
+
+def checked_numbers(term: CompiledTerm, kernel: CostKernel) -> NDArray[np.float64]:
+    """The same as an array, with a number that is not read at the end.
+
+    Raises:
+        ModelError: an attribute that is no number.
+    """
+    giver, names = f"behaviour {term.name!r}", kernel.numbers
+    numbers = np.zeros(len(names) + 1)
+    for at, (name, value) in enumerate(zip(names, numbers_of(term, kernel), strict=True)):
+        numbers[at] = numbers_given(giver, f"p.{name}", value, ())
+    return numbers
 
 
 @kept()

@@ -26,7 +26,7 @@ KERNEL_FIELDS = ("core", "heading", "type", "group")
 """Fields that are laid out for the terms that read them, besides those that the model declares."""
 
 
-class Self(NamedTuple):
+class Own(NamedTuple):
     """The deciding pedestrian as cost terms see it.
 
     Attributes:

@@ -28,6 +28,7 @@ from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
 from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.planning.feasibility import Obstacles
 from mesa_mobility.crowd.planning.grid import (
+    Nearby,
     cover_in,
     farthest_range,
     keep_interacting,
@@ -113,10 +114,11 @@ def _decide_one(
     own = lay_self(me, state, terms, work.own)
     others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
     ranges = rules.interaction_ranges
+    counts_within = farthest_range(i, ranges, state)
+    nearby = Nearby(work.near, sweeps, work.interacting, others)
     n_near, count = neighbours_within(
-        grid, moving, x, y, place, rules.search_radius, farthest_range(i, ranges, state), work.near,
-        sweeps, work.interacting, others,
-    )  # fmt: skip
+        grid, moving, x, y, place, rules.search_radius, counts_within, nearby
+    )
     if len(ranges) > 1:
         count = keep_interacting(i, count, ranges, state, work.interacting, others)
     near = work.near[:n_near]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,6 +90,22 @@ def people_within(
     return count
 
 
+class Nearby(NamedTuple):
+    """The people around somebody who decides.
+
+    Attributes:
+        near: (n,) rows of those who may get in the way.
+        sweeps: (3, n) circles around their paths.
+        interacting: (m,) rows of those who count in cost terms.
+        others: (8 + fields, m) what cost terms read of them.
+    """
+
+    near: NDArray[np.int64]
+    sweeps: NDArray[np.float64]
+    interacting: NDArray[np.int64]
+    others: NDArray[np.float64]
+
+
 @force_inlined()
 def neighbours_within(
     grid: Grid,
@@ -98,10 +115,7 @@ def neighbours_within(
     own: int,
     radius: float,
     interaction_range: float,
-    near: NDArray[np.int64],
-    sweeps: NDArray[np.float64],
-    interacting: NDArray[np.int64],
-    others: NDArray[np.float64],
+    to: Nearby,
 ) -> tuple[int, int]:
     """Copy the data of people around (px, py), except for the one at index ``own``.
 
@@ -114,15 +128,13 @@ def neighbours_within(
         own: grid index of the person left out.
         radius: metres within which people may get in the way.
         interaction_range: metres within which they count in cost terms, at most ``radius``.
-        near: gets the rows of those within ``radius``.
-        sweeps: gets the circles around their paths.
-        interacting: gets the rows of those within ``interaction_range``.
-        others: gets what cost terms read of them.
+        to: is written.
 
     Returns:
         The number of those near and of those interacting; each array must have room for everybody
         and 8 more.
     """
+    near, sweeps, interacting, others = to.near, to.sweeps, to.interacting, to.others
     cx0, cx1, cy0, cy1 = cells_within(grid, px, py, radius)
     found, count = 0, 0
     for cy in range(cy0, cy1 + 1):

@@ -11,7 +11,7 @@ from mesa_mobility.compiled.simd import AT_ONCE, LANES, WIDE
 from mesa_mobility.crowd.collision.broad_phase import Blocks, Bodies, Fences
 from mesa_mobility.crowd.collision.sampled import Close, EgoPose, make_close
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS, Barriers
-from mesa_mobility.crowd.costs.layout import FIELDS, SPEED, Self, Terms
+from mesa_mobility.crowd.costs.layout import FIELDS, SPEED, Own, Terms
 from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
 from mesa_mobility.crowd.state.people_grid import Grid
@@ -90,7 +90,7 @@ class DecisionContext(NamedTuple):
     """
 
     me: EgoPose
-    own: Self
+    own: Own
     first: int
     bounds: NDArray[np.float64]
     lowest: float

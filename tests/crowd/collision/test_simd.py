@@ -30,7 +30,7 @@ from mesa_mobility.crowd.options.table import LEVELS
 
 @njit
 def _drop(circles, at, row, n, bodies, first, size, known, dropped):
-    drop_within(circles, at, row, n, bodies, first, size, known, dropped)
+    drop_within(circles, (at, row, n), bodies, (first, size, known), dropped)
 
 
 @njit

@@ -25,8 +25,8 @@ _compress = njit(simd._plain_compress)
 
 @njit
 def _by_hand(circles, row, n, bodies, size, known, barriers, far, fences, apart, marks, others):
-    simd_tests.drop_within(circles, 0, row, n, bodies, 0, size, known, marks)
-    walls.drop_beside(circles, 0, row, n, barriers, 0, far, fences, apart, others)
+    simd_tests.drop_within(circles, (0, row, n), bodies, (0, size, known), marks)
+    walls.drop_beside(circles, (0, row, n), barriers, (0, far, fences), apart, others)
     return (
         simd_tests.places_within(circles, 1, row, bodies, 0, size, known),
         walls.places_beside(circles, 1, row, barriers, 0, far, fences, apart),
@@ -61,8 +61,8 @@ def test_what_lies_within_bodies_and_walls(seed, n, known, fences, apart):
     bits = _by_hand(
         circles, row, n, bodies, size, known, barriers, far, fences, apart, marks[0], marks[1]
     )
-    _dropped_within(circles, 0, row, n, bodies, 0, size, known, marks[2])
-    _dropped_beside(circles, 0, row, n, barriers, 0, far, fences, apart, marks[3])
+    _dropped_within(circles, (0, row, n), bodies, (0, size, known), marks[2])
+    _dropped_beside(circles, (0, row, n), barriers, (0, far, fences), apart, marks[3])
     assert (marks[:2, :n] == marks[2:, :n]).all()
     assert bits == (
         _bits_within(circles, 1, row, bodies, 0, size, known),

@@ -27,7 +27,7 @@ def _lay(row, x, y, c, s, core, walls, farthest, radius, to):
 
 @njit
 def _drop(circles, at, row, n, barriers, first, size, known, apart, dropped):
-    drop_beside(circles, at, row, n, barriers, first, size, known, apart, dropped)
+    drop_beside(circles, (at, row, n), barriers, (first, size, known), apart, dropped)
 
 
 @njit

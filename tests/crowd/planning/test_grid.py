@@ -7,6 +7,7 @@ from numba import njit
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.planning.grid import (
     COVERED,
+    Nearby,
     cover_in,
     headways,
     neighbours_within,
@@ -31,9 +32,8 @@ def _cover(moving, at, i, table, state):
 
 @njit
 def _within(grid, moving, x, y, own, radius, range_, near, sweeps, interacting, others):
-    return neighbours_within(
-        grid, moving, x, y, own, radius, range_, near, sweeps, interacting, others
-    )
+    to = Nearby(near, sweeps, interacting, others)
+    return neighbours_within(grid, moving, x, y, own, radius, range_, to)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.simd import LANES, any_of
 from mesa_mobility.crowd.costs.kernel_calls import call_pair_loop, call_pairs_loop
-from mesa_mobility.crowd.costs.layout import COST, FIELDS, KernelTable, Self, Terms
+from mesa_mobility.crowd.costs.layout import COST, FIELDS, KernelTable, Own, Terms
 from mesa_mobility.crowd.planning.evaluation.lanes import in_lanes
 from mesa_mobility.crowd.planning.workspace import DecisionContext, PairSums, Workspace
 
@@ -22,7 +22,7 @@ ENOUGH = -1.0
 
 @internal()
 def pair_cost(
-    own: Self,
+    own: Own,
     k: int,
     ends: NDArray[np.float64],
     count: int,
@@ -100,10 +100,17 @@ def pair_costs_at_least(
         call_pairs_loop(
             terms.pairs_address[t],
             (
-                counting, n, ends, given, own.record, table.fields[t], table.numbers[t], weight,
+                counting,
+                n,
+                ends,
+                given,
+                own.record,
+                table.fields[t],
+                table.numbers[t],
+                weight,
                 least,
             ),
-        )  # fmt: skip
+        )
     for k in range(last - first):
         # A value that is not a number is found by the sum over all neighbours.
         least[k] = least[k] * LITTLE_LESS if least[k] < np.inf else 0.0

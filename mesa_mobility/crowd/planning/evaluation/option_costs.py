@@ -27,7 +27,7 @@ from mesa_mobility.crowd.costs.layout import (
     ME_X,
     ME_Y,
     KernelTable,
-    Self,
+    Own,
     Terms,
 )
 from mesa_mobility.crowd.options.option_groups import UX, UY, OptionGroups, X, Y
@@ -41,7 +41,7 @@ def preferred_now(i: int, state: CrowdState) -> float:
 
 
 @force_inlined()
-def lay_self(me: EgoPose, state: CrowdState, terms: Terms, record: NDArray[np.float64]) -> Self:
+def lay_self(me: EgoPose, state: CrowdState, terms: Terms, record: NDArray[np.float64]) -> Own:
     """The pedestrian as cost terms see it; ``record`` (8 + fields,) is written."""
     i = me.row
     record[ME_X], record[ME_Y] = me.x, me.y
@@ -51,13 +51,13 @@ def lay_self(me: EgoPose, state: CrowdState, terms: Terms, record: NDArray[np.fl
     record[ME_CORE] = me.core
     for field in range(terms.fields.shape[1]):
         record[FIELDS + field] = terms.fields[i, field]
-    return Self(state.type_index[i], record)
+    return Own(state.type_index[i], record)
 
 
 @force_inlined()
 def group_bounds(
     me: EgoPose,
-    own: Self,
+    own: Own,
     first: int,
     groups: OptionGroups,
     table: KernelTable,
@@ -88,7 +88,7 @@ def group_bounds(
 
 @force_inlined()
 def option_costs(
-    own: Self, ends: NDArray[np.float64], table: KernelTable, out: NDArray[np.float64]
+    own: Own, ends: NDArray[np.float64], table: KernelTable, out: NDArray[np.float64]
 ) -> None:
     """Add the weighted sum of the option terms to ``out``, one number for each option."""
     n = len(out)
@@ -102,7 +102,7 @@ def option_costs(
 
 @internal()
 def wall_cost(
-    own: Self, k: int, ends: NDArray[np.float64], walls: NDArray[np.float64], table: KernelTable
+    own: Own, k: int, ends: NDArray[np.float64], walls: NDArray[np.float64], table: KernelTable
 ) -> float:
     """Weighted sum of the wall terms of option k, each for its worst wall.
 

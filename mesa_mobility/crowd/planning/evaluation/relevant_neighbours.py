@@ -25,7 +25,7 @@ from mesa_mobility.crowd.costs.layout import (
     SECONDS,
     SPEED,
     KernelTable,
-    Self,
+    Own,
 )
 from mesa_mobility.crowd.options.option_groups import DURATION, FASTEST, SLOWEST, OptionGroups
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, in_lanes, pick_between
@@ -86,7 +86,7 @@ def mark_relevant(
 
 @internal()
 def select_relevant(
-    own: Self,
+    own: Own,
     others: NDArray[np.float64],
     count: int,
     picked: NDArray[np.int64],

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
-from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
+from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm, checked_numbers, numbers_of
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
     CostKernel,
@@ -145,7 +145,7 @@ class CompiledTerms:
             self._compiled = [term for term in terms if isinstance(term, CompiledTerm)]
         key = (
             [(term.weight, term.weight_by_type, term.for_types) for term in self._terms],
-            [term.numbers(each) for term in self._compiled for each in kernels_of(term)],
+            [numbers_of(term, each) for term in self._compiled for each in kernels_of(term)],
         )
         if key != self._key:
             self._key = key
@@ -166,7 +166,7 @@ def _table(
     """The table of a kernel of each term, where it has one; ``names`` are the fields laid out."""
     numbers, fields = [], []
     for term, kernel in zip(terms, kernels, strict=True):
-        numbers.append(np.zeros(1) if kernel is None else term.checked_numbers(kernel))
+        numbers.append(np.zeros(1) if kernel is None else checked_numbers(term, kernel))
         taken = () if kernel is None else kernel.fields
         fields.append(np.array([FIELDS + names.index(name) for name in taken], dtype=np.int64))
     weights = np.array([term.weights(types) for term in terms]).reshape(len(terms), len(types))

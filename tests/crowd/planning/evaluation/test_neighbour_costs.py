@@ -6,7 +6,7 @@ from mesa_mobility.behaviors import Headway, Interference, RightOfWay
 from numba import njit
 
 from mesa_mobility import Option, Other
-from mesa_mobility.crowd.costs.layout import Self
+from mesa_mobility.crowd.costs.layout import Own
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, pick_between
 from mesa_mobility.crowd.planning.evaluation.neighbour_costs import ENOUGH, pair_cost
 from mesa_mobility.crowd.planning.evaluation.term_table import compile_terms
@@ -31,7 +31,7 @@ def _pick(bounds, above, up_to, first, picked):
 def cost():
     """A function of what is enough and of the term to begin with, and the costs by term."""
     rng = np.random.default_rng(8)
-    own = Self(0, np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14]))
+    own = Own(0, np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14]))
     ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
     others = np.zeros((8, 32))
     others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
