@@ -11,124 +11,45 @@ from mesa_mobility._lazy import beside_in_a_checkout, names_of
 # To load typing takes as long as all else here, and the command answers Ctrl-C only after it.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mesa_mobility._version import __version__
-    from mesa_mobility.batch import batch_run
-    from mesa_mobility.crowd import (
-        Candidates,
-        Capability,
-        CompiledTerm,
-        CostTerm,
-        Deciding,
-        Desired,
-        Me,
-        Option,
-        Options,
-        Other,
-        Pedestrian,
-        PedestrianModel,
-        PedestrianType,
-        Preset,
-        RouteChoice,
-        Source,
-        SpeedRule,
-        Tactic,
-        TargetChoice,
-        Visit,
-        Wall,
-        World,
-        option_kernel,
-        pair_kernel,
-    )
-    from mesa_mobility.errors import MobilityError
-    from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone, Targets
-    from mesa_mobility.mobility import MobilityMap, MotionGraph
-    from mesa_mobility.plugins.annotations import Files, ListOf, Range
-    from mesa_mobility.plugins.settings import check_fields
-    from mesa_mobility.results import Trajectories
-
-_ROOMS = {
-    "Candidates": "crowd",
-    "Capability": "crowd",
-    "CompiledTerm": "crowd",
-    "CostTerm": "crowd",
-    "Deciding": "crowd",
-    "Desired": "crowd",
-    "Exit": "floorplan",
-    "Files": "plugins.annotations",
-    "FloorPlan": "floorplan",
-    "Gate": "floorplan",
-    "ListOf": "plugins.annotations",
-    "Me": "crowd",
-    "MobilityError": "errors",
-    "MobilityMap": "mobility",
-    "MotionGraph": "mobility",
-    "Option": "crowd",
-    "Options": "crowd",
-    "Other": "crowd",
-    "Pedestrian": "crowd",
-    "PedestrianModel": "crowd",
-    "PedestrianType": "crowd",
-    "Preset": "crowd",
-    "Range": "plugins.annotations",
-    "RouteChoice": "crowd",
-    "Source": "crowd",
-    "SpeedRule": "crowd",
-    "SpeedZone": "floorplan",
-    "Tactic": "crowd",
-    "TargetChoice": "crowd",
-    "Targets": "floorplan",
-    "Trajectories": "results",
-    "Visit": "crowd",
-    "Wall": "crowd",
-    "World": "crowd",
-    "__version__": "_version",
-    "batch_run": "batch",
-    "check_fields": "plugins.settings",
-    "option_kernel": "crowd",
-    "pair_kernel": "crowd",
-}
-
-__all__ = [
-    "Candidates",
-    "Capability",
-    "CompiledTerm",
-    "CostTerm",
-    "Deciding",
-    "Desired",
-    "Exit",
-    "Files",
-    "FloorPlan",
-    "Gate",
-    "ListOf",
-    "Me",
-    "MobilityError",
-    "MobilityMap",
-    "MotionGraph",
-    "Option",
-    "Options",
-    "Other",
-    "Pedestrian",
-    "PedestrianModel",
-    "PedestrianType",
-    "Preset",
-    "Range",
-    "RouteChoice",
-    "Source",
-    "SpeedRule",
-    "SpeedZone",
-    "Tactic",
-    "TargetChoice",
-    "Targets",
-    "Trajectories",
-    "Visit",
-    "Wall",
-    "World",
-    "__version__",
-    "batch_run",
-    "check_fields",
-    "option_kernel",
-    "pair_kernel",
-]
+    from mesa_mobility._version import __version__ as __version__
+    from mesa_mobility.batch import batch_run as batch_run
+    from mesa_mobility.crowd import Candidates as Candidates
+    from mesa_mobility.crowd import Capability as Capability
+    from mesa_mobility.crowd import CompiledTerm as CompiledTerm
+    from mesa_mobility.crowd import CostTerm as CostTerm
+    from mesa_mobility.crowd import Deciding as Deciding
+    from mesa_mobility.crowd import Desired as Desired
+    from mesa_mobility.crowd import Me as Me
+    from mesa_mobility.crowd import Option as Option
+    from mesa_mobility.crowd import Options as Options
+    from mesa_mobility.crowd import Other as Other
+    from mesa_mobility.crowd import Pedestrian as Pedestrian
+    from mesa_mobility.crowd import PedestrianModel as PedestrianModel
+    from mesa_mobility.crowd import PedestrianType as PedestrianType
+    from mesa_mobility.crowd import Preset as Preset
+    from mesa_mobility.crowd import RouteChoice as RouteChoice
+    from mesa_mobility.crowd import Source as Source
+    from mesa_mobility.crowd import SpeedRule as SpeedRule
+    from mesa_mobility.crowd import Tactic as Tactic
+    from mesa_mobility.crowd import TargetChoice as TargetChoice
+    from mesa_mobility.crowd import Visit as Visit
+    from mesa_mobility.crowd import Wall as Wall
+    from mesa_mobility.crowd import World as World
+    from mesa_mobility.crowd import option_kernel as option_kernel
+    from mesa_mobility.crowd import pair_kernel as pair_kernel
+    from mesa_mobility.errors import MobilityError as MobilityError
+    from mesa_mobility.floorplan import Exit as Exit
+    from mesa_mobility.floorplan import FloorPlan as FloorPlan
+    from mesa_mobility.floorplan import Gate as Gate
+    from mesa_mobility.floorplan import SpeedZone as SpeedZone
+    from mesa_mobility.floorplan import Targets as Targets
+    from mesa_mobility.mobility import MobilityMap as MobilityMap
+    from mesa_mobility.mobility import MotionGraph as MotionGraph
+    from mesa_mobility.plugins.annotations import Files as Files
+    from mesa_mobility.plugins.annotations import ListOf as ListOf
+    from mesa_mobility.plugins.annotations import Range as Range
+    from mesa_mobility.plugins.settings import check_fields as check_fields
+    from mesa_mobility.results import Trajectories as Trajectories
 
 __path__ += beside_in_a_checkout(__path__[0], "models")
-__getattr__, __dir__ = names_of(__name__, _ROOMS)
+__getattr__, __dir__ = names_of(__name__, __file__)

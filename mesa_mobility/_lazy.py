@@ -13,25 +13,41 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-def names_of(
-    package: str, modules: Mapping[str, str]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+def names_of(package: str, file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """A package's ``__getattr__`` and ``__dir__`` for lazy names (PEP 562).
+
+    The names stand once in the package's file, where type checkers find them: below
+    ``if TYPE_CHECKING:``, each as ``from module import name as name``.
 
     Args:
         package: its ``__name__``.
-        modules: for each name, the module of the package that defines it.
+        file: its ``__file__``.
     """
+    modules: dict[str, str] = {}
+
+    def known() -> dict[str, str]:
+        if not modules:
+            with open(file, encoding="utf-8") as lines:
+                module = ""
+                for line in lines:
+                    words = line.split()
+                    if line[:9] == "    from ":
+                        module, words = words[1], words[3:]  # what is too long is in brackets
+                    if module and words[1:2] == ["as"]:
+                        modules[words[0]] = module
+        return modules
 
     def get(name: str) -> Any:
-        if name not in modules:
+        if name == "__all__":
+            return list(known())
+        if name not in known():
             raise _unknown(package, name, modules, sys._getframe(1))
-        value = getattr(import_module(f"{package}.{modules[name]}"), name)
+        value = getattr(import_module(modules[name]), name)
         setattr(sys.modules[package], name, value)
         return value
 
     def names() -> list[str]:
-        return sorted({*vars(sys.modules[package]), *modules})
+        return sorted({*vars(sys.modules[package]), *known()})
 
     return get, names
 

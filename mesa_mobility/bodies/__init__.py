@@ -7,30 +7,12 @@ from typing import TYPE_CHECKING
 from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
-    from mesa_mobility.bodies.bank import PoseBank
-    from mesa_mobility.bodies.building import build_bank
-    from mesa_mobility.bodies.motion import BodyMotion, body_motion
-    from mesa_mobility.bodies.quality import BodyQuality, quality
-    from mesa_mobility.bodies.sequence import Movements
+    from mesa_mobility.bodies.bank import PoseBank as PoseBank
+    from mesa_mobility.bodies.building import build_bank as build_bank
+    from mesa_mobility.bodies.motion import BodyMotion as BodyMotion
+    from mesa_mobility.bodies.motion import body_motion as body_motion
+    from mesa_mobility.bodies.quality import BodyQuality as BodyQuality
+    from mesa_mobility.bodies.quality import quality as quality
+    from mesa_mobility.bodies.sequence import Movements as Movements
 
-_MODULES = {
-    "BodyMotion": "motion",
-    "BodyQuality": "quality",
-    "Movements": "sequence",
-    "PoseBank": "bank",
-    "body_motion": "motion",
-    "build_bank": "building",
-    "quality": "quality",
-}
-
-__all__ = [
-    "BodyMotion",
-    "BodyQuality",
-    "Movements",
-    "PoseBank",
-    "body_motion",
-    "build_bank",
-    "quality",
-]
-
-__getattr__, __dir__ = names_of(__name__, _MODULES)
+__getattr__, __dir__ = names_of(__name__, __file__)

@@ -10,12 +10,8 @@ from typing import TYPE_CHECKING
 from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
-    from mesa_mobility.dashboard.app import Dashboard
-    from mesa_mobility.dashboard.solara_viz import make_crowd_view
-
-_MODULES = {"Dashboard": "app", "make_crowd_view": "solara_viz"}
-
-__all__ = ["Dashboard", "make_crowd_view"]
+    from mesa_mobility.dashboard.app import Dashboard as Dashboard
+    from mesa_mobility.dashboard.solara_viz import make_crowd_view as make_crowd_view
 
 # Mesa's visualization takes a second to load; the dashboard does without.
-__getattr__, __dir__ = names_of(__name__, _MODULES)
+__getattr__, __dir__ = names_of(__name__, __file__)
