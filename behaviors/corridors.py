@@ -171,9 +171,13 @@ def _corridor(
     )
     # Each cell is where the point of the way is that is nearest to it on foot.
     aside, _, nearest = dijkstra(
-        cells.graph(cells.steps), directed=False, indices=way, min_only=True,
-        return_predecessors=True, limit=2.0 * BEYOND,
-    )  # fmt: skip
+        cells.graph(cells.steps),
+        directed=False,
+        indices=way,
+        min_only=True,
+        return_predecessors=True,
+        limit=2.0 * BEYOND,
+    )
     there = np.full(len(cells.points), np.nan)
     there[way] = along
     reached = np.isfinite(aside)
@@ -187,9 +191,18 @@ def _corridor(
     inside = np.zeros(held.shape, dtype=np.bool_)
     grid[held], off[held], inside[held] = there, aside, cells.within
     return Corridor(
-        origin, cell, grid, off, inside, length, cells.points[way], along, cells.points[own],
-        there[own], aside[own],
-    )  # fmt: skip
+        origin,
+        cell,
+        grid,
+        off,
+        inside,
+        length,
+        cells.points[way],
+        along,
+        cells.points[own],
+        there[own],
+        aside[own],
+    )
 
 
 def _cells(
@@ -223,9 +236,14 @@ def _cells(
         pairs.append((first[both], second[both], step))
     one, other, steps = (np.concatenate(each) for each in zip(*pairs, strict=True))
     return _Cells(
-        index, np.column_stack([x[held], y[held]]), distances[held],
-        shapely.contains_xy(part, x[held], y[held]), one, other, steps,
-    )  # fmt: skip
+        index,
+        np.column_stack([x[held], y[held]]),
+        distances[held],
+        shapely.contains_xy(part, x[held], y[held]),
+        one,
+        other,
+        steps,
+    )
 
 
 def _ends(cells: _Cells) -> list[NDArray[np.int64]]:
@@ -254,9 +272,12 @@ def _way(cells: _Cells, ends: list[NDArray[np.int64]], radius: float) -> NDArray
     if len(starts) == 0:
         return starts
     lengths, before, _ = dijkstra(
-        cells.graph(weights), directed=False, indices=starts.astype(np.int32), min_only=True,
+        cells.graph(weights),
+        directed=False,
+        indices=starts.astype(np.int32),
+        min_only=True,
         return_predecessors=True,
-    )  # fmt: skip
+    )
     last = int(ends[1][lengths[ends[1]].argmin()])
     if not np.isfinite(lengths[last]):
         return starts[:0]

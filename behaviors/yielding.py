@@ -164,9 +164,13 @@ class Yielding(Tactic):
                 continue
             rows = deciding.pedestrians[here]
             courses = courses_of(
-                corridor, deciding.positions[here], desired.targets.points[here], along[here],
-                within[here], self._courses[number, rows],
-            )  # fmt: skip
+                corridor,
+                deciding.positions[here],
+                desired.targets.points[here],
+                along[here],
+                within[here],
+                self._courses[number, rows],
+            )
             self._courses[number, rows] = np.where(waiting[here], 0, courses)
             party = self._people(number, deciding)
             negotiation = agree(

@@ -116,13 +116,18 @@ class Auditorium(PedestrianModel):
         wide = np.array([too_wide(kind.half_width) for kind in self.pedestrian_types])[kinds]
         if wide.any():
             places = plan.random_points(
-                int(wide.sum()), self.rng, within=BEFORE_THE_FIRST_ROW,
-                spacing=WHEELCHAIR_SPACING, clearance=WHEELCHAIR_SPACING / 2,
-            )  # fmt: skip
+                int(wide.sum()),
+                self.rng,
+                within=BEFORE_THE_FIRST_ROW,
+                spacing=WHEELCHAIR_SPACING,
+                clearance=WHEELCHAIR_SPACING / 2,
+            )
             self.add_pedestrians(places, pre_movement=pre_movement, type_index=kinds[wide])
         kinds = kinds[~wide]
-        in_offices = max(min(round(pedestrians / 12), OFFICES * PEOPLE_PER_OFFICE, len(kinds)),
-                         len(kinds) - len(seats))  # fmt: skip
+        in_offices = max(
+            min(round(pedestrians / 12), OFFICES * PEOPLE_PER_OFFICE, len(kinds)),
+            len(kinds) - len(seats),
+        )
         taken = self.rng.choice(len(seats), len(kinds) - in_offices, replace=False)
         taken.sort()
         facing_stage = np.full(len(taken), -np.pi / 2)

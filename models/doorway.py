@@ -77,11 +77,20 @@ def doorway_plan(door_width: float) -> FloorPlan:
     end = ROOM + WALL + HALL
     floor = Polygon(
         [
-            (0, 0), (ROOM, 0), (ROOM, low), (ROOM + WALL, low), (ROOM + WALL, 0), (end, 0),
-            (end, ROOM), (ROOM + WALL, ROOM), (ROOM + WALL, high), (ROOM, high), (ROOM, ROOM),
+            (0, 0),
+            (ROOM, 0),
+            (ROOM, low),
+            (ROOM + WALL, low),
+            (ROOM + WALL, 0),
+            (end, 0),
+            (end, ROOM),
+            (ROOM + WALL, ROOM),
+            (ROOM + WALL, high),
+            (ROOM, high),
+            (ROOM, ROOM),
             (0, ROOM),
         ]
-    )  # fmt: skip
+    )
     return FloorPlan(
         floor,
         exits=[Exit("second door", (end, low + 2.0), (end, high + 2.0))],

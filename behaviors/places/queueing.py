@@ -134,9 +134,10 @@ class Queueing(Tactic):
         bound = [self._counter_of(row) for row in rows.tolist()]
         for number, counter in enumerate(self.counters):
             self._lines[number] = [
-                row for row in self._lines[number]
+                row
+                for row in self._lines[number]
                 if crowd.active[row] and self._counter_of(row) == number
-            ]  # fmt: skip
+            ]
             who = np.flatnonzero([each == number for each in bound])
             # Two may come to an empty counter at once, and the second one step up to it first.
             self._lines[number].sort(key=lambda row: not self._is_served(row))

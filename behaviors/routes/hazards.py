@@ -155,9 +155,7 @@ class Hazards(TargetChoice):
             return None
         return math.ceil(hazard.speed * (elapsed - hazard.begins) / _STEP) * _STEP
 
-    def _floor(
-        self, plan: FloorPlan, margin: float, grown: tuple[float | None, ...]
-    ) -> _Floor:  # fmt: skip
+    def _floor(self, plan: FloorPlan, margin: float, grown: tuple[float | None, ...]) -> _Floor:
         key = plan.version, margin, grown
         if key not in self._floors:
             # Hazards grow, so that earlier floors are not asked for again.

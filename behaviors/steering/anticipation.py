@@ -104,9 +104,16 @@ def turn_aside(
     """
     points, speeds = points.copy(), speeds.copy()
     _turn_aside(
-        rows, frame, grid, sight_on(plan, 0.0), crowd.records, crowd.agenda, points, speeds,
+        rows,
+        frame,
+        grid,
+        sight_on(plan, 0.0),
+        crowd.records,
+        crowd.agenda,
+        points,
+        speeds,
         np.empty((_FIELDS, len(grid.people))),
-    )  # fmt: skip
+    )
     return points, speeds
 
 
@@ -269,9 +276,14 @@ class Anticipation(Tactic):
         """Turn the points of those for whom another course is better, or slow them down."""
         if not desired.newcomers:
             desired.points, desired.speeds = turn_aside(
-                deciding.pedestrians, deciding.inside.grid, deciding.frame, deciding.inside.crowd,
-                deciding.site.plan, desired.points, desired.speeds,
-            )  # fmt: skip
+                deciding.pedestrians,
+                deciding.inside.grid,
+                deciding.frame,
+                deciding.inside.crowd,
+                deciding.site.plan,
+                desired.points,
+                desired.speeds,
+            )
 
     def compile_ahead(self) -> None:
         """Compile the comparison of courses."""

@@ -31,9 +31,14 @@ def spread_at_corners(deciding: Deciding, targets: Targets, crowd: Crowd) -> NDA
         return targets.points
     areas = np.zeros(len(deciding.pedestrians))
     bent = _areas(
-        deciding.pedestrians, targets.nearest_first, deciding.site.corners.shared(targets.corners),
-        deciding.inside.pedestrians, crowd.records, crowd.agenda, areas,
-    )  # fmt: skip
+        deciding.pedestrians,
+        targets.nearest_first,
+        deciding.site.corners.shared(targets.corners),
+        deciding.inside.pedestrians,
+        crowd.records,
+        crowd.agenda,
+        areas,
+    )
     return deciding.site.abreast(deciding.positions, targets, areas) if bent else targets.points
 
 

@@ -124,9 +124,12 @@ class AdaptSpeed(Tactic):
         """Slow down those who have people ahead."""
         if not desired.newcomers:
             desired.speeds = adapt_speeds(
-                deciding.pedestrians, deciding.inside.grid, deciding.inside.crowd, desired.points,
+                deciding.pedestrians,
+                deciding.inside.grid,
+                deciding.inside.crowd,
+                desired.points,
                 desired.speeds,
-            )  # fmt: skip
+            )
 
     def compile_ahead(self) -> None:
         """Compile the look at those ahead."""

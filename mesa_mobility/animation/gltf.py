@@ -170,9 +170,13 @@ def _mesh(
 ) -> tuple[Any, int]:
     """Attributes and indices of a mesh."""
     places = store.accessor(
-        vertices, "VEC3", _FLOAT, target=_ARRAY,
-        min=vertices.min(axis=0).tolist(), max=vertices.max(axis=0).tolist(),
-    )  # fmt: skip
+        vertices,
+        "VEC3",
+        _FLOAT,
+        target=_ARRAY,
+        min=vertices.min(axis=0).tolist(),
+        max=vertices.max(axis=0).tolist(),
+    )
     attributes = gltf.Attributes(
         POSITION=places, NORMAL=store.accessor(normals, "VEC3", _FLOAT, target=_ARRAY)
     )
@@ -258,9 +262,14 @@ def _animate(
     begin = walker.first - first
     span = [begin / FRAME_RATE, (begin + n - 1) / FRAME_RATE]
     stamps = store.accessor(
-        np.empty(n), "SCALAR", _FLOAT, view=times, byteOffset=4 * begin,
-        min=[float(np.float32(span[0]))], max=[float(np.float32(span[1]))],
-    )  # fmt: skip
+        np.empty(n),
+        "SCALAR",
+        _FLOAT,
+        view=times,
+        byteOffset=4 * begin,
+        min=[float(np.float32(span[0]))],
+        max=[float(np.float32(span[1]))],
+    )
 
     def channel(node: int, what: str, output: int, when: int = stamps, how: str = "LINEAR") -> None:
         animation.samplers.append(

@@ -70,9 +70,13 @@ def run(
         missing = count_missing(experiment, place)
         points = len(experiment.design)
         answer_table(
-            {"Store": place, "Points": f"{points}", "Replications": f"{experiment.replications}",
-             "Runs to do": f"{missing}"}
-        )  # fmt: skip
+            {
+                "Store": place,
+                "Points": f"{points}",
+                "Replications": f"{experiment.replications}",
+                "Runs to do": f"{missing}",
+            }
+        )
         return
     interrupted = False
     with gentle_interrupt() as stop_here, counting_bar(shown=not no_progress) as report:

@@ -80,9 +80,12 @@ def verify(
         say(f"{name}: {outcomes[name].reported[0]}: {entries[name].cap}")
     say(
         f"{len(outcomes) - len(failing) - len(capped)} passed, {len(failing)} failed"
-        + (f", design cap exceeded as measured crowds exceed it: {', '.join(capped)}"
-           if capped else "")
-    )  # fmt: skip
+        + (
+            f", design cap exceeded as measured crowds exceed it: {', '.join(capped)}"
+            if capped
+            else ""
+        )
+    )
     if as_json:
         answer_json({name: _as_json(entries[name], outcomes[name]) for name in outcomes})
     if failing:

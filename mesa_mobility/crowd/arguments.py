@@ -57,9 +57,7 @@ def read_scene(
     return make_scene(floor_plan, types, rules, shares=shares, fields=kinds)
 
 
-_LISTS: dict[str, type[Plugin]] = {
-    "terms": CostTerm, "speed_rules": SpeedRule, "tactics": Tactic
-}  # fmt: skip
+_LISTS: dict[str, type[Plugin]] = {"terms": CostTerm, "speed_rules": SpeedRule, "tactics": Tactic}
 
 SETTABLE = (*_LISTS, "target_choice", "frames_per_step", "watch")
 """What users set of a model."""

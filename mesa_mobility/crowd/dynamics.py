@@ -70,8 +70,10 @@ class Dynamics(Saved):
     def members(self) -> Mapping[str, Kind]:
         """What the members of ``state`` are."""
         return {
-            "next": Whole(high=LONG_AFTER), "grouped": Flag(), "plan_has_changed": Flag(),
-        }  # fmt: skip
+            "next": Whole(high=LONG_AFTER),
+            "grouped": Flag(),
+            "plan_has_changed": Flag(),
+        }
 
     def __init__(self, model: Run, scene: Scene) -> None:
         self._model = model
@@ -201,9 +203,14 @@ class Dynamics(Saved):
         """Movement options of the people in ``rows`` if they decided now."""
         scene = self._scene
         return make_candidates(
-            rows, scene.repertoire.table, scene.crowd, self._grid(),
-            scene.environment.surroundings, scene.rules, self._moment.aside(),
-        )  # fmt: skip
+            rows,
+            scene.repertoire.table,
+            scene.crowd,
+            self._grid(),
+            scene.environment.surroundings,
+            scene.rules,
+            self._moment.aside(),
+        )
 
     @property
     def _moment(self) -> Moment:
@@ -214,10 +221,16 @@ class Dynamics(Saved):
         scene, model = self._scene, self._model
         self.bind()
         weighed = weigh(
-            row, self._moment.aside(), scene.repertoire, scene.crowd, self._grid(),
-            scene.environment.surroundings, scene.rules, model.terms,
+            row,
+            self._moment.aside(),
+            scene.repertoire,
+            scene.crowd,
+            self._grid(),
+            scene.environment.surroundings,
+            scene.rules,
+            model.terms,
             [each.name for each in scene.types],
-        )  # fmt: skip
+        )
         return judge(
             weighed,
             scene.repertoire.table,
@@ -251,9 +264,13 @@ class Dynamics(Saved):
         # Those who stop lose their paths, on which crossed gates are found.
         scene.journeys.advance(rows, now, scene.crowd, scene.repertoire.table, self._model.rng)
         stop_where_blocked(
-            rows, now, scene.repertoire.table, scene.crowd.records,
-            scene.environment.surroundings, scene.rules,
-        )  # fmt: skip
+            rows,
+            now,
+            scene.repertoire.table,
+            scene.crowd.records,
+            scene.environment.surroundings,
+            scene.rules,
+        )
         self._next = now
 
     def _take_decisions(self) -> None:

@@ -126,8 +126,9 @@ def _line(path: Path, error: BaseException) -> str:
     file = str(path.resolve())
     if isinstance(error, SyntaxError) and error.filename == file:
         return f":{error.lineno}"
-    lines = [each.lineno for each in traceback.extract_tb(error.__traceback__)
-             if each.filename == file]  # fmt: skip
+    lines = [
+        each.lineno for each in traceback.extract_tb(error.__traceback__) if each.filename == file
+    ]
     return f":{lines[-1]}" if lines else ""
 
 

@@ -241,9 +241,14 @@ class Population(Saved):
         # People who have just crossed an exit still take up room.
         there = self.departed.together_with(self.present)
         free = first_free(
-            places, scene.types[type_index].bounding_radius, frame, there, scene.repertoire.table,
-            scene.crowd.records, scene.rules.search_radius,
-        )  # fmt: skip
+            places,
+            scene.types[type_index].bounding_radius,
+            frame,
+            there,
+            scene.repertoire.table,
+            scene.crowd.records,
+            scene.rules.search_radius,
+        )
         return places[free] if free >= 0 else None
 
     def awaits(self, row: int | None) -> bool:
@@ -251,9 +256,12 @@ class Population(Saved):
         known = len(self._agents_by_row)
         return row is not None and (
             known <= row < self.count
-            or (0 <= row < known and self._agents_by_row[row] is None
-                and bool(self._scene.crowd.active[row]))
-        )  # fmt: skip
+            or (
+                0 <= row < known
+                and self._agents_by_row[row] is None
+                and bool(self._scene.crowd.active[row])
+            )
+        )
 
     def send(self, row: int, exits: Sequence[str] | None, route: Route, frame: int) -> None:
         """Send somebody along a route and out by one of these exits.

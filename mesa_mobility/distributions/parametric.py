@@ -105,8 +105,11 @@ class TruncatedNormal(Distribution):
 
     def __post_init__(self) -> None:
         _check(self, _finite(self.mean, self.sd) and self.sd > 0.0, "a finite mean and sd > 0")
-        _check(self, _ordered(self.low, self.high) and self.low < self.mean < self.high,
-               "low < mean < high")  # fmt: skip
+        _check(
+            self,
+            _ordered(self.low, self.high) and self.low < self.mean < self.high,
+            "low < mean < high",
+        )
         most = widest(self.mean, self.low, self.high)
         # The widest of all is no normal distribution, but exponential.
         _check(

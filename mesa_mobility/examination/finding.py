@@ -38,6 +38,9 @@ class Finding:
     def answer(self) -> dict[str, Any]:
         """All but the name, ready for JSON."""
         said = {
-            "what": self.what, **self.measured, "expected": self.expected, "passed": self.passed
-        }  # fmt: skip
+            "what": self.what,
+            **self.measured,
+            "expected": self.expected,
+            "passed": self.passed,
+        }
         return said if self.passed else {**said, "helps": self.helps}

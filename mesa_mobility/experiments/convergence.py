@@ -88,9 +88,10 @@ class Precision:
         check_whole("most", self.most, self.least, math.inf, f"{self.least} (least) or more")
         for figure in self.figures:
             how = figure.split(" ")[0]
-            if how != "mean" and (
-                needed := runs_for_quantile(int(how[1:]) / 100, self.confidence)
-            ) > self.most:  # fmt: skip
+            if (
+                how != "mean"
+                and (needed := runs_for_quantile(int(how[1:]) / 100, self.confidence)) > self.most
+            ):
                 raise ModelError(
                     f"most is {self.most}, but an interval of {how} at {self.confidence:.4g} takes "
                     f"{needed} runs"

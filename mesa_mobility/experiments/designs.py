@@ -175,8 +175,11 @@ class Sampled:
 
     def definition(self) -> dict[str, Any]:
         """Bounds, number and seed."""
-        return {"between": {n: list(b) for n, b in self.bounds.items()}, "points": self.points,
-                "seed": self.seed}  # fmt: skip
+        return {
+            "between": {n: list(b) for n, b in self.bounds.items()},
+            "points": self.points,
+            "seed": self.seed,
+        }
 
     @cached_property
     def _unit(self) -> NDArray[np.float64]:

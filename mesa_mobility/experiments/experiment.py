@@ -166,9 +166,7 @@ def model_name(model: type | str) -> str:
 def _check_seconds(name: str, value: Any) -> None:
     if value is None:
         return
-    if isinstance(value, bool) or not isinstance(value, int | float) or not (
-        0 < value <= _LONGEST
-    ):  # fmt: skip
+    if isinstance(value, bool) or not isinstance(value, int | float) or not (0 < value <= _LONGEST):
         raise ModelError(
             f"experiment: {name} is {value!r}, expected seconds above 0, at most {_LONGEST:g}"
         )

@@ -47,9 +47,12 @@ def sobol_indices(store: Store, figure: str) -> dict[str, dict[str, float]]:
 
     found = sobol.analyze(design.problem, values, calc_second_order=False, seed=design.seed)
     return _by_parameter(
-        design.bounds, first=found["S1"], total=found["ST"], first_conf=found["S1_conf"],
+        design.bounds,
+        first=found["S1"],
+        total=found["ST"],
+        first_conf=found["S1_conf"],
         total_conf=found["ST_conf"],
-    )  # fmt: skip
+    )
 
 
 def morris_screening(store: Store, figure: str) -> dict[str, dict[str, float]]:

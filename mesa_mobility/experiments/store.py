@@ -279,8 +279,10 @@ class Store:
         for name in (RUNS, WORK, *([TRAJECTORIES] if "trajectories" in experiment.keep else [])):
             self.folder.make(name)
         values = {
-            "format_version": FORMAT_VERSION, "experiment": said, "sessions": [*sessions, session]
-        }  # fmt: skip
+            "format_version": FORMAT_VERSION,
+            "experiment": said,
+            "sessions": [*sessions, session],
+        }
         self.folder.write_bytes(DEFINITION, (json.dumps(values, indent=1) + "\n").encode())
 
     def compact(self) -> None:

@@ -116,8 +116,20 @@ def reading(path: Path, kind: str, error: type[MobilityError], suffix: str = "")
         raise error(f"{path}: no such file, expected a {expected}") from None
     except OSError as cause:
         raise error(f"{path}: cannot be read ({cause.strerror or cause})") from cause
-    except (ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
-            RuntimeError, MemoryError, TypeError, SyntaxError, LookupError, ArithmeticError,
-            AttributeError) as cause:  # fmt: skip
+    except (
+        ValueError,
+        EOFError,
+        KeyError,
+        zipfile.BadZipFile,
+        zlib.error,
+        NotImplementedError,
+        RuntimeError,
+        MemoryError,
+        TypeError,
+        SyntaxError,
+        LookupError,
+        ArithmeticError,
+        AttributeError,
+    ) as cause:
         reason = next(iter(str(cause).splitlines()), type(cause).__name__)[:200]
         raise error(f"{path}: not a readable {kind} ({reason})") from cause

@@ -116,9 +116,13 @@ def _of_json(message: str) -> Frame:
         if shapes != {(len(person),)}:
             raise LiveError("frame: lists of unequal length, expected one value for each person")
         return Frame(
-            int(values["number"]), int(values["frame"]), float(values["sent"]),
-            bool(values["paused"]), person, *columns,
-        )  # fmt: skip
+            int(values["number"]),
+            int(values["frame"]),
+            float(values["sent"]),
+            bool(values["paused"]),
+            person,
+            *columns,
+        )
     except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         reason = " ".join(str(error).split())
         raise LiveError(f"frame: not readable: {type(error).__name__} {reason}") from error

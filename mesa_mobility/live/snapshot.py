@@ -135,13 +135,26 @@ class Camera:
             self._plan = _json(model.floor_plan.to_geojson())
         self._number += 1
         frame = Frame(
-            self._number, model.frame, time.time(), paused, rows.astype(np.int32), crowd.x[rows],
-            crowd.y[rows], crowd.heading[rows], crowd.vx[rows], crowd.vy[rows],
-        )  # fmt: skip
+            self._number,
+            model.frame,
+            time.time(),
+            paused,
+            rows.astype(np.int32),
+            crowd.x[rows],
+            crowd.y[rows],
+            crowd.heading[rows],
+            crowd.vx[rows],
+            crowd.vy[rows],
+        )
         return Snapshot(
-            frame, self._people, self._types, self._plan, self._plan_version,
-            type(model).__name__, self._rate,
-        )  # fmt: skip
+            frame,
+            self._people,
+            self._types,
+            self._plan,
+            self._plan_version,
+            type(model).__name__,
+            self._rate,
+        )
 
 
 def _json(values: dict[str, Any]) -> str:

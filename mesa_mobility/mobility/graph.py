@@ -129,9 +129,14 @@ def motion_graph(poses: PoseTable) -> MotionGraph:
         )
     columns = np.ascontiguousarray(poses.features.T)
     match, distance = _best_matches(
-        columns, poses.clip, poses.first, np.float32(THRESHOLD * THRESHOLD), MIN_SEPARATION,
-        STRETCH, MAX_TRANSITIONS,
-    )  # fmt: skip
+        columns,
+        poses.clip,
+        poses.first,
+        np.float32(THRESHOLD * THRESHOLD),
+        MIN_SEPARATION,
+        STRETCH,
+        MAX_TRANSITIONS,
+    )
     row, rank = np.nonzero(match >= 0)
     look_alike = match[row, rank].astype(np.int64)
     source = np.concatenate([natural, row])

@@ -122,9 +122,20 @@ def reachable_options(
 
     def collect(chunk: NDArray[np.int32]) -> tuple[NDArray, ...]:
         return _collect(
-            chunk, graph.offsets, graph.successors, graph.via, graph.costs, step,
-            clusters.labels, durations, BUDGET, TRANSITION_PENALTY, MOST_JUMPS, cells, half_cells,
-        )  # fmt: skip
+            chunk,
+            graph.offsets,
+            graph.successors,
+            graph.via,
+            graph.costs,
+            step,
+            clusters.labels,
+            durations,
+            BUDGET,
+            TRANSITION_PENALTY,
+            MOST_JUMPS,
+            cells,
+            half_cells,
+        )
 
     found: list[list[tuple[NDArray, ...]]] = [[] for _ in range(len(clusters))]
     done = 0

@@ -38,9 +38,12 @@ TURNS = (0.0, 0.15, -0.15, 0.4, -0.4, 1.0, -1.0)
 
 _SEATED = [
     [0.0, 0.0, 0.5],
-    *([x, y, z] for y in (0.1, -0.1)
-      for x, z in ((0.0, 0.5), (0.42, 0.5), (0.48, 0.12), (0.62, 0.08))),
-]  # fmt: skip
+    *(
+        [x, y, z]
+        for y in (0.1, -0.1)
+        for x, z in ((0.0, 0.5), (0.42, 0.5), (0.48, 0.12), (0.62, 0.08))
+    ),
+]
 """Joints of somebody who sits, metres, as ``POSE_JOINTS`` lists them."""
 
 

@@ -160,9 +160,16 @@ def read_decisions(path: str | os.PathLike[str]) -> Decisions:
         named = said if said.startswith(f"{source}: ") else f"{source}: {said}"
         raise ResultsError(named) from None
     except (
-        AttributeError, OverflowError, MemoryError, OSError, KeyError, TypeError, ValueError,
-        RecursionError, pa.ArrowException,
-    ) as error:  # fmt: skip
+        AttributeError,
+        OverflowError,
+        MemoryError,
+        OSError,
+        KeyError,
+        TypeError,
+        ValueError,
+        RecursionError,
+        pa.ArrowException,
+    ) as error:
         reason = next(iter(str(error).splitlines()), type(error).__name__)
         raise ResultsError(f"{source}: not readable decisions: {reason}") from error
 

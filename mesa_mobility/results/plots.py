@@ -37,9 +37,19 @@ PAPER = "paper (Casburn et al. 2005, Fig. 7)"
 TRACK_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.9, 256)))
 # Distinguishable with every kind of colour vision as far as twelve can be; those of the dashboard.
 TYPE_COLOURS = (
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00",
-    "#999999", "#5b3a93", "#8c510a", "#b5a300", "#00a6a6", "#b2182b",
-)  # fmt: skip
+    "#0072b2",
+    "#d55e00",
+    "#009e73",
+    "#cc79a7",
+    "#56b4e9",
+    "#e69f00",
+    "#999999",
+    "#5b3a93",
+    "#8c510a",
+    "#b5a300",
+    "#00a6a6",
+    "#b2182b",
+)
 BODY, LEFT_INSIDE, REFERENCE = "#2166ac", "#000000", "#d6604d"
 STILL_INSIDE: dict[str, Any] = {
     "linestyle": "none",

@@ -50,7 +50,7 @@ __all__ = [
     "Whole",
     "check",
     "check_shape",
-]  # fmt: skip
+]
 
 
 def check(

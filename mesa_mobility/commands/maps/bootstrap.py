@@ -71,8 +71,18 @@ def bootstrap(
         rows = []
         for number in range(1, maps + 1):
             drawn, said = draw_clips(prepared.recordings, seed, number)
-            command = ["mesa-mobility", "map", "bootstrap", source.name, "--out", "maps",
-                       "--type", type_name, "--seed", str(seed)]  # fmt: skip
+            command = [
+                "mesa-mobility",
+                "map",
+                "bootstrap",
+                source.name,
+                "--out",
+                "maps",
+                "--type",
+                type_name,
+                "--seed",
+                str(seed),
+            ]
             command += [] if clusters is None else ["--clusters", str(clusters)]
             metadata = {
                 "command": shlex.join(command),

@@ -59,12 +59,11 @@ CONTENT = Members(
             }
         ),
         "behaviors": Members(
-            dict.fromkeys(("terms", "speed_rules", "target_choice", "tactics"),
-                          Several(_BEHAVIOUR))
+            dict.fromkeys(("terms", "speed_rules", "target_choice", "tactics"), Several(_BEHAVIOUR))
         ),
         "own": Several(Text(), dict),
     }
-)  # fmt: skip
+)
 """The JSON object of a checkpoint, before the values in it are unpacked."""
 
 COUNTERS: dict[str, Kind] = {
@@ -215,8 +214,9 @@ class _Noting(dict[str, Any]):
 def _check_members(behaviour: Plugin, state: Mapping[str, Any], sizes: Sizes) -> None:
     """Raise ContentError unless a behaviour's state is as it declares, or else as it is now."""
     kind, declared = type(behaviour), behaviour.members()
-    own = {name: len(each) for name, each in vars(behaviour).items()
-           if hasattr(type(each), "__len__")}  # fmt: skip
+    own = {
+        name: len(each) for name, each in vars(behaviour).items() if hasattr(type(each), "__len__")
+    }
     given = state
     if behaviour.saved is None and kind.state is Plugin.state:
         # All attributes: a subclass of the class that declares some of them may have others.

@@ -51,8 +51,10 @@ def check_movements(
     """
     people = np.asarray(scene.crowd.records[: state["count"]])
     departed = state["departed"]["rows"]
-    if not (np.array_equal(np.flatnonzero(people["active"]), inside)
-            and np.array_equal(state["rows"], inside)):  # fmt: skip
+    if not (
+        np.array_equal(np.flatnonzero(people["active"]), inside)
+        and np.array_equal(state["rows"], inside)
+    ):
         raise ContentError("population, present: expected all who are active, and nobody else")
     if people["active"][departed].any():
         raise ContentError("population, departed: expected people who have left")

@@ -32,19 +32,31 @@ TAG = "$"
 _DATACLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
-        Exit, Gate, SpeedZone, Source, Preset, PedestrianType, Visit,
-        *(each for each in vars(distributions).values()
-          if isinstance(each, type) and is_dataclass(each)),
+        Exit,
+        Gate,
+        SpeedZone,
+        Source,
+        Preset,
+        PedestrianType,
+        Visit,
+        *(
+            each
+            for each in vars(distributions).values()
+            if isinstance(each, type) and is_dataclass(each)
+        ),
     )
-}  # fmt: skip
+}
 
 _GENERATORS = {
     kind.__name__: kind
     for kind in (
-        np.random.PCG64, np.random.PCG64DXSM, np.random.MT19937, np.random.Philox,
+        np.random.PCG64,
+        np.random.PCG64DXSM,
+        np.random.MT19937,
+        np.random.Philox,
         np.random.SFC64,
     )
-}  # fmt: skip
+}
 
 
 class NotPlain(ModelError):
@@ -113,8 +125,10 @@ class Packer:
         if type(value) is tuple:
             return ["tuple", [self.pack(each, where) for each in value]]
         if isinstance(value, dict):
-            pairs = [[self.pack(key, where), self.pack(each, f"{where}[{key!r}]")]
-                     for key, each in value.items()]  # fmt: skip
+            pairs = [
+                [self.pack(key, where), self.pack(each, f"{where}[{key!r}]")]
+                for key, each in value.items()
+            ]
             return ["dict", pairs]
         if isinstance(value, set | frozenset):
             return [type(value).__name__, [self.pack(each, where) for each in sorted(value)]]
@@ -206,10 +220,16 @@ class Unpacker:
             case "geometry":
                 return shapely.from_wkb(content)
             case "plan":
-                plan = FloorPlan.from_geojson({**content[0], "features": [
-                    each for each in content[0]["features"]
-                    if each["properties"]["kind"] != "obstacle"
-                ]})  # fmt: skip
+                plan = FloorPlan.from_geojson(
+                    {
+                        **content[0],
+                        "features": [
+                            each
+                            for each in content[0]["features"]
+                            if each["properties"]["kind"] != "obstacle"
+                        ],
+                    }
+                )
                 state = self.unpack(content[1])
                 openings = {"openings": [each.name for each in plan.openings()]}
                 check(state, Members(plan.members()), "floor plan", openings)

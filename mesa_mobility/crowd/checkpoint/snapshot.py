@@ -81,8 +81,10 @@ def save_model(model: CrowdModel, path: str | os.PathLike[str]) -> None:
         "arguments": arguments,
         "missing_arguments": missing,
         "map_sha256": [map_digest(each.mobility_map) for each in model.pedestrian_types],
-        **{name: packer.pack(value, f"{type(model).__name__}, {name}")
-           for name, value in state.items()},
+        **{
+            name: packer.pack(value, f"{type(model).__name__}, {name}")
+            for name, value in state.items()
+        },
         "people": pack_people(model, packer),
         "behaviors": {
             group: [pack_behaviour(each, packer) for each in behaviours]
@@ -92,7 +94,7 @@ def save_model(model: CrowdModel, path: str | os.PathLike[str]) -> None:
             name: packer.pack(vars(model)[name], f"{type(model).__name__}.{name}")
             for name in own_attributes(model)
         },
-    }  # fmt: skip
+    }
     write_archive(path, content, packer.arrays)
 
 

@@ -112,9 +112,7 @@ class Candidates:
     rng: np.random.Generator
 
     def __post_init__(self) -> None:
-        for array in (
-            *vars(self).values(), *self.fields.values(), *self.neighbour_fields.values()
-        ):  # fmt: skip
+        for array in (*vars(self).values(), *self.fields.values(), *self.neighbour_fields.values()):
             if isinstance(array, np.ndarray):
                 array.setflags(write=False)
 
@@ -124,15 +122,24 @@ class Candidates:
         Raises:
             ModelError: the model declares no such field.
         """
-        at_hand = {"type": self.types, "group": self.groups, "heading": self.facings,
-                   "core": self.cores, **self.fields}  # fmt: skip
+        at_hand = {
+            "type": self.types,
+            "group": self.groups,
+            "heading": self.facings,
+            "core": self.cores,
+            **self.fields,
+        }
         return _chosen(name, at_hand)
 
     def neighbour_field(self, name: str) -> NDArray[np.float64]:
         """(q,) the same of each neighbour."""
-        at_hand = {"type": self.neighbour_types, "group": self.neighbour_groups,
-                   "heading": self.neighbour_facings, "core": self.neighbour_cores,
-                   **self.neighbour_fields}  # fmt: skip
+        at_hand = {
+            "type": self.neighbour_types,
+            "group": self.neighbour_groups,
+            "heading": self.neighbour_facings,
+            "core": self.neighbour_cores,
+            **self.neighbour_fields,
+        }
         return _chosen(name, at_hand)
 
     def __len__(self) -> int:

@@ -202,9 +202,11 @@ class Sources(Sequence[Inflow], Saved):
         for kind in newcomers:
             of = scene.types[kind]
             entrances[kind] = Entrance(
-                scene.plan, area, clearance=of.bounding_radius + 0.01,
+                scene.plan,
+                area,
+                clearance=of.bounding_radius + 0.01,
                 passing=passing_of(of.half_width),
-            )  # fmt: skip
+            )
             destination, _ = scene.journeys.start(source.exits, source.route, source.loop, kind)
             somewhere = entrances[kind].room.representative_point()
             scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)

@@ -180,9 +180,14 @@ def _check_room(
     if not scene.rules.hard_bodies:
         return
     where, who = too_close(
-        points, radius, frame, there, scene.repertoire.table,
-        scene.crowd.records, scene.rules.search_radius,
-    )  # fmt: skip
+        points,
+        radius,
+        frame,
+        there,
+        scene.repertoire.table,
+        scene.crowd.records,
+        scene.rules.search_radius,
+    )
     if where >= 0:
         newcomer = who < 0 or who >= count
         other = "another newcomer" if newcomer else f"where pedestrian {who} is or will be"

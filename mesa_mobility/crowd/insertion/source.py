@@ -75,9 +75,11 @@ class Source:
                 "people a second"
             )
         if not (
-            is_number(self.start) and is_number(self.until) and 0.0 <= self.start <= LATEST
+            is_number(self.start)
+            and is_number(self.until)
+            and 0.0 <= self.start <= LATEST
             and self.start <= self.until
-        ):  # fmt: skip
+        ):
             raise ModelError(
                 f"source: start {self.start!r} and until {self.until!r}, expected "
                 f"0 <= start <= until and a start of at most {LATEST:g} s"

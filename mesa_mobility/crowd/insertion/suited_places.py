@@ -52,8 +52,11 @@ def suited(
         for place in order[free[order]].tolist():
             if got == wanted:
                 break
-            near = [k for k in tree.query_ball_point(points[place], 2.0 * float(cores.max()))
-                    if k != place]  # fmt: skip
+            near = [
+                k
+                for k in tree.query_ball_point(points[place], 2.0 * float(cores.max()))
+                if k != place
+            ]
             away = np.hypot(*(points[near] - points[place]).T)
             beside = np.where(found[near] >= 0, cores[found[near]], narrowest)
             if (away >= core + beside).all():

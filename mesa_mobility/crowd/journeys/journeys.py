@@ -74,12 +74,17 @@ class Journeys(Saved):
 
     saved: ClassVar[Mapping[str, Kind]] = {
         "_numbers": Several(
-            Each(Several(_STOP, tuple), Flag(), Maybe(Several(Text("exits"), tuple)),
-                 Whole(below="bodies")),
-            dict, values=Whole(1),
+            Each(
+                Several(_STOP, tuple),
+                Flag(),
+                Maybe(Several(Text("exits"), tuple)),
+                Whole(below="bodies"),
+            ),
+            dict,
+            values=Whole(1),
         ),
         "crossed": Whole(),
-    }  # fmt: skip
+    }
 
     def __init__(self, plan: FloorPlan, site: Environment) -> None:
         self._plan = plan
@@ -94,10 +99,12 @@ class Journeys(Saved):
     def members(self) -> Mapping[str, Kind]:
         """What the members of ``state`` are."""
         known = Each(
-            Several(_STOP, tuple), Flag(), Whole(below="bodies"),
+            Several(_STOP, tuple),
+            Flag(),
+            Whole(below="bodies"),
             Array("i4", ("legs",), 0, below="destinations"),
             Array("f8", ("legs", 4), -FARTHEST, FARTHEST, missing=True),
-        )  # fmt: skip
+        )
         stays = Members(self.stays.members())
         return {**self.saved, "known": Several(known), "stays": stays}
 

@@ -76,9 +76,14 @@ class Stays(Saved):
             self._place[row] = -1
 
     def over(
-        self, row: int, number: int, place: Place, frame: int, crowd: Crowd,
+        self,
+        row: int,
+        number: int,
+        place: Place,
+        frame: int,
+        crowd: Crowd,
         rng: np.random.Generator,
-    ) -> bool:  # fmt: skip
+    ) -> bool:
         """Whether somebody has been at a place for as long as it stays.
 
         Args:

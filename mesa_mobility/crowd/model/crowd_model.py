@@ -264,9 +264,13 @@ class CrowdModel(mesa.Model):
         people.take_out_inactive()
         people.look_over(self.frame)
         self.stalled = self._stall_watch.stalled(
-            self.frame, people.rows, self.crowd, people.aggregates, people.count - self.inside,
+            self.frame,
+            people.rows,
+            self.crowd,
+            people.aggregates,
+            people.count - self.inside,
             self.journeys.crossed,
-        )  # fmt: skip
+        )
         self.datacollector.collect(self)
         self.running = (self.inside > 0 or self.sources.expecting) and not self.stalled
 

@@ -55,9 +55,13 @@ def stop_where_blocked(
             piece, _ = crosses_exit(path, pieces, around, state.destination[i])
             walked = pieces if piece < 0 else piece + 1
         walls = near_walls(
-            around, state.x[i], state.y[i], state.destination[i],
-            reach + state.core[i] + overhang_of(i, table, state) + 0.01, found,
-        )  # fmt: skip
+            around,
+            state.x[i],
+            state.y[i],
+            state.destination[i],
+            reach + state.core[i] + overhang_of(i, table, state) + 0.01,
+            found,
+        )
         spacing = np.int64(state.spacing[i])
         if _on_lines(i, found[:walls], table, state) or body_hits_wall(
             i, path, walked, spacing, found[:walls], reach, table, state

@@ -131,9 +131,16 @@ class DecisionScheduler:
         # Costs use the crowd before any decision, collision tests the paths committed so far. So
         # deciding in two parts gives the same result.
         weighed = weigh(
-            watch.pedestrian, moment.aside(), self._repertoire, crowd, grid, around, self._rules,
-            terms, self._types,
-        )  # fmt: skip
+            watch.pedestrian,
+            moment.aside(),
+            self._repertoire,
+            crowd,
+            grid,
+            around,
+            self._rules,
+            terms,
+            self._types,
+        )
         at = int(np.flatnonzero(order == watch.pedestrian)[0])
         if at > 0:
             part(0, at)

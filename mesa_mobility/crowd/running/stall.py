@@ -47,10 +47,12 @@ class StallWatch(Saved):
         "_route": Array("f8", ("known",), -FARTHEST, FARTHEST, infinite=True),
         "_start": Array("f8", ("known",), -FARTHEST, FARTHEST, infinite=True),
         "_begun": Maybe(
-            Each(Array("i8", ("those",), 0, below="people"),
-                 Array("f8", ("those",), -FARTHEST, FARTHEST, infinite=True))
+            Each(
+                Array("i8", ("those",), 0, below="people"),
+                Array("f8", ("those",), -FARTHEST, FARTHEST, infinite=True),
+            )
         ),
-    }  # fmt: skip
+    }
 
     def __init__(self) -> None:
         self._since = 0.0

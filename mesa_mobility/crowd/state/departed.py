@@ -126,9 +126,16 @@ def walk_on(
         path[0, 0], path[1, 0], path[2, :] = x, y, state.heading[i]
         path[0, 1], path[1, 1] = x + _SECONDS * vx, y + _SECONDS * vy
         commit(
-            i, np.int64(state.option[i]), frame, np.int64(1), np.int64(WALKS_ON), np.int64(-1),
-            state.cluster[i], path, state,
-        )  # fmt: skip
+            i,
+            np.int64(state.option[i]),
+            frame,
+            np.int64(1),
+            np.int64(WALKS_ON),
+            np.int64(-1),
+            state.cluster[i],
+            path,
+            state,
+        )
         state.target_x[i], state.target_y[i] = path[0, 1], path[1, 1]
         state.route[i] = 0.0
 

@@ -161,8 +161,10 @@ class Environment(Saved):
             own = np.flatnonzero(body == number)
             theirs = self._router(number).targets(points[own], to[own])
             points_of[own], gates[own], distances[own] = (
-                theirs.points, theirs.gates, theirs.distances,
-            )  # fmt: skip
+                theirs.points,
+                theirs.gates,
+                theirs.distances,
+            )
             assert theirs.corners is not None
             corners[own] = self.corners.numbers(theirs.corners, number)
         return Targets(points_of, gates, distances, corners)

@@ -199,8 +199,10 @@ class Crowd:
 
     def members(self) -> dict[str, Kind]:
         """What ``first`` gives."""
-        fields = {name: Array(values.dtype.str, ("people",), infinite=True, missing=True)
-                  for name, values in self.fields.items()}  # fmt: skip
+        fields = {
+            name: Array(values.dtype.str, ("people",), infinite=True, missing=True)
+            for name, values in self.fields.items()
+        }
         return {
             "records": Records(PERSON, PERSON_FIELDS, ("people",)),
             "agenda": Records(AGENDA, AGENDA_FIELDS, ("people",)),

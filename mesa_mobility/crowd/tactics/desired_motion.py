@@ -76,9 +76,14 @@ class DesiredMotion:
         destinations = np.empty(n, dtype=np.int64)
         _look_up(rows, crowd.records, crowd.agenda, positions, destinations, speeds)
         deciding = Deciding(
-            rows, positions, destinations, frame * FRAME_SECONDS, CrowdView(inside, crowd),
-            wants.rng, self._environment,
-        )  # fmt: skip
+            rows,
+            positions,
+            destinations,
+            frame * FRAME_SECONDS,
+            CrowdView(inside, crowd),
+            wants.rng,
+            self._environment,
+        )
         given = Given(deciding)
         targets = query_targets(wants.choice, deciding, crowd, given)
         desired = Desired(targets.points, speeds, targets, newcomers)

@@ -87,9 +87,11 @@ def _numbers(mobility_map: MobilityMap, key: str, value: Any) -> dict[str, float
         if isinstance(entry, str) or entry is None:
             continue
         least = 0.0 if name == "standard_deviation" else 1e-3
-        if isinstance(entry, bool) or not isinstance(entry, int | float) or not (
-            least <= entry <= 100.0
-        ):  # fmt: skip
+        if (
+            isinstance(entry, bool)
+            or not isinstance(entry, int | float)
+            or not (least <= entry <= 100.0)
+        ):
             raise _not_speeds(mobility_map, key, f"{name!r} of more than 0 and at most 100 m/s")
         found[name] = float(entry)
     return found

@@ -156,9 +156,7 @@ def types_of(
         ModelError: two of them are given, or no types at all.
         MapError: an unusable map file, or a population's type of which no map ships.
     """
-    given = {
-        "mobility_map": mobility_map, "pedestrian_types": types, "population": population
-    }  # fmt: skip
+    given = {"mobility_map": mobility_map, "pedestrian_types": types, "population": population}
     names = [name for name, value in given.items() if value is not None]
     if len(names) > 1:
         raise ModelError(f"{' and '.join(names)}: got both, expected one of them")
@@ -182,8 +180,11 @@ def indices_of(population: Population, types: Sequence[PedestrianType]) -> NDArr
     names = [kind.name for kind in types]
     found = []
     for kind, name in zip(population.shares, population.names, strict=True):
-        same = [k for k, other in enumerate(types)
-                if other is kind or (isinstance(kind, str) and other.name == name)]  # fmt: skip
+        same = [
+            k
+            for k, other in enumerate(types)
+            if other is kind or (isinstance(kind, str) and other.name == name)
+        ]
         if not same:
             raise ModelError(
                 f"population: the model has no type {name!r}, expected one of {', '.join(names)}"

@@ -14,13 +14,15 @@ from urllib.parse import parse_qsl, quote, urlencode
 from mesa_mobility.live.access import TOKEN, Names, is_own_origin, same_token, token_in
 
 HEADERS = (
-    (b"content-security-policy",
-     b"default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; "
-     b"base-uri 'self'; form-action 'self'; frame-ancestors 'none'"),
+    (
+        b"content-security-policy",
+        b"default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; "
+        b"base-uri 'self'; form-action 'self'; frame-ancestors 'none'",
+    ),
     (b"x-frame-options", b"DENY"),
     (b"x-content-type-options", b"nosniff"),
     (b"referrer-policy", b"no-referrer"),
-)  # fmt: skip
+)
 """Headers of each response: nothing is loaded from other hosts, and no page may frame this one."""
 
 ROUTES = {
@@ -73,8 +75,9 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        headers = {name.decode("latin-1"): value.decode("latin-1")
-                   for name, value in scope["headers"]}  # fmt: skip
+        headers = {
+            name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]
+        }
         refusal = self._refusal(scope, headers)
         if refusal:
             await _answer(scope, send, 403, refusal)
@@ -151,7 +154,10 @@ async def _answer(
         await send({"type": "websocket.close", "code": 1008})
         return
     plain = (b"content-type", b"text/plain; charset=utf-8")
-    start = {"type": "http.response.start", "status": status,
-             "headers": [plain, *(headers or []), *HEADERS]}  # fmt: skip
+    start = {
+        "type": "http.response.start",
+        "status": status,
+        "headers": [plain, *(headers or []), *HEADERS],
+    }
     await send(start)
     await send({"type": "http.response.body", "body": f"{text}\n".encode()})

@@ -54,10 +54,15 @@ class Observer:
         self._series: dict[str, list[float]] = {
             name: []
             for name in (
-                "elapsed", "inside", "mean_speed", "mean_density", "max_density",
-                "fallback_share", *(f"passed {name}" for name in self.openings),
+                "elapsed",
+                "inside",
+                "mean_speed",
+                "mean_density",
+                "max_density",
+                "fallback_share",
+                *(f"passed {name}" for name in self.openings),
             )
-        }  # fmt: skip
+        }
         self._remember()
         self._sample()
 

@@ -88,23 +88,34 @@ def clusters_option(mobility_map: MobilityMap, chosen: int) -> dict[str, Any]:
         "grid": {"left": 68, "right": 16, "top": 12, "bottom": 40},
         "tooltip": {"formatter": "cluster {@[3]}: {@[1]} options, {@[2]} poses, {@[0]} m/s"},
         "xAxis": {
-            "type": "value", "name": "mean speed (m/s)", "nameLocation": "middle", "nameGap": 24,
+            "type": "value",
+            "name": "mean speed (m/s)",
+            "nameLocation": "middle",
+            "nameGap": 24,
             "splitLine": GRID_LINES,
         },
         "yAxis": {
-            "type": "log", "name": "options", "nameLocation": "middle", "nameGap": 48,
+            "type": "log",
+            "name": "options",
+            "nameLocation": "middle",
+            "nameGap": 48,
             "splitLine": GRID_LINES,
         },
         "series": [
             {"type": "scatter", "data": points, "itemStyle": {"color": "#0072b2", "opacity": 0.6}},
             {
-                "type": "scatter", "data": [ring], "silent": True, "z": 10,
+                "type": "scatter",
+                "data": [ring],
+                "silent": True,
+                "z": 10,
                 "itemStyle": {
-                    "color": "transparent", "borderColor": "#e6007e", "borderWidth": 2.5,
+                    "color": "transparent",
+                    "borderColor": "#e6007e",
+                    "borderWidth": 2.5,
                 },
             },
         ],
-    }  # fmt: skip
+    }
 
 
 def coverage_option(mobility_map: MobilityMap, rows: slice) -> dict[str, Any]:
@@ -132,20 +143,30 @@ def coverage_option(mobility_map: MobilityMap, rows: slice) -> dict[str, Any]:
         "grid": {"left": 60, "right": 90, "top": 12, "bottom": 48},
         "tooltip": {"formatter": "{@[3]} options"},
         "xAxis": {
-            "type": "category", "data": speeds, "name": "speed from (m/s)",
-            "nameLocation": "middle", "nameGap": 24,
+            "type": "category",
+            "data": speeds,
+            "name": "speed from (m/s)",
+            "nameLocation": "middle",
+            "nameGap": 24,
         },
         "yAxis": {
-            "type": "category", "data": turns, "name": "turn from (degrees, left positive)",
-            "nameLocation": "middle", "nameGap": 40,
+            "type": "category",
+            "data": turns,
+            "name": "turn from (degrees, left positive)",
+            "nameLocation": "middle",
+            "nameGap": 40,
         },
         "visualMap": {
-            "min": 0, "max": max((row[2] for row in data), default=1), "dimension": 2,
-            "right": 0, "top": "middle", "text": [f"{most} options", "1 option"],
+            "min": 0,
+            "max": max((row[2] for row in data), default=1),
+            "dimension": 2,
+            "right": 0,
+            "top": "middle",
+            "text": [f"{most} options", "1 option"],
             "inRange": {"color": ["#fde725", "#5ec962", "#21918c", "#3b528b", "#440154"]},
         },
         "series": [{"type": "heatmap", "data": data}],
-    }  # fmt: skip
+    }
 
 
 @solara.component

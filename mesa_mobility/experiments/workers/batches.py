@@ -241,8 +241,13 @@ def _death(setup: Setup, point: Point, replication: int, *, deaths: int, late: b
     row = first_columns(setup, point, replication)
     if late:
         limit = setup.time_limit
-        return {**row, "status": TIMED_OUT, "wall_s": limit, "cpu_s": limit,
-                "error": f"took longer than {limit:g} s, without an end to its step"}  # fmt: skip
+        return {
+            **row,
+            "status": TIMED_OUT,
+            "wall_s": limit,
+            "cpu_s": limit,
+            "error": f"took longer than {limit:g} s, without an end to its step",
+        }
     if deaths >= DEATHS:
         return {**row, "status": FAILED, "error": f"{deaths} workers died during this run"}
     return None

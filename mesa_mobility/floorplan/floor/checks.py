@@ -23,9 +23,14 @@ _CONTACT = 0.1
 
 _WKT_TYPE = re.compile(r"\s*([A-Za-z]+?)(?:ZM|Z|M)?\b")
 _WKT_TYPES = (
-    "POINT", "LINESTRING", "LINEARRING", "POLYGON",
-    "MULTIPOINT", "MULTILINESTRING", "MULTIPOLYGON",
-)  # fmt: skip
+    "POINT",
+    "LINESTRING",
+    "LINEARRING",
+    "POLYGON",
+    "MULTIPOINT",
+    "MULTILINESTRING",
+    "MULTIPOLYGON",
+)
 
 
 @contextmanager

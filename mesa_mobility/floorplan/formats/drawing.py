@@ -13,9 +13,15 @@ from mesa_mobility.errors import FloorPlanError, MobilityError
 from mesa_mobility.floorplan.floor.extent import check_coordinates
 
 METRES = {
-    "mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "km": 1000.0, "in": 0.0254, "ft": 0.3048,
+    "mm": 0.001,
+    "cm": 0.01,
+    "dm": 0.1,
+    "m": 1.0,
+    "km": 1000.0,
+    "in": 0.0254,
+    "ft": 0.3048,
     "yd": 0.9144,
-}  # fmt: skip
+}
 """Metres in a unit."""
 
 UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 14: "dm"}
@@ -32,8 +38,16 @@ SAGITTA = 0.005
 
 _CURVES = ("LINE", "LWPOLYLINE", "POLYLINE", "CIRCLE", "ARC", "ELLIPSE", "SPLINE")
 _NOTES = (
-    "ATTDEF", "ATTRIB", "DIMENSION", "HATCH", "LEADER", "MTEXT", "MULTILEADER", "POINT", "TEXT",
-)  # fmt: skip
+    "ATTDEF",
+    "ATTRIB",
+    "DIMENSION",
+    "HATCH",
+    "LEADER",
+    "MTEXT",
+    "MULTILEADER",
+    "POINT",
+    "TEXT",
+)
 """Entities that only say something about others, or fill what others outline."""
 
 

@@ -160,10 +160,20 @@ class Router:
 
         def aims(own: slice, learn: bool) -> int:
             outcome: int = aim(
-                self._sight, self._ways, self._views, self._cache, xy[own], numbers[own],
-                self._lengths, self._nexts, learn, points[own], gates[own], distances[own],
+                self._sight,
+                self._ways,
+                self._views,
+                self._cache,
+                xy[own],
+                numbers[own],
+                self._lengths,
+                self._nexts,
+                learn,
+                points[own],
+                gates[own],
+                distances[own],
                 corners[own],
-            )  # fmt: skip
+            )
             return outcome
 
         parts = shares(n)

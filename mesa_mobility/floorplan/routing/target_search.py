@@ -100,9 +100,12 @@ def aim(
         corners[person, 0] = corners[person, 1] = -1
         if node >= 0:
             (
-                lengths[person], gates[person], points[person, 0], points[person, 1],
+                lengths[person],
+                gates[person],
+                points[person, 0],
+                points[person, 1],
                 corner,
-            ) = aim_at(sight, ways, x, y, node, to_go, after, own)  # fmt: skip
+            ) = aim_at(sight, ways, x, y, node, to_go, after, own)
             if corner >= 0:
                 corners[person, 0] = corner
                 corners[person, 1] = after[corner]

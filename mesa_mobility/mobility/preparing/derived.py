@@ -51,8 +51,9 @@ class DerivedType:
         factor = 1.0
         # Who is quicker stands in fewer of the poses, which changes the percentile a little.
         for _ in range(5):
-            standing = poses.is_standing(STANDING_SPEED * factor / self.length,
-                                         STANDING_TURN_RATE * factor)  # fmt: skip
+            standing = poses.is_standing(
+                STANDING_SPEED * factor / self.length, STANDING_TURN_RATE * factor
+            )
             steady = float(np.percentile(poses.speed[~standing], STEADY))
             factor = self.length * steady / self.speed[0]
         return factor

@@ -153,7 +153,12 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
             "fields": fields,
         }
     except (
-        KeyError, TypeError, ValueError, OverflowError, RecursionError, pa.ArrowException
-    ) as error:  # fmt: skip
+        KeyError,
+        TypeError,
+        ValueError,
+        OverflowError,
+        RecursionError,
+        pa.ArrowException,
+    ) as error:
         reason = " ".join(str(error).split())
         raise ResultsError(f"{source}: damaged trajectories: {reason}") from error

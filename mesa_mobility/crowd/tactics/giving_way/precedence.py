@@ -275,9 +275,13 @@ class Precedence(Saved):
         if len(who) == 0:
             return desired
         ends, can = steps_aside(
-            self._plan, places[own], self._radii(who, crowd), stuck[own],
-            np.column_stack([crowd.x[inside], crowd.y[inside]]), self._radii(inside, crowd),
-        )  # fmt: skip
+            self._plan,
+            places[own],
+            self._radii(who, crowd),
+            stuck[own],
+            np.column_stack([crowd.x[inside], crowd.y[inside]]),
+            self._radii(inside, crowd),
+        )
         points, speeds = points.copy(), speeds.copy()
         points[own[can]] = ends[can]
         speeds[own] = np.where(can, np.minimum(most[own], BACKING), 0.0)

@@ -57,9 +57,13 @@ class TakeTurns(_OfTheCrowd):
         """Let people wait where others have the turn."""
         if not desired.newcomers:
             desired.points, desired.speeds = self._turns.take(
-                deciding.pedestrians, deciding.inside.pedestrians, deciding.frame, self._crowd,
-                desired.points, desired.speeds,
-            )  # fmt: skip
+                deciding.pedestrians,
+                deciding.inside.pedestrians,
+                deciding.frame,
+                self._crowd,
+                desired.points,
+                desired.speeds,
+            )
 
     def compile_ahead(self) -> None:
         """Compile the search for those before a passage."""
@@ -103,9 +107,13 @@ class GiveWay(_OfTheCrowd):
         """Let wide people wait clear of openings where another goes first."""
         if self._precedence is not None and not desired.newcomers:
             desired.points, desired.speeds = self._precedence.heed(
-                deciding.pedestrians, deciding.inside.pedestrians, deciding.frame, self._crowd,
-                desired.points, desired.speeds,
-            )  # fmt: skip
+                deciding.pedestrians,
+                deciding.inside.pedestrians,
+                deciding.frame,
+                self._crowd,
+                desired.points,
+                desired.speeds,
+            )
 
 
 def _stretch(kind: PedestrianType) -> float:
