@@ -202,14 +202,16 @@ def screenshots(browser: Browser, folder: Path) -> None:
         page.get_by_role("button", name="Play", exact=True).wait_for()
         page.wait_for_timeout(1500)
         # Somebody in the crowd in front of the left hall door.
-        place = page.evaluate(
-            f"() => {{const c = {CANVAS}, p = c.shown().people; let best = [1e9, 0, 0];"
+        nearest = page.evaluate(
+            f"() => {{const p = {CANVAS}.shown().people; let best = [1e9, 0];"
             "for (let k = 0; k < p.length; k += 5) {"
             "const d = Math.hypot(p[k + 1] - 9.6, p[k + 2] - 22.3);"
-            "if (d < best[0]) best = [d, p[k + 1], p[k + 2]];}"
-            "return c.onPage(best[1], best[2]);}"
+            "if (d < best[0]) best = [d, p[k]];}"
+            "return best[1];}"
         )
-        page.mouse.click(*place)
+        person = page.get_by_label("person", exact=True)
+        person.fill(str(nearest))
+        person.press("Enter")
         page.get_by_role("button", name="To the next decision").click()
         page.get_by_text("Decision as taken").wait_for()
         page.wait_for_timeout(1500)

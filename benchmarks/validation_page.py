@@ -56,7 +56,7 @@ def answer(command: str, seeds: int, *more: str) -> dict[str, Any]:
 
 def verify_table(found: dict[str, Any], seeds: int) -> str:
     """One line a test."""
-    lines = [f"{seeds} seeds each; medians.", "", "| test | what | measured | verdict |",
+    lines = [f"{seeds} seeds each; medians.", "", "| test | what | simulated | verdict |",
              "|---|---|---|---|"]  # fmt: skip
     for name, each in found.items():
         figures = ", ".join(
@@ -85,7 +85,7 @@ def validate_table(found: dict[str, Any], seeds: int) -> str:
     lines = [f"{seeds} seeds each; medians unless said otherwise."]
     for name, each in found.items():
         lines += ["", f"### {name}: {each['what']}", "", f"Measured: {each['source']}.", ""]
-        lines += ["| figure | measured | wanted | |", "|---|---|---|---|"]
+        lines += ["| figure | simulated | wanted | |", "|---|---|---|---|"]
         for figure, wanted in each["criterion"].items():
             value = each["measured"][figure]
             shown = "-" if value is None else f"{value:.4g}"

@@ -25,6 +25,8 @@ extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["_build", "reference/command_line_generated.md", "tutorials/recordings"]
 
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["home.css"]
 html_title = "mesa-mobility"
 html_math_renderer = "mathml"
 

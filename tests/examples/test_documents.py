@@ -1,4 +1,4 @@
-"""The Python in README.md and in the how-to guides runs; links between documents lead somewhere."""
+"""The Python in README.md, dashboard.md and how-to guides runs; links between documents work."""
 
 import re
 from pathlib import Path
@@ -6,7 +6,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-RUN = [ROOT / "README.md", *sorted((ROOT / "docs" / "how-to").glob("*.md"))]
+RUN = [
+    ROOT / "README.md",
+    ROOT / "docs" / "dashboard.md",
+    *sorted((ROOT / "docs" / "how-to").glob("*.md")),
+]
 LINKED = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 
 
