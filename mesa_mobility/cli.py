@@ -31,8 +31,7 @@ def main() -> None:
 
 def _run() -> int:
     try:
-        from mesa_mobility.commands.app import UsageError, app
-        from mesa_mobility.commands.environment import check_environment
+        from mesa_mobility.commands.app import UsageError, app, check_environment
         from mesa_mobility.errors import MobilityError
 
         try:

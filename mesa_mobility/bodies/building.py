@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mesa_mobility.bodies.bank import PoseBank
 from mesa_mobility.bodies.bank_data import HEIGHT_STEP, QUATERNION_STEP, STRIDE_STEP
 from mesa_mobility.bodies.retargeting import retarget
+from mesa_mobility.bodies.retracing import Retraced, retrace
 from mesa_mobility.bodies.rotations import quaternions
 from mesa_mobility.bodies.skeleton import JOINTS, STATURE
 from mesa_mobility.capture import Recording
@@ -19,7 +20,6 @@ from mesa_mobility.capture.transforms import MIRRORED, mirror
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.clusters import STANDING
 from mesa_mobility.mobility.provenance import acknowledgements, provenance
-from mesa_mobility.mobility.retracing import Retraced, retrace
 
 Progress = Callable[[str, int, int], None]
 

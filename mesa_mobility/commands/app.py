@@ -5,6 +5,8 @@ Slow imports are made where they are used, so that help and errors come at once.
 
 from __future__ import annotations
 
+import os
+
 import typer
 
 from mesa_mobility.commands import experiment
@@ -19,6 +21,7 @@ from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
 from mesa_mobility.commands.validate import validate
 from mesa_mobility.commands.verify import verify
+from mesa_mobility.errors import MobilityError
 
 # Some versions of Typer contain a copy of Click, whose UsageError is a base class here.
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -49,3 +52,20 @@ app.add_typer(new.app, name="new")
 app.command("models")(listing.models)
 app.command("behaviors")(listing.behaviors)
 app.command("formats")(listing.formats)
+
+
+def check_environment() -> None:
+    """Refuse settings that Numba cannot run with, and have pictures drawn without a window.
+
+    Raises:
+        MobilityError: NUMBA_DISABLE_JIT is set, or NUMBA_NUM_THREADS is not a number of threads.
+    """
+    if os.environ.get("NUMBA_DISABLE_JIT", "0").strip() not in ("", "0"):
+        raise MobilityError(
+            "NUMBA_DISABLE_JIT is set: expected it unset, crowds need compiled code"
+        )
+    threads = os.environ.get("NUMBA_NUM_THREADS", "1").strip()
+    if not (threads.isdecimal() and int(threads) > 0):
+        raise MobilityError(f"NUMBA_NUM_THREADS is {threads!r}: expected a number of 1 or more")
+    # Matplotlib refuses to be imported where this names no backend of its own.
+    os.environ["MPLBACKEND"] = "agg"

@@ -13,10 +13,14 @@ if TYPE_CHECKING:
     from mesa_mobility.experiments.convergence import OccupancyConvergence as OccupancyConvergence
     from mesa_mobility.experiments.convergence import Precision as Precision
     from mesa_mobility.experiments.definition import read_experiment as read_experiment
-    from mesa_mobility.experiments.designs import Grid as Grid
-    from mesa_mobility.experiments.designs import LatinHypercube as LatinHypercube
-    from mesa_mobility.experiments.designs import SobolSequence as SobolSequence
-    from mesa_mobility.experiments.designs import Table as Table
+    from mesa_mobility.experiments.design.designs import Grid as Grid
+    from mesa_mobility.experiments.design.designs import LatinHypercube as LatinHypercube
+    from mesa_mobility.experiments.design.designs import SobolSequence as SobolSequence
+    from mesa_mobility.experiments.design.designs import Table as Table
+    from mesa_mobility.experiments.design.sensitivity import (
+        MorrisTrajectories as MorrisTrajectories,
+    )
+    from mesa_mobility.experiments.design.sensitivity import SaltelliSamples as SaltelliSamples
     from mesa_mobility.experiments.driver import Progress as Progress
     from mesa_mobility.experiments.driver import run_experiment as run_experiment
     from mesa_mobility.experiments.experiment import Experiment as Experiment
@@ -26,10 +30,6 @@ if TYPE_CHECKING:
     from mesa_mobility.experiments.reporting.report import write_report as write_report
     from mesa_mobility.experiments.sensitivity import morris_screening as morris_screening
     from mesa_mobility.experiments.sensitivity import sobol_indices as sobol_indices
-    from mesa_mobility.experiments.sensitivity_designs import (
-        MorrisTrajectories as MorrisTrajectories,
-    )
-    from mesa_mobility.experiments.sensitivity_designs import SaltelliSamples as SaltelliSamples
     from mesa_mobility.experiments.store import Store as Store
     from mesa_mobility.experiments.store import open_store as open_store
     from mesa_mobility.experiments.variance import VarianceComponent as VarianceComponent

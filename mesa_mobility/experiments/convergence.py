@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError
+from mesa_mobility.experiments.design.points import check_whole
 from mesa_mobility.experiments.intervals import Estimate, check_confidence, runs_for_quantile
 from mesa_mobility.experiments.observed import estimate
-from mesa_mobility.experiments.points import check_whole
 
 _FIGURE = re.compile(r"(?P<how>mean|p[1-9]\d?) (?P<column>\w+)")
 _GROWTH = 1.25

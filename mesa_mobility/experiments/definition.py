@@ -12,9 +12,15 @@ from typing import Any
 from mesa_mobility.crowd.model_files import is_model_file
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.convergence import OccupancyConvergence, Precision
-from mesa_mobility.experiments.designs import Design, Grid, LatinHypercube, SobolSequence, Table
+from mesa_mobility.experiments.design.designs import (
+    Design,
+    Grid,
+    LatinHypercube,
+    SobolSequence,
+    Table,
+)
+from mesa_mobility.experiments.design.sensitivity import MorrisTrajectories, SaltelliSamples
 from mesa_mobility.experiments.experiment import Experiment, model_name
-from mesa_mobility.experiments.sensitivity_designs import MorrisTrajectories, SaltelliSamples
 from mesa_mobility.plugins.registry import did_you_mean
 
 _SCALARS = ("name", "model", "seed", "replications", "max_seconds", "time_limit", "keep")

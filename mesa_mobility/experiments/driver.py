@@ -16,9 +16,9 @@ import numpy as np
 
 from mesa_mobility.crowd.model_files import is_model_file
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.experiments.design.points import point_key, run_name
 from mesa_mobility.experiments.experiment import Experiment, check_parameters
 from mesa_mobility.experiments.missing import Runs, missing_runs
-from mesa_mobility.experiments.points import point_key, run_name
 from mesa_mobility.experiments.session import session_of
 from mesa_mobility.experiments.store import Store
 from mesa_mobility.experiments.storing.rows import DONE, RUNS, STALLED, TRAJECTORIES

@@ -11,8 +11,8 @@ from typing import Any, Literal
 from mesa_mobility.crowd.model_files import find_model
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.convergence import Precision
-from mesa_mobility.experiments.designs import Design, Grid
-from mesa_mobility.experiments.points import (
+from mesa_mobility.experiments.design.designs import Design, Grid
+from mesa_mobility.experiments.design.points import (
     ARROW_TYPES,
     Point,
     Value,

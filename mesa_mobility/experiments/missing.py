@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.experiments.design.points import Point, point_key, run_name
 from mesa_mobility.experiments.experiment import Experiment
-from mesa_mobility.experiments.points import Point, point_key, run_name
 from mesa_mobility.experiments.store import DEFINITION, Store
 
 Runs: TypeAlias = Iterator[tuple[Point, int]]

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError, ResultsError
-from mesa_mobility.experiments.observed import warn_of_failed
-from mesa_mobility.experiments.points import point_key
-from mesa_mobility.experiments.sensitivity_designs import (
+from mesa_mobility.experiments.design.points import point_key
+from mesa_mobility.experiments.design.sensitivity import (
     MorrisTrajectories,
     SaltelliSamples,
     salib,
 )
+from mesa_mobility.experiments.observed import warn_of_failed
 
 if TYPE_CHECKING:
     from mesa_mobility.experiments.store import Store

@@ -29,10 +29,10 @@ from mesa_mobility.experiments.definition import (
     from_definition,
     to_definition,
 )
+from mesa_mobility.experiments.design.points import point_key
 from mesa_mobility.experiments.experiment import Experiment
 from mesa_mobility.experiments.intervals import Estimate
 from mesa_mobility.experiments.observed import estimate, observed
-from mesa_mobility.experiments.points import point_key
 from mesa_mobility.experiments.session import check_goes_on, check_inputs
 from mesa_mobility.experiments.storing.locks import is_locked, locked
 from mesa_mobility.experiments.storing.rows import (

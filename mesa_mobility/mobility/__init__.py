@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
-    from mesa_mobility.mobility.apsp import ShortestPaths as ShortestPaths
-    from mesa_mobility.mobility.apsp import shortest_paths as shortest_paths
     from mesa_mobility.mobility.build import build_families as build_families
     from mesa_mobility.mobility.build import build_map as build_map
     from mesa_mobility.mobility.build import map_of_families as map_of_families
     from mesa_mobility.mobility.clusters import Clusters as Clusters
     from mesa_mobility.mobility.clusters import cluster_poses as cluster_poses
     from mesa_mobility.mobility.graph import MotionGraph as MotionGraph
+    from mesa_mobility.mobility.graph import ShortestPaths as ShortestPaths
     from mesa_mobility.mobility.graph import motion_graph as motion_graph
+    from mesa_mobility.mobility.graph import shortest_paths as shortest_paths
     from mesa_mobility.mobility.judging.abilities import abilities_of as abilities_of
     from mesa_mobility.mobility.judging.held_out import coverage as coverage
     from mesa_mobility.mobility.judging.left_out import (

@@ -50,7 +50,7 @@ class Entry:
 @cache
 def catalogue() -> dict[str, Entry]:
     """All tests by id, in the order of the standards."""
-    text = files("mesa_mobility.verification").joinpath("catalogue.toml").read_text("utf-8")
+    text = files("mesa_mobility.verification").joinpath("data/catalogue.toml").read_text("utf-8")
     return {each["id"]: Entry(**each) for each in tomllib.loads(text)["test"]}
 
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments import Experiment
+from mesa_mobility.experiments.design.points import plain_value, point_key, run_name, seed_of_run
 from mesa_mobility.experiments.missing import missing_runs
-from mesa_mobility.experiments.points import plain_value, point_key, run_name, seed_of_run
 
 NUMBERS = st.integers() | st.floats(allow_nan=False, allow_infinity=False)
 VALUES = st.none() | st.booleans() | st.text() | NUMBERS

@@ -15,10 +15,11 @@ from mesa_mobility.experiments import (
     run_experiment,
     write_report,
 )
+from mesa_mobility.experiments.design.points import point_key, run_name
 from mesa_mobility.experiments.driver import _Driver
-from mesa_mobility.experiments.points import point_key, run_name
 from mesa_mobility.experiments.workers import batches, one_run
-from mesa_mobility.experiments.workers.batches import Batch, Journal
+from mesa_mobility.experiments.workers.batches import Batch, Finished, Journal
+from tests.fixtures.quick_experiments import quick
 
 MODELS = "tests.fixtures.experiment_models:"
 
@@ -204,3 +205,14 @@ def test_a_model_whose_source_has_changed_is_refused(tmp_path, monkeypatch):
     with pytest.raises(ModelError, match="holds runs with another source of the model"):
         run_experiment(more, tmp_path / "s", executor="serial")
     assert list(open_store(tmp_path / "s").frame().y) == [1.0, 1.0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("workers", "seconds"), [(2, 5.0), (200, 5.0), (1000, 25.0)])
+def test_many_workers_get_longer_batches(workers, seconds, tmp_path):
+    crew = SimpleNamespace(count=workers, address="")
+    driver = _Driver(quick(1_000_000), Store(tmp_path / "s"), crew, lambda now: None)
+    driver.progress.total = 3_000_000
+    driver._note(Finished({"done": 10}, 1.0))
+    batch = driver._batch(({"x": 0.0}, number) for number in range(1000))
+    assert len(batch.runs) == pytest.approx(seconds / 0.1)

@@ -7,7 +7,7 @@ import pytest
 
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments import open_store, run_experiment
-from mesa_mobility.experiments.points import point_key, seed_of_run
+from mesa_mobility.experiments.design.points import point_key, seed_of_run
 from tests.fixtures.experiment_models import Quick
 from tests.fixtures.quick_experiments import quick
 

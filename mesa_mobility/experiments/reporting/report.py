@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.experiments.design.points import point_key
 from mesa_mobility.experiments.observed import estimate, is_time, observed
-from mesa_mobility.experiments.points import point_key
 from mesa_mobility.experiments.reporting.pictures import picture_of, value_text
 from mesa_mobility.experiments.storing.rows import FAILED, SERIES, STALLED, STATUSES, TIMED_OUT
 from mesa_mobility.experiments.storing.shards import RUN_COLUMNS

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.experiments.points import Point, point_key, run_name
+from mesa_mobility.experiments.design.points import Point, point_key, run_name
 from mesa_mobility.experiments.storing.rows import FAILED, RUNS, TIMED_OUT, TRAJECTORIES, WORK, Row
 from mesa_mobility.experiments.storing.shards import Folder, read_table, table_of, write_table
 from mesa_mobility.experiments.workers.compiling import compile_once

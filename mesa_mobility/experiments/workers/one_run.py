@@ -13,8 +13,8 @@ from os import getpid
 from typing import Any
 
 from mesa_mobility.errors import ModelError
+from mesa_mobility.experiments.design.points import Point, point_key, run_name, seed_of_run
 from mesa_mobility.experiments.experiment import model_class
-from mesa_mobility.experiments.points import Point, point_key, run_name, seed_of_run
 from mesa_mobility.experiments.storing.rows import DONE, FAILED, SERIES, STALLED, TIMED_OUT, Row
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.reports.inputs import inputs_of

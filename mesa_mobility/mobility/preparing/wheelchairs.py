@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mesa_mobility.mobility.map import MobilityMap
-from mesa_mobility.mobility.primitives import DifferentialDrive, map_of_primitives
+from mesa_mobility.mobility.preparing.primitives import DifferentialDrive, map_of_primitives
 
 BOYCE = "Boyce, Shields and Silcock 1999"
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from mesa_mobility.bodies.retracing import chains_of
 from mesa_mobility.mobility import cluster_poses, motion_graph, reachable_options
-from mesa_mobility.mobility.retracing import chains_of
 from tests.fixtures.poses import random_poses
 
 

@@ -16,7 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.experiments.points import ARROW_TYPES, Point, Value, check_whole, plain_value
+from mesa_mobility.experiments.design.points import (
+    ARROW_TYPES,
+    Point,
+    Value,
+    check_whole,
+    plain_value,
+)
 
 Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 

@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.experiments.designs import (
+from mesa_mobility.experiments.design.designs import (
     Bounds,
     bound_types,
     check_drawn,
     checked_bounds,
     scaled,
 )
-from mesa_mobility.experiments.points import Point, check_whole
+from mesa_mobility.experiments.design.points import Point, check_whole
 
 
 @dataclass(frozen=True)
