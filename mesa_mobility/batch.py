@@ -13,9 +13,9 @@ import mesa
 from tqdm.auto import tqdm
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.processes import available_processors, check_importable
 from mesa_mobility.runs.choice import workers_for
 from mesa_mobility.runs.jobs import Failed, run_jobs
+from mesa_mobility.runs.processes import available_processors, check_importable
 
 _Rows: TypeAlias = list[dict[str, Any]]
 

@@ -1,6 +1,7 @@
 """Damaged files of every format: refused in one line, or read as what was written.
 
-``python -m tests.fixtures.mutating FOLDER FIRST_SEED COUNT`` goes through as many as one likes.
+``python -m tests.fixtures.damage.mutating FOLDER FIRST_SEED COUNT`` goes through as many as
+one likes.
 """
 
 import json
@@ -16,7 +17,14 @@ FORMATS = {"bvh", "asf", "amc", "manifest", "map", "geojson", "wkt", "parquet"}
 
 def outcomes(folder, first, count):
     """Read mutants of each format in a separate process, which reports its memory."""
-    command = [sys.executable, "-m", "tests.fixtures.mutating", str(folder), str(first), str(count)]
+    command = [
+        sys.executable,
+        "-m",
+        "tests.fixtures.damage.mutating",
+        str(folder),
+        str(first),
+        str(count),
+    ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""

@@ -1,6 +1,7 @@
 """Files whose content is changed and whose checksums fit: refused in one line, or sound.
 
-``python -m tests.fixtures.tampering FOLDER FIRST_SEED COUNT`` goes through as many as one likes.
+``python -m tests.fixtures.damage.tampering FOLDER FIRST_SEED COUNT`` goes through as many as
+one likes.
 """
 
 import functools
@@ -8,8 +9,8 @@ import functools
 import numpy as np
 import pytest
 
-from tests.fixtures import tampering
-from tests.fixtures.contents import ArchiveContents
+from tests.fixtures.damage import tampering
+from tests.fixtures.damage.contents import ArchiveContents
 
 QUICK = ("bank by_hand", "decisions by_hand", "map strider")
 

@@ -22,7 +22,7 @@ from mesa_mobility.commands.verify import (
     Seeds,
     check_report,
 )
-from mesa_mobility.processes import available_processors
+from mesa_mobility.runs.processes import available_processors
 
 if TYPE_CHECKING:
     from mesa_mobility.validation import Experiment

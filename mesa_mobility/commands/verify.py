@@ -14,7 +14,7 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
-from mesa_mobility.processes import available_processors
+from mesa_mobility.runs.processes import available_processors
 
 if TYPE_CHECKING:
     from mesa_mobility.verification import Entry, Outcome

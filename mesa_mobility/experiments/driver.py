@@ -32,9 +32,9 @@ from mesa_mobility.experiments.workers.batches import (
     salvage,
 )
 from mesa_mobility.experiments.workers.one_run import Setup
-from mesa_mobility.processes import check_importable, check_main
 from mesa_mobility.runs.choice import workers_for
 from mesa_mobility.runs.jobs import in_flight
+from mesa_mobility.runs.processes import check_importable, check_main
 from mesa_mobility.runs.workers import WorkerDied, Workers
 
 BATCH_SECONDS = 5.0

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from typing import Any
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.processes import available_processors
+from mesa_mobility.runs.processes import available_processors
 from mesa_mobility.runs.workers import Futures, Processes, Serial, Workers
 
 

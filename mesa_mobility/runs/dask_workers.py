@@ -8,7 +8,7 @@ from contextlib import ExitStack, suppress
 from typing import Any
 
 from mesa_mobility.errors import ModelError, ResultsError
-from mesa_mobility.processes import THREADS, available_processors
+from mesa_mobility.runs.processes import THREADS, available_processors
 from mesa_mobility.runs.workers import Ended, Function, Futures, WorkerDied
 
 _PATIENCE = 30.0

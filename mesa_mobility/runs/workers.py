@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from typing import Any, Protocol, TypeAlias
 
 from mesa_mobility.interrupts import deaf_children
-from mesa_mobility.processes import one_thread_each, spawned_pool
+from mesa_mobility.runs.processes import one_thread_each, spawned_pool
 
 Function: TypeAlias = Callable[[Any], Any]
 Ended: TypeAlias = tuple[Any, Any]

@@ -11,7 +11,7 @@ from mesa_mobility.errors import MobilityError, ModelError, ResultsError
 from mesa_mobility.experiments import Experiment, Precision, open_store, run_experiment
 from mesa_mobility.experiments.storing.shards import Folder
 from mesa_mobility.experiments.workers.batches import Journal
-from tests.fixtures.mutating import mutate
+from tests.fixtures.damage.mutating import mutate
 
 MODELS = "tests.fixtures.experiment_models:"
 

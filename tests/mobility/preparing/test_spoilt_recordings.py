@@ -1,6 +1,7 @@
 """Maps of recordings with a few spoilt frames: refused or split, said, small and human.
 
-``python -m tests.fixtures.spoiling FOLDER FIRST_SEED COUNT`` goes through as many as one likes.
+``python -m tests.fixtures.damage.spoiling FOLDER FIRST_SEED COUNT`` goes through as many as
+one likes.
 """
 
 import json
@@ -17,7 +18,14 @@ METRES_PER_SECOND = 4.0
 
 def outcomes(folder, first, count):
     """Read ``count`` recordings in a separate process, which reports its memory."""
-    command = [sys.executable, "-m", "tests.fixtures.spoiling", str(folder), str(first), str(count)]
+    command = [
+        sys.executable,
+        "-m",
+        "tests.fixtures.damage.spoiling",
+        str(folder),
+        str(first),
+        str(count),
+    ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     lines = [json.loads(line) for line in done.stdout.splitlines()]

@@ -1,6 +1,6 @@
 """Seconds and memory of each stage of a map build, against the number of poses.
 
-python benchmarks/map_build.py captures/manifest.tsv [--shares 0.25 0.5 1] [--clusters 350]
+python benchmarks/maps/map_build.py captures/manifest.tsv [--shares 0.25 0.5 1] [--clusters 350]
 
 Each share of the clips is built in a process of its own. Memory is the process's peak by
 the end of the stage. The first build, of the first share, compiles and is not counted.
