@@ -1,6 +1,6 @@
 """How well a map predicts people it has not seen: every seventh clip of each session is left out.
 
-python benchmarks/maps/held_out_coverage.py captures/manifest.tsv [--type able_bodied] [--clusters 200]
+python benchmarks/maps/held_out_coverage.py manifest.tsv [--type able_bodied] [--clusters 200]
 """
 
 from __future__ import annotations
