@@ -69,10 +69,9 @@ def draw(run: Path, picture: Path, *, rate: int, speed_up: int, dpi: int) -> Non
         centre = np.column_stack([tracks.x[rows], tracks.y[rows]])
         heading, radius = tracks.heading[rows], tracks.radii[tracks.person[rows]]
         nose = 1.7 * radius[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
-        whose, discs = tracks.placed_discs(rows)
         bodies.set(
-            widths=2 * discs[:, 2], heights=2 * discs[:, 2], angles=0 * discs[:, 2],
-            offsets=discs[:, :2], array=speed[rows][whose],
+            widths=2 * radius, heights=2 * radius, angles=0 * radius,
+            offsets=centre, array=speed[rows],
         )  # fmt: skip
         strokes.set_segments(np.stack([centre, centre + nose], axis=1))
         return [strokes, bodies]

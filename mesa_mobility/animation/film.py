@@ -111,8 +111,8 @@ def write_film(
             for done, frame in enumerate(frames.tolist(), start=1):
                 own = slice(*trajectories.frame_offsets[frame : frame + 2].tolist())
                 rows = np.arange(own.start, own.stop)[shown[own]]
-                whose = _place(bodies, strokes, trajectories, rows)
-                bodies.set_array(pace[rows][whose])
+                _place(bodies, strokes, trajectories, rows)
+                bodies.set_array(pace[rows])
                 axes.set_title(f"{frame / trajectories.frame_rate:.1f} s, {len(rows)} people")
                 writer.grab_frame()
                 if progress is not None:
@@ -124,19 +124,17 @@ def _place(
     strokes: LineCollection,
     trajectories: Tracks,
     rows: NDArray[np.int64],
-) -> NDArray[np.int64]:
-    """Draw the bodies of some rows; returns (d,) the index among them of the body of each disc."""
+) -> None:
+    """Draw the bodies of some rows."""
     radius = trajectories.radii[trajectories.person[rows]]
     centre = np.column_stack((trajectories.x[rows], trajectories.y[rows]))
     heading = trajectories.heading[rows]
     tip = centre + 1.8 * radius[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
-    whose, discs = trajectories.placed_discs(rows)
-    bodies.set_offsets(discs[:, :2])
-    bodies.set_widths(2.0 * discs[:, 2])
-    bodies.set_heights(2.0 * discs[:, 2])
-    bodies.set_angles(np.zeros(len(discs)))
+    bodies.set_offsets(centre)
+    bodies.set_widths(2.0 * radius)
+    bodies.set_heights(2.0 * radius)
+    bodies.set_angles(np.zeros(len(radius)))
     strokes.set_segments(list(np.stack((centre, tip), axis=1)))
-    return whose
 
 
 def _speeds(trajectories: Tracks) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.insertion.free_space import first_free
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
-from mesa_mobility.crowd.insertion.placement import circles, face, place_newcomers
+from mesa_mobility.crowd.insertion.placement import face, place_newcomers
 from mesa_mobility.crowd.journeys.visit import Route
 from mesa_mobility.crowd.people.pedestrian import Pedestrian, number_from
 from mesa_mobility.crowd.people.space import CrowdSpace
@@ -105,28 +105,15 @@ class Population(Saved):
         """(n,) core radius in metres of everybody who has ever been in the model."""
         return self._scene.crowd.core[: self.count].copy()
 
-    @property
-    def discs(self) -> NDArray[np.float64] | None:
-        """(n, 3, 2) offset along the facing and radius in metres of the discs of everybody who has
-        ever been in the model; None if all bodies are single discs."""
-        shapes = self._scene.repertoire.table.shapes
-        if not shapes.overhang.any():
-            return None
-        kinds = self._scene.crowd.type_index[: self.count]
-        found = np.stack([shapes.offset[kinds], shapes.radius[kinds]], axis=2)
-        sized: NDArray[np.float64] = found * self.core_radii[:, None, None]
-        return sized
-
     def cluster_of(self, row: int) -> int:
         """Cluster, in the map of its type, of the pose in which a person's movement ends."""
         crowd, first_cluster = self._scene.crowd, self._scene.repertoire.first_cluster
         return int(crowd.cluster[row]) - int(first_cluster[crowd.type_index[row]])
 
     def bodies(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-        """(n,) row, (n, 2) position, and (n,) radius of a circle about it that holds the body,
-        metres, of everybody inside."""
+        """(n,) row, (n, 2) position and (n,) core radius, metres, of everybody inside."""
         rows, crowd = self.present, self._scene.crowd
-        return rows, np.column_stack([crowd.x[rows], crowd.y[rows]]), circles(self._scene, rows)
+        return rows, np.column_stack([crowd.x[rows], crowd.y[rows]]), crowd.core[rows]
 
     def place(
         self, positions: ArrayLike, new: Newcomers, frame: int, rng: np.random.Generator
@@ -242,7 +229,7 @@ class Population(Saved):
         there = self.departed.together_with(self.present)
         free = first_free(
             places,
-            scene.types[type_index].bounding_radius,
+            scene.types[type_index].half_width,
             frame,
             there,
             scene.repertoire.table,

@@ -19,7 +19,6 @@ from mesa_mobility.compiled.threads import THREADS
 from mesa_mobility.crowd.costs.candidates import Moment
 from mesa_mobility.crowd.options.option_groups import make_groups
 from mesa_mobility.crowd.options.repertoire import Repertoire
-from mesa_mobility.crowd.options.shapes import ONE_DISC, shapes_of
 from mesa_mobility.crowd.options.table import OPTION, SAMPLES, OptionTable, boxes
 from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.planning.decision_order import select_due
@@ -107,7 +106,6 @@ def _table() -> OptionTable:
         options=np.ones(1, dtype=OPTION).view(np.recarray),
         heading=np.zeros(1, dtype=np.float32),
         path=np.zeros((1, 3, SAMPLES), dtype=np.float32),
-        shapes=shapes_of([ONE_DISC]),
     )
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
-from mesa_mobility.crowd.options.shapes import shapes_of
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.state.environment import Environment
@@ -71,12 +70,9 @@ def make_scene(
         preset.shares,
         preset.most_acceleration,
     )
-    table = known.table._replace(shapes=shapes_of([each.shape for each in types]))
-    known = replace(known, table=table)
-    widths = [each.half_width for each in types]
-    radii = np.array([each.bounding_radius for each in types])
+    radii = np.array([each.half_width for each in types])
     reach, extent, largest = known.reach.max(), known.extent.max(), radii.max()
-    environment = Environment(plan, reach=float(reach + largest) + 0.02, core_radii=widths)
+    environment = Environment(plan, reach=float(reach + largest) + 0.02, core_radii=radii.tolist())
     return Scene(
         plan=plan,
         types=types,

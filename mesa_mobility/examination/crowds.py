@@ -19,7 +19,7 @@ LONGEST = 300.0
 
 def crowd(subject: Subject) -> Finding:
     """Twenty people through a door."""
-    width = max(DOOR, 2.0 * subject.kind.half_width + BESIDE)
+    width = max(DOOR, 2.0 * subject.radius + BESIDE)
     spacing = 2.0 * subject.radius + 0.15
     side = max(6.0, 7.0 * spacing)
     plan = FloorPlan(

@@ -47,13 +47,13 @@ class Subject:
 
     @property
     def radius(self) -> float:
-        """Radius of the circle in which the body turns, metres."""
-        return self.kind.bounding_radius
+        """Radius of the body, metres."""
+        return self.kind.half_width
 
     @property
     def door(self) -> float:
         """Width in metres of a door that the body needs."""
-        return max(DOOR, 2.0 * self.kind.half_width + BESIDE)
+        return max(DOOR, 2.0 * self.radius + BESIDE)
 
     @property
     def corridor(self) -> float:

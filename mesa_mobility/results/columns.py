@@ -128,26 +128,6 @@ def radii_of(value: ArrayLike, person: IntArray) -> FloatArray:
     return read_only(radii)
 
 
-def discs_of(value: ArrayLike, person: IntArray) -> FloatArray:
-    """(m, 3, 2) offset and radius of each disc of everybody's body, metres.
-
-    Raises:
-        ResultsError: another shape, numbers that are not finite, a negative radius, or somebody
-            without a disc.
-    """
-    people = int(person.max()) + 1 if len(person) else 0
-    discs = np.asarray(value, dtype=np.float64)
-    if discs.ndim != 3 or discs.shape[1:] != (3, 2) or len(discs) < people:
-        raise ResultsError(
-            f"trajectories: discs have shape {discs.shape}, expected (people, 3, 2) for "
-            f"{people} people"
-        )
-    radii = discs[:, :, 1]
-    if not np.isfinite(discs).all() or (radii < 0).any() or not (radii > 0).any(axis=1).all():
-        raise ResultsError("trajectories: discs must be finite, with a positive radius for each")
-    return read_only(discs)
-
-
 def last_frame_of(given: int | None, frame: IntArray) -> int:
     """The last frame that was simulated; that of the last row where none is given.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from mesa_mobility.results.trajectories import Trajectories
@@ -27,7 +26,7 @@ class Overlap:
 
 
 def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | None]:
-    """Pairs of bodies with discs closer than the sum of their radii, over all frames.
+    """Pairs of people closer than the sum of their core radii, over all frames.
 
     Returns:
         Their number, the first few of them, and the smallest distance between the positions of two
@@ -35,9 +34,8 @@ def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], floa
     """
     offsets = trajectories.frame_offsets
     positions = np.column_stack((trajectories.x, trajectories.y))
-    discs = trajectories.body_discs
-    spans = (np.abs(discs[:, :, 0]) + discs[:, :, 1]) * (discs[:, :, 1] > 0.0)
-    reach = 2.0 * float(spans.max(initial=0.0))
+    radii = trajectories.radii
+    reach = 2.0 * float(radii.max(initial=0.0))
     count, named, nearest = 0, list[Overlap](), np.inf
     for frame in range(trajectories.frames):
         rows = slice(offsets[frame], offsets[frame + 1])
@@ -53,29 +51,10 @@ def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], floa
             continue
         distance = np.hypot(*(points[a] - points[b]).T)
         nearest = min(nearest, float(distance.min()))
-        bodies = (discs[people], points, trajectories.heading[rows])
-        close = np.flatnonzero(_gaps(a, b, *bodies) < -TOLERANCE_M)
+        gaps = distance - radii[people[a]] - radii[people[b]]
+        close = np.flatnonzero(gaps < -TOLERANCE_M)
         count += len(close)
         for k in close[: NAMED - len(named)] if len(named) < NAMED else ():
             pair = sorted((int(people[a[k]]), int(people[b[k]])))
             named.append(Overlap(frame, pair[0], pair[1], float(distance[k])))
     return count, named, float(nearest) if np.isfinite(nearest) else None
-
-
-def _gaps(
-    a: NDArray[np.intp],
-    b: NDArray[np.intp],
-    discs: NDArray[np.float64],
-    points: NDArray[np.float64],
-    headings: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """(k,) least distance between discs of bodies ``a`` and ``b``, negative where they overlap."""
-    if discs.shape[1] == 1:
-        return np.hypot(*(points[a] - points[b]).T) - discs[a, 0, 1] - discs[b, 0, 1]
-    ahead = np.column_stack([np.cos(headings), np.sin(headings)])
-    centres = points[:, None] + discs[:, :, :1] * ahead[:, None]
-    # Discs that a body does not have are nowhere near.
-    radii = np.where(discs[:, :, 1] > 0.0, discs[:, :, 1], -np.inf)
-    apart = np.linalg.norm(centres[a][:, :, None] - centres[b][:, None], axis=3)
-    gaps: NDArray[np.float64] = apart - radii[a][:, :, None] - radii[b][:, None]
-    return gaps.min(axis=(1, 2))

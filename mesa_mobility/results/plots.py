@@ -279,16 +279,15 @@ def _draw_bodies(
     axes.add_collection(
         LineCollection(list(np.stack((centre, tip), axis=1)), colors="black", linewidths=0.8)
     )
-    at, discs = trajectories.placed_discs(rows)
     axes.add_collection(
         EllipseCollection(
-            2 * discs[:, 2],
-            2 * discs[:, 2],
-            np.zeros(len(discs)),
+            2 * radius,
+            2 * radius,
+            np.zeros(len(radius)),
             units="xy",
-            offsets=discs[:, :2],
+            offsets=centre,
             offset_transform=axes.transData,
-            facecolors=colours[trajectories.person[rows][at]].tolist(),
+            facecolors=colours[trajectories.person[rows]].tolist(),
             edgecolors="white",
             linewidths=0.3,
             zorder=4,

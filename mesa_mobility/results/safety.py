@@ -71,7 +71,7 @@ def check_safety(
     """Count overlapping bodies, steps through walls and places off the floor.
 
     Args:
-        trajectories: the run; its `core_radius`, or its `discs`, say how close two people may come.
+        trajectories: the run; its `core_radius` says how close two people may come.
         walls: (m, 4) segments x1, y1, x2, y2 in metres (`FloorPlan.walls`), open exits cut out.
         floor: where people may be (`FloorPlan.free`), metres; without it nobody is counted as off
             the floor.
@@ -119,15 +119,6 @@ def _wall_crossings(
     if not len(walls) or not len(start):
         return 0, []
     rows, wall_of = _meet_walls(trajectories.x, trajectories.y, start, end, walls)
-    if trajectories.discs is not None:
-        offsets = trajectories.discs[:, :, 0][trajectories.person]
-        for disc in range(offsets.shape[1]):
-            x = trajectories.x + offsets[:, disc] * np.cos(trajectories.heading)
-            y = trajectories.y + offsets[:, disc] * np.sin(trajectories.heading)
-            more, walls_met = _meet_walls(x, y, start, end, walls)
-            rows, wall_of = np.concatenate([rows, more]), np.concatenate([wall_of, walls_met])
-        rows, once = np.unique(rows, return_index=True)
-        wall_of = wall_of[once]
     in_order = np.argsort(rows, kind="stable")[:NAMED]
     named = [
         WallCrossing(

@@ -15,7 +15,6 @@ from mesa_mobility.results.columns import (
     COLUMNS,
     checked_columns,
     checked_person_data,
-    discs_of,
     last_frame_of,
     radii_of,
     remaining_of,
@@ -39,7 +38,6 @@ class Tracks:
     heading: FloatArray
     frame_rate: float = 30.0
     core_radius: FloatArray | float = 0.15
-    discs: FloatArray | None = None
     last_frame: int | None = None
     inside_at_end: IntArray | None = None
     person_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
@@ -57,8 +55,6 @@ class Tracks:
                 f"trajectories: frame_rate is {self.frame_rate}, expected a positive number"
             )
         object.__setattr__(self, "core_radius", radii_of(self.core_radius, columns["person"]))
-        if self.discs is not None:
-            object.__setattr__(self, "discs", discs_of(self.discs, columns["person"]))
         object.__setattr__(
             self, "person_data", checked_person_data(self.person_data, columns["person"], own)
         )
@@ -100,29 +96,6 @@ class Tracks:
         """(m,) float64, metres: core radius by person, always an array."""
         assert isinstance(self.core_radius, np.ndarray)
         return self.core_radius
-
-    @cached_property
-    def body_discs(self) -> FloatArray:
-        """(m, k, 2) float64, metres: offset along the facing and radius of the discs of each
-        person's body, always an array; one about the position where ``discs`` is None."""
-        if self.discs is None:
-            return np.stack([np.zeros_like(self.radii), self.radii], axis=1)[:, None]
-        return self.discs
-
-    def placed_discs(self, rows: NDArray[np.int64] | slice) -> tuple[NDArray[np.int64], FloatArray]:
-        """Bodies of some rows as discs on the floor.
-
-        Returns:
-            (d,) index among these rows of the body of each disc, and (d, 3) its x, y and radius,
-            metres.
-        """
-        given = self.body_discs[self.person[rows]]
-        at, k = np.nonzero(given[:, :, 1] > 0.0)
-        offset, radius = given[at, k].T
-        heading = self.heading[rows][at]
-        x = self.x[rows][at] + offset * np.cos(heading)
-        y = self.y[rows][at] + offset * np.sin(heading)
-        return at, np.column_stack([x, y, radius])
 
     @property
     def remaining(self) -> IntArray:

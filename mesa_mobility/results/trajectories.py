@@ -38,9 +38,6 @@ class Trajectories(Tracks):
         frame_rate: frames a second.
         core_radius: (m,) float64, metres: the radius of the hard body core of person p is
             ``core_radius[p]``. A single number applies to everybody.
-        discs: (m, 3, 2) float64, metres: offset along the facing and radius of each of up to three
-            discs of a person's body, radius 0 for those that it does not have; None if all bodies
-            are single discs of the core radius.
         last_frame: last frame that was simulated. Later than the last row when the floor was
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
@@ -65,8 +62,8 @@ class Trajectories(Tracks):
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
                 and of fields, if any),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now); ``discs`` and ``person_data()``, where it has
-                them. Its decisions are taken too if it records them.
+                ``rows`` (the people inside now); ``person_data()``, where it has it. Its
+                decisions are taken too if it records them.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -84,7 +81,6 @@ class Trajectories(Tracks):
             **rows,
             frame_rate=float(model.frame_rate),
             core_radius=np.asarray(model.core_radii, dtype=np.float64),
-            discs=getattr(model, "discs", None),
             last_frame=round(model.elapsed * model.frame_rate),
             inside_at_end=model.rows,
             person_data=model.person_data() if hasattr(model, "person_data") else {},

@@ -67,7 +67,7 @@ def check_movements(
     _check_now(people[under_way], under_way, path[under_way], frame)
     _check_floor(people[inside], inside, path[inside], scene, frame)
     if scene.rules.hard_bodies:
-        _check_room(people[inside], inside, scene)
+        _check_room(people[inside], inside)
 
 
 def check_next(scene: Scene, inside: NDArray[np.int64], frame: int, following: int) -> None:
@@ -97,8 +97,7 @@ def _check_options(people: Records, scene: Scene) -> None:
     fits = people["destination"] % bodies == body[kinds]
     _check(fits, rows, "destination", people["destination"], "one for the width of the person")
     least = np.array([kind.least_core for kind in scene.types])[kinds]
-    shapes = [max(radius for _, radius in kind.shape) for kind in scene.types]
-    most = (np.array([kind.half_width for kind in scene.types]) / shapes)[kinds]
+    most = np.array([kind.half_width for kind in scene.types])[kinds]
     fits = (people["core"] >= least - 1e-9) & (people["core"] <= most + 1e-9)
     _check(fits, rows, "core", people["core"], "a radius of the type of the person")
 
@@ -234,25 +233,19 @@ def _check_floor(
         k += 1
 
 
-def _check_room(people: Records, rows: NDArray[np.int64], scene: Scene) -> None:
+def _check_room(people: Records, rows: NDArray[np.int64]) -> None:
     """Bodies do not overlap now."""
-    shapes = scene.repertoire.table.shapes[people["type_index"]]
-    ahead = np.stack([np.cos(people["heading"]), np.sin(people["heading"])], axis=1)
-    place = np.column_stack([people["x"], people["y"]])
-    who, disc = np.nonzero(np.arange(shapes["radius"].shape[1]) < shapes["discs"][:, None])
-    offset = (shapes["offset"][who, disc] * people["core"][who])[:, None]
-    centres = place[who] + offset * ahead[who]
-    radii = shapes["radius"][who, disc] * people["core"][who]
-    if len(who) < 2:
+    places, radii = np.column_stack([people["x"], people["y"]]), people["core"]
+    if len(people) < 2:
         return
-    pairs = cKDTree(centres).query_pairs(2.0 * radii.max(), output_type="ndarray")
+    pairs = cKDTree(places).query_pairs(2.0 * radii.max(), output_type="ndarray")
     one, other = pairs.T
-    gap = np.linalg.norm(centres[one] - centres[other], axis=1) - radii[one] - radii[other]
-    hit = (gap < -_TOUCHING) & (who[one] != who[other])
+    gap = np.linalg.norm(places[one] - places[other], axis=1) - radii[one] - radii[other]
+    hit = gap < -_TOUCHING
     if hit.any():
         k = int(np.argmax(hit))
         raise ContentError(
-            f"population, pedestrians {rows[who[one[k]]]} and {rows[who[other[k]]]}: overlap by "
+            f"population, pedestrians {rows[one[k]]} and {rows[other[k]]}: overlap by "
             f"{-gap[k]:.3f} m, expected room for both bodies"
         )
 

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.intrinsics import prefetch
 from mesa_mobility.compiled.simd import WIDE, lowest_bit
-from mesa_mobility.crowd.collision.discs import discs_touch, overhang_of
 from mesa_mobility.crowd.collision.simd_boxes import near_box
 from mesa_mobility.crowd.collision.simd_transforms import samples_to_ego
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable, in_lines
@@ -28,8 +27,7 @@ SLACK = 1e-5
 
 
 class EgoPose(NamedTuple):
-    """A deciding pedestrian: position (m), cosine and sine of its heading, core radius (m), and by
-    how much a circle that holds its whole body exceeds the core (m)."""
+    """A deciding pedestrian: position (m), cosine and sine of its heading, and core radius (m)."""
 
     row: int
     x: float
@@ -37,22 +35,20 @@ class EgoPose(NamedTuple):
     c: float
     s: float
     core: float
-    overhang: float = 0.0
 
 
 NEARBY = np.dtype(
     [
         ("who", "i8"),
         ("apart", "f8"),
-        ("overhang", "f8"),
         ("laid", "?"),
     ],
     align=True,
 )
 """Record of a person who may come in the way, in the deciding pedestrian's coordinates, metres.
 
-Fields: ``who`` row; ``apart`` the distance that the cores keep; ``overhang`` that of its body;
-``laid``, whether the path is transformed.
+Fields: ``who`` row; ``apart`` the distance that the cores keep; ``laid``, whether the path is
+transformed.
 """
 
 
@@ -96,7 +92,6 @@ def broad_phase_neighbours(
     near: NDArray[np.int64],
     sweeps: NDArray[np.float64],
     box: Box,
-    table: OptionTable,
     state: CrowdState,
     picked: NDArray[np.int64],
     dropped: NDArray[np.int32],
@@ -109,7 +104,7 @@ def broad_phase_neighbours(
     """
     sweep_x, sweep_y, radius = sweeps[0], sweeps[1], sweeps[2]
     px, py, c, s = me.x, me.y, me.c, me.s
-    own = me.core + me.overhang + MARGIN + SLACK
+    own = me.core + MARGIN + SLACK
     for a in range(len(near)):
         dx, dy = sweep_x[a] - px, sweep_y[a] - py
         x, y = c * dx + s * dy, c * dy - s * dx
@@ -127,10 +122,7 @@ def broad_phase_neighbours(
         j = near[a]
         apart = me.core + state.core[j] + MARGIN
         dx, dy = state.x[j] - px, state.y[j] - py
-        over = overhang_of(j, table, state)
-        if dx * dx + dy * dy < apart * apart or (
-            me.overhang + over > 0.0 and discs_touch(me.row, j, table, state)
-        ):
+        if dx * dx + dy * dy < apart * apart:
             touching -= 1
             to.people[touching].who = j
             continue
@@ -140,7 +132,6 @@ def broad_phase_neighbours(
         to.sweeps[0, count], to.sweeps[1, count] = c * dx + s * dy, c * dy - s * dx
         to.sweeps[2, count] = radius[a] + own + SLACK
         somebody.apart = apart
-        somebody.overhang = over
         somebody.laid = False
         count += 1
     to.known[0], to.known[1] = count, touching
@@ -204,7 +195,7 @@ def sampled_collision(
         Index of a person who is certainly hit, or -1; number of rows in ``unsure``.
     """
     doubtful, count = 0, close.known[0]
-    half = np.float32(0.5 * stride + me.overhang + 3.0 * SLACK)
+    half = np.float32(0.5 * stride + 3.0 * SLACK)
     x0, y0, x1, y1 = box_of(own, SAMPLES - 1)
     own_x, own_y = own[0], own[1]
     for block in range(-WIDE, count, WIDE):
@@ -222,7 +213,7 @@ def sampled_collision(
             x, y = close.ahead[a, 0], close.ahead[a, 1]
             j = close.people[a].who
             least = np.float32(close.people[a].apart - SLACK)
-            far = np.float32(least + half + close.people[a].overhang + 0.5 * state.stride[j])
+            far = np.float32(least + half + 0.5 * state.stride[j])
             least2, far2 = least * least, far * far
             hit, near = False, False
             for k in range(SAMPLES):

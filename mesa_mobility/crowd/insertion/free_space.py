@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
-from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import swept_collision
 from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.planning.grid import people_within
@@ -103,7 +102,7 @@ def _comes_near(
         j = people.people[at]
         if 0 <= lowest < j:
             continue
-        c = core + state.core[j] + overhang_of(j, table, state)
+        c = core + state.core[j]
         dx, dy = x - state.x[j], y - state.y[j]
         if dx * dx + dy * dy < c * c or (
             state.end[j] > frame

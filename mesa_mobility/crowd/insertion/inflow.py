@@ -204,7 +204,7 @@ class Sources(Sequence[Inflow], Saved):
             entrances[kind] = Entrance(
                 scene.plan,
                 area,
-                clearance=of.bounding_radius + 0.01,
+                clearance=of.half_width + 0.01,
                 passing=passing_of(of.half_width),
             )
             destination, _ = scene.journeys.start(source.exits, source.route, source.loop, kind)

@@ -10,10 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.crowd.insertion.free_space import too_close
 from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_column, distinct
 from mesa_mobility.crowd.insertion.suited_places import suited
-from mesa_mobility.crowd.options.shapes import ONE_DISC
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd
-from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
@@ -77,7 +75,7 @@ def place_newcomers(
         kinds = _suited(scene, points, kinds, ways, present, rng)
     speeds = new.draw_speeds(kinds, scene.types, rng)
     sets_off = frame + new.draw_waits(n, rng)
-    headings = _check_headings(new, n)
+    _check_headings(new, n)
     cores = new.draw_cores(kinds, scene.types, rng)
     fields = new.field_columns(n, scene.crowd)
     rows = np.arange(count, count + n, dtype=np.int64)
@@ -88,9 +86,9 @@ def place_newcomers(
         for kind, (destination, journey) in ways.items():
             own = np.flatnonzero(kinds == kind)
             of, there = scene.types[kind], points[own]
-            _check_walls(scene.plan, of, there, cores[own], headings, own)
+            check_beside_walls(there, of.half_width, scene.plan, own)
             others = np.concatenate([present, placed])
-            _check_room(scene, there, of.bounding_radius, frame, own, others, count)
+            _check_room(scene, there, of.half_width, frame, own, others, count)
             scene.environment.check_way_out(there, destination)
             assigned = Assigned(
                 type_index=kind,
@@ -117,10 +115,10 @@ def place_newcomers(
     return rows
 
 
-def _check_headings(new: Newcomers, n: int) -> NDArray[np.float64] | None:
-    """(n,) headings in radians, if they are given."""
+def _check_headings(new: Newcomers, n: int) -> None:
+    """Refuse headings of ``n`` newcomers that are no angles in radians."""
     if new.headings is None:
-        return None
+        return
     headings = check_column("headings", new.headings, n)
     off = np.abs(headings) > MOST_TURNED
     if off.any():
@@ -128,7 +126,6 @@ def _check_headings(new: Newcomers, n: int) -> NDArray[np.float64] | None:
             f"headings: got {headings[off][0]:g}, expected radians, {MOST_TURNED:g} at most either "
             "way"
         )
-    return headings
 
 
 def _suited(
@@ -140,9 +137,9 @@ def _suited(
     rng: np.random.Generator,
 ) -> NDArray[np.int64]:
     """(n,) the same types, at places with room for their bodies and a way out as wide."""
-    cores = np.array([kind.bounding_radius for kind in scene.types])
+    cores = np.array([kind.half_width for kind in scene.types])
     crowd = scene.crowd
-    others, radii = np.column_stack([crowd.x[present], crowd.y[present]]), circles(scene, present)
+    others, radii = np.column_stack([crowd.x[present], crowd.y[present]]), crowd.core[present]
 
     def suits(kind: int) -> NDArray[np.bool_]:
         away = distances_to_walls(scene.plan, points, float(cores[kind]))
@@ -174,8 +171,7 @@ def _check_room(
 ) -> None:
     """Refuse places without room beside people ``there``, of whom rows from ``count`` on are new.
 
-    Everybody takes up a circle, in which it can turn; that of the newcomers has this ``radius``.
-    The error names people by their (n,) ``numbers``.
+    Newcomers have bodies of this ``radius``.  The error names people by their (n,) ``numbers``.
     """
     if not scene.rules.hard_bodies:
         return
@@ -213,36 +209,6 @@ def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
         k = int(np.argmax(off))
         raise ModelError(f"pedestrian {k} at {points[k].tolist()}: expected a place on the floor")
     return points
-
-
-def circles(scene: Scene, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(n,) radius in metres of a circle about each person's position that holds its body."""
-    shapes = scene.repertoire.table.shapes
-    return scene.crowd.core[rows] * (1.0 + shapes.overhang[scene.crowd.type_index[rows]])
-
-
-def _check_walls(
-    plan: FloorPlan,
-    kind: PedestrianType,
-    points: NDArray[np.float64],
-    cores: NDArray[np.float64],
-    headings: NDArray[np.float64] | None,
-    numbers: NDArray[np.int64],
-) -> None:
-    """Refuse places without room between walls for people of a type with (n,) core radii.
-
-    Without (all newcomers,) ``headings`` there must be room to turn on the spot.
-
-    Raises:
-        ModelError: there is none; the error names people by their (n,) ``numbers``.
-    """
-    if headings is None or kind.shape == ONE_DISC:
-        check_beside_walls(points, kind.bounding_radius, plan, numbers)
-        return
-    ahead = np.column_stack([np.cos(headings[numbers]), np.sin(headings[numbers])])
-    for offset, radius in kind.shape:
-        places = points + offset * cores[:, None] * ahead
-        check_beside_walls(places, radius * float(cores.max(initial=0.0)), plan, numbers)
 
 
 def check_beside_walls(

@@ -187,12 +187,6 @@ class CrowdModel(mesa.Model):
         return self.population.core_radii
 
     @property
-    def discs(self) -> NDArray[np.float64] | None:
-        """(n, 3, 2) offset along the facing and radius in metres of each disc of everybody's body,
-        0 for discs that it does not have; None if all bodies are single discs."""
-        return self.population.discs
-
-    @property
     def capabilities(self) -> tuple[Capability, ...]:
         """The capability of each pedestrian type."""
         return self._scene.repertoire.capabilities

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from mesa_mobility.crowd.options.shapes import ONE_DISC, ShapeRecords, shapes_of
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 
@@ -71,7 +70,7 @@ class OptionTable(NamedTuple):
     (clusters,) reach of its options; ``options`` (n,) records of ``OPTION``; ``heading`` (n,) at
     the end; ``path`` (n, 3, 16): x, y, heading at the samples from the start on, with the
     end repeated.  Values are in single precision, as in the map: each decision reads them from
-    main memory.  ``shapes`` (types,) records of ``SHAPE``: the bodies of the types.
+    main memory.
     """
 
     offsets: NDArray[np.int64]
@@ -80,7 +79,6 @@ class OptionTable(NamedTuple):
     options: OptionRecords
     heading: NDArray[np.float32]
     path: NDArray[np.float32]
-    shapes: ShapeRecords
 
 
 class Parts(NamedTuple):
@@ -173,7 +171,6 @@ def option_table(
         options=options,
         heading=heading.copy(),
         path=path,
-        shapes=shapes_of([ONE_DISC]),
     )
 
 
@@ -239,5 +236,4 @@ def stack_tables(tables: Sequence[OptionTable]) -> OptionTable:
         options=records,
         heading=np.concatenate([table.heading for table in tables]),
         path=path,
-        shapes=np.concatenate([table.shapes for table in tables]).view(np.recarray),
     )

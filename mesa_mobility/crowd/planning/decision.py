@@ -11,7 +11,6 @@ from mesa_mobility.compiled.decorators import entry_point, inlined
 from mesa_mobility.compiled.intrinsics import store_release, take_number
 from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
 from mesa_mobility.crowd.collision.broad_phase import cull_groups
-from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
 from mesa_mobility.crowd.collision.walls import Barriers, walls_to_ego
@@ -109,8 +108,7 @@ def _decide_one(
     rules, moving = scene.rules, scene.moving
     cluster, destination = state.cluster[i], state.destination[i]
     x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
-    overhang = overhang_of(i, table, state)
-    me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core, overhang)
+    me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core)
     own = lay_self(me, state, terms, work.own)
     others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
     ranges = rules.interaction_ranges
@@ -130,7 +128,7 @@ def _decide_one(
             others[row, a] = terms.fields[work.interacting[a], row - FIELDS]
     fill_lane(count, others)
     farthest = table.farthest[cluster]
-    reach = wall_reach(farthest, core + overhang)
+    reach = wall_reach(farthest, core)
     walls = work.walls[: near_walls(around, x, y, destination, reach, work.walls)]
     n_clear = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
     barriers = Barriers(work.barriers, n_clear)
@@ -142,9 +140,7 @@ def _decide_one(
     x0, y0 = min(whole[0], -aside), min(whole[1], -aside)
     box = x0, y0, max(whole[2], aside), max(whole[3], aside)
     hard = near if rules.hard_bodies else near[:0]
-    broad_phase_neighbours(
-        me, hard, sweeps, box, table, state, work.unsure, work.dropped, work.close
-    )
+    broad_phase_neighbours(me, hard, sweeps, box, state, work.unsure, work.dropped, work.close)
     n = cull_groups(me, frame, work.close, barriers, exits_from, table, groups, state, work.blocks)
     option, gone = NONE, -1
     if n > 0:
@@ -214,5 +210,5 @@ def _decide_one(
             walls, around, near[:count], exits_from <= farthest, rules.hard_bodies
         )
         fall_back(i, frame, table, state, obstacles, standing, work.path)
-    cover_in(moving, place, i, table, state)
+    cover_in(moving, place, i, state)
     return True

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.terms import CostTerm
@@ -182,8 +181,7 @@ def _judge(
 ) -> None:
     """Write the verdicts; the walls of ``given`` are workspace."""
     x, y, destination, around = state.x[i], state.y[i], state.destination[i], given.around
-    core = state.core[i] + overhang_of(i, table, state)
-    reach = wall_reach(table.farthest[state.cluster[i]], core)
+    reach = wall_reach(table.farthest[state.cluster[i]], state.core[i])
     walls = given.walls[: near_walls(around, x, y, destination, reach, given.walls)]
     exits_from = exit_distance(around, x, y, destination)
     c, s = math.cos(state.heading[i]), math.sin(state.heading[i])

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal
-from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.planning.feasibility import Obstacles, Trial, path_gone_or_blocked
 from mesa_mobility.crowd.state.paths import commit
@@ -38,14 +37,11 @@ def fall_back(
 ) -> None:
     """Commit pedestrian i to four frames straight towards its target, as far as nothing is hit.
 
-    A body of several discs can neither step aside nor turn without room: it stays as it is.
     It ends in the standing cluster.  ``path`` is workspace.
     """
     dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
     distance = math.hypot(dx, dy)
     turn = 0.0
-    if overhang_of(i, table, state) > 0.0:
-        distance = 0.0
     if distance > 0.0:
         dx, dy = dx / distance, dy / distance
         turn = math.atan2(dy, dx) - state.heading[i]

@@ -11,8 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal
-from mesa_mobility.crowd.collision.discs import body_collides, body_hits_wall, overhang_of
-from mesa_mobility.crowd.collision.exact import crosses_exit, gone_frame
+from mesa_mobility.crowd.collision.exact import (
+    crosses_exit,
+    gone_frame,
+    hits_wall,
+    swept_collision,
+)
 from mesa_mobility.crowd.collision.sampled import SLACK, sampled_collision
 from mesa_mobility.crowd.collision.walls import path_off2
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, OptionTable
@@ -62,20 +66,19 @@ def path_gone_or_walled(
     i: int,
     trial: Trial,
     frame: int,
-    table: OptionTable,
     state: CrowdState,
     walls: NDArray[np.float64],
     around: Surroundings,
     exits_near: bool,
 ) -> int:
     """-3 if the path hits a wall, else the frame of leaving or -1."""
-    gone, walked, spacing = -1, trial.pieces, trial.spacing
+    gone, walked = -1, trial.pieces
     if exits_near:
         piece, where = crosses_exit(trial.path, trial.pieces, around, state.destination[i])
         if piece >= 0:
-            gone = gone_frame(frame, spacing, piece, where)
+            gone = gone_frame(frame, trial.spacing, piece, where)
             walked = piece + 1
-    hit = body_hits_wall(i, trial.path, walked, spacing, walls, trial.reach, table, state)
+    hit = hits_wall(trial.path, walked, walls, state.core[i], trial.reach)
     return -3 if hit else gone
 
 
@@ -92,9 +95,9 @@ def hits_anybody(
     """Whether the path of pedestrian i hits one of those in rows ``near``."""
     path, pieces, spacing = trial.path, trial.pieces, trial.spacing
     x0, y0, x1, y1 = box_of(path, pieces)
-    own = state.core[i] + overhang_of(i, table, state) + 0.001
+    own = state.core[i]
     for j in near:
-        c = own + state.core[j] + overhang_of(j, table, state)
+        c = own + 0.001 + state.core[j]
         if (
             x0 > state[j].box[2] + c
             or x1 < state[j].box[0] - c
@@ -102,7 +105,8 @@ def hits_anybody(
             or y1 < state[j].box[1] - c
         ):
             continue
-        if body_collides(i, path, pieces, spacing, frame, gone, table, state, j):
+        apart = own + state.core[j]
+        if swept_collision(path, pieces, spacing, frame, gone, table, state, j, apart):
             return True
     return False
 
@@ -113,7 +117,7 @@ def path_gone_or_blocked(
 ) -> int:
     """-3 if the path hits a wall, -2 if it hits a person, else the frame of leaving or -1."""
     walls, around = obstacles.walls, obstacles.around
-    gone = path_gone_or_walled(i, trial, frame, table, state, walls, around, obstacles.exits_near)
+    gone = path_gone_or_walled(i, trial, frame, state, walls, around, obstacles.exits_near)
     if gone == -3 or not obstacles.hard_bodies:
         return gone
     blocked = hits_anybody(i, trial, frame, gone, table, state, obstacles.near)
@@ -159,7 +163,7 @@ def option_gone_or_blocked(
         least = me.core + MARGIN - SLACK
         if off2 < least * least:
             return -3, met
-        most = me.core + me.overhang + MARGIN + 0.5 * stride + 3.0 * SLACK
+        most = me.core + MARGIN + 0.5 * stride + 3.0 * SLACK
         walled = now.barriers.known < len(walls) or off2 < most * most
         if hard_bodies:
             who, doubtful = sampled_collision(
@@ -181,7 +185,7 @@ def option_gone_or_blocked(
     pieces = to_world(me.row, o, me.c, me.s, table, state, work.path)
     trial = Trial(work.path, pieces, np.int64(SAMPLE_FRAMES), reach)
     if walled:
-        gone = path_gone_or_walled(me.row, trial, frame, table, state, walls, around, exits_near)
+        gone = path_gone_or_walled(me.row, trial, frame, state, walls, around, exits_near)
     if gone < -1 or doubtful == 0:
         return gone, met
     blocked = hits_anybody(me.row, trial, frame, gone, table, state, work.unsure[:doubtful])

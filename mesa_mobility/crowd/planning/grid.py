@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import entry_point, force_inlined, inlined, internal
 from mesa_mobility.compiled.simd import LANES, bits_set, compress
 from mesa_mobility.compiled.threads import by_blocks
-from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.simd_tests import places_near
-from mesa_mobility.crowd.options.table import OptionTable
 from mesa_mobility.crowd.state.people_grid import Grid, cells_within
 from mesa_mobility.crowd.state.records import CrowdState
 
@@ -23,17 +21,15 @@ get the rows before, in addition to positions."""
 
 
 @internal()
-def cover_in(
-    moving: NDArray[np.float64], at: int, i: int, table: OptionTable, state: CrowdState
-) -> None:
+def cover_in(moving: NDArray[np.float64], at: int, i: int, state: CrowdState) -> None:
     """Write the circle that the path of pedestrian i, at index ``at`` of the grid, covers."""
     x0, y0, x1, y1 = state.box[i, 0], state.box[i, 1], state.box[i, 2], state.box[i, 3]
     moving[COVERED, at], moving[COVERED + 1, at] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
     radius = 0.5 * math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))
-    moving[COVERED + 2, at] = radius + state.core[i] + overhang_of(i, table, state)
+    moving[COVERED + 2, at] = radius + state.core[i]
 
 
-def headways(grid: Grid, table: OptionTable, state: CrowdState) -> NDArray[np.float64]:
+def headways(grid: Grid, state: CrowdState) -> NDArray[np.float64]:
     """(8, n) motion of the people in a grid, in its order.
 
     Velocity in m/s, unit vector to the target (0, 0 at the target), route length in metres; x, y
@@ -44,7 +40,7 @@ def headways(grid: Grid, table: OptionTable, state: CrowdState) -> NDArray[np.fl
     found = np.empty(rows * n + LANES)[: rows * n].reshape(rows, n)
 
     def block(first: int, last: int) -> None:
-        _write_headways(grid, table, state, first, last, found)
+        _write_headways(grid, state, first, last, found)
 
     by_blocks(block, n)
     return found
@@ -53,7 +49,6 @@ def headways(grid: Grid, table: OptionTable, state: CrowdState) -> NDArray[np.fl
 @entry_point()
 def _write_headways(
     grid: Grid,
-    table: OptionTable,
     state: CrowdState,
     first: int,
     last: int,
@@ -67,7 +62,7 @@ def _write_headways(
         away = math.sqrt(dx * dx + dy * dy)
         found[2, a], found[3, a] = (dx / away, dy / away) if away > 0.0 else (0.0, 0.0)
         found[4, a] = state.route[i]
-        cover_in(found, a, i, table, state)
+        cover_in(found, a, i, state)
 
 
 @force_inlined()

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
-from mesa_mobility.crowd.collision.discs import body_collides, body_hits_wall, overhang_of
-from mesa_mobility.crowd.collision.exact import crosses_exit, near_walls
+from mesa_mobility.crowd.collision.exact import (
+    crosses_exit,
+    hits_wall,
+    near_walls,
+    swept_collision,
+)
 from mesa_mobility.crowd.options.table import SAMPLES, OptionTable
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.state.paths import facing_at_waypoint, waypoint
+from mesa_mobility.crowd.state.paths import waypoint
 from mesa_mobility.crowd.state.records import NO_OPTION, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.floorplan.floor.geometry import point_segment_distance2
@@ -41,13 +43,13 @@ def stop_where_blocked(
     stopped = np.zeros(len(rows), np.bool_)
     newly = np.empty(len(rows), np.int64)
     count = 0
-    path = np.empty((3, SAMPLES))
+    path = np.empty((2, SAMPLES))
     found = np.empty((len(around.segments) + len(around.exits), 5))
     for a in range(len(rows)):
         i = rows[a]
         if state.end[i] <= frame:
             continue
-        if state.gone[i] >= 0 and _in_closed_exit(i, table, state, around):
+        if state.gone[i] >= 0 and _in_closed_exit(i, state, around):
             continue
         pieces = _remaining(i, frame, table, state, path)
         walked = pieces
@@ -59,12 +61,11 @@ def stop_where_blocked(
             state.x[i],
             state.y[i],
             state.destination[i],
-            reach + state.core[i] + overhang_of(i, table, state) + 0.01,
+            reach + state.core[i] + 0.01,
             found,
         )
-        spacing = np.int64(state.spacing[i])
-        if _on_lines(i, found[:walls], table, state) or body_hits_wall(
-            i, path, walked, spacing, found[:walls], reach, table, state
+        if _on_lines(i, found[:walls], state) or hits_wall(
+            path, walked, found[:walls], state.core[i], reach
         ):
             stopped[a] = True
             newly[count] = i
@@ -76,15 +77,14 @@ def stop_where_blocked(
         # Where they stand they may block others, who stop as well.
         standing = newly[:count].copy()
         count = 0
-        still = np.empty((3, 2))
+        still = np.empty((2, 2))
         for a in range(len(rows)):
             j = rows[a]
             if stopped[a] or state.end[j] <= frame:
                 continue
             for i in standing:
-                still[0], still[1], still[2] = state.x[i], state.y[i], state.heading[i]
-                if body_collides(
-                    i,
+                still[0], still[1] = state.x[i], state.y[i]
+                if swept_collision(
                     still,
                     np.int64(1),
                     np.int64(1),
@@ -93,6 +93,7 @@ def stop_where_blocked(
                     table,
                     state,
                     j,
+                    state.core[i] + state.core[j],
                 ):
                     stopped[a] = True
                     newly[count] = j
@@ -105,29 +106,25 @@ def stop_where_blocked(
 
 
 @kept()
-def _in_closed_exit(i: int, table: OptionTable, state: CrowdState, around: Surroundings) -> bool:
+def _in_closed_exit(i: int, state: CrowdState, around: Surroundings) -> bool:
     """Whether the body of pedestrian i is across an exit by which it may not leave."""
     for e in range(len(around.exits)):
         if not around.leads_out[state.destination[i], e] and _on_lines(
-            i, around.exits[e : e + 1], table, state
+            i, around.exits[e : e + 1], state
         ):
             return True
     return False
 
 
 @kept()
-def _on_lines(i: int, lines: NDArray[np.float64], table: OptionTable, state: CrowdState) -> bool:
+def _on_lines(i: int, lines: NDArray[np.float64], state: CrowdState) -> bool:
     """Whether the body of pedestrian i is across one of some lines (n, 4 or more), as only doors
     that close on people are."""
-    shape, core = table.shapes[state.type_index[i]], state.core[i]
-    c, s = math.cos(state.heading[i]), math.sin(state.heading[i])
+    x, y, r = state.x[i], state.y[i], state.core[i] - TOUCHING
     for w in range(len(lines)):
         ax, ay, bx, by = lines[w, 0], lines[w, 1], lines[w, 2], lines[w, 3]
-        for d in range(shape.discs):
-            off, r = core * shape.offset[d], core * shape.radius[d] - TOUCHING
-            x, y = state.x[i] + off * c, state.y[i] + off * s
-            if point_segment_distance2(x, y, ax, ay, bx, by) < r * r:
-                return True
+        if point_segment_distance2(x, y, ax, ay, bx, by) < r * r:
+            return True
     return False
 
 
@@ -135,13 +132,12 @@ def _on_lines(i: int, lines: NDArray[np.float64], table: OptionTable, state: Cro
 def _remaining(
     i: int, frame: int, table: OptionTable, state: CrowdState, path: NDArray[np.float64]
 ) -> int:
-    """Write the pose and remaining waypoints of pedestrian i; return the number of pieces."""
-    path[0, 0], path[1, 0], path[2, 0] = state.x[i], state.y[i], state.heading[i]
+    """Write the position and remaining waypoints of pedestrian i; return the number of pieces."""
+    path[0, 0], path[1, 0] = state.x[i], state.y[i]
     first = (frame - state.start[i]) // state.spacing[i] + 1
     pieces = state.knots[i] - first
     for k in range(pieces):
         path[0, k + 1], path[1, k + 1] = waypoint(state, table, i, first + k)
-        path[2, k + 1] = facing_at_waypoint(state, table, i, first + k)
     return pieces
 
 

@@ -104,7 +104,7 @@ class DecisionScheduler:
             )
             check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
         state = crowd.records
-        moving = headways(grid, table, state)
+        moving = headways(grid, state)
         scene = FrameContext(
             moment.frame, table, groups, state, grid, around, compiled, self._rules, moving
         )

@@ -6,9 +6,6 @@ with its nervousness, the share by which it falls short of its preferred speed. 
 of a person that has made no progress for some seconds is now and then turned by a random angle.
 The angle grows with the time without progress.  People who have not set off, or who wait on
 purpose, stay patient, and so do slow people who get on as fast as they want.
-
-A long body that stands aslant in an opening, or beside others, often can neither go on nor turn.
-When its person is impatient it backs off now and then, as drivers do.
 """
 
 from __future__ import annotations
@@ -19,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
-from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
@@ -44,36 +40,6 @@ RATE, MOST = 0.1, 0.5
 LOOKS = 0.15
 """Share of decisions in which an impatient person looks for a way round.  In the others it waits,
 as people in a queue mostly do."""
-
-
-BACKS_OFF, TRIES_AGAIN = 3.0, 6.0
-"""Seconds for which an impatient person with a long body backs off, and then tries again."""
-
-BEHIND = 0.05
-"""Metres straight behind it to which it backs off."""
-
-
-def back_off(
-    rows: NDArray[np.int64], crowd: Crowd, has_long_body: NDArray[np.bool_], elapsed: float
-) -> bool:
-    """Put the targets of some impatient people with long bodies behind them; whether there are any.
-
-    Args:
-        rows: (n,) the deciding pedestrians; their targets and route lengths are set, and their
-            progress is recorded.
-        crowd: the crowd.
-        has_long_body: (types,) whether people of each type have bodies of several discs.
-        elapsed: seconds.
-    """
-    own = rows[has_long_body[crowd.type_index[rows]]]
-    free = crowd.agenda["waits_until"][own] * FRAME_SECONDS
-    overdue = elapsed - np.maximum(crowd.agenda["since"][own], free) - PATIENCE
-    backing = (overdue > 0.0) & (overdue % (BACKS_OFF + TRIES_AGAIN) < BACKS_OFF)
-    who = own[backing & np.isfinite(crowd.route[own])]
-    crowd.target_x[who] = crowd.x[who] - BEHIND * np.cos(crowd.heading[who])
-    crowd.target_y[who] = crowd.y[who] - BEHIND * np.sin(crowd.heading[who])
-    crowd.preferred[who] = crowd.agenda["speed"][who]
-    return len(who) > 0
 
 
 def perturb_targets(
@@ -163,26 +129,15 @@ def turn(
 
 
 class Impatience(Tactic):
-    """People who make no progress look for a way round; long bodies back off as well."""
+    """People who make no progress look for a way round."""
 
     name = "impatience"
-
-    _has_long_body: NDArray[np.bool_]
-
-    def bind(self, model: World) -> None:
-        """Note which types have bodies of several discs."""
-        self._has_long_body = np.array([len(each.shape) > 1 for each in model.pedestrian_types])
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Turn the points of some who make no progress."""
         rows, crowd = deciding.pedestrians, deciding.inside.crowd
         settle(rows, desired.points, desired.speeds, crowd.records)
-        changed = perturb_targets(rows, crowd, deciding.elapsed, deciding.rng)
-        if self._has_long_body.any() and back_off(
-            rows, crowd, self._has_long_body, deciding.elapsed
-        ):
-            changed, desired.speeds = True, crowd.preferred[rows]
-        if changed:
+        if perturb_targets(rows, crowd, deciding.elapsed, deciding.rng):
             desired.points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
 
     def compile_ahead(self) -> None:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.hooks import World
-from mesa_mobility.crowd.options.shapes import ShapeRecords, shapes_of
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
@@ -32,7 +31,6 @@ TOUCHING = 1e-3
 def step_off(
     rows: NDArray[np.int64],
     lines: NDArray[np.float64],
-    shapes: ShapeRecords,
     state: CrowdState,
     points: NDArray[np.float64],
     across: NDArray[np.bool_],
@@ -44,29 +42,23 @@ def step_off(
     Args:
         rows: (n,) people who decide.
         lines: (m, 4) gates and exits that are closed, metres.
-        shapes: of the types' bodies.
         state: the crowd.
         points: (n, 2) to which they go, metres; written to.
         across: (n,) set to whether each steps off; False before.
     """
     for k in range(len(rows)):
         i, worst = rows[k], TOUCHING
-        shape, core = shapes[state[i].type_index], state[i].core
-        c, s = math.cos(state[i].heading), math.sin(state[i].heading)
+        x, y = state[i].x, state[i].y
         for w in range(len(lines)):
             ax, ay, bx, by = lines[w]
             nx, ny = ay - by, bx - ax
             length = math.hypot(nx, ny)
-            aside = ((state[i].x - ax) * nx + (state[i].y - ay) * ny) / length
-            for d in range(shape.discs):
-                off, r = core * shape.offset[d], core * shape.radius[d]
-                x, y = state[i].x + off * c, state[i].y + off * s
-                deep = r - math.sqrt(point_segment_distance2(x, y, ax, ay, bx, by))
-                if deep > worst:
-                    worst, across[k] = deep, True
-                    far = math.copysign(deep + CLEAR, aside) / length
-                    points[k, 0] = state[i].x + far * nx
-                    points[k, 1] = state[i].y + far * ny
+            aside = ((x - ax) * nx + (y - ay) * ny) / length
+            deep = state[i].core - math.sqrt(point_segment_distance2(x, y, ax, ay, bx, by))
+            if deep > worst:
+                worst, across[k] = deep, True
+                far = math.copysign(deep + CLEAR, aside) / length
+                points[k, 0], points[k, 1] = x + far * nx, y + far * ny
 
 
 class StepOff(Tactic):
@@ -77,15 +69,13 @@ class StepOff(Tactic):
 
     name = "stepping_off"
 
-    saved: ClassVar[Mapping[str, Kind]] = {}  # the plan and the types are the model's
+    saved: ClassVar[Mapping[str, Kind]] = {}  # the plan is the model's
 
     _plan: FloorPlan
-    _shapes: ShapeRecords
 
     def bind(self, model: World) -> None:
-        """Keep the floor plan, whose doors may close, and the bodies of all types."""
+        """Keep the floor plan, whose doors may close."""
         self._plan = model.floor_plan
-        self._shapes = shapes_of([each.shape for each in model.pedestrian_types])
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Send those away from the line who are across it."""
@@ -95,7 +85,7 @@ class StepOff(Tactic):
         lines, points = opening_segments(closed), desired.points.copy()
         rows, crowd = deciding.pedestrians, deciding.inside.crowd
         across = np.zeros(len(rows), dtype=np.bool_)
-        step_off(rows, lines, self._shapes, crowd.records, points, across)
+        step_off(rows, lines, crowd.records, points, across)
         if across.any():
             # Those without a route would rather stand.
             steps = points[across] - deciding.positions[across]

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.crowd.options.shapes import ONE_DISC, Discs, check_discs, core_of
 from mesa_mobility.crowd.types.free_speeds import free_speeds
 from mesa_mobility.distributions.base import EXTREMES, Distribution
 from mesa_mobility.errors import ModelError
@@ -32,25 +31,18 @@ class PedestrianType:
         name: by default the map's own.
         preferred_speed: distribution of preferred speeds, m/s, or one speed for everybody; by
             default that of the map (see ``free_speeds``).
-        core_radius: radius of the disc that no other body enters, metres, or a distribution of
-            radii; by default the map's.
-        discs: offset along the facing, forwards, and radius in metres of each of one to three discs
-            that the body consists of; by default one about the person's position.  The core is the
-            largest disc about that position within them; with a ``core_radius`` as well, they are
-            scaled to it.
+        core_radius: radius of the body, a disc about the person's position that no other body
+            enters, metres, or a distribution of radii; by default the map's.
     """
 
     mobility_map: MobilityMap
     name: str = ""
     preferred_speed: Distribution | float | None = None
     core_radius: Distribution | float = field(default=0.0)
-    discs: Sequence[tuple[float, float]] = ()
 
     def __post_init__(self) -> None:
         if not self.name:
             object.__setattr__(self, "name", self.mobility_map.pedestrian_type)
-        if len(self.discs):
-            object.__setattr__(self, "discs", check_discs(self.discs, self.name))
         if not isinstance(self.core_radius, Distribution) and not is_number(self.core_radius):
             raise ModelError(
                 f"type {self.name!r}: core_radius {self.core_radius!r:.60}, "
@@ -58,9 +50,7 @@ class PedestrianType:
             )
         if self.core_radius == 0.0:
             body = self.mobility_map.metadata.get("body", {})
-            core = float(body.get("core_radius_m", CORE_RADIUS))
-            core = core_of(tuple(self.discs)) if len(self.discs) else core
-            object.__setattr__(self, "core_radius", core)
+            object.__setattr__(self, "core_radius", float(body.get("core_radius_m", CORE_RADIUS)))
         if not (self._bound(_LEAST) >= SLIMMEST_CORE and self._bound(_GREATEST) < 1.0):
             raise ModelError(
                 f"type {self.name!r}: core_radius {self.core_radius}, "
@@ -79,7 +69,6 @@ class PedestrianType:
     def __repr__(self) -> str:
         told = [repr(self.name), repr(self.mobility_map)]
         told += [f"{name}={getattr(self, name)!r}" for name in ("preferred_speed", "core_radius")]
-        told += [f"discs={list(self.discs)}"] * bool(len(self.discs))
         return f"<PedestrianType {', '.join(told)}>"
 
     @classmethod
@@ -103,27 +92,14 @@ class PedestrianType:
         )
 
     @property
-    def shape(self) -> Discs:
-        """The discs of a body in units of its core radius."""
-        if not len(self.discs):
-            return ONE_DISC
-        core = core_of(tuple(self.discs))
-        return tuple((offset / core, radius / core) for offset, radius in self.discs)
-
-    @property
     def least_core(self) -> float:
         """Least core radius, metres."""
         return self._bound(_LEAST)
 
     @property
     def half_width(self) -> float:
-        """Half the width of the widest body across its facing, metres."""
-        return self._bound(_GREATEST) * max(radius for _, radius in self.shape)
-
-    @property
-    def bounding_radius(self) -> float:
-        """Radius in metres of the circle in which the largest body turns on the spot."""
-        return self._bound(_GREATEST) * max(abs(offset) + radius for offset, radius in self.shape)
+        """Greatest core radius, half the width of the widest body, metres."""
+        return self._bound(_GREATEST)
 
     def _bound(self, share: float) -> float:
         if isinstance(self.core_radius, Distribution):

@@ -25,8 +25,7 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     Numbers of options are base64 float32, options in the order of the explanation's: ``costs``
     (terms, n) weighted, ``totals``, ``verdicts``, ``blockers``, ``ends`` (n, 2), ``durations``,
     ``speeds``, ``paths`` (n, 16, 2) and ``knots``. A neighbour is row, x, y, core radius, and x, y
-    of where its movement leads; ``discs`` and ``others`` have x, y and radius of each disc of the
-    pedestrian's body and of each neighbour's. ``lost`` says that there is no way to the target.
+    of where its movement leads. ``lost`` says that there is no way to the target.
     """
     row, crowd, candidates = explained.pedestrian, model.crowd, explained.candidates
     kind = model.pedestrian_types[int(crowd.type_index[row])]
@@ -43,7 +42,6 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
         "pose": kind.mobility_map.mean_poses[explained.cluster].tolist(),
         "bones": BONES,
         "core": float(crowd.core[row]),
-        "discs": _placed_discs(row, model),
         "preferred": float(candidates.preferred_speeds[0]),
         "position": candidates.positions[0].tolist(),
         "heading": float(candidates.facings[0]),
@@ -70,19 +68,7 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
                 strict=True,
             )
         ],
-        "others": [_placed_discs(int(j), model) for j in candidates.neighbours],
     }
-
-
-def _placed_discs(row: int, model: PedestrianModel) -> list[list[float]]:
-    """x, y and radius of each disc of somebody's body, metres."""
-    crowd, kind = model.crowd, model.pedestrian_types[int(model.crowd.type_index[row])]
-    x, y, core = float(crowd.x[row]), float(crowd.y[row]), float(crowd.core[row])
-    c, s = np.cos(crowd.heading[row]), np.sin(crowd.heading[row])
-    return [
-        [float(x + core * offset * c), float(y + core * offset * s), core * radius]
-        for offset, radius in kind.shape
-    ]
 
 
 def _lost(explained: Explanation, model: PedestrianModel) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mesa_mobility import FloorPlan, PedestrianModel
 from mesa_mobility.animation.floor import drawn_floor, ring
@@ -37,8 +37,7 @@ def frame(
     """The crowd as the canvas draws it.
 
     ``people`` holds five numbers each: row, x, y, heading, and the value that gives the colour.
-    Float32 holds rows up to 16 million, and places on a plan 1 km wide to 0.1 mm. ``discs`` holds
-    row, offset along the facing and radius of each disc of bodies that consist of several.
+    Float32 holds rows up to 16 million, and places on a plan 1 km wide to 0.1 mm.
 
     Args:
         model: the model.
@@ -64,20 +63,8 @@ def frame(
         "elapsed": model.elapsed,
         "inside": model.inside,
         "people": packed(people),
-        "discs": packed(_discs(model)),
         "legend": colouring.legend(model),
     }
-
-
-def _discs(model: PedestrianModel) -> NDArray[np.float64]:
-    """(k, 3) row, offset and radius of each disc of everybody inside; none for single discs."""
-    discs = model.discs
-    if discs is None:
-        return np.empty((0, 3))
-    own = discs[model.rows]
-    several = (own[:, :, 1] > 0.0).sum(axis=1) > 1
-    who, which = np.nonzero((own[:, :, 1] > 0.0) & several[:, None])
-    return np.column_stack([model.rows[who], own[who, which]])
 
 
 def floor(

@@ -49,10 +49,9 @@ def write_parquet(trajectories: Tracks, path: str | os.PathLike[str]) -> None:
     """Write columns frame, person, x (m), y (m), heading (rad), person_data and fields, with zstd.
 
     The schema's metadata hold, under `mesa_mobility`, a JSON object: format_version, frame_rate,
-    last_frame, core_radius by person, discs if bodies have several, inside_at_end, names in
-    person_data and of fields, and the sha256 of the file (see
-    ``mesa_mobility.results.seal``). Pages have checksums, which others can check.
-    Equal trajectories give equal bytes.
+    last_frame, core_radius by person, inside_at_end, names in person_data and of fields, and the
+    sha256 of the file (see ``mesa_mobility.results.seal``). Pages have checksums, which others can
+    check. Equal trajectories give equal bytes.
 
     Raises:
         ResultsError: the file cannot be written.
@@ -66,8 +65,6 @@ def write_parquet(trajectories: Tracks, path: str | os.PathLike[str]) -> None:
         "person_data": list(trajectories.person_data),
         FIELD: UNSEALED,
     }
-    if trajectories.discs is not None:
-        metadata["discs"] = trajectories.discs.tolist()
     columns = {name: pa.array(getattr(trajectories, name)) for name in SCHEMA.names}
     person = pa.array(trajectories.person)
     for name, values in trajectories.person_data.items():
@@ -147,7 +144,6 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Any]:
             },
             "frame_rate": float(values["frame_rate"]),
             "core_radius": np.asarray(values["core_radius"], dtype=np.float64),
-            "discs": np.asarray(values["discs"]) if "discs" in values else None,
             "last_frame": int(values["last_frame"]),
             "inside_at_end": np.asarray(values["inside_at_end"], dtype=np.int64),
             "fields": fields,

@@ -13,8 +13,8 @@ from tests.fixtures.maps import shipped_map
 PLACES = [(0.6 + 0.7 * (k % 6), 0.6 + 0.7 * (k // 6)) for k in range(24)]
 
 
-def model_of(core_radius, seed=1, discs=(), plan=None) -> PedestrianModel:
-    kind = PedestrianType(mobility_map=shipped_map(), core_radius=core_radius, discs=discs)
+def model_of(core_radius, seed=1, plan=None) -> PedestrianModel:
+    kind = PedestrianType(mobility_map=shipped_map(), core_radius=core_radius)
     plan = plan or FloorPlan(box(0, 0, 7, 4), exits=[Exit("out", (7, 0.5), (7, 3.5))])
     return PedestrianModel(plan, pedestrian_types=[kind], rng=seed, record=True)
 
@@ -46,15 +46,6 @@ def test_one_radius_draws_nothing():
         tracks.append(Trajectories.of(model))
     assert tracks[0].x.tobytes() == tracks[1].x.tobytes()
     assert "core_radius" not in tracks[0].person_data
-
-
-def test_discs_are_in_proportion_to_the_core():
-    model = model_of(Uniform(0.1, 0.14), discs=((-0.2, 0.25), (0.0, 0.2)))
-    model.add_pedestrians([(2.0, 1.0), (4.0, 2.0)])
-    # The core is 0.2 m of the front disc.
-    assert model.discs[:, 0] == pytest.approx(np.outer(model.core_radii, (-1.0, 1.25)))
-    assert model.discs[:, 1] == pytest.approx(np.outer(model.core_radii, (0.0, 1.0)))
-    assert (model.discs[:, 2] == 0.0).all()
 
 
 def test_all_keep_to_ways_for_the_widest():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numba import njit
 
-from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.planning.grid import (
     COVERED,
     Nearby,
@@ -15,9 +14,6 @@ from mesa_mobility.crowd.planning.grid import (
 )
 from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.crowd.state.records import Crowd
-from tests.fixtures.maps import strider
-
-TABLE = Capability(strider()).table
 
 
 @njit
@@ -26,8 +22,8 @@ def _place(grid, x, y, who):
 
 
 @njit
-def _cover(moving, at, i, table, state):
-    cover_in(moving, at, i, table, state)
+def _cover(moving, at, i, state):
+    cover_in(moving, at, i, state)
 
 
 @njit
@@ -58,7 +54,7 @@ def test_everybody_is_found_in_the_grid(crowd):
 
 def test_what_is_kept_of_people_is_in_the_order_of_the_grid(crowd):
     grid = build_grid(np.arange(50), crowd.x, crowd.y)
-    kept = headways(grid, TABLE, crowd.records)
+    kept = headways(grid, crowd.records)
     people = grid.people
     assert (kept[:2] == [crowd.vx[people], crowd.vy[people]]).all()
     assert kept[2] == pytest.approx(np.full(50, 0.6))
@@ -70,11 +66,11 @@ def test_what_is_kept_of_people_is_in_the_order_of_the_grid(crowd):
 
 def test_what_somebody_covers_is_kept_up_to_date(crowd):
     grid = build_grid(np.arange(50), crowd.x, crowd.y)
-    kept = headways(grid, TABLE, crowd.records)
+    kept = headways(grid, crowd.records)
     before = kept.copy()
     crowd.box[7] = 0.7, 1.6, 1.3, 2.4
     at = int(np.flatnonzero(grid.people == 7)[0])
-    _cover(kept, at, 7, TABLE, crowd.records)
+    _cover(kept, at, 7, crowd.records)
     assert kept[COVERED:, at] == pytest.approx([1.0, 2.0, 0.75])
     before[COVERED:, at] = kept[COVERED:, at]
     assert (kept == before).all()
@@ -83,7 +79,7 @@ def test_what_somebody_covers_is_kept_up_to_date(crowd):
 @pytest.mark.parametrize(("radius", "range_"), [(0.5, 0.5), (3.0, 2.0), (30.0, 4.0)])
 def test_neighbours_are_copied_in_the_order_of_the_grid(crowd, radius, range_):
     grid = build_grid(np.arange(50), crowd.x, crowd.y)
-    kept = headways(grid, TABLE, crowd.records)
+    kept = headways(grid, crowd.records)
     near, interacting = np.zeros((2, 58), dtype=np.int64)
     others, sweeps = np.zeros((8, 58)), np.zeros((3, 58))
     for i in range(0, 50, 7):

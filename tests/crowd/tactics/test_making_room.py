@@ -172,7 +172,7 @@ def heeded(waits_until=0, speed=1.33, chair=9.5, core=0.15):
         type_index=np.array([0, 1]), agenda=agenda,
     )  # fmt: skip
     who, beyond = np.array([0, 1]), np.array([[12.0, 4.0], [12.0, 4.0]])
-    precedence = Precedence(two_rooms(1.0, 0.2), 0.35, np.ones(2))
+    precedence = Precedence(two_rooms(1.0, 0.2), 0.35)
     precedence.heed(who, who, 0, people, beyond, np.array([1.0, speed]))
     agenda["waits_until"][0] = waits_until
     points, speeds = precedence.heed(who, who, 150, people, beyond, np.array([1.0, speed]))

@@ -205,6 +205,17 @@ def test_parquet_of_something_else_is_refused(tmp_path, columns, metadata, messa
     assert "\n" not in str(caught.value)
 
 
+def test_discs_of_earlier_versions_are_ignored(two_leave_one_stays, tmp_path):
+    path = tmp_path / "run.parquet"
+    two_leave_one_stays.to_parquet(path)
+    table = pq.read_table(path)
+    metadata = json.loads(table.schema.metadata[b"mesa_mobility"])
+    metadata |= {"discs": [[[-0.1, 0.2], [0.0, 0.2], [0.0, 0.0]]] * 3, "sha256": UNSEALED}
+    write(table, path, json.dumps(metadata))
+    seal(path)
+    assert read_parquet(path).radii.tolist() == two_leave_one_stays.radii.tolist()
+
+
 def test_metadata_nested_too_deeply_are_refused(written):
     deep = "[" * 100_000 + "]" * 100_000
     metadata = f'{{"sha256": "{UNSEALED}", "format_version": {deep}}}'

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal, kept
-from mesa_mobility.crowd.collision.discs import overhang_of
 from mesa_mobility.crowd.collision.exact import near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
@@ -171,8 +170,7 @@ def _all_walls(
     walls = np.empty((max(len(found), 1), 4))
     for k in range(len(rows)):
         i = rows[k]
-        core = state.core[i] + overhang_of(i, table, state)
-        reach = wall_reach(table.farthest[state.cluster[i]], core)
+        reach = wall_reach(table.farthest[state.cluster[i]], state.core[i])
         n = near_walls(around, state.x[i], state.y[i], state.destination[i], reach, found)
         offsets[k + 1] = offsets[k] + n
         while offsets[k + 1] > len(walls):

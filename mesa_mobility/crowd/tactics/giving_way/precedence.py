@@ -74,7 +74,6 @@ class Precedence(Saved):
     Args:
         plan: the floor plan; changes to it are followed.
         widest: greatest half width of the model's types, metres.
-        stretch: (types,) radius of a circle that holds a body, in core radii.
     """
 
     saved: ClassVar[Mapping[str, Kind]] = {
@@ -84,8 +83,7 @@ class Precedence(Saved):
         "_at": Array("i8", low=NOBODY, below="openings_found"),
     }
 
-    def __init__(self, plan: FloorPlan, widest: float, stretch: NDArray[np.float64]) -> None:
-        self._stretch = stretch
+    def __init__(self, plan: FloorPlan, widest: float) -> None:
         self._plan = plan
         self._widest = widest
         self._version = -1
@@ -180,7 +178,7 @@ class Precedence(Saved):
             return points, speeds
         who, elapsed = rows[mine], frame * FRAME_SECONDS
         places = np.column_stack([crowd.x[who], crowd.y[who]])
-        radii = self._radii(who, crowd)
+        radii = crowd.core[who]
         stays = waiting(who, frame, crowd)
         at = mouths_ahead(self._mouths, places, points[mine], radii)
         self._at[who] = at = np.where(stays, NOBODY, at)
@@ -230,7 +228,7 @@ class Precedence(Saved):
         places = np.column_stack([crowd.x[first], crowd.y[first]])
         way = np.hypot(*(places - middles(self._mouths)).T)
         held_up = there & (elapsed - self._since > STUCK)
-        return held_up, way < clear_of(widths(self._mouths), self._radii(first, crowd))
+        return held_up, way < clear_of(widths(self._mouths), crowd.core[first])
 
     def _make_room(
         self,
@@ -262,7 +260,7 @@ class Precedence(Saved):
         routes, most = given
         points, speeds = desired
         places = np.column_stack([crowd.x[rows], crowd.y[rows]])
-        at = mouths_ahead(self._mouths, places, routes, self._radii(rows, crowd))
+        at = mouths_ahead(self._mouths, places, routes, crowd.core[rows])
         first = self._first[at]
         stuck = np.column_stack([crowd.x[first], crowd.y[first]])
         middle = middles(self._mouths[at])
@@ -277,10 +275,10 @@ class Precedence(Saved):
         ends, can = steps_aside(
             self._plan,
             places[own],
-            self._radii(who, crowd),
+            crowd.core[who],
             stuck[own],
             np.column_stack([crowd.x[inside], crowd.y[inside]]),
-            self._radii(inside, crowd),
+            crowd.core[inside],
         )
         points, speeds = points.copy(), speeds.copy()
         points[own[can]] = ends[can]
@@ -290,14 +288,7 @@ class Precedence(Saved):
 
     def _keep_patient(self, rows: NDArray[np.int64], elapsed: float, crowd: Crowd) -> None:
         """Let people wait without getting impatient."""
-        # Long bodies beside one another may have to back off, those who wait as well.
-        round_ones = self._stretch[crowd.type_index[rows]] == 1.0
-        crowd.agenda["since"][rows[round_ones]] = elapsed
-
-    def _radii(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
-        """(n,) of the circles that hold the bodies of people, metres."""
-        radii: NDArray[np.float64] = crowd.core[rows] * self._stretch[crowd.type_index[rows]]
-        return radii
+        crowd.agenda["since"][rows] = elapsed
 
     def _too_narrow(
         self,

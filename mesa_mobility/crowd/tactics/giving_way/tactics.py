@@ -13,7 +13,6 @@ from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.giving_way.precedence import WIDE, Precedence
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.turns import Turns, find_mouths, give_turns
-from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.floorplan.routing.passages import Passages
 from mesa_mobility.schema import Kind
 
@@ -87,8 +86,7 @@ class GiveWay(_OfTheCrowd):
         super().bind(model)
         widest = max(each.half_width for each in model.pedestrian_types)
         if widest > WIDE:
-            stretch = np.array([_stretch(each) for each in model.pedestrian_types])
-            self._precedence = Precedence(model.floor_plan, widest, stretch)
+            self._precedence = Precedence(model.floor_plan, widest)
 
     def members(self) -> Mapping[str, Kind]:
         """What the members of ``state`` are."""
@@ -114,8 +112,3 @@ class GiveWay(_OfTheCrowd):
                 desired.points,
                 desired.speeds,
             )
-
-
-def _stretch(kind: PedestrianType) -> float:
-    """Radius of a circle that holds a body of a type, in core radii."""
-    return max(abs(offset) + radius for offset, radius in kind.shape)

@@ -2,16 +2,6 @@
 
 const FIELDS = 5; // row, x, y, heading, value: see serialization.py
 
-function bodiesOf(discs) {
-  // For each person whose body consists of several discs their offsets and radii.
-  const bodies = new Map();
-  for (let k = 0; k < discs.length; k += 3) {
-    if (!bodies.has(discs[k])) bodies.set(discs[k], []);
-    bodies.get(discs[k]).push([discs[k + 1], discs[k + 2]]);
-  }
-  return bodies;
-}
-
 const FRAMES = {
   created() {
     // Kept from Vue, which would wrap every array and look at it at each change.
@@ -25,7 +15,7 @@ const FRAMES = {
       const frame = this.frame;
       if (!frame || frame.people === undefined) return;
       const next = { run: frame.run, number: frame.number, elapsed: frame.elapsed,
-        inside: frame.inside, legend: frame.legend, people: numbers(frame.people), bodies: bodiesOf(numbers(frame.discs)) };
+        inside: frame.inside, legend: frame.legend, people: numbers(frame.people) };
       const time = performance.now();
       if (this.to && this.to.run === next.run && next.elapsed >= this.to.elapsed) {
         this.from = this.between(time);

@@ -128,36 +128,30 @@ const OPTIONS = {
         ctx.stroke();
       }
       ctx.setLineDash([]);
-      d.neighbours.forEach(([j, x, y], k) => {
+      for (const [j, x, y, core] of d.neighbours) {
         ctx.fillStyle = "#cfd8dc";
         ctx.strokeStyle = "#607d8b";
         ctx.lineWidth = r;
-        for (const disc of d.others[k]) {
-          this.disc(ctx, disc);
-          ctx.fill();
-          ctx.stroke();
-        }
+        ctx.beginPath();
+        ctx.arc(...this.place(x, y), core * this.scale, 0, 2 * Math.PI);
+        ctx.fill();
+        ctx.stroke();
         ctx.fillStyle = "#37474f";
         ctx.fillText(j, ...this.place(x, y));
-      });
+      }
       const [x, y] = this.place(...d.position), size = d.core * this.scale;
       ctx.fillStyle = ctx.strokeStyle = this.colours.self;
       ctx.lineWidth = 2 * r;
-      for (const disc of d.discs) {
-        this.disc(ctx, disc);
-        ctx.globalAlpha = 0.35;
-        ctx.fill();
-        ctx.globalAlpha = 1;
-        ctx.stroke();
-      }
+      ctx.beginPath();
+      ctx.arc(x, y, size, 0, 2 * Math.PI);
+      ctx.globalAlpha = 0.35;
+      ctx.fill();
+      ctx.globalAlpha = 1;
+      ctx.stroke();
       ctx.beginPath();
       ctx.moveTo(x, y);
       ctx.lineTo(x + 1.5 * size * Math.cos(d.heading), y - 1.5 * size * Math.sin(d.heading));
       ctx.stroke();
-    },
-    disc(ctx, [x, y, radius]) {
-      ctx.beginPath();
-      ctx.arc(...this.place(x, y), radius * this.scale, 0, 2 * Math.PI);
     },
     paintTarget(ctx, r) {
       // At the edge, where the target lies farther than that.

@@ -44,8 +44,6 @@ const PEOPLE = {
           sprite = this.sprite(fill, (turn * 2 * Math.PI) / TURNS, size, half);
           this.sprites.set(key, sprite);
         }
-        const body = now.bodies.get(people[k]);
-        if (body) this.paintDiscs(ctx, x, y, people[k + 3], body);
         if (small) ctx.drawImage(sprite, Math.round(x - half), Math.round(y - half));
         else ctx.drawImage(sprite, x - half, y - half);
         if (people[k] === this.selected) ring = [x, y];
@@ -55,19 +53,6 @@ const PEOPLE = {
         ctx.lineWidth = 2.5 * this.ratio;
         ctx.beginPath();
         ctx.arc(...ring, 1.5 * size + 3 * this.ratio, 0, 2 * Math.PI);
-        ctx.stroke();
-      }
-    },
-    paintDiscs(ctx, x, y, heading, body) {
-      const { scale } = this.view;
-      ctx.fillStyle = "rgba(144, 164, 174, 0.6)";
-      ctx.strokeStyle = this.colours.outline;
-      ctx.lineWidth = this.ratio;
-      for (const [offset, radius] of body) {
-        const along = offset * scale, r = radius * scale;
-        ctx.beginPath();
-        ctx.arc(x + along * Math.cos(heading), y - along * Math.sin(heading), r, 0, 2 * Math.PI);
-        ctx.fill();
         ctx.stroke();
       }
     },
