@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,20 +119,15 @@ def reachable_options(
     half_cells = int(np.ceil(DURATIONS[-1] * longest_step / min(cell[:2]))) + 1
     durations = np.array(DURATIONS, dtype=np.int64)
     cells = np.array(cell)
+    links = _Links(graph.offsets, graph.successors, graph.via, graph.costs)
 
     def collect(chunk: NDArray[np.int32]) -> tuple[NDArray, ...]:
         return _collect(
             chunk,
-            graph.offsets,
-            graph.successors,
-            graph.via,
-            graph.costs,
+            links,
             step,
             clusters.labels,
             durations,
-            BUDGET,
-            TRANSITION_PENALTY,
-            MOST_JUMPS,
             cells,
             half_cells,
         )
@@ -184,23 +179,27 @@ def joined(
     )
 
 
+class _Links(NamedTuple):
+    """The edges of the motion graph, as `MotionGraph` has them."""
+
+    offsets: NDArray[np.int64]
+    successors: NDArray[np.int32]
+    via: NDArray[np.int32]
+    costs: NDArray[np.float32]
+
+
 @kept(nogil=True)
 def _collect(
     sources: NDArray[np.int32],
-    offsets: NDArray[np.int64],
-    successors: NDArray[np.int32],
-    via: NDArray[np.int32],
-    costs: NDArray[np.float32],
+    links: _Links,
     step: NDArray[np.float64],
     labels: NDArray[np.int32],
     durations: NDArray[np.int64],
-    budget: float,
-    penalty: float,
-    most_jumps: int,
     cell: NDArray[np.float64],
     half_cells: int,
 ) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]:
     """Options of some poses of one cluster, thinned; see ``ReachableOptions``."""
+    offsets, successors, via, costs = links
     n = len(labels)
     frames = durations[-1]
     nodes = np.empty((frames + 1, n), np.int32)
@@ -221,7 +220,7 @@ def _collect(
     out_path = np.zeros((capacity, samples, 3), np.float32)
     out_cluster = np.zeros((capacity, samples), np.int32)
     out_source = np.empty(capacity, np.int32)
-    out_jumps = np.empty((capacity, most_jumps), np.int64)
+    out_jumps = np.empty((capacity, MOST_JUMPS), np.int64)
 
     for source in sources:
         nodes[0, 0], parents[0, 0], spent[0, 0] = source, -1, 0.0
@@ -236,8 +235,8 @@ def _collect(
                 for e in range(offsets[node], offsets[node + 1]):
                     c = spent[frame - 1, a] + costs[e]
                     if via[e] != node:
-                        c += penalty
-                    if c > budget:
+                        c += TRANSITION_PENALTY
+                    if c > BUDGET:
                         continue
                     successor = successors[e]
                     s = slot_in_layer[successor]

@@ -36,17 +36,17 @@ class CellTable(NamedTuple):
 @kept()
 def _visit_cells(
     segments: NDArray[np.float64],
-    x0: float,
-    y0: float,
-    nx: int,
-    ny: int,
-    cell: float,
+    cells: tuple[float, float, int, int, float],
     reach: float,
     cursor: NDArray[np.int64],
     indices: NDArray[np.int32],
     fill: bool,
 ) -> None:
-    """Count each cell's walls into `cursor`, or write them to `indices` at `cursor`."""
+    """Count each cell's walls into `cursor`, or write them to `indices` at `cursor`.
+
+    `cells` are x0, y0, numbers of columns and rows, and the side of a cell.
+    """
+    x0, y0, nx, ny, cell = cells
     reach2 = reach * reach * (1.0 + 1e-12)
     for wall in range(segments.shape[0]):
         ax, ay, bx, by = segments[wall]
@@ -115,10 +115,11 @@ def cell_table(segments: NDArray[np.float64], cell_size: float, reach: float) ->
     margin = float(reach)
     offsets = np.zeros(nx * ny + 1, dtype=np.int64)
     nowhere = np.empty(0, dtype=np.int32)
-    _visit_cells(segments, x0, y0, nx, ny, side, margin, offsets[1:], nowhere, False)
+    cells = (x0, y0, nx, ny, side)
+    _visit_cells(segments, cells, margin, offsets[1:], nowhere, False)
     np.cumsum(offsets, out=offsets)
     indices = np.empty(int(offsets[-1]), dtype=np.int32)
-    _visit_cells(segments, x0, y0, nx, ny, side, margin, offsets[:-1].copy(), indices, True)
+    _visit_cells(segments, cells, margin, offsets[:-1].copy(), indices, True)
     return CellTable(x0, y0, nx, ny, side, offsets, indices)
 
 

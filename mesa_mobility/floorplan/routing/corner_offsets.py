@@ -45,7 +45,7 @@ def pass_abreast(
             continue
         end = out + clearance
         out = min(out, free_length(sight, cx, cy, cx + end * ux, cy + end * uy) - clearance)
-        if out <= 0.0 or not _is_wide(sight, ways, x, y, cx, cy, ux, uy, out, onward):
+        if out <= 0.0 or not _is_wide(sight, ways, (x, y), (cx, cy), (ux, uy), out, onward):
             continue
         qx, qy = cx + out * ux, cy + out * uy
         own = wall_distance(sight, x, y, clearance)
@@ -60,21 +60,19 @@ def pass_abreast(
 def _is_wide(
     sight: Sight,
     ways: Ways,
-    x: float,
-    y: float,
-    cx: float,
-    cy: float,
-    ux: float,
-    uy: float,
+    person: tuple[float, float],
+    corner: tuple[float, float],
+    along: tuple[float, float],
     out: float,
     onward: float,
 ) -> bool:
     """Whether people who pass a corner up to `out` metres from it have room to go on side by side.
 
     Past a jamb they have not: people wait there for the door. The room must be as deep as it is
-    wide, seen from (x, y) behind the line (ux, uy) through corner c. Doors and aisles, up to the
+    wide, seen by a person behind the line `along` through the corner. Doors and aisles, up to the
     length of a step beyond an opening, do not count as wide.
     """
+    (x, y), (cx, cy), (ux, uy) = person, corner, along
     deep = max(out, ways.beyond)
     side = 1.0 if (x - cx) * uy - (y - cy) * ux > 0.0 else -1.0
     wx, wy = -side * deep * uy, side * deep * ux

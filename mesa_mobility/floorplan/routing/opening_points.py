@@ -36,7 +36,7 @@ def place(
         qx, qy = nearest(ends, x, y)
         away = np.hypot(qx - x, qy - y)
         ax, ay = nearest(_clear_of_jambs(ends), x, y)
-        if _serves(sight, ways, x, y, node, after, ax, ay, ways.view_clearance, own):
+        if _serves(sight, ways, (x, y), node, after, (ax, ay), ways.view_clearance, own):
             return ax, ay, away
     return qx, qy, away
 
@@ -85,7 +85,7 @@ def opening_behind(
             way += np.hypot(ways.xy[node, 0] - qx, ways.xy[node, 1] - qy) + to_go[node]
         if way > _DETOUR * by_corner:
             break
-        if _serves(sight, ways, x, y, node, after[node], qx, qy, ways.view_clearance, own):
+        if _serves(sight, ways, (x, y), node, after[node], (qx, qy), ways.view_clearance, own):
             return node, qx, qy
     return -1, x, y
 
@@ -114,27 +114,26 @@ def nearest_serves(
 ) -> bool:
     """Whether the nearest point in the opening of `node` serves as well as the node."""
     qx, qy = nearest(ways.ends[ways.opening[node]], x, y)
-    return _serves(sight, ways, x, y, node, after, qx, qy, clearance, own)
+    return _serves(sight, ways, (x, y), node, after, (qx, qy), clearance, own)
 
 
 @internal()
 def _serves(
     sight: Sight,
     ways: Ways,
-    x: float,
-    y: float,
+    person: tuple[float, float],
     node: int,
     after: int,
-    qx: float,
-    qy: float,
+    point: tuple[float, float],
     clearance: float,
     own: float,
 ) -> bool:
-    """Whether point q in the opening of `node` serves as well as the node.
+    """Whether a point in the opening of `node` serves a person as well as the node.
 
     It must be in view and, in a gate on the way, have the node `after` in view; otherwise
     people would turn back once they are through.
     """
+    (x, y), (qx, qy) = person, point
     if not in_view(sight, ways, x, y, node, qx, qy, clearance, own):
         return False
     if after < 0:

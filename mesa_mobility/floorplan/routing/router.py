@@ -23,7 +23,7 @@ from mesa_mobility.floorplan.routing.route_nodes import (
     find_nodes,
     with_points,
 )
-from mesa_mobility.floorplan.routing.target_cache import empty_cache
+from mesa_mobility.floorplan.routing.target_cache import Found, empty_cache
 from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
 from mesa_mobility.floorplan.routing.targets import Destination, Targets, is_point
 from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
@@ -166,13 +166,9 @@ class Router:
                 self._cache,
                 xy[own],
                 numbers[own],
-                self._lengths,
-                self._nexts,
+                (self._lengths, self._nexts),
                 learn,
-                points[own],
-                gates[own],
-                distances[own],
-                corners[own],
+                Found(points[own], gates[own], distances[own], corners[own]),
             )
             return outcome
 

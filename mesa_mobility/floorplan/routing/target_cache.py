@@ -4,6 +4,8 @@ A target depends only on the position, the destination and the floor plan. In a 
 decision is to stay, so the same query comes again.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +35,22 @@ _SLOT_BITS = 14
 _SPREAD = np.uint64(0x9E3779B97F4A7C15)
 
 
+class Found(NamedTuple):
+    """Arrays for the targets of n people.
+
+    Attributes:
+        points: (n, 2) metres.
+        gates: (n,) numbers of openings, -1 for a corner.
+        lengths: (n,) of the routes, metres.
+        corners: (n, 2) the next corner and the node after it.
+    """
+
+    points: NDArray[np.float64]
+    gates: NDArray[np.int64]
+    lengths: NDArray[np.float64]
+    corners: NDArray[np.int64]
+
+
 def empty_cache() -> NDArray[np.void]:
     """An empty cache."""
     return np.zeros(1 << _SLOT_BITS, dtype=ANSWER)
@@ -59,19 +77,16 @@ def recall(
     y: float,
     destination: int,
     person: int,
-    points: NDArray[np.float64],
-    gates: NDArray[np.int64],
-    lengths: NDArray[np.float64],
-    corners: NDArray[np.int64],
+    found: Found,
 ) -> bool:
     """Write the cached target of (x, y), if there is one, and return whether; see `aim`."""
     slot = _slot_of(x, y, destination)
     kept = cache[slot]
     if kept["destination"] != destination + 1 or kept["x"] != _bits(x) or kept["y"] != _bits(y):
         return False
-    points[person, 0], points[person, 1] = kept["target_x"], kept["target_y"]
-    gates[person], lengths[person] = kept["gate"], kept["length"]
-    corners[person, 0], corners[person, 1] = kept["corner"], kept["next_corner"]
+    found.points[person, 0], found.points[person, 1] = kept["target_x"], kept["target_y"]
+    found.gates[person], found.lengths[person] = kept["gate"], kept["length"]
+    found.corners[person, 0], found.corners[person, 1] = kept["corner"], kept["next_corner"]
     return True
 
 
@@ -82,16 +97,13 @@ def keep(
     y: float,
     destination: int,
     person: int,
-    points: NDArray[np.float64],
-    gates: NDArray[np.int64],
-    lengths: NDArray[np.float64],
-    corners: NDArray[np.int64],
+    found: Found,
 ) -> None:
     """Cache the target of a person at (x, y), in place of the entry in its slot."""
     slot = _slot_of(x, y, destination)
     cache[slot]["x"], cache[slot]["y"] = _bits(x), _bits(y)
-    cache[slot]["target_x"], cache[slot]["target_y"] = points[person, 0], points[person, 1]
-    cache[slot]["length"] = lengths[person]
+    cache[slot]["target_x"], cache[slot]["target_y"] = found.points[person]
+    cache[slot]["length"] = found.lengths[person]
     cache[slot]["destination"] = destination + 1
-    cache[slot]["gate"] = gates[person]
-    cache[slot]["corner"], cache[slot]["next_corner"] = corners[person, 0], corners[person, 1]
+    cache[slot]["gate"] = found.gates[person]
+    cache[slot]["corner"], cache[slot]["next_corner"] = found.corners[person]

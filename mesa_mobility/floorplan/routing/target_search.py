@@ -8,7 +8,7 @@ from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
 from mesa_mobility.floorplan.routing.opening_points import nearest_serves
 from mesa_mobility.floorplan.routing.route_graph import IN_LINE, Ways, in_view, side
 from mesa_mobility.floorplan.routing.route_nodes import CORNER, GATE
-from mesa_mobility.floorplan.routing.target_cache import keep, recall
+from mesa_mobility.floorplan.routing.target_cache import Found, keep, recall
 from mesa_mobility.floorplan.routing.target_points import aim_at
 from mesa_mobility.floorplan.routing.visibility_cache import (
     Views,
@@ -39,22 +39,19 @@ def aim(
     cache: NDArray[np.void],
     positions: NDArray[np.float64],
     destinations: NDArray[np.int64],
-    distances: NDArray[np.float64],
-    follow: NDArray[np.int64],
+    table: tuple[NDArray[np.float64], NDArray[np.int64]],
     learn: bool,
-    points: NDArray[np.float64],
-    gates: NDArray[np.int64],
-    lengths: NDArray[np.float64],
-    corners: NDArray[np.int64],
+    found: Found,
 ) -> int:
-    """Write targets (n, 2), gates (n,), route lengths (n,) and corners (n, 2) of the `UNSEEN`.
+    """Write the targets of people at (n, 2) `positions` whose gate is `UNSEEN` to `found`.
 
-    See `Router.targets`. For every destination and node, `distances` is the route length in metres
-    and `follow` the next node of the route (-1 where it ends). A thread that may
+    See `Router.targets`. For every destination and node, `table` has the route length in metres
+    and the next node of the route (-1 where it ends). A thread that may
     `learn` computes new views and caches targets in `cache`; no other thread may read them at the
     time. Without `learn`, or without room for views, people who need a view are left `UNSEEN`.
     Returns one of the results above.
     """
+    distances, follow = table
     for number in destinations:
         if not 0 <= number < len(distances):
             return NO_TABLE
@@ -66,23 +63,22 @@ def aim(
     for person in range(len(positions)):
         x, y = positions[person]
         number = destinations[person]
-        if gates[person] != UNSEEN:
+        if found.gates[person] != UNSEEN:
             if learn:
-                keep(cache, x, y, number, person, points, gates, lengths, corners)
+                keep(cache, x, y, number, person, found)
             continue
-        if recall(cache, x, y, number, person, points, gates, lengths, corners):
+        if recall(cache, x, y, number, person, found):
             continue
         to_go = distances[number]
         after = follow[number]
+        routes = (to_go, after)
         own = wall_distance(sight, x, y, ways.view_clearance)
         view = ways.view_clearance
         node = -1
         # Computing the view from a square takes long, and serves all people who pass.
         hidden_known = is_known(views, x, y)
         if not hidden_known:
-            node = _first_in_view(
-                sight, ways, x, y, to_go, after, view, own, everything, keys, _TRIES
-            )
+            node = _first_in_view(sight, ways, (x, y, own), routes, view, everything, keys, _TRIES)
         if node < 0 and not (hidden_known or (learn and has_room(views))):
             outcome = SOME_UNSEEN
             continue
@@ -91,26 +87,26 @@ def aim(
             for clearance in (view, 0.0):
                 if node < 0:
                     node = _first_in_view(
-                        sight, ways, x, y, to_go, after, clearance, own, maybe, keys, nodes
+                        sight, ways, (x, y, own), routes, clearance, maybe, keys, nodes
                     )
             if node < 0:
                 node = _nearest_unwalled(sight, ways, x, y, to_go, maybe)
-        points[person, 0], points[person, 1] = x, y
-        gates[person], lengths[person] = -1, np.inf
-        corners[person, 0] = corners[person, 1] = -1
+        found.points[person, 0], found.points[person, 1] = x, y
+        found.gates[person], found.lengths[person] = -1, np.inf
+        found.corners[person, 0] = found.corners[person, 1] = -1
         if node >= 0:
             (
-                lengths[person],
-                gates[person],
-                points[person, 0],
-                points[person, 1],
+                found.lengths[person],
+                found.gates[person],
+                found.points[person, 0],
+                found.points[person, 1],
                 corner,
             ) = aim_at(sight, ways, x, y, node, to_go, after, own)
             if corner >= 0:
-                corners[person, 0] = corner
-                corners[person, 1] = after[corner]
+                found.corners[person, 0] = corner
+                found.corners[person, 1] = after[corner]
         if learn:
-            keep(cache, x, y, number, person, points, gates, lengths, corners)
+            keep(cache, x, y, number, person, found)
     return outcome
 
 
@@ -118,20 +114,20 @@ def aim(
 def _first_in_view(
     sight: Sight,
     ways: Ways,
-    x: float,
-    y: float,
-    to_go: NDArray[np.float64],
-    after: NDArray[np.int64],
+    person: tuple[float, float, float],
+    routes: tuple[NDArray[np.float64], NDArray[np.int64]],
     clearance: float,
-    own: float,
     maybe: NDArray[np.int64],
     keys: NDArray[np.float64],
     tries: int,
 ) -> int:
     """The node in view with the shortest route through it, -1 if none of the first `tries` is.
 
+    A `person` is x, y and the distance to the nearest wall; `routes` are the length and the next
+    node from every node.
     `maybe` lists the nodes to try; `keys` is workspace, with room for `AT_ONCE` more.
     """
+    (x, y, own), (to_go, after) = person, routes
     count = len(maybe)
     for k in range(count):
         i = maybe[k]
