@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from mesa_mobility.crowd.collision.broad_phase import cull_groups
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
 from mesa_mobility.crowd.collision.walls import Barriers, walls_to_ego
-from mesa_mobility.crowd.costs.layout import FIELDS, LEAD
+from mesa_mobility.crowd.costs.layout import FIELDS, LEAD, Own
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES
 from mesa_mobility.crowd.planning.branch_and_bound import CROWD, FEW, NONE, cheapest_free
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, least
@@ -93,6 +94,30 @@ def decide(
             return d
 
 
+class Situation(NamedTuple):
+    """What is around a pedestrian who decides.
+
+    Attributes:
+        me: the pedestrian.
+        own: the same as cost terms see it.
+        place: their place in the grid.
+        neighbours: number of columns of ``Workspace.others``.
+        walls: walls within reach, with squared distances.
+        barriers: those that do not touch the body, in the pedestrian's coordinates.
+        exits_from: metres to the nearest open exit.
+        farthest: metres that the longest option covers.
+    """
+
+    me: EgoPose
+    own: Own
+    place: int
+    neighbours: int
+    walls: NDArray[np.float64]
+    barriers: Barriers
+    exits_from: float
+    farthest: float
+
+
 @inlined()
 def _decide_one(
     i: int,
@@ -102,113 +127,159 @@ def _decide_one(
     bounded: bool,
     work: Workspace,
 ) -> bool:
-    """Decide for pedestrian i and commit it; False if a cost is not a number."""
-    frame, table, groups, state = scene.frame, scene.table, scene.groups, scene.state
-    grid, around, terms = scene.grid, scene.around, scene.terms
-    rules, moving = scene.rules, scene.moving
-    cluster, destination = state.cluster[i], state.destination[i]
+    """Decide for pedestrian i and commit it; False if a cost is not a number.
+
+    Four stages: gather what is around, bound the costs of groups of options, search for the
+    cheapest option that hits nothing, and commit it.
+    """
+    around = _gather(i, scene, work)
+    left = _drop_blocked(around, scene, work)
+    option, gone = NONE, -1
+    if left > 0:
+        fine, now = _bound(around, left, scene, extra, has_negative_pairs, bounded, work)
+        if not fine:
+            return False
+        approximate = bounded and mark_relevant(now, scene.groups, scene.terms.pair, work)
+        option, gone = cheapest_free(now, approximate, scene, work)
+        if option == NOT_A_NUMBER:
+            return False
+    _commit(around, option, gone, scene, work)
+    return True
+
+
+@inlined()
+def _gather(i: int, scene: FrameContext, work: Workspace) -> Situation:
+    """The people, walls and exits around pedestrian i; writes neighbours and walls to ``work``."""
+    state, grid, ranges = scene.state, scene.grid, scene.rules.interaction_ranges
     x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
     me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core)
-    own = lay_self(me, state, terms, work.own)
-    others, sweeps, place = work.others, work.sweeps, place_in(grid, x, y, i)
-    ranges = rules.interaction_ranges
+    own = lay_self(me, state, scene.terms, work.own)
+    others, place = work.others, place_in(grid, x, y, i)
+    nearby = Nearby(work.near, work.sweeps, work.interacting, others)
     counts_within = farthest_range(i, ranges, state)
-    nearby = Nearby(work.near, sweeps, work.interacting, others)
     n_near, count = neighbours_within(
-        grid, moving, x, y, place, rules.search_radius, counts_within, nearby
+        grid, scene.moving, x, y, place, scene.rules.search_radius, counts_within, nearby
     )
     if len(ranges) > 1:
         count = keep_interacting(i, count, ranges, state, work.interacting, others)
-    near = work.near[:n_near]
     route, lead = state.route[i], others[LEAD]
     for a in range(count):
         lead[a] = route - lead[a]
     for row in range(FIELDS, len(others)):
         for a in range(count):
-            others[row, a] = terms.fields[work.interacting[a], row - FIELDS]
+            others[row, a] = scene.terms.fields[work.interacting[a], row - FIELDS]
     fill_lane(count, others)
-    farthest = table.farthest[cluster]
+    destination, farthest = state.destination[i], scene.table.farthest[state.cluster[i]]
     reach = wall_reach(farthest, core)
-    walls = work.walls[: near_walls(around, x, y, destination, reach, work.walls)]
+    walls = work.walls[: near_walls(scene.around, x, y, destination, reach, work.walls)]
     n_clear = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
     barriers = Barriers(work.barriers, n_clear)
-    exits_from = exit_distance(around, x, y, destination)
+    exits_from = exit_distance(scene.around, x, y, destination)
     # The box that the options and the fallback can reach.
     aside = state.preferred[i] * FALLBACK_SECONDS
-    spanned = groups.clusters[cluster]
-    whole = spanned.whole
+    whole = scene.groups.clusters[state.cluster[i]].whole
     x0, y0 = min(whole[0], -aside), min(whole[1], -aside)
     box = x0, y0, max(whole[2], aside), max(whole[3], aside)
-    hard = near if rules.hard_bodies else near[:0]
-    broad_phase_neighbours(me, hard, sweeps, box, state, work.unsure, work.dropped, work.close)
-    n = cull_groups(me, frame, work.close, barriers, exits_from, table, groups, state, work.blocks)
-    option, gone = NONE, -1
-    if n > 0:
-        first, last = spanned.first, spanned.last
-        bounds, dropped = work.bounds[: last - first], work.blocks.dropped
-        bounds[:] = 0.0
-        if bounded:
-            group_bounds(me, own, first, groups, terms.bound, work.ends, bounds)
-        foremost = 0
-        if not has_negative_pairs and len(terms.pair.address) > 0:
-            foremost = select_relevant(own, others, count, work.unsure, work.dropped, work.foremost)
-        bad = 0
-        for a in range(len(bounds)):
-            bad |= int(dropped[a] == 0) & int(not abs(bounds[a]) < np.inf)
-            bounds[a] = np.inf if dropped[a] != 0 else bounds[a]
-        if bad != 0:
-            return False
-        # Padding: bounds are read this many at a time.
-        work.bounds[len(bounds) : len(bounds) + AT_ONCE] = np.inf
-        lowest = bounds[place_of_least(work.bounds, len(bounds))]
-        ranked = bounded and n > FEW
-        # In a jam most people stay where they are, or nearly so.
-        stay = spanned.stay if foremost >= CROWD else -1
-        now = DecisionContext(
-            me,
-            own,
-            first,
-            bounds,
-            lowest,
-            walls,
-            extra,
-            barriers,
-            stay,
-            count,
-            foremost,
-            exits_from,
-            has_negative_pairs,
-            ranked,
+    hard = work.near[: n_near if scene.rules.hard_bodies else 0]
+    broad_phase_neighbours(me, hard, work.sweeps, box, state, work.unsure, work.dropped, work.close)
+    return Situation(me, own, place, count, walls, barriers, exits_from, farthest)
+
+
+@inlined()
+def _drop_blocked(around: Situation, scene: FrameContext, work: Workspace) -> int:
+    """Mark the groups of options that certainly hit something; returns how many are left."""
+    return cull_groups(
+        around.me,
+        scene.frame,
+        work.close,
+        around.barriers,
+        around.exits_from,
+        scene.table,
+        scene.groups,
+        scene.state,
+        work.blocks,
+    )
+
+
+@inlined()
+def _bound(
+    around: Situation,
+    left: int,
+    scene: FrameContext,
+    extra: NDArray[np.float64],
+    has_negative_pairs: bool,
+    bounded: bool,
+    work: Workspace,
+) -> tuple[bool, DecisionContext]:
+    """Lower bounds of the costs in groups of options; whether all are numbers, and the search."""
+    me, own, count, terms = around.me, around.own, around.neighbours, scene.terms
+    spanned = scene.groups.clusters[scene.state.cluster[me.row]]
+    bounds, dropped = work.bounds[: spanned.last - spanned.first], work.blocks.dropped
+    bounds[:] = 0.0
+    if bounded:
+        group_bounds(me, own, spanned.first, scene.groups, terms.bound, work.ends, bounds)
+    foremost = 0
+    if not has_negative_pairs and len(terms.pair.address) > 0:
+        foremost = select_relevant(
+            own, work.others, count, work.unsure, work.dropped, work.foremost
         )
-        approximate = bounded and mark_relevant(now, groups, terms.pair, work)
-        option, gone = cheapest_free(now, approximate, scene, work)
-        if option == NOT_A_NUMBER:
-            return False
+    bad = 0
+    for a in range(len(bounds)):
+        bad |= int(dropped[a] == 0) & int(not abs(bounds[a]) < np.inf)
+        bounds[a] = np.inf if dropped[a] != 0 else bounds[a]
+    # Padding: bounds are read this many at a time.
+    work.bounds[len(bounds) : len(bounds) + AT_ONCE] = np.inf
+    now = DecisionContext(
+        me,
+        own,
+        spanned.first,
+        bounds,
+        bounds[place_of_least(work.bounds, len(bounds))],
+        around.walls,
+        extra,
+        around.barriers,
+        # In a jam most people stay where they are, or nearly so.
+        spanned.stay if foremost >= CROWD else -1,
+        count,
+        foremost,
+        around.exits_from,
+        has_negative_pairs,
+        bounded and left > FEW,
+    )
+    return bad == 0, now
+
+
+@inlined()
+def _commit(
+    around: Situation, option: int, gone: int, scene: FrameContext, work: Workspace
+) -> None:
+    """Commit an option, or the fallback where there is none."""
+    i, state = around.me.row, scene.state
     state.decisions[i] += 1
     if option >= 0:
-        pieces = to_world(i, option, me.c, me.s, table, state, work.path)
+        pieces = to_world(i, option, around.me.c, around.me.s, scene.table, state, work.path)
         commit(
             i,
             option,
-            frame,
+            scene.frame,
             pieces,
             np.int64(SAMPLE_FRAMES),
             gone,
-            np.int32(table.options[option].cluster),
+            np.int32(scene.table.options[option].cluster),
             work.path,
             state,
         )
     else:
-        standing = rules.standing[state.type_index[i]]
+        standing = scene.rules.standing[state.type_index[i]]
         people, near, count = work.close.people, work.unsure, work.close.known[0]
         for a in range(count):
             near[a] = people[a].who
         for a in range(work.close.known[1], len(people)):
             near[count] = people[a].who
             count += 1
+        leaves = around.exits_from <= around.farthest
         obstacles = Obstacles(
-            walls, around, near[:count], exits_from <= farthest, rules.hard_bodies
+            around.walls, scene.around, near[:count], leaves, scene.rules.hard_bodies
         )
-        fall_back(i, frame, table, state, obstacles, standing, work.path)
-    cover_in(moving, place, i, state)
-    return True
+        fall_back(i, scene.frame, scene.table, state, obstacles, standing, work.path)
+    cover_in(scene.moving, around.place, i, state)
