@@ -105,14 +105,17 @@ class Negotiation:
 def agree(
     before: Negotiation | None, corridor: Corridor, people: Party, elapsed: float, sight: float
 ) -> Negotiation | None:
-    """What is agreed upon now; None if nobody has to give way.
+    """Begin or continue a negotiation about who goes first through a corridor.
 
     Args:
-        before: what was agreed upon before.
+        before: the negotiation so far; None if there is none.
         corridor: the corridor.
-        people: those who go through it.
-        elapsed: seconds.
-        sight: metres along the way at which people see each other come.
+        people: the people who go through it.
+        elapsed: simulated time, seconds.
+        sight: metres along the way at which people see others come towards them.
+
+    Returns:
+        The negotiation now; None if nobody has to give way.
     """
     if before is None:
         return _meet(corridor, people, elapsed, sight)

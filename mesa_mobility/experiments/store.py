@@ -253,7 +253,7 @@ class Store:
         return np.unique(np.array(self.table([])["run"].to_pylist(), dtype="S40"))
 
     def shards(self) -> dict[str, int]:
-        """Bytes of the files of rows, by name."""
+        """Size in bytes of each file of rows, by file name."""
         return self.folder.files(RUNS, ".parquet")
 
     # What follows is for the process that runs the experiment.

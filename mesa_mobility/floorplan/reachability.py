@@ -36,13 +36,13 @@ def check_reachable(plan: Floor, points: ArrayLike, clearance: float) -> None:
 
 
 def with_way_out(plan: Floor, region: BaseGeometry, radius: float) -> BaseGeometry:
-    """The part of a region from which bodies could reach an exit if everything were open.
+    """The part of a region from which bodies could reach an exit if all exits and gates were open.
 
-    All of the region is kept where none of it has a way out, or where the plan has no exit.
+    If no part of the region has a way out, or the plan has no exit, this is the whole region.
 
     Args:
         plan: the floor plan.
-        region: centres of bodies.
+        region: possible places of the centres of bodies.
         radius: half the width of the narrowest gap that the bodies pass, metres.
     """
     if not plan.exits:

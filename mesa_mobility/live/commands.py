@@ -18,17 +18,17 @@ Reader: TypeAlias = Callable[[Fields, Hashable], Command]
 
 
 def read_command(text: str, client: Hashable = None) -> tuple[Any, Command]:
-    """The command that a text stands for.
+    """Read a command from a JSON text.
 
     Args:
         text: a JSON object.
-        client: who gives the command.
+        client: the client that gives the command.
 
     Returns:
         The command's ``id``, None if it has none, and a function that executes it.
 
     Raises:
-        Refused: the text is no command.
+        Refused: the text is not a valid command.
     """
     number = None
     try:

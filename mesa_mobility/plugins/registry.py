@@ -123,10 +123,10 @@ def installed(group: str) -> dict[str, Plugin]:
 # would take a third of the time of a run of 30 people. What is not found is looked for again.
 @cache
 def find(name: str, group: str) -> Plugin:
-    """The plug-in of a name; it is not imported.
+    """Find a plug-in by name, without importing it.
 
     Raises:
-        ModelError: there is none; the message lists what is installed.
+        ModelError: no plug-in has this name; the message lists the installed ones.
     """
     plugins = installed(group)
     if name in plugins:

@@ -1,7 +1,7 @@
-"""Jobs done by workers, as many at a time as these can do.
+"""Run jobs on workers, and yield each result as its job ends.
 
-This is how `batch_run`, `verify`, `validate` and experiments do many runs. What a job gives does
-not depend on the workers, nor on the order in which jobs end.
+`batch_run`, `verify`, `validate` and experiments do their runs in this way. The result of a job
+depends neither on the workers nor on the order in which jobs end.
 """
 
 from __future__ import annotations

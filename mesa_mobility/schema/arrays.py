@@ -50,7 +50,7 @@ class Array(Kind):
     rising: bool = False
 
     def check(self, value: Any, where: str, sizes: Sizes) -> None:
-        """Refuse all but such arrays."""
+        """Raise ContentError unless ``value`` is an array of this type, shape and range."""
         wanted = np.dtype(self.dtype)
         if not isinstance(value, np.ndarray) or value.dtype != wanted:
             found = value.dtype if isinstance(value, np.ndarray) else value
@@ -93,7 +93,7 @@ class Records(Kind):
     shape: tuple[Size | None, ...]
 
     def check(self, value: Any, where: str, sizes: Sizes) -> None:
-        """Refuse all but such arrays."""
+        """Raise ContentError unless ``value`` is an array of such records."""
         if not isinstance(value, np.ndarray) or value.dtype != self.dtype:
             refuse(where, getattr(value, "dtype", value), f"records of {self.fields.keys()}")
         check_shape(value.shape, self.shape, where, sizes)

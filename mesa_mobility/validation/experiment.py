@@ -37,7 +37,10 @@ class Experiment:
 
 
 def judged(experiment: Experiment, runs: Runs) -> Verdict:
-    """The verdict on an experiment; a case that failed is a check that is not met."""
+    """The verdict on an experiment, with checks for overlaps and steps through walls.
+
+    If a run has ended with an error, the verdict is one unmet check that quotes the first error.
+    """
     flat = [figures for row in runs for figures in row]
     errors = [each["error"] for each in flat if "error" in each]
     if errors:

@@ -99,7 +99,7 @@ def both_ways(seed: int, *, density: float) -> Figures:
 
 
 def alone(seed: int, *, people: int = 25) -> Figures:
-    """People walk alone, in lanes 3 m apart; figures as of ``one_way``."""
+    """People walk alone in lanes 3 m apart. The figures are those of ``one_way``."""
     plan = FloorPlan(
         box(-2.0, 0.0, LENGTH, 3.0 * people),
         exits=[Exit("end", (LENGTH, 0.0), (LENGTH, 3.0 * people))],

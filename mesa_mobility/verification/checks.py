@@ -14,11 +14,11 @@ class Check:
     """One figure and its criterion.
 
     Attributes:
-        figure: its name.
+        figure: name of the figure.
         value: measured value; None if nothing could be measured.
         wanted: the criterion, as text.
         met: whether the criterion is met.
-        gates: whether the verdict depends on it; otherwise it is only reported.
+        gates: whether the verdict depends on the check; otherwise the figure is only reported.
     """
 
     figure: str

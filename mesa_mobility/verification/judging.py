@@ -59,7 +59,7 @@ def lone_walk(
 
 
 def corner(limit: float) -> Callable[[Sequence[Figures]], Verdict]:
-    """Everybody comes round the corner in time, and nobody leaves the floor."""
+    """A judge of a walk around a corner: all are out before ``limit`` (s), no point is outside."""
 
     def judge(runs: Sequence[Figures]) -> Verdict:
         (walk,) = runs
@@ -80,7 +80,7 @@ def speed_spread(
     """Speeds walked, over all seeds, are those of a distribution (a frozen one of SciPy).
 
     Mean and standard deviation within 0.05 m/s, a Kolmogorov-Smirnov test at the 5 % level, and
-    each person's mean speed within 0.05 m/s of its assigned speed.
+    each person's mean speed within 0.05 m/s of their assigned speed.
     """
 
     def judge(seeds: Sequence[Sequence[Figures]]) -> Verdict:

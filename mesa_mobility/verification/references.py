@@ -49,7 +49,7 @@ def corridor_band(density: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArra
 
 
 def bottleneck_fit(width: float) -> float:
-    """Flow through a bottleneck, persons a second."""
+    """Flow through a bottleneck of this width (m), persons a second: a fit to measured flows."""
     return BOTTLENECK_FIT[0] * width + BOTTLENECK_FIT[1]
 
 

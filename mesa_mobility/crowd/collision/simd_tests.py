@@ -134,7 +134,14 @@ def _plain_places_within(
 
 @with_twin(_plain_places_within)
 def places_within(typingctx, places, at, row, bodies, first, size, known):
-    """Bits of those of 8 places that are within a body; arguments as of ``drop_within``."""
+    """A mask of 8 bits: which of 8 places lie within a body.
+
+    Args:
+        places: C-contiguous.
+        at: index of the x of the first place.
+        row: y of a place is this far after its x.
+        bodies, first, size, known: as in ``drop_within``.
+    """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])

@@ -140,7 +140,7 @@ class CostTerm(Plugin):
         self._for_types = None if names is None else tuple(dict.fromkeys(names))
 
     def is_for(self, type_name: str) -> bool:
-        """Whether people of the type of this name have the term."""
+        """Whether the term applies to people of this type."""
         return self._for_types is None or type_name in self._for_types
 
     def weights(self, types: Sequence[str]) -> NDArray[np.float64]:

@@ -101,13 +101,13 @@ class Place:
         taken: NDArray[np.float64],
         rng: np.random.Generator,
     ) -> tuple[float, float]:
-        """Where a person that has arrived at (x, y) is going to stand, metres.
+        """Choose where a person who has arrived at (x, y) is going to stand, metres.
 
         Args:
-            x: metres.
-            y: metres.
-            staying: how many others stay at this place.
-            taken: (k, 2) where others stand, at this place or another.
+            x: their position, metres.
+            y: their position, metres.
+            staying: number of other people who stay at this place.
+            taken: (k, 2) where others stand, at this place or another, metres.
             rng: the model's generator.
         """
         room = self._room

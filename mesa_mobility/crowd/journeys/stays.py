@@ -1,4 +1,4 @@
-"""Stays: who is at a place of its route, where it stands, and until when."""
+"""Stays: who is at a place of their route, where they stand, and until when."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from mesa_mobility.distributions import Distribution
 from mesa_mobility.schema import Array, Kind
 
 THERE = 0.3
-"""Metres from its spot at which somebody stops."""
+"""Metres from their spot at which a person stops."""
 
 GIVES_UP = 10 * FRAMES_A_SECOND
-"""Frames after which a person who has not reached its spot stays where it is."""
+"""Frames after which a person who has not reached their spot stays where they are."""
 
 _WALKING = -1
 
@@ -69,7 +69,7 @@ class Stays(Saved):
         return row < len(self._place) and self._place[row] >= 0 and self._until[row] != _WALKING
 
     def end(self, row: int, frame: int, crowd: Crowd) -> None:
-        """End the stay of somebody, if it has one."""
+        """End a person's stay at a place, if they have one."""
         if self.stands(row):
             end_wait(row, frame, crowd)
         if row < len(self._place):
@@ -84,12 +84,12 @@ class Stays(Saved):
         crowd: Crowd,
         rng: np.random.Generator,
     ) -> bool:
-        """Whether somebody has been at a place for as long as it stays.
+        """Whether a person has stayed at a place for their whole stay.
 
         Args:
             row: the person, who decides now.
             number: of the place.
-            place: the place to which it goes, or at which it is.
+            place: the place to which they go, or at which they are.
             frame: now.
             crowd: the crowd.
             rng: the model's generator, from which stays and spots are drawn.

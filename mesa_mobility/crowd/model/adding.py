@@ -36,7 +36,7 @@ def add_pedestrians(
 
     Args:
         positions: (n, 2) metres, on free floor, with room for the body between walls.
-        headings: (n,) radians; by default everybody faces its first target.
+        headings: (n,) radians; by default everybody faces their first target.
         preferred_speeds: (n,) m/s or a distribution; by default drawn from the type.
         pre_movement: (n,) seconds, or a distribution of them, for which they stand before they
             set off; their first decision is in the first frame after that.
@@ -80,7 +80,7 @@ def add_pedestrians(
 def add_source(model: CrowdModel, source: Source) -> Inflow:
     """Let people in over time.
 
-    Each appears at a random place of the source's area with room for its body. While there is
+    Each appears at a random place of the source's area with room for their body. While there is
     no room, people are held back in order.
 
     Returns:

@@ -82,10 +82,10 @@ class PedestrianType:
 
     @classmethod
     def all_of(cls, population: Population) -> tuple[PedestrianType, ...]:
-        """The types of a population, in its order.
+        """The pedestrian types of a population, in the order of its shares.
 
         Raises:
-            MapError: no map of one of them ships.
+            MapError: no map ships for one of them.
         """
         return tuple(
             cls.named(kind) if isinstance(kind, str) else kind for kind in population.shares

@@ -1,13 +1,13 @@
-"""The free area as routes see it: walls with many small steps or waves are smooth.
+"""The free area for routes, in which walls with many small steps or waves are smoothed.
 
-A diagonal wall drawn as steps of a raster has a corner at every step. Nobody walks round any of
-them, yet each would be a node of the route graph and an end of many gaps, and time grows with the
-square of their number. Between two such corners lies a pocket in which nobody has room. Here,
-where many pockets follow each other, they are filled, and vertices that then lie within a
-centimetre of a straight line are left out.
+A diagonal wall drawn as raster steps has a corner at every step. People do not walk around each of
+these corners, yet each would be a node of the route graph and an end of many gaps. Computing time
+would grow with the square of their number. Between two such corners lies a pocket too small for a
+person. Where many pockets follow each other, this module fills them and drops the vertices that
+then lie within a centimetre of a straight line.
 
-The walls that people see, and that stop them, stay as they are: this floor only says where routes
-may bend and where gaps may be.
+This floor only decides where routes may bend and where gaps may be. The walls that people see, and
+that stop them, stay unchanged.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""The recordings behind a map that has been built before, prepared as they were for it."""
+"""Load the recordings that an existing map was built from, prepared in the same way."""
 
 from __future__ import annotations
 

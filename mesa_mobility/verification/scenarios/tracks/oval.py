@@ -57,7 +57,7 @@ class Oval:
         return FloorPlan(self.floor, exits=[], gates=gates, name="oval")
 
     def boxes(self, length: float) -> tuple[Polygon, Polygon]:
-        """The middle of both straights, `length` metres of them, the lower one first."""
+        """The middle `length` metres of both straights, the lower straight first."""
         half, side = length / 2, self.width / 2
         return (
             box(-half, -self.radius - side, half, -self.radius + side),
