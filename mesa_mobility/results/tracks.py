@@ -21,6 +21,8 @@ from mesa_mobility.results.columns import (
 )
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from mesa_mobility.results.decisions import Decisions
 
 FloatArray = NDArray[np.float64]
@@ -159,3 +161,23 @@ class Tracks:
             fields={name: values[rows] for name, values in self.fields.items()},
             inside_at_end=self.remaining[kept[self.remaining]],
         )
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row for each person and frame: frame, person, x and y (m), heading (rad), fields and
+        person_data.
+
+        Texts, such as the type, are categories.
+        """
+        import pandas as pd
+
+        columns: dict[str, Any] = {name: getattr(self, name) for name in COLUMNS}
+        columns |= self.fields
+        for name, values in self.person_data.items():
+            if values.dtype.kind == "U":
+                texts, codes = np.unique(values, return_inverse=True)
+                columns[name] = pd.Categorical.from_codes(
+                    codes[self.person], categories=pd.Index(texts.tolist())
+                )
+            else:
+                columns[name] = values[self.person]
+        return pd.DataFrame(columns)

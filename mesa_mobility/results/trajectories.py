@@ -15,7 +15,6 @@ from mesa_mobility.results.tracks import Tracks
 if TYPE_CHECKING:
     import os
 
-    import pandas as pd
     import pedpy
 
     from mesa_mobility.bodies import BodyMotion, PoseBank
@@ -95,16 +94,6 @@ class Trajectories(Tracks):
         from mesa_mobility.results.bodies import body_of
 
         return body_of(self, person, frames, bank=bank)
-
-    def to_pandas(self) -> pd.DataFrame:
-        """A row for each person and frame: frame, person, x and y (m), heading (rad), fields and
-        person_data.
-
-        Texts, such as the type, are categories.
-        """
-        from mesa_mobility.results.formats.export import to_pandas
-
-        return to_pandas(self)
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Write a Parquet file: see :func:`mesa_mobility.results.write_parquet`."""

@@ -20,7 +20,6 @@ from mesa_mobility.results.columns import COLUMNS
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
-    import pandas as pd
     import pedpy
 
 
@@ -28,23 +27,6 @@ BEYOND = 3
 """Frames for which people walk on beyond the exit."""
 # Rows handed over together: bounds the Python objects alive at a time.
 CHUNK = 100_000
-
-
-def to_pandas(trajectories: Tracks) -> pd.DataFrame:
-    """Trajectories as a data frame; see ``Trajectories.to_pandas``."""
-    import pandas as pd
-
-    columns: dict[str, Any] = {name: getattr(trajectories, name) for name in COLUMNS}
-    columns |= trajectories.fields
-    for name, values in trajectories.person_data.items():
-        if values.dtype.kind == "U":
-            texts, codes = np.unique(values, return_inverse=True)
-            columns[name] = pd.Categorical.from_codes(
-                codes[trajectories.person], categories=pd.Index(texts.tolist())
-            )
-        else:
-            columns[name] = values[trajectories.person]
-    return pd.DataFrame(columns)
 
 
 def to_pedpy(trajectories: Tracks) -> pedpy.TrajectoryData:
