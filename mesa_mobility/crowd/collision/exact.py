@@ -221,30 +221,3 @@ def exit_distance(around: Surroundings, x: float, y: float, destination: int) ->
             ax, ay, bx, by = around.exits[e]
             nearest = min(nearest, segment_segment_distance2(x, y, x, y, ax, ay, bx, by))
     return math.sqrt(nearest)
-
-
-@internal()
-def within_reach(
-    i: int,
-    near: NDArray[np.int64],
-    reach: float,
-    state: CrowdState,
-    found: NDArray[np.int64],
-) -> int:
-    """Write those of ``near`` whose path pedestrian i may touch within ``reach`` metres.
-
-    Returns their number.
-    """
-    count = 0
-    x, y = state.x[i], state.y[i]
-    for j in near:
-        far = reach + state.core[i] + state.core[j] + 0.002
-        if (
-            state[j].box[0] <= x + far
-            and state[j].box[2] >= x - far
-            and state[j].box[1] <= y + far
-            and state[j].box[3] >= y - far
-        ):
-            found[count] = j
-            count += 1
-    return count
