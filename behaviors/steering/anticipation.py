@@ -1,8 +1,8 @@
 """Anticipation: people who walk turn aside early for those whom they would come too near.
 
-Cost terms look at the end of a movement, when it is too late to step aside gently.  Here, somebody
-who walks compares courses before it chooses a movement: straight to its target, turned by up to 45
-degrees to either side, each at its own speed and somewhat slower.  The cost of a course is the
+Cost terms look at the end of a movement, when it is too late to step aside gently.  Here, people
+who walk compare courses before they choose a movement: straight to their target, turned by up to 45
+degrees to either side, each at their own speed and somewhat slower.  The cost of a course is the
 change of velocity that it takes and, for each person in view, how much nearer than ``ROOM`` the two
 would come within ``HORIZON`` if both walked on.  It is sought as in sampled velocity obstacles (van
 den Berg, Lin and Manocha, ICRA 2008).  That people respond to the predicted time to a collision,
@@ -10,7 +10,7 @@ and less the farther it lies ahead, is measured by Karamouzas, Skinner and Guy, 
 Letters 113 (2014) 238701.
 
 Those who go the same way, and those who are held up in a queue, do not count: they are a matter of
-headway, and nobody goes round the queue that it wants to join.
+headway, and nobody goes round the queue that they want to join.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ HALFWAY = 4.0
 """Present distance at which somebody counts half, metres."""
 
 WEIGHT = 3.0
-"""Change of velocity that somebody takes upon itself so as not to walk into another, m/s."""
+"""Change of velocity that people accept so as not to walk into another person, m/s."""
 
 LEFT = 0.1
 """What turning left costs more, m/s: of two people who might as well pass on either side, both keep
@@ -64,13 +64,13 @@ STEPS, WIDEST = 6, 0.8
 """Number of courses to each side, and the angle of the last, radians."""
 
 SLOWER = 0.7
-"""Share of its speed at which somebody might walk on instead."""
+"""Share of their speed at which people might walk on instead."""
 
 WALKS = 0.3
 """Speed of those who look ahead, m/s: somebody who stands sets off first."""
 
 GAINS = 0.4
-"""How much faster than now somebody takes itself to be soon, m/s."""
+"""How much faster than now people expect to be soon, m/s."""
 
 QUEUES = 0.5
 """Speed below which somebody who is on the way is held up, m/s."""
@@ -193,7 +193,7 @@ def _in_the_way(
 def _goes_along(
     j: int, ex: float, ey: float, frame: int, state: CrowdState, agenda: NDArray[np.void]
 ) -> bool:
-    """Whether j is held up in a queue, or goes the way (ex, ey); not if it stays where it is."""
+    """Whether j is held up in a queue or goes the way (ex, ey); not if they stay there."""
     dx, dy = state[j].target_x - state[j].x, state[j].target_y - state[j].y
     if (dx == 0.0 and dy == 0.0) or agenda[j]["waits_until"] > frame:
         return False

@@ -2,8 +2,8 @@
 
 The shortest route round a corner touches it.  If everybody took that route, a crowd in a wide hall
 would queue along the inner wall for a single place.  So each pedestrian passes the corner at a
-distance that leaves room for those ahead of it: the width that they need, at ``CAPACITY``, to be
-through when it arrives.  Somebody who is alone cuts the corner.
+distance that leaves room for the people ahead: the width that these need, at ``CAPACITY``, to be
+through when the pedestrian arrives.  A person who is alone cuts the corner.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ as in models of single-file motion: somebody with a gap g to a person ahead who 
 
     u + (g - l - T u) / tau,
 
-at most its own speed and at least a share of it, where l is the distance kept when standing and T
+at most their own speed and at least a share of it, where l is the distance kept when standing and T
 the time gap when walking.
 At the same speed g = l + T u, the linear relation between distance and speed that Seyfried,
 Steffen, Klingsch and Boltes measured (J. Stat. Mech. (2005) P10002).  Taking over the speed of
@@ -47,7 +47,7 @@ ONCOMING = 0.3
 """Speed of people towards somebody from which on they do not count, m/s."""
 
 LEAST = 0.75
-"""Share of its own speed that somebody wants at least: in dense crowds, where people are slower,
+"""Share of their own speed that people want at least: in dense crowds, where people are slower,
 the cost terms decide alone.  With less, waves of standing people last there."""
 
 

@@ -3,7 +3,7 @@
 Recordings have steps of certain lengths, hardly ever one of exactly the preferred speed.  The
 option of least cost is more often a little too long than too short, since progress is worth
 something.  So free walkers keep account of how far they are ahead or behind, and make up for it in
-their next movements.  On average everybody walks at its own preferred speed.
+their next movements.  On average everybody walks at their own preferred speed.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from mesa_mobility.steering import (
 )
 
 SLOWER, FASTER = 0.1, 0.2
-"""A walker at most so much slower or faster than its preferred speed walks freely, m/s.
+"""A walker at most so much slower or faster than their preferred speed walks freely, m/s.
 
 Slower is somebody held up.  Faster is mostly somebody whose recordings lack the speed: movements
 of people with a limp, sped up to those of a cane, leave some speeds out.
