@@ -34,26 +34,7 @@ In real queues the closest twentieth of neighbours stand 0.27 to 0.30 m apart: h
 
 @dataclass(frozen=True, eq=False)
 class MapData:
-    """What a mobility map holds; see `MobilityMap`.
-
-    Everything is relative to the person at the start of the option: x forwards,
-    y to the left, heading counter-clockwise; metres and radians.  Row counts:
-    k clusters, m options, p path samples.
-
-    Attributes:
-        offsets: (k + 1,) int64; options of cluster c are ``offsets[c]:offsets[c + 1]``.
-        durations: (m,) int16; frames at 30 Hz.
-        costs: (m,) float32; cost of the option's path in the motion graph.
-        path_offsets: (m + 1,) int64; samples of option i are
-            ``path_offsets[i]:path_offsets[i + 1]``, one each 3 frames, start left out.
-        paths: (p, 3) float32; x, y, heading.
-        path_clusters: (p,) uint16; cluster of the pose at each sample.
-        mean_poses: (k, 9, 3) float32; mean joint positions (``mobility.poses.POSE_JOINTS``).
-        centres: (k, 36) float32; pose features of the cluster centres.
-        sizes: (k,) int64; poses behind each cluster.
-        mean_speeds: (k,) float32; mean root speed of these poses, m/s.
-        metadata: type, body, build parameters and the provenance of every clip.
-    """
+    """What a mobility map holds; see `MobilityMap`."""
 
     offsets: NDArray[np.int64]
     durations: NDArray[np.int16]

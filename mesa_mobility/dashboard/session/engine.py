@@ -209,9 +209,7 @@ class Engine(Shown):
         self._current = run
         self._terms.adopt(run.model, keep=same)
         run.set_playing(False)
-        self.show_new(run.recipe, run.model, run.plan, self._terms)
-        self.notices.set(tuple(run.notices))
-        self._show_terms(run.model)
+        self._show_run(run)
 
     def _go_on_with(self, run: Run, answer: Answer | None) -> None:
         """Show a run that another page has left, as it was left."""
@@ -221,9 +219,7 @@ class Engine(Shown):
         self._terms.wanted_choice = choice or self._terms.wanted_choice
         with self.together:
             self._terms.apply(run.model)
-            self.show_new(run.recipe, run.model, run.plan, self._terms)
-            self.notices.set(tuple(run.notices))
-            self._show_terms(run.model)
+            self._show_run(run)
             self.speed.set(run.clock.speed)
             if run.model.watch is not None:
                 self.mark(run.model.watch.pedestrian)
@@ -236,6 +232,11 @@ class Engine(Shown):
         if self._current is not None and warning not in self._current.notices:
             self._current.notices.append(warning)
             self.notices.set(tuple(self._current.notices))
+
+    def _show_run(self, run: Run) -> None:
+        self.show_new(run.recipe, run.model, run.plan)
+        self.notices.set(tuple(run.notices))
+        self._show_terms(run.model)
 
     def _show_terms(self, model: PedestrianModel) -> None:
         self.behaviours.set(self._terms.states(model))

@@ -12,7 +12,7 @@ import solara
 from mesa_mobility import PedestrianModel, PedestrianType
 from mesa_mobility.crowd import Explanation
 from mesa_mobility.dashboard.session import serialization
-from mesa_mobility.dashboard.session.behaviours import Behaviours, ChoiceState, TermState
+from mesa_mobility.dashboard.session.behaviours import ChoiceState, TermState
 from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.colouring import COLOURINGS, colourings_of
 from mesa_mobility.dashboard.session.decision import described
@@ -119,10 +119,8 @@ class Shown:
         """Whether the page has not answered for long."""
         return self._sent > self._seen and time.perf_counter() - self._frame_at > PATIENCE
 
-    def show_new(
-        self, recipe: Recipe, model: PedestrianModel, plan: PlanChanges, terms: Behaviours
-    ) -> None:
-        """Show a model that has just been made."""
+    def show_new(self, recipe: Recipe, model: PedestrianModel, plan: PlanChanges) -> None:
+        """Show a model that has just been made; its behaviours are shown apart."""
         self.run_number += 1
         self.recipe.set(recipe)
         self.problem.set("")
@@ -132,8 +130,6 @@ class Shown:
         self.colourings.set(tuple(colourings_of(model)))
         self.use_bodies(self._posing, model)
         self.use_colour(self._colour, model)
-        self.behaviours.set(terms.states(model))
-        self.choice.set(terms.choice(model))
 
     def use_bodies(self, on: bool, model: PedestrianModel | None) -> None:
         """Send the poses of this model's people from now on, or not."""
