@@ -34,7 +34,7 @@ In real queues the closest twentieth of neighbours stand 0.27 to 0.30 m apart: h
 
 @dataclass(frozen=True, eq=False)
 class MapData:
-    """What a mobility map holds; see `MobilityMap`."""
+    """The arrays and metadata of a mobility map; see `MobilityMap`."""
 
     offsets: NDArray[np.int64]
     durations: NDArray[np.int16]

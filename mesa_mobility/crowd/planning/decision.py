@@ -95,7 +95,7 @@ def decide(
 
 
 class Situation(NamedTuple):
-    """What is around a pedestrian who decides.
+    """The surroundings of a pedestrian who decides.
 
     Attributes:
         me: the pedestrian.
