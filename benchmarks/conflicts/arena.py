@@ -21,7 +21,7 @@ from mesa_mobility.verification.runs import CLEARANCE, SPACING, crowd_model
 
 FILE = "jupedsim_arena.wkt"
 PEOPLE, EXIT, LIMIT_S = 40, 1.2, 600.0
-KINDS = ("natural", "row", "anywhere in row")
+KINDS = ("natural", "row", "row, within", "row, anywhere")
 NATURAL = (
     ((48.320587, 65.369087), (49.523266, 65.369339)),
     ((54.520294, 65.369339), (55.72057, 65.369339)),
@@ -33,6 +33,8 @@ ROW = ((41.923298, 43.768486), (51.419758, 43.769276))
 """The wall of the bottom row, left of the aisle."""
 MIDDLE = 3.077
 """Metres from its end: the exit begins at x = 45 m."""
+OFF = 0.001
+"""Metres that the exit in the row lies off the wall."""
 OPPOSITE = ((41.923382, 44.269329), (51.419758, 44.269329))
 """The other wall of that row."""
 
@@ -42,23 +44,25 @@ def arena(seed: int, *, exits: str, file: str) -> dict[str, Any]:
 
     Args:
         seed: of the run, and of the place of the exit in the row.
-        exits: "natural", or one of 1.2 m in the wall of the bottom row: "row" in its middle,
-            "anywhere in row" at a place of the seed's.
+        exits: "natural", or one of 1.2 m in the wall of the bottom row: "row" at its middle,
+            1 mm beyond the wall; "row, within" there, 1 mm within the floor; "row, anywhere" at a
+            place of the seed's, 1 mm beyond.
         file: the plan.
     """
     floor = floor_of(Path(file))
-    lines = NATURAL
+    lines: Sequence[Any] = NATURAL
     if exits != "natural":
         start, end = np.array(ROW)
         along = (end - start) / np.hypot(*(end - start))
-        off = MIDDLE if exits == "row" else np.random.default_rng(seed).uniform(0.2, 8.0)
-        first = start + off * along
+        place = np.random.default_rng(seed).uniform(0.2, 8.0) if "any" in exits else MIDDLE
+        beyond = np.array([along[1], -along[0]]) * (-OFF if "within" in exits else OFF)
+        first = start + place * along + beyond
         lines = ((tuple(first), tuple(first + EXIT * along)),)
         row = shapely.LineString(ROW).distance(shapely.LineString(OPPOSITE))
         assert abs(row - 0.5) < 0.01
     for line in lines:
         assert abs(shapely.LineString(line).length - EXIT) < 0.01
-        assert floor.boundary.distance(shapely.LineString(line)) < 0.001
+        assert floor.boundary.distance(shapely.LineString(line)) < 2 * OFF
     plan = FloorPlan(floor, exits=[Exit(f"out {k}", *line) for k, line in enumerate(lines)])
     model = crowd_model(plan, seed)
     model.add_pedestrians(
