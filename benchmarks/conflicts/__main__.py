@@ -15,7 +15,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from benchmarks.conflicts import arena, corridor, gate, lone, narrow, queue
+from benchmarks.conflicts import arena, corridor, gate, lone, mixed, narrow, queue
 from benchmarks.conflicts.resuming import run_missing
 from benchmarks.conflicts.table import print_table
 from mesa_mobility.verification import Case
@@ -27,6 +27,7 @@ SCENES: dict[str, tuple[Cases, int]] = {
     "arena": (arena.cases, 50),
     "corridor": (lambda _: corridor.cases(), 20),
     "niche": (lambda _: narrow.cases(), 10),
+    "mixed": (lambda _: mixed.cases(), 500),
     "lone": (lambda _: lone.cases(), lone.STARTS),
     "queue": (lambda _: queue.cases(), 20),
 }
