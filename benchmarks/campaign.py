@@ -10,17 +10,14 @@ With --plans so many random floor plans are run besides: halls, rooms, corridors
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from mesa_mobility.results.files import json_text
+from conflicts.resuming import run_missing
+
 from mesa_mobility.validation.bottleneck import bottleneck
 from mesa_mobility.verification import Case, case
-from mesa_mobility.verification.cases import run_units
 from mesa_mobility.verification.scenarios.counterflow import counterflow
 from mesa_mobility.verification.scenarios.random_plans import SHAPES, random_plan
 from mesa_mobility.verification.scenarios.shipped import shipped
@@ -71,29 +68,9 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=9.0, help="begin no run after this")
     parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
-    done = {row["seed"]: row for row in _rows(given.file)}
-    begun = time.monotonic()
     units = [(ROUND[k % len(ROUND)], SEED + k) for k in range(given.runs)]
     units += [(PLANS[k % len(PLANS)], PLAN_SEED + k) for k in range(given.plans)]
-
-    def missing() -> Iterator[tuple[Case, int]]:
-        for each, seed in units:
-            if time.monotonic() - begun > 60.0 * given.minutes:
-                return
-            if seed not in done:
-                yield each, seed
-
-    with given.file.open("a", encoding="utf-8") as file:
-        for each, seed, figures in run_units(missing(), given.jobs):
-            kept = {name: figures[name] for name in KEPT if name in figures}
-            if "error" in figures:
-                kept["error"] = figures["error"]
-            row = {"seed": seed, "scenario": str(each), **kept}
-            file.write(json_text(row) + "\n")
-            file.flush()
-            done[seed] = row
-    wanted = [done[seed] for _, seed in units if seed in done]
-    print(f"{len(wanted)} of {len(units)} runs")
+    wanted = run_missing(given.file, units, minutes=given.minutes, jobs=given.jobs, kept=_kept)
     bad = report(wanted)
     sys.exit(1 if bad else 0)
 
@@ -121,10 +98,8 @@ def report(rows: list[dict[str, Any]]) -> bool:
     return wrong
 
 
-def _rows(file: Path) -> list[dict[str, Any]]:
-    if not file.exists():
-        return []
-    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+def _kept(figures: dict[str, Any]) -> dict[str, Any]:
+    return {name: figures[name] for name in (*KEPT, "error") if name in figures}
 
 
 if __name__ == "__main__":

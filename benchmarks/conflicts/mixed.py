@@ -31,6 +31,8 @@ MORE = 0.1
 """Metres of room that the widest body has on either side in every door on its way."""
 PARTS = ("groups", "visits", "queue", "door", "hazard", "source")
 """What a crowd of many types may have besides, each in half of them."""
+KEPT = 0.5
+"""Metres that people keep from a hazard."""
 SERVICE_S = 5.0
 TRIES = 300
 
@@ -58,20 +60,16 @@ def mixed(seed: int, *, kinds: str) -> dict[str, Any]:
         kinds: "one" type, or "many" types with groups, visits, queues, doors that close and open
             again, hazards and sources.
     """
-    crowd = draw(seed, kinds)
+    for attempt in range(TRIES):
+        crowd = draw(seed, kinds, attempt)
+        try:
+            model = _filled(seed, crowd)
+            break
+        except FloorPlanError as error:  # such as a wall just behind an exit, for a wide type
+            refused = error
+    else:
+        raise refused
     plan, rng = crowd.drawn.plan, crowd.rng
-    choice = None
-    if "hazard" in crowd.parts:
-        middle = shapely.Point(_place(plan, crowd.widest + MORE, rng))
-        begins, speed = float(rng.uniform(0.0, 20.0)), float(rng.uniform(0.01, 0.05))
-        within = middle.buffer(float(rng.uniform(1.0, 2.5)), quad_segs=4)
-        choice = Hazards([Hazard(middle, speed=speed, begins=begins, within=within)])
-    types = [PedestrianType.named(name) for name in crowd.shares.names]
-    keywords = {"pedestrian_types": types} if len(types) == 1 else {
-        "pedestrian_types": None, "population": crowd.shares,
-    }  # fmt: skip
-    model = crowd_model(plan, seed, target_choice=choice, **keywords)
-    _fill(model, crowd)
     if "queue" in crowd.parts:
         crowd.queueing = _line(model, crowd)
     _occupy(model, crowd)
@@ -91,9 +89,9 @@ def mixed(seed: int, *, kinds: str) -> dict[str, Any]:
     }
 
 
-def draw(seed: int, kinds: str) -> Crowd:
-    """The plan and the crowd of a seed."""
-    rng = np.random.default_rng([seed, 4, kinds == "many"])
+def draw(seed: int, kinds: str, attempt: int = 0) -> Crowd:
+    """The plan and the crowd of a seed; another one for each attempt."""
+    rng = np.random.default_rng([seed, 4, kinds == "many", attempt])
     names = presets()["every_type"].names
     if kinds == "one":
         shares = Population({str(rng.choice(names)): 1.0})
@@ -103,31 +101,76 @@ def draw(seed: int, kinds: str) -> Crowd:
         some = rng.choice(names, size=int(rng.integers(2, 5)), replace=False)
         parts = rng.dirichlet(np.ones(len(some))) * 0.9 + 0.1 / len(some)
         shares = Population(dict(zip(some.tolist(), parts.tolist(), strict=True)))
-    widest = max(float(np.max(PedestrianType.named(name).core_radius)) for name in shares.names)
+    widest = max(core_of(name) for name in shares.names)
     shape, both = str(rng.choice(list(SHAPES))), bool(rng.random() < 0.5)
     drawn = _plan(rng, shape, both, widest)
-    parts = [part for part in PARTS if kinds == "many" and rng.random() < 0.5]
+    has = [part for part in PARTS if kinds == "many" and rng.random() < 0.5]
     total = int(rng.integers(FEWEST, MOST + 1))
-    names = " + ".join(f"{name} {share:.2f}" for name, share in shares.shares.items())
-    text = f"{shape}, {'both ways' if both else 'one way'}, {names}, {', '.join(parts) or '-'}"
-    return Crowd(rng, shares, widest, drawn, parts, total, text)
+    who = " + ".join(f"{name} {share:.2f}" for name, share in shares.shares.items())
+    text = f"{shape}, {'both ways' if both else 'one way'}, {who}, {', '.join(has) or '-'}"
+    return Crowd(rng, shares, widest, drawn, has, total, text)
+
+
+def core_of(name: str) -> float:
+    """Radius of the body of a shipped type, metres."""
+    radius = PedestrianType.named(name).core_radius
+    assert isinstance(radius, float)
+    return radius
 
 
 def _plan(rng: np.random.Generator, shape: str, both_ways: bool, widest: float) -> Drawn:
     """A plan through whose doors the widest people get, from wherever anybody starts."""
     for _ in range(TRIES):
         drawn = draw_plan(rng, shape, both_ways=both_ways)
-        plan = drawn.plan
         try:
-            for area, _ in drawn.starts:
-                points = plan.random_points(
-                    20, rng, within=area, spacing=0.01, clearance=widest + MORE
-                )
-                plan.check_reachable(points, widest + MORE)
+            _check_ways(drawn.plan, drawn, widest)
         except FloorPlanError:
             continue
         return drawn
     raise AssertionError(f"{shape}: no plan for people {2 * widest:g} m wide")
+
+
+def _filled(seed: int, crowd: Crowd) -> PedestrianModel:
+    """A model with its people."""
+    choice = _hazards(crowd) if "hazard" in crowd.parts else None
+    types = [PedestrianType.named(name) for name in crowd.shares.names]
+    keywords: dict[str, Any] = {"pedestrian_types": types}
+    if len(types) > 1:
+        keywords = {"pedestrian_types": None, "population": crowd.shares}
+    model = crowd_model(crowd.drawn.plan, seed, target_choice=choice, **keywords)
+    _fill(model, crowd)
+    return model
+
+
+def _hazards(crowd: Crowd) -> Hazards | None:
+    """A hazard that leaves everybody a way that keeps from it, where there is a place for one."""
+    plan, rng = crowd.drawn.plan, crowd.rng
+    for _ in range(TRIES):
+        middle = shapely.Point(_place(plan, 0.2, rng))
+        within = middle.buffer(float(rng.uniform(0.5, 2.5)), quad_segs=4)
+        try:
+            beside = plan.altered(obstacles=[within.buffer(KEPT + MORE)])
+            _check_ways(beside, crowd.drawn, crowd.widest)
+        except FloorPlanError:
+            continue
+        begins, speed = float(rng.uniform(0.0, 20.0)), float(rng.uniform(0.01, 0.05))
+        return Hazards([Hazard(middle, speed=speed, begins=begins, within=within)], margin=KEPT)
+    crowd.text += " (no room for the hazard)"
+    return None
+
+
+def _check_ways(plan: FloorPlan, drawn: Drawn, widest: float) -> None:
+    """Raise FloorPlanError unless the widest get to each exit from everywhere they start."""
+    room = widest + MORE
+    free = plan.free.buffer(-room)
+    pieces = [piece for piece in getattr(free, "geoms", [free]) if not piece.is_empty]
+    for area, exits in drawn.starts:
+        goals = [each for each in plan.exits if exits is None or each.name in exits]
+        for goal in goals:
+            leads = [each for each in pieces if each.distance(goal.line) <= room + 0.01]
+            inside = [each for each in pieces if each.intersection(area).area > 0.01]
+            if not inside or any(each not in leads for each in inside):
+                raise FloorPlanError("somebody has no way out")
 
 
 def _fill(model: PedestrianModel, crowd: Crowd) -> None:
@@ -140,9 +183,9 @@ def _fill(model: PedestrianModel, crowd: Crowd) -> None:
         here = _add(model, crowd, area, exits, wanted - held)
         if here < wanted:
             rate = float(crowd.rng.uniform(0.2, 1.0))
-            several = {"population": crowd.shares} if len(crowd.shares.names) > 1 else {}
+            shares = crowd.shares if len(crowd.shares.names) > 1 else None
             model.add_source(
-                Source(area=area, rate=rate, number=wanted - here, exits=exits, **several)
+                Source(area=area, rate=rate, number=wanted - here, exits=exits, population=shares)
             )
 
 

@@ -78,7 +78,8 @@ def door(seed: int, *, kind: str, width: float) -> dict[str, Any]:
     )
     plan = FloorPlan(floor, exits=[Exit("end", (end, 0.0), (end, TEN))])
     type_ = PedestrianType.named(kind)
-    core = float(np.max(type_.core_radius))
+    core = type_.core_radius
+    assert isinstance(core, float)
     people = 20 if "wheelchair" in kind else 60
     model = crowd_model(plan, seed, pedestrian_types=[type_])
     places = plan.random_points(

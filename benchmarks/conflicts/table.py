@@ -8,7 +8,7 @@ from statistics import fmean
 from benchmarks.conflicts.resuming import Row
 
 WRONG = (
-    "lost", "stood", "overlaps", "wall_crossings", "off_floor", "closed_gates_crossed", "late",
+    "lost", "stood", "overlaps", "wall_crossings", "off_floor", "closed_crossed", "late",
 )  # fmt: skip
 """Figures that are to be 0."""
 
@@ -38,7 +38,7 @@ def print_table(rows: Sequence[Row]) -> bool:
             name, len(mine), _sum(good, "people"), _sum(good, "left_inside"),
             sum(row["left_inside"] > 0 for row in good), _sum(good, "lost"), _sum(good, "stood"),
             sum(row["stood"] > 0 for row in good), _sum(good, "overlaps"),
-            _sum(good, "wall_crossings") + _sum(good, "closed_gates_crossed"),
+            _sum(good, "wall_crossings") + _sum(good, "closed_crossed"),
             _sum(good, "off_floor"), _sum(good, "late"), round(_sum(good, "stalled_frames") / 30),
             f"{fmean(out):.0f}" if out else "-", f"{max(out):.0f}" if out else "-",
             ", ".join(other),

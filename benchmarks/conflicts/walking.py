@@ -34,6 +34,9 @@ AT_PLACE = 1.5
 SERVED_WITHIN = 30.0
 """Seconds, beside the service, in which a line that moves on moves on."""
 
+MOVEMENT = 2.0
+"""Seconds, more than a movement takes: whoever is in an opening that closes ends theirs."""
+
 NAMED = 10
 """People whose rows are given, at most."""
 
@@ -159,7 +162,7 @@ class Walk:
             "lost": len(found.lost),
             "stood": len(found.stood),
             **hits,
-            "closed_gates_crossed": self._through_closed(tracks),
+            "closed_crossed": self._through_closed(tracks),
             "out_s": out,
             "simulated_s": round(model.elapsed, 3),
             "stalled_frames": self.stalled_frames,
@@ -170,19 +173,16 @@ class Walk:
         }
 
     def _through_closed(self, tracks: Trajectories) -> int:
-        """Steps through gates that have been closed for longer than a movement takes."""
+        """Pieces of tracks through openings that have been closed for longer than a movement."""
         count = 0
-        gates = {gate.name: gate for gate in self.model.floor_plan.gates}
         for each in self.closures:
-            if each.name in gates:
-                first, last = (each.closes + 2.0) * FRAMES, each.opens * FRAMES
-                then = (tracks.frame >= first) & (tracks.frame <= last)
-                tree = shapely.STRtree([gates[each.name].line])
-                for person in np.unique(tracks.person[then]):
-                    mine = then & (tracks.person == person)
-                    count += count_crossings(
-                        np.column_stack([tracks.x[mine], tracks.y[mine]]), tree
-                    )
+            first, last = (each.closes + MOVEMENT) * FRAMES, each.opens * FRAMES
+            then = (tracks.frame >= first) & (tracks.frame <= last)
+            tree = shapely.STRtree([self.model.floor_plan.gate(each.name).line])
+            for person in np.unique(tracks.person[then]):
+                mine = then & (tracks.person == person)
+                track = np.column_stack([tracks.x[mine], tracks.y[mine]])
+                count += count_crossings(track, tree)
         return count
 
 
