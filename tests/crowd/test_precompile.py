@@ -5,7 +5,7 @@ from mesa_mobility.behaviors.steering import anticipation, speed_adaptation
 from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd import precompile
-from mesa_mobility.crowd.planning import decision, decision_order, grid
+from mesa_mobility.crowd.planning import decision, decision_order
 from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
 from mesa_mobility.crowd.tactics import impatience, turns
 
@@ -14,7 +14,8 @@ FUNCTIONS = [
     decision_order.select_due,
     advance._move,
     people_grid.build_grid,
-    grid._write_headways,
+    people_grid._sorted,
+    people_grid._fill,
     departed.walk_on,
     departed.move_on,
     departed.merge,

@@ -39,9 +39,10 @@ def {name}(n, ends, width, others, row, own, at, numbers, out):
 """
 
 PAIRS_LOOP = """
-def {name}(m, n, ends, width, others, row, own, at, numbers, weight, out):
+def {name}(m, which, n, ends, width, others, row, own, at, numbers, weight, out):
     me, p = {me}, {p}
-    for a in range(m):
+    for b in range(m):
+        a = which[b]
         other = {other}
         for k in range(n):
             option = {option}

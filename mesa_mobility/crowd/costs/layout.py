@@ -26,18 +26,6 @@ KERNEL_FIELDS = ("core", "heading", "type", "group")
 """Fields that are laid out for the terms that read them, besides those that the model declares."""
 
 
-class Own(NamedTuple):
-    """The deciding pedestrian as cost terms see it.
-
-    Attributes:
-        kind: index of its type.
-        record: (8 + fields,) as in this module.
-    """
-
-    kind: int
-    record: NDArray[np.float64]
-
-
 class KernelTable(NamedTuple):
     """Kernels of one kind, of n terms.
 

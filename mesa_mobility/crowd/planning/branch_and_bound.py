@@ -88,7 +88,7 @@ def cheapest_free(
         The option's row in the table, that of the least turn if several cost the same, -1 if all
         hit something, -2 if a cost is not a number; the frame of leaving by an exit, or -1.
     """
-    table, terms, own, bounds, first = scene.table, scene.terms, now.own, now.bounds, now.first
+    table, terms, me, bounds, first = scene.table, scene.terms, now.me, now.bounds, now.first
     # Typed, as functions are compiled once more for literal numbers.
     best, leaving, most = NONE, -1, np.inf
     band, count, met, k = np.int64(0), np.int64(0), np.int64(0), np.int64(0)
@@ -136,7 +136,7 @@ def cheapest_free(
         prefetch(table.options, work.rows[k], 32)
         if work.unwalled[this]:
             work.unwalled[this] = False
-            more = wall_cost(own, this, work.ends, now.walls, terms.wall)
+            more = wall_cost(me, this, work.ends, now.walls, terms.wall)
             if not abs(more) < np.inf:
                 return NOT_A_NUMBER, -1
             work.costs[this] += more
@@ -147,10 +147,8 @@ def cheapest_free(
         if work.approximate[this]:
             # All relevant neighbours.
             work.approximate[this] = False
-            enough, count_all = _enough(most, work.costs[this]), now.foremost
-            more = pair_cost(
-                own, this, work.ends, count_all, work.foremost, enough, terms.pair, work.sums
-            )
+            enough, some, around = _enough(most, work.costs[this]), now.foremost, work.neighbours
+            more = pair_cost(me, this, work.ends, some, 0, around, enough, terms.pair, work.sums)
             if more == ENOUGH:
                 continue
             bound = work.costs[this] + LITTLE_LESS * more
@@ -166,9 +164,9 @@ def cheapest_free(
             continue
         cost = work.costs[this]
         if not now.has_negative_pairs:
-            enough, count_all = _enough(most, cost), now.neighbours
+            enough, everybody, around = _enough(most, cost), now.neighbours, work.neighbours
             more = pair_cost(
-                own, this, work.ends, count_all, work.others, enough, terms.pair, work.sums
+                me, this, work.ends, everybody, now.foremost, around, enough, terms.pair, work.sums
             )
             if more == ENOUGH:
                 continue

@@ -22,10 +22,9 @@ from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candida
 from mesa_mobility.crowd.planning.evaluation.sample_checks import SampleChecks, check_terms
 from mesa_mobility.crowd.planning.evaluation.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
-from mesa_mobility.crowd.planning.grid import headways
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import FrameContext, Rules, Workspace, make_workspace
-from mesa_mobility.crowd.state.people_grid import Grid, build_grid
+from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.errors import ModelError
@@ -92,7 +91,7 @@ class DecisionScheduler:
         table, groups = self._repertoire.table, self._repertoire.groups
         compiled, others = self._compiled(terms, crowd)
         extra, extra_offsets = NO_EXTRA
-        grid = build_grid(rows, crowd.x, crowd.y)
+        grid = grid_of_frame(rows, crowd)
         if others:
             extra, extra_offsets = extra_costs(
                 others, order, table, crowd, grid, around, self._rules, moment, self._types
@@ -104,9 +103,8 @@ class DecisionScheduler:
             )
             check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
         state = crowd.records
-        moving = headways(grid, state)
         scene = FrameContext(
-            moment.frame, table, groups, state, grid, around, compiled, self._rules, moving
+            moment.frame, table, groups, state, grid, around, compiled, self._rules
         )
         threads = 1 if PLAIN else threads_for(len(order))
         fields = compiled.fields.shape[1]
@@ -156,15 +154,15 @@ class DecisionScheduler:
         people = min(people, self._most_near)
         works = self._works
         if works and (
-            people > len(works[0].marks)
+            people > len(works[0].neighbours.marks)
             or walls > len(works[0].walls)
             or terms > len(works[0].sums.by_term)
-            or FIELDS + fields != len(works[0].others)
+            or FIELDS + fields != len(works[0].neighbours.others)
         ):
             works.clear()
         while len(works) < threads:
             if works:
-                people, walls = len(works[0].marks), len(works[0].walls)
+                people, walls = len(works[0].neighbours.marks), len(works[0].walls)
                 terms = len(works[0].sums.by_term)
             options = int(np.diff(self._repertoire.table.offsets).max())
             clusters = self._repertoire.groups.clusters

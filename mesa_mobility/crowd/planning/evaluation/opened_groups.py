@@ -52,7 +52,7 @@ def open_groups(
     Returns the number of open options, ``count`` before this call; -2 if a cost is not a number.
     """
     me, groups, terms = now.me, scene.groups, scene.terms
-    picked, free = work.picked, work.free
+    picked, free, close = work.picked, work.free, work.neighbours.close
     apart, pose = me.core + MARGIN - SLACK, (me.x, me.y, me.c, me.s)
     # The cost is faster to test than blockage.
     has_cost_limit = most < np.inf
@@ -64,7 +64,7 @@ def open_groups(
             prefetch(groups.lanes, picked[q + _AHEAD], 416)
         g, bits = picked[q], ALL_LANES
         if not has_cost_limit:
-            bits = free_options(g, bits, work.blocks, apart, groups)
+            bits = free_options(g, bits, close, work.blocks, apart, groups)
         seconds = groups.ends[DURATION, g]
         lanes_to_world(groups.lanes, g, work.lanes, LANES * n, pose, seconds)
         picked[n], free[n] = g, bits
@@ -79,12 +79,12 @@ def open_groups(
             row = groups.first[picked[q]]
             for lane in range(groups.first[picked[q] + 1] - row):
                 costs[LANES * q + lane] = now.extra[row + lane - base]
-    option_costs(now.own, work.lanes, terms.option, costs)
+    option_costs(me, work.lanes, terms.option, costs)
     bad, kept = 0, count
     for q in range(n):
         g, bits = picked[q], free[q] & no_more_than(costs, LANES * q, most)
         if has_cost_limit and bits != 0:
-            bits = free_options(g, bits, work.blocks, apart, groups)
+            bits = free_options(g, bits, close, work.blocks, apart, groups)
         # Only values that are not numbers compare as no more than the least number.
         bad |= bits & no_more_than(costs, LANES * q, _LEAST)
         press_numbers(groups.first[g], bits, work.rows, kept)
@@ -92,10 +92,10 @@ def open_groups(
         compress(work.lanes, 0, LANES * q, bits, work.ends, 0, kept, END_ROWS)
         kept += bits_set(bits)
     if now.has_negative_pairs:
-        count_all, others, sums = now.neighbours, work.others, work.sums
+        around, sums, everybody = work.neighbours, work.sums, now.neighbours
         for k in range(count, kept):
-            pairs = pair_cost(now.own, k, work.ends, count_all, others, np.inf, terms.pair, sums)
-            work.costs[k] += pairs + wall_cost(now.own, k, work.ends, now.walls, terms.wall)
+            pairs = pair_cost(me, k, work.ends, everybody, 0, around, np.inf, terms.pair, sums)
+            work.costs[k] += pairs + wall_cost(me, k, work.ends, now.walls, terms.wall)
             bad |= int(not abs(work.costs[k]) < np.inf)
     if bad != 0:
         return NOT_A_NUMBER
