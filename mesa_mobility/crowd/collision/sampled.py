@@ -33,15 +33,9 @@ _AHEAD = 4
 class Decider(NamedTuple):
     """Somebody who decides.
 
-    Attributes:
-        row: in the crowd.
-        kind: index of the pedestrian type.
-        x: metres.
-        y: metres.
-        c: cosine of the heading.
-        s: sine of the heading.
-        core: core radius, metres.
-        record: (8 + fields,) the same as cost terms read it (see ``costs.layout``).
+    Fields: ``row`` in the crowd; ``kind`` index of the pedestrian type; ``x``, ``y`` metres; ``c``,
+    ``s`` cosine and sine of the heading; ``core`` radius, metres; ``record`` (8 + fields,) the same
+    as cost terms read it (see ``costs.layout``).
     """
 
     row: int

@@ -43,14 +43,8 @@ NOTHING = np.float32(0.0)
 
 def _away2(builder: Any, x: Any, y: Any, bodies: Start, at: Any) -> tuple[Any, Any]:
     """Squared distances of places from a body, and the distance to keep from it."""
-    of = [
-        spread(
-            builder,
-            load_one(builder, bodies, builder.add(at, ir.Constant(LONG, k * SAMPLES))),
-            x.type.count,
-        )
-        for k in range(3)
-    ]
+    rows = [builder.add(at, ir.Constant(LONG, k * SAMPLES)) for k in range(3)]
+    of = [spread(builder, load_one(builder, bodies, row), x.type.count) for row in rows]
     dx, dy = builder.fsub(x, of[0]), builder.fsub(y, of[1])
     return builder.fadd(builder.fmul(dx, dx), builder.fmul(dy, dy)), of[2]
 

@@ -189,7 +189,7 @@ def _bound(
     bounds, dropped = work.bounds[: spanned.last - spanned.first], work.blocks.dropped
     bounds[:] = 0.0
     if bounded:
-        group_bounds(me, spanned.first, scene.groups, terms.bound, work.ends, bounds)
+        group_bounds(me, spanned.first, scene.groups, terms.bound, work.opened.ends, bounds)
     foremost = 0
     if not has_negative_pairs and len(terms.pair.address) > 0:
         foremost = select_relevant(me, count, work.neighbours)

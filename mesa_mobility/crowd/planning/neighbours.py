@@ -57,7 +57,7 @@ def gather_neighbours(
         scene.grid, me, place, rules.search_radius, counts_within, box, to
     )
     if len(rules.interaction_ranges) > 1:
-        count = keep_interacting(i, count, rules.interaction_ranges, state, to.rows, others)
+        count = keep_interacting(i, count, rules.interaction_ranges, state, to)
     route, lead = state.route[i], others[LEAD]
     for a in range(count):
         lead[a] = route - lead[a]
@@ -134,18 +134,10 @@ def neighbours_within(
 
 @internal()
 def keep_interacting(
-    i: int,
-    count: int,
-    ranges: NDArray[np.float64],
-    state: CrowdState,
-    rows: NDArray[np.int64],
-    others: NDArray[np.float64],
+    i: int, count: int, ranges: NDArray[np.float64], state: CrowdState, to: Neighbours
 ) -> int:
-    """Keep those of the first ``count`` neighbours who count for i, by their types.
-
-    ``rows`` and ``others`` are those that ``neighbours_within`` writes.  Returns their number.
-    """
-    kept = 0
+    """Keep those of the first ``count`` neighbours who count for i, by types; returns how many."""
+    kept, rows, others = 0, to.rows, to.others
     for a in range(count):
         j = rows[a]
         rows[kept] = j

@@ -99,18 +99,6 @@ class DecisionContext(NamedTuple):
     ranked: bool
 
 
-class PairSums(NamedTuple):
-    """Workspace for sums over neighbours.
-
-    Attributes:
-        by_term: cost by pair term.
-        first: (1,) the pair term to evaluate first.
-    """
-
-    by_term: NDArray[np.float64]
-    first: NDArray[np.int64]
-
-
 class Neighbours(NamedTuple):
     """Who decides, and the people around: all that a decision reads of them.
 
@@ -123,6 +111,8 @@ class Neighbours(NamedTuple):
         moved: for each of these, the column with which it has changed places, one after the other.
         marks: for each of these, bits of the pair terms that it matters to.
         marked: their columns that matter to one pair term.
+        by_term: cost by pair term.
+        first: (1,) the pair term to evaluate first.
     """
 
     own: NDArray[np.float64]
@@ -133,6 +123,36 @@ class Neighbours(NamedTuple):
     moved: NDArray[np.int64]
     marks: NDArray[np.int64]
     marked: NDArray[np.int64]
+    by_term: NDArray[np.float64]
+    first: NDArray[np.int64]
+
+
+class Opened(NamedTuple):
+    """Groups and options that the search has opened.
+
+    Attributes:
+        picked: groups just opened.
+        free: bits of their options that hit nobody in the sampled test.
+        lanes: ends of the 8 options of each group.
+        lane_costs: their costs.
+        rows: for each open option, its row in the table.
+        ends: its end.
+        costs: its cost without pair terms.
+        least: lower bound of its whole cost.
+        approximate: whether the bound can still be raised by more neighbours.
+        unwalled: whether the wall terms are left out of the cost so far.
+    """
+
+    picked: NDArray[np.int64]
+    free: NDArray[np.int64]
+    lanes: NDArray[np.float64]
+    lane_costs: NDArray[np.float64]
+    rows: NDArray[np.int64]
+    ends: NDArray[np.float64]
+    costs: NDArray[np.float64]
+    least: NDArray[np.float64]
+    approximate: NDArray[np.bool_]
+    unwalled: NDArray[np.bool_]
 
 
 class Workspace(NamedTuple):
@@ -145,17 +165,7 @@ class Workspace(NamedTuple):
         walls: walls in reach.
         barriers: the same in the pedestrian's coordinates.
         bounds: lower bound of the cost of each group.
-        picked: groups just opened.
-        free: bits of their options that hit nobody in the sampled test.
-        lanes: ends of the 8 options of each group.
-        lane_costs: their costs.
-        rows: for each open option, its row in the table.
-        ends: its end.
-        costs: its cost without pair terms.
-        least: lower bound of its whole cost.
-        approximate: whether the bound can still be raised by more neighbours.
-        unwalled: whether the wall terms are left out of the cost so far.
-        sums: of costs from neighbours.
+        opened: groups and options that the search has opened.
         path: one path.
     """
 
@@ -165,22 +175,12 @@ class Workspace(NamedTuple):
     walls: NDArray[np.float64]
     barriers: NDArray[np.float32]
     bounds: NDArray[np.float64]
-    picked: NDArray[np.int64]
-    free: NDArray[np.int64]
-    lanes: NDArray[np.float64]
-    lane_costs: NDArray[np.float64]
-    rows: NDArray[np.int64]
-    ends: NDArray[np.float64]
-    costs: NDArray[np.float64]
-    least: NDArray[np.float64]
-    approximate: NDArray[np.bool_]
-    unwalled: NDArray[np.bool_]
-    sums: PairSums
+    opened: Opened
     path: NDArray[np.float64]
 
 
-def make_neighbours(people: int, fields: int) -> Neighbours:
-    """Arrays for numbers of people and of fields that terms take."""
+def make_neighbours(people: int, terms: int, fields: int) -> Neighbours:
+    """Arrays for numbers of people, of terms and of fields that terms take."""
     return Neighbours(
         own=np.empty(FIELDS + fields),
         near=np.empty(people + LANES, np.int64),
@@ -190,6 +190,8 @@ def make_neighbours(people: int, fields: int) -> Neighbours:
         moved=np.empty(people + 1, np.int64),
         marks=np.empty(people, np.int64),
         marked=np.empty(people + 1, np.int64),
+        by_term=np.empty(terms),
+        first=np.zeros(1, np.int64),
     )
 
 
@@ -200,7 +202,7 @@ def make_workspace(
     fields that terms take."""
     lanes = LANES * groups
     return Workspace(
-        neighbours=make_neighbours(people, fields),
+        neighbours=make_neighbours(people, terms, fields),
         unsure=np.empty(people, np.int64),
         blocks=Blocks(
             Bodies(
@@ -216,16 +218,17 @@ def make_workspace(
         walls=np.empty((walls, 5)),
         barriers=np.empty((BARRIER_FIELDS, walls), np.float32),
         bounds=np.empty(groups + AT_ONCE),
-        picked=np.empty(groups + LANES, np.int64),
-        free=np.empty(groups, np.int64),
-        lanes=np.empty((SPEED + 1, lanes)),
-        lane_costs=np.empty(lanes),
-        rows=np.empty(options + LANES, np.int64),
-        ends=np.empty((SPEED + 1, options + LANES)),
-        costs=np.empty(options + LANES),
-        least=np.empty(options + AT_ONCE),
-        approximate=np.empty(options, np.bool_),
-        unwalled=np.empty(options, np.bool_),
-        sums=PairSums(np.empty(terms), np.zeros(1, np.int64)),
+        opened=Opened(
+            picked=np.empty(groups + LANES, np.int64),
+            free=np.empty(groups, np.int64),
+            lanes=np.empty((SPEED + 1, lanes)),
+            lane_costs=np.empty(lanes),
+            rows=np.empty(options + LANES, np.int64),
+            ends=np.empty((SPEED + 1, options + LANES)),
+            costs=np.empty(options + LANES),
+            least=np.empty(options + AT_ONCE),
+            approximate=np.empty(options, np.bool_),
+            unwalled=np.empty(options, np.bool_),
+        ),
         path=np.empty((3, SAMPLES)),
     )

@@ -64,11 +64,11 @@ def mark_relevant(
     marks = work.neighbours.marks
     if count <= FEW_NEIGHBOURS or len(table.address) > MOST_TERMS:
         return False
-    n = pick_between(now.bounds, -np.inf, now.lowest + LIKELY, 0, work.picked)
+    n = pick_between(now.bounds, -np.inf, now.lowest + LIKELY, 0, work.opened.picked)
     marks[:count] = 0
-    costs, ends, of, lanes = others[COST], work.ends, groups.ends, in_lanes(count)
+    costs, ends, of, lanes = others[COST], work.opened.ends, groups.ends, in_lanes(count)
     for asked in range(PROBE_GROUPS):
-        a = work.picked[(2 * asked + 1) * n // (2 * PROBE_GROUPS)]
+        a = work.opened.picked[(2 * asked + 1) * n // (2 * PROBE_GROUPS)]
         g = now.first + a
         ends[SECONDS, a] = of[DURATION, g]
         ends[SPEED, a] = 0.5 * (of[SLOWEST, g] + of[FASTEST, g])

@@ -11,16 +11,16 @@ from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, pick_betwee
 from mesa_mobility.crowd.planning.evaluation.neighbour_costs import ENOUGH, pair_cost
 from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import select_relevant
 from mesa_mobility.crowd.planning.evaluation.term_table import compile_terms
-from mesa_mobility.crowd.planning.workspace import PairSums, make_neighbours
+from mesa_mobility.crowd.planning.workspace import make_neighbours
 from tests.fixtures.records import me
 
 NEIGHBOURS = 21
 
 
 @njit
-def _cost(own, ends, count, moved, neighbours, enough, table, sums):
+def _cost(own, ends, count, moved, neighbours, enough, table):
     fill_lane(count, neighbours.others)
-    return pair_cost(own, 0, ends, count, moved, neighbours, enough, table, sums)
+    return pair_cost(own, 0, ends, count, moved, neighbours, enough, table)
 
 
 @njit
@@ -40,7 +40,7 @@ def cost():
     record = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14])
     own = Decider(0, 0, 0.0, 0.0, 1.0, 0.0, 0.14, record)
     ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
-    neighbours = make_neighbours(24, 0)
+    neighbours = make_neighbours(24, 3, 0)
     others = neighbours.others
     others[:] = 0.0
     others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
@@ -50,9 +50,9 @@ def cost():
     compiled, _ = compile_terms(terms)
 
     def of(enough, first, moved=0):
-        sums = PairSums(np.zeros(3), np.array([first]))
-        given = own, ends, NEIGHBOURS, moved, neighbours, enough, compiled.pair, sums
-        return _cost(*given), sums.first[0]
+        neighbours.first[0] = first
+        given = own, ends, NEIGHBOURS, moved, neighbours, enough, compiled.pair
+        return _cost(*given), neighbours.first[0]
 
     each = [
         term.weight
