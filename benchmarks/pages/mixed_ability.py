@@ -1,9 +1,8 @@
-"""Compute the figures and the picture of docs/explanation/mixed_ability.md and insert them.
+"""What a few wheelchairs or slow walkers change: table and picture of explanation/mixed_ability.md.
 
-python benchmarks/mixed_ability.py --seeds 10
-python benchmarks/mixed_ability.py --seeds 10 --file rows.jsonl
+python benchmarks/pages/mixed_ability.py FOLDER --seeds 10
 
-The second keeps each run as a line of a file and goes on from there.
+Each run is kept as a line of FOLDER/rows.jsonl, from which an interrupted command goes on.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from blocks import give, table
 from matplotlib.figure import Figure
 from shapely import box, union_all
 
@@ -21,10 +21,6 @@ from mesa_mobility import Exit, FloorPlan, PedestrianModel, Trajectories
 from mesa_mobility.experiments import mean_interval
 from mesa_mobility.populations import Population
 from mesa_mobility.results import check_safety, crossings, flow
-
-PAGE = Path(__file__).parents[1] / "docs" / "explanation" / "mixed_ability.md"
-PICTURE = PAGE.parents[1] / "images" / "mixed_ability.png"
-BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->"
 
 SHARES = (0.0, 0.05, 0.1, 0.2)
 TYPES = {"wheelchair_manual": "manual wheelchairs", "slow": "slow walkers"}
@@ -37,27 +33,25 @@ CONFIDENCE = 0.9
 
 
 def main() -> None:
-    """Run what is missing and fill in the page."""
+    """Run what is missing; write the table and the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, help="for runs, table and picture")
     parser.add_argument("--seeds", type=int, default=10, help="seeds 1 to this")
-    parser.add_argument("--file", type=Path, help="lines of runs, to go on from")
     given = parser.parse_args()
-    known = given.file is not None and given.file.exists()
-    rows = [json.loads(line) for line in given.file.read_text().splitlines()] if known else []
+    given.folder.mkdir(parents=True, exist_ok=True)
+    kept = given.folder / "rows.jsonl"
+    rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
     done = {(row["neck"], row["type"], row["share"], row["seed"]) for row in rows}
     for seed in range(1, given.seeds + 1):
         for neck, kind, share in runs():
             if (neck, kind, share, seed) in done:
                 continue
             rows.append(run(neck, kind, share, seed))
-            if given.file is not None:
-                with given.file.open("a") as file:
-                    file.write(json.dumps(rows[-1]) + "\n")
+            with kept.open("a") as file:
+                file.write(json.dumps(rows[-1]) + "\n")
     rows = [row for row in rows if row["seed"] <= given.seeds]
-    draw(rows)
-    head, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
-    tail = rest.partition(END)[2]
-    PAGE.write_text(f"{head}{BEGIN}\n{table(rows, given.seeds)}\n\n{END}{tail}", encoding="utf-8")
+    draw(rows, given.folder / "mixed_ability.png")
+    give(given.folder, "mixed-ability", results(rows, given.seeds))
 
 
 def runs() -> list[tuple[str, str, float]]:
@@ -120,14 +114,10 @@ def interval(rows: list[dict[str, Any]], figure: str) -> tuple[float, float, flo
     return tuple(np.nan if each is None else each for each in values)  # type: ignore[return-value]
 
 
-def table(rows: list[dict[str, Any]], seeds: int) -> str:
+def results(rows: list[dict[str, Any]], seeds: int) -> str:
     """One line a configuration."""
-    lines = [
-        f"Seeds 1 to {seeds}; means over seeds, with 90 % intervals of the mean.",
-        "",
-        "| through | of | share | flow, persons/s | last one through, s | still inside |",
-        "|---|---|---|---|---|---|",
-    ]
+    heads = ("through", "of", "share", "flow, persons/s", "last one through, s", "still inside")
+    lines = []
     for neck, (width, length) in NECKS.items():
         for kind, name in TYPES.items():
             for share in SHARES:
@@ -136,18 +126,20 @@ def table(rows: list[dict[str, Any]], seeds: int) -> str:
                 last, soon, late = interval(own, "egress_s")
                 # Where some seed leaves people inside, the column beside it says so.
                 time = "-" if np.isnan(last) else f"{last:.0f} ({soon:.0f} to {late:.0f})"
-                lines.append(
-                    f"| {neck}, {width:g} m x {length:g} m | {name} | {100 * share:.0f} % "
-                    f"| {flow_:.2f} ({low:.2f} to {high:.2f}) "
-                    f"| {time} "
-                    f"| {sum(row['inside'] for row in own)} of {PEOPLE * len(own)} |"
-                )
+                lines.append((
+                    f"{neck}, {width:g} m x {length:g} m", name, f"{100 * share:.0f} %",
+                    f"{flow_:.2f} ({low:.2f} to {high:.2f})", time,
+                    f"{sum(row['inside'] for row in own)} of {PEOPLE * len(own)}",
+                ))  # fmt: skip
     overlaps, through = (sum(row[name] for row in rows) for name in ("overlaps", "wall_crossings"))
-    lines += ["", f"Overlaps {overlaps}, wall crossings {through}, in {len(rows)} runs."]
-    return "\n".join(lines)
+    return (
+        f"Seeds 1 to {seeds}; means over seeds, with 90 % intervals of the mean.\n\n"
+        f"{table(heads, lines)}\n\n"
+        f"Overlaps {overlaps}, wall crossings {through}, in {len(rows)} runs."
+    )
 
 
-def draw(rows: list[dict[str, Any]]) -> None:
+def draw(rows: list[dict[str, Any]], picture: Path) -> None:
     """Flow and time of the last one against the share."""
     figure = Figure(figsize=(9.6, 3.8), dpi=120, layout="constrained")
     figures = {"flow": "persons/s", "egress_s": "last one through, s"}
@@ -168,7 +160,7 @@ def draw(rows: list[dict[str, Any]]) -> None:
         axes.set_ylim(bottom=0.0)
         axes.grid(alpha=0.3)
     axes.legend(frameon=False, fontsize=8)
-    figure.savefig(PICTURE, metadata={"Software": None})
+    figure.savefig(picture, metadata={"Software": None})
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Seconds and memory of each stage of a map build, against the number of poses.
 
-python benchmarks/maps/map_build.py captures/manifest.tsv [--shares 0.25 0.5 1] [--clusters 350]
+python benchmarks/pages/map_build.py captures/manifest.tsv [--shares 0.25 0.5 1] [--clusters 350]
+    [--out FOLDER]
 
 Each share of the clips is built in a process of its own. Memory is the process's peak by
 the end of the stage. The first build, of the first share, compiles and is not counted.
@@ -14,7 +15,10 @@ import resource
 import subprocess
 import sys
 import time
+from pathlib import Path
 from typing import Any
+
+from blocks import give, machine, table
 
 from mesa_mobility.capture import load_clips, read_manifest
 from mesa_mobility.mobility import build_map
@@ -58,14 +62,13 @@ def main() -> None:
     parser.add_argument("--type", default="able_bodied")
     parser.add_argument("--shares", type=float, nargs="*", default=[0.25, 0.5, 1.0])
     parser.add_argument("--clusters", type=int, default=350)
+    parser.add_argument("--out", type=Path, help="folder for the block")
     parser.add_argument("--child", type=float, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.child is not None:
         print(json.dumps(measure(given.manifest, given.type, given.child, given.clusters)))
         return
-    print("| poses in the component | " + " | ".join(STAGES) + " | wall s | peak MB |")
-    print("|---" * (len(STAGES) + 3) + "|")
-    results = []
+    rows = []
     for counted, share in enumerate([given.shares[0], *given.shares]):
         command = [
             sys.executable, __file__, given.manifest, "--type", given.type, "--clusters",
@@ -75,13 +78,13 @@ def main() -> None:
         result = json.loads(done.stdout.splitlines()[-1])
         if not counted:
             continue
-        results.append(result)
         stages = [result["stages"].get(stage, {"wall_s": 0.0}) for stage in STAGES]
-        seconds = " | ".join(f"{stage['wall_s']:.1f}" for stage in stages)
         wall = sum(stage["wall_s"] for stage in result["stages"].values())
         peak = max(stage["peak_mb"] for stage in result["stages"].values())
-        print(f"| {result['poses']:,} | {seconds} | {wall:.1f} | {peak:,.0f} |", flush=True)
-    print(json.dumps({"results": results}))
+        seconds = (f"{stage['wall_s']:.1f}" for stage in stages)
+        rows.append((f"{result['poses']:,}", *seconds, f"{wall:.1f}", f"{peak:,.0f}"))
+    heads = ("poses in the component", *(f"{each}, s" for each in STAGES), "together, s", "peak MB")
+    give(given.out, "map-builds", f"{machine()}\n\n{table(heads, rows)}")
 
 
 if __name__ == "__main__":
