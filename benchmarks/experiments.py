@@ -60,6 +60,8 @@ def main() -> None:
 
 def overhead(place: Path, runs: int, people: int, workers: int) -> str:
     """Run an experiment and compare the time of its runs with that of everything."""
+    if place.exists():
+        raise SystemExit(f"{place} is there: runs that it holds would not be timed")
     experiment = Experiment(
         "doorway", {"door_width": WIDTHS}, replications=runs // len(WIDTHS), seed=1,
         fixed={"pedestrians": people}, max_seconds=120, keep=("occupancy",),
