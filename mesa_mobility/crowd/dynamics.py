@@ -30,6 +30,7 @@ from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
+from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
@@ -243,6 +244,28 @@ class Dynamics(Saved):
             scene.rules,
         )
 
+    def wishes(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64] | None = None,
+        speeds: NDArray[np.float64] | None = None,
+    ) -> Wishes:
+        """What the people in ``rows`` would do if nobody else were there; see ``World.wishes``."""
+        scene, model, people = self._scene, self._model, self._model.population
+        crowd = scene.crowd
+        if points is None:
+            points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
+        return self._scheduler.wishes(
+            rows,
+            points,
+            crowd.preferred[rows] if speeds is None else speeds,
+            self._moment,
+            people.departed.together_with(people.present),
+            crowd,
+            scene.environment.surroundings,
+            model.terms,
+        )
+
     def _let_in(self) -> None:
         """Insert arrivals of the sources where there is room."""
         model = self._model
@@ -330,4 +353,4 @@ class Dynamics(Saved):
         everybody = people.departed.together_with(people.present)
         if not np.isin(rows, everybody).all():
             raise ModelError(f"candidates: got the rows {rows}, expected people inside")
-        return grid_of_frame(everybody, crowd)
+        return grid_of_frame(everybody, crowd.records)

@@ -35,6 +35,7 @@ from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder, mov
 from mesa_mobility.crowd.running.stall import StallWatch, stall_reason
 from mesa_mobility.crowd.running.statistics import Statistics
 from mesa_mobility.crowd.saved import Saved
+from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
@@ -308,6 +309,15 @@ class CrowdModel(mesa.Model):
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
         """Movement options of the people in ``rows`` if they decided now."""
         return self.dynamics.candidates(rows)
+
+    def wishes(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64] | None = None,
+        speeds: NDArray[np.float64] | None = None,
+    ) -> Wishes:
+        """What people would do if nobody else were there; see ``World.wishes``."""
+        return self.dynamics.wishes(rows, points, speeds)
 
     def explain(self, row: int) -> Explanation:
         """The decision of the person in ``row`` if it decided now, before all others.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from copy import copy, deepcopy
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from mesa_mobility.crowd.costs.candidates import Moment
 from mesa_mobility.crowd.costs.layout import FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.planning.alone import wishes_of
 from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.evaluation.sample_checks import SampleChecks, check_terms
@@ -24,9 +25,10 @@ from mesa_mobility.crowd.planning.evaluation.term_table import NO_EXTRA, Compile
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import FrameContext, Rules, Workspace, make_workspace
-from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
-from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.people_grid import Grid, build_grid, grid_of_frame
+from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
+from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.errors import ModelError
 
 
@@ -91,7 +93,7 @@ class DecisionScheduler:
         table, groups = self._repertoire.table, self._repertoire.groups
         compiled, others = self._compiled(terms, crowd)
         extra, extra_offsets = NO_EXTRA
-        grid = grid_of_frame(rows, crowd)
+        grid = grid_of_frame(rows, crowd.records)
         if others:
             extra, extra_offsets = extra_costs(
                 others, order, table, crowd, grid, around, self._rules, moment, self._types
@@ -145,6 +147,56 @@ class DecisionScheduler:
         watch.decision = judge(weighed, table, crowd, around, self._rules)
         part(at, len(order))
         watch.commits(crowd, self._rules.first_option)
+
+    def wishes(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64],
+        speeds: NDArray[np.float64],
+        moment: Moment,
+        inside: NDArray[np.int64],
+        crowd: Crowd,
+        around: Surroundings,
+        terms: Sequence[CostTerm],
+    ) -> Wishes:
+        """What people would do if nobody else were there, and who is in the way of that.
+
+        Cost terms written in NumPy do not count: they may look at the others.
+
+        Args:
+            rows: (n,) these people.
+            points: (n, 2) where each wants to go, metres.
+            speeds: (n,) how fast, m/s.
+            moment: now.
+            inside: rows of everybody inside.
+            crowd: the crowd.
+            around: walls and exits.
+            terms: cost terms.
+        """
+        compiled, _ = self._compiled(terms, crowd)
+        alone, fields = cast(CrowdState, crowd.records[rows]), compiled.fields
+        alone["target_x"], alone["target_y"] = points.T
+        alone["preferred"] = speeds
+        order = np.arange(len(rows), dtype=np.int64)
+        nowhere = np.zeros_like(self._rules.interaction_ranges)
+        scene = FrameContext(
+            moment.frame,
+            self._repertoire.table,
+            self._repertoire.groups,
+            alone,
+            grid_of_frame(order, alone),
+            around,
+            compiled._replace(fields=fields[rows] if fields.size else fields),
+            self._rules._replace(search_radius=0.0, interaction_ranges=nowhere, hard_bodies=False),
+        )
+        extra, offsets = NO_EXTRA
+        [work] = self._works_for(1, len(inside), around, len(terms), fields.shape[1])
+        self._decide(order, new_queue(len(order)), scene, extra, offsets, work)
+        everybody = build_grid(inside, crowd.x, crowd.y)
+        reach = self._rules.search_radius
+        return wishes_of(
+            alone, rows, moment.frame, self._repertoire.table, everybody, crowd.records, reach
+        )
 
     def _works_for(
         self, threads: int, people: int, around: Surroundings, terms: int, fields: int

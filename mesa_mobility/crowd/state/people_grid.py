@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import entry_point, internal, kept
 from mesa_mobility.compiled.simd import LANES
 from mesa_mobility.compiled.threads import by_blocks
-from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.records import CrowdState
 
 CELL_SIZE = 1.5
 """Side of a cell, metres, unless there would be too many."""
@@ -59,16 +59,16 @@ def build_grid(active: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.
     return _sorted(active, x, y, PLACED)
 
 
-def grid_of_frame(active: NDArray[np.int64], crowd: Crowd) -> Grid:
-    """A grid of the people in rows ``active`` with all that decisions read of them.
+def grid_of_frame(active: NDArray[np.int64], records: CrowdState) -> Grid:
+    """A grid of the people in rows ``active`` of the crowd, with all that decisions read of them.
 
     Velocities, directions and route lengths stay those at the beginning of the frame, also of those
     who decide.  The circles are kept up to date (see ``cover_in``).
     """
-    grid: Grid = _sorted(active, crowd.x, crowd.y, COVERED + 3)
+    grid: Grid = _sorted(active, records["x"], records["y"], COVERED + 3)
 
     def block(first: int, last: int) -> None:
-        _fill(grid, crowd.records, first, last)
+        _fill(grid, records, first, last)
 
     by_blocks(block, len(active))
     return grid

@@ -49,7 +49,7 @@ def test_everybody_is_found_in_the_grid(crowd):
 
 
 def test_what_is_kept_of_people_is_in_the_order_of_the_grid(crowd):
-    grid = grid_of_frame(np.arange(50), crowd)
+    grid = grid_of_frame(np.arange(50), crowd.records)
     kept, people = grid.table, grid.people
     assert (kept[:2] == [crowd.x[people], crowd.y[people]]).all()
     assert (kept[2:4] == [crowd.vx[people], crowd.vy[people]]).all()
@@ -62,7 +62,7 @@ def test_what_is_kept_of_people_is_in_the_order_of_the_grid(crowd):
 
 
 def test_what_somebody_covers_is_kept_up_to_date(crowd):
-    grid = grid_of_frame(np.arange(50), crowd)
+    grid = grid_of_frame(np.arange(50), crowd.records)
     before = grid.table.copy()
     crowd.box[7] = 0.7, 1.6, 1.3, 2.4
     at = int(np.flatnonzero(grid.people == 7)[0])
@@ -74,7 +74,7 @@ def test_what_somebody_covers_is_kept_up_to_date(crowd):
 
 @pytest.mark.parametrize(("radius", "range_"), [(0.5, 0.5), (3.0, 2.0), (30.0, 4.0)])
 def test_neighbours_are_found_in_the_order_of_the_grid(crowd, radius, range_):
-    grid = grid_of_frame(np.arange(50), crowd)
+    grid = grid_of_frame(np.arange(50), crowd.records)
     x, y, to = grid.x, grid.y, make_neighbours(50, 0, 0)
     c, s, x0, y0, x1, y1 = 0.6, 0.8, -0.5, -1.0, 1.5, 0.75
     for i in range(0, 50, 7):

@@ -25,7 +25,7 @@ def test_the_same_by_any_number_of_threads(monkeypatch, count):
     crowd.records["vx"][:24] = np.linspace(0.0, 1.5, 24)
     alone = np.empty((24, 2))
     known = aggregates.aggregate(rows, 0, crowd, alone)
-    before = grid_of_frame(rows, crowd).table.tobytes()
+    before = grid_of_frame(rows, crowd.records).table.tobytes()
     monkeypatch.setattr(threads, "THREADS", count)
     monkeypatch.setattr(threads, "BLOCK", 5)
     shared = np.empty((24, 2))
@@ -34,4 +34,4 @@ def test_the_same_by_any_number_of_threads(monkeypatch, count):
     assert (found.people, found.going, found.awaited) == (24, 23, 2)
     assert known == pytest.approx(found, rel=1e-12)
     assert found.speeds == pytest.approx(np.hypot(crowd.vx[:24], crowd.vy[:24]).sum())
-    assert grid_of_frame(rows, crowd).table.tobytes() == before
+    assert grid_of_frame(rows, crowd.records).table.tobytes() == before
