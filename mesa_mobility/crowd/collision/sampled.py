@@ -34,7 +34,7 @@ class Decider(NamedTuple):
     """Somebody who decides.
 
     Fields: ``row`` in the crowd; ``kind`` index of the pedestrian type; ``x``, ``y`` metres; ``c``,
-    ``s`` cosine and sine of the heading; ``core`` radius, metres; ``record`` (8 + fields,) the same
+    ``s`` cosine and sine of the heading; ``core`` radius, metres; ``record`` (9 + fields,) the same
     as cost terms read it (see ``costs.layout``).
     """
 

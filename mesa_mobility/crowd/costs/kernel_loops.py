@@ -73,7 +73,7 @@ def me_of(fields: Sequence[str], declared: Sequence[str]) -> str:
         fields: those that are laid out for the kernel.
         declared: those among them that the model declares.
     """
-    known = [f"own[{row}]" for row in range(8)]
+    known = [f"own[{row}]" for row in range(9)]
     more = [_laid(name, fields, "own[at[{}]]") for name in (*KERNEL_FIELDS[1:], *declared)]
     return f"Me({', '.join([*known, *more])})"
 

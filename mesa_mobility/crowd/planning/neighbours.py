@@ -13,8 +13,10 @@ from mesa_mobility.crowd.collision.sampled import SLACK, Decider, lay_close
 from mesa_mobility.crowd.collision.simd_boxes import sweeps_near
 from mesa_mobility.crowd.collision.simd_tests import places_near
 from mesa_mobility.crowd.costs.layout import (
+    AWAY,
     FIELDS,
     LEAD,
+    ME_AHEAD,
     ME_CORE,
     ME_PREFERRED,
     ME_TARGET_X,
@@ -23,6 +25,8 @@ from mesa_mobility.crowd.costs.layout import (
     ME_VY,
     ME_X,
     ME_Y,
+    OTHER_X,
+    OTHER_Y,
     Terms,
 )
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane
@@ -64,6 +68,7 @@ def gather_neighbours(
     for row in range(FIELDS, len(others)):
         for a in range(count):
             others[row, a] = scene.terms.fields[to.rows[a], row - FIELDS]
+    me.record[ME_AHEAD] = _nearest_ahead(me, others, count)
     fill_lane(count, others)
     near = to.near[: found if rules.hard_bodies else 0]
     lay_close(me, near, scene.grid, scene.frame, scene.table, state, to.close)
@@ -79,10 +84,24 @@ def _lay_self(i: int, state: CrowdState, terms: Terms, record: NDArray[np.float6
     # Somebody without a route does not want to walk.
     record[ME_PREFERRED] = state.preferred[i] if state.route[i] < np.inf else 0.0
     record[ME_VX], record[ME_VY] = state.vx[i], state.vy[i]
-    record[ME_CORE] = core
+    record[ME_CORE], record[ME_AHEAD] = core, np.inf
     for field in range(terms.fields.shape[1]):
         record[FIELDS + field] = terms.fields[i, field]
     return Decider(i, state.type_index[i], x, y, math.cos(heading), math.sin(heading), core, record)
+
+
+@internal()
+def _nearest_ahead(me: Decider, others: NDArray[np.float64], count: int) -> float:
+    """Metres to the nearest of ``count`` others on the side of the target; inf without any."""
+    dx, dy = me.record[ME_TARGET_X] - me.x, me.record[ME_TARGET_Y] - me.y
+    x, y, away2 = others[OTHER_X], others[OTHER_Y], others[AWAY]
+    least = np.inf
+    for a in range(count):
+        wx, wy = x[a] - me.x, y[a] - me.y
+        away2[a] = wx * wx + wy * wy if wx * dx + wy * dy > 0.0 else np.inf
+    for a in range(count):
+        least = min(least, away2[a])
+    return math.sqrt(least)
 
 
 @force_inlined()

@@ -103,11 +103,11 @@ class Neighbours(NamedTuple):
     """Who decides, and the people around: all that a decision reads of them.
 
     Attributes:
-        own: (8 + fields,) who decides, as cost terms read it; fields as in ``costs.layout``.
+        own: (9 + fields,) who decides, as cost terms read it; fields as in ``costs.layout``.
         near: places in the grid of those whose paths may lead to where the pedestrian may walk.
         close: their movements in the pedestrian's coordinates.
         rows: rows in the crowd of those who count in cost terms.
-        others: (8 + fields, n) the same as cost terms read them, first those likely to cost most.
+        others: (9 + fields, n) the same as cost terms read them, first those likely to cost most.
         moved: for each of these, the column with which it has changed places, one after the other.
         marks: for each of these, bits of the pair terms that it matters to.
         marked: their columns that matter to one pair term.
