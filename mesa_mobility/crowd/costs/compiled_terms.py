@@ -53,7 +53,7 @@ class CompiledTerm(CostTerm):
                 of.preferred_speeds,
                 of.velocities,
                 of.cores,
-                _nearest_ahead(of),
+                nearest_ahead(of),
                 *(of.field(name) for name in kernel.fields),
             ]
         )
@@ -79,7 +79,7 @@ class CompiledTerm(CostTerm):
         return _each_option(kernel.address, of.offsets, ends, own, at, numbers)
 
 
-def _nearest_ahead(of: Candidates) -> NDArray[np.float64]:
+def nearest_ahead(of: Candidates) -> NDArray[np.float64]:
     """(b,) metres to the nearest neighbour on the side of the target; inf without any."""
     counts = np.diff(of.neighbour_offsets)
     whose = np.repeat(np.arange(len(counts)), counts)
