@@ -84,7 +84,7 @@ class Counter:
     def places(self, count: int) -> NDArray[np.float64]:
         """(count, 2) places in the line, metres, of people with cores of 0.14 m; the first is where
         people are served."""
-        return self._at(self.spacing * np.arange(count))
+        return self._at(np.arange(count, dtype=np.float64) * self.spacing)
 
     def places_of(self, cores: ArrayLike) -> NDArray[np.float64]:
         """(n, 2) places in the line, metres, of people with (n,) core radii, the first one first.

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from mesa_mobility.behaviors import Yielding
 from shapely import Polygon, box, union_all
 
 from benchmarks.conflicts.walking import Walk
@@ -28,13 +27,12 @@ TEN = 10.0
 """Metres of the room before a door that people of one type leave by, and of the one behind it."""
 
 
-def niche(seed: int, *, niche: bool, yielding: bool) -> dict[str, Any]:
+def niche(seed: int, *, niche: bool) -> dict[str, Any]:
     """Ten meet ten in a corridor in which they cannot pass.
 
     Args:
         seed: of the run.
         niche: whether there is one beside the middle.
-        yielding: whether they have the shipped behaviour for such corridors.
     """
     low, high, end = 4.0 - WIDTH / 2, 4.0 + WIDTH / 2, ROOM + LENGTH
     parts = [box(0, 0, ROOM, 8), box(ROOM, low, end, high), box(end, 0, end + ROOM, 8)]
@@ -44,8 +42,6 @@ def niche(seed: int, *, niche: bool, yielding: bool) -> dict[str, Any]:
     floor = union_all(parts)
     assert abs(floor.area - 2 * 64 - LENGTH * WIDTH - niche * NICHE[0] * NICHE[1]) < 1e-9
     model = crowd_model(FloorPlan(floor, exits=exits), seed)
-    if yielding:
-        model.add_tactic(Yielding())
     for sense, goal in ((-1, "east"), (1, "west")):
         places = [(MIDDLE + sense * (FIRST + FILE * k), 4.0) for k in range(10)]
         model.add_pedestrians(places, headings=0.0 if sense < 0 else np.pi, exits=[goal])
@@ -98,8 +94,7 @@ def door(seed: int, *, kind: str, width: float) -> dict[str, Any]:
 def cases() -> Sequence[Case]:
     """Corridors, doors both ways, and doors of each type, for 10 seeds each."""
     return [
-        *(case(niche, niche=there, yielding=rule) for there in (True, False)
-          for rule in (False, True)),
+        *(case(niche, niche=there) for there in (True, False)),
         case(both_ways, width=1.0, depth=0.2),
         case(both_ways, width=0.7, depth=10.0),
         *(case(door, kind=kind, width=width) for width in (0.9, 1.0, 1.2)

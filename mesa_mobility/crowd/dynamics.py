@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Protocol
 from weakref import WeakValueDictionary
 
@@ -236,13 +237,14 @@ class Dynamics(Saved):
             model.terms,
             [each.name for each in scene.types],
         )
-        return judge(
+        judged = judge(
             weighed,
             scene.repertoire.table,
             scene.crowd,
             scene.environment.surroundings,
             scene.rules,
         )
+        return replace(judged, blocked_by=int(self.wishes(np.array([row])).blockers[0]))
 
     def wishes(
         self,

@@ -5,9 +5,9 @@ from mesa_mobility.behaviors.steering import anticipation, speed_adaptation
 from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd import precompile
+from mesa_mobility.crowd.conflicts import notes
 from mesa_mobility.crowd.planning import decision, decision_order
 from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
-from mesa_mobility.crowd.tactics import impatience, turns
 
 FUNCTIONS = [
     decision.decide,
@@ -19,12 +19,9 @@ FUNCTIONS = [
     departed.walk_on,
     departed.move_on,
     departed.merge,
-    impatience.pick,
-    impatience.turn,
     anticipation._turn_aside,
     speed_adaptation._adapt_speeds,
-    turns.find_mouths,
-    turns.give_turns,
+    notes.find_hindered,
     aggregates._look_over,
     aggregates.split_active,
 ]

@@ -62,6 +62,8 @@ def gather_neighbours(
     )
     if len(rules.interaction_ranges) > 1:
         count = keep_interacting(i, count, rules.interaction_ranges, state, to)
+    if state.presses[i]:
+        count = 0
     route, lead = state.route[i], others[LEAD]
     for a in range(count):
         lead[a] = route - lead[a]

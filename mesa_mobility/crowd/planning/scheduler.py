@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from copy import copy, deepcopy
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -144,7 +145,12 @@ class DecisionScheduler:
         at = int(np.flatnonzero(order == watch.pedestrian)[0])
         if at > 0:
             part(0, at)
-        watch.decision = judge(weighed, table, crowd, around, self._rules)
+        row = order[at : at + 1]
+        target = np.column_stack([crowd.target_x[row], crowd.target_y[row]])
+        speed = crowd.preferred[row]
+        wish = self.wishes(row, target, speed, moment, rows, crowd, around, terms)
+        judged = judge(weighed, table, crowd, around, self._rules)
+        watch.decision = replace(judged, blocked_by=int(wish.blockers[0]))
         part(at, len(order))
         watch.commits(crowd, self._rules.first_option)
 
@@ -178,16 +184,18 @@ class DecisionScheduler:
         alone["target_x"], alone["target_y"] = points.T
         alone["preferred"] = speeds
         order = np.arange(len(rows), dtype=np.int64)
-        nowhere = np.zeros_like(self._rules.interaction_ranges)
+        grid = grid_of_frame(order, alone)
+        # Nothing is near to a place that is no number, not even somebody else at the same place.
+        grid.x[:] = np.nan
         scene = FrameContext(
             moment.frame,
             self._repertoire.table,
             self._repertoire.groups,
             alone,
-            grid_of_frame(order, alone),
+            grid,
             around,
             compiled._replace(fields=fields[rows] if fields.size else fields),
-            self._rules._replace(search_radius=0.0, interaction_ranges=nowhere, hard_bodies=False),
+            self._rules._replace(hard_bodies=False),
         )
         extra, offsets = NO_EXTRA
         [work] = self._works_for(1, len(inside), around, len(terms), fields.shape[1])
