@@ -34,7 +34,6 @@ from mesa_mobility.behaviors.velocity import (
     PreferredVelocity,
     VelocityChange,
 )
-from mesa_mobility.behaviors.yielding import Yielding
 
 __all__ = [
     "AdaptSpeed",
@@ -75,5 +74,4 @@ __all__ = [
     "VelocityChange",
     "WalkTogether",
     "WalkingAbreast",
-    "Yielding",
 ]

@@ -1,10 +1,10 @@
 """How well the numbers of the default preset, and other numbers, fit the measurements.
 
-python benchmarks/calibrate.py calibration.jsonl [--seeds 2] [--jobs 2] [--minutes 9]
+python benchmarks/calibrate.py calibration.jsonl [--seeds 2] [--jobs 2] [--minutes 9] [--out FOLDER]
 
 Changes each number by itself to a smaller and a larger value (``GRID``), runs bottlenecks, a
 corridor and a counterflow with it, and appends one JSON line for each setting and seed; goes on
-where the file ends. Then it prints, in Markdown, each figure's deviation from what was measured and
+where the file ends. Then it prints, or writes as a block for docs/calibration.md, each figure and
 the objective: the mean square of (figure - middle) / half the width of what was measured.
 """
 
@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pages.blocks import give, table
 
 from mesa_mobility import MobilityMap, PedestrianType
 from mesa_mobility.commands.console import progress_bar
@@ -77,7 +78,7 @@ def rules(changes: dict[str, float]) -> dict[str, Any]:
     of = DEFAULT | changes
     terms = [
         load_behavior(name)(
-            weight=of.get(f"weight of {name}", 1.0),
+            weight=of.get(f"weight of {name}", _TERMS[name]),
             **{each: of[f"{name}: {each}"] for each in _CONSTANTS.get(name, ())},
         )
         for name in _TERMS
@@ -126,6 +127,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--minutes", type=float, default=9.0, help="begin no run after this")
+    parser.add_argument("--out", type=Path, help="folder for the block")
     parser.add_argument("--no-progress", action="store_true", help="no progress on standard error")
     given = parser.parse_args()
     lines = given.file.read_text(encoding="utf-8").splitlines() if given.file.exists() else []
@@ -155,27 +157,31 @@ def main() -> None:
             file.flush()
             done[json_text(each), seed] = figures
             told("runs", len(done), len(asked))
-    report(done)
+    report(done, given.seeds, given.out)
 
 
-def report(done: dict[tuple[str, int], dict[str, float]]) -> None:
+def report(
+    done: dict[tuple[str, int], dict[str, float]], seeds: int, out: Path | None = None
+) -> None:
     """One line for each setting: medians over its seeds, and the objective."""
     bands = wanted()
     names = [*bands, "through the counterflow"]
-    print("| number | value | " + " | ".join(names) + " | objective |")
-    print("|---" * (len(names) + 3) + "|")
-    print("| measured | | "
-          + " | ".join(f"{m:.2f} ± {h:.2f}" for m, h in bands.values()) + " | 200 | |")  # fmt: skip
+    lines: list[list[str]] = [
+        ["measured", "", *(f"{m:.2f} ± {h:.2f}" for m, h in bands.values()), "200", ""]
+    ]
     for each in settings():
-        rows = [figures for (key, _), figures in done.items() if key == json_text(each)]
+        rows = [done[json_text(each), seed] for seed in range(1, seeds + 1)
+                if (json_text(each), seed) in done]  # fmt: skip
         if not rows:
             continue
         medians = {name: float(np.median([_number(row[name]) for row in rows])) for name in names}
         off = [((medians[name] - middle) / half) ** 2 for name, (middle, half) in bands.items()]
-        ((name, value),) = each.items() or [("default", None)]
+        ((name, value),) = each.items() or [("default preset", None)]
         shown = "" if value is None else f"{value:.3g}"
-        cells = " | ".join(f"{medians[n]:.3g}" for n in names)
-        print(f"| {name} | {shown} | {cells} | {np.mean(off):.2f} |")
+        cells = [f"{medians[n]:.3g}" for n in names]
+        lines.append([name, shown, *cells, f"{np.mean(off):.2f}"])
+    text = table(("number", "value", *names, "objective"), lines)
+    give(out, "sensitivity", f"Medians over seeds 1 to {seeds}.\n\n{text}")
 
 
 def _number(value: float | None) -> float:

@@ -1,26 +1,26 @@
 """Is anybody ever frozen or lost?  500 runs, each with a seed of its own, counted independently.
 
 python benchmarks/campaign.py campaign.jsonl [--runs 500] [--plans 0] [--minutes 9] [--jobs 2]
+    [--out FOLDER]
 
 Appends one JSON line a run and goes on where the file ends, so that it can be run in pieces;
 with nothing left to run it prints the figures and ends with status 1 if anybody was frozen or lost.
-With --plans so many random floor plans are run besides: halls, rooms, corridors, stars and traps.
+With --out it writes them as a block for docs/validation.md. With --plans so many random floor plans
+are run besides: halls, rooms, corridors, stars and traps.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from mesa_mobility.results.files import json_text
+from conflicts.resuming import run_missing
+from pages.blocks import give, table
+
 from mesa_mobility.validation.bottleneck import bottleneck
 from mesa_mobility.verification import Case, case
-from mesa_mobility.verification.cases import run_units
 from mesa_mobility.verification.scenarios.counterflow import counterflow
 from mesa_mobility.verification.scenarios.random_plans import SHAPES, random_plan
 from mesa_mobility.verification.scenarios.shipped import shipped
@@ -59,6 +59,11 @@ KEPT = (
     "min_distance_m", "simulated_s", "egress_s", "fallback_time_share", "person_s",
 )  # fmt: skip
 
+HEADS = (
+    "scenario", "runs", "people", "frozen or lost", "runs with any", "overlaps", "wall crossings",
+    "frames off the floor", "fallback, share of time",
+)  # fmt: skip
+
 COUNTED = ("pedestrians", "left_inside", "overlaps", "wall_crossings", "off_floor")
 
 
@@ -70,40 +75,20 @@ def main() -> None:
     parser.add_argument("--plans", type=int, default=0, help="random floor plans besides")
     parser.add_argument("--minutes", type=float, default=9.0, help="begin no run after this")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--out", type=Path, help="folder for the block")
     given = parser.parse_args()
-    done = {row["seed"]: row for row in _rows(given.file)}
-    begun = time.monotonic()
     units = [(ROUND[k % len(ROUND)], SEED + k) for k in range(given.runs)]
     units += [(PLANS[k % len(PLANS)], PLAN_SEED + k) for k in range(given.plans)]
-
-    def missing() -> Iterator[tuple[Case, int]]:
-        for each, seed in units:
-            if time.monotonic() - begun > 60.0 * given.minutes:
-                return
-            if seed not in done:
-                yield each, seed
-
-    with given.file.open("a", encoding="utf-8") as file:
-        for each, seed, figures in run_units(missing(), given.jobs):
-            kept = {name: figures[name] for name in KEPT if name in figures}
-            if "error" in figures:
-                kept["error"] = figures["error"]
-            row = {"seed": seed, "scenario": str(each), **kept}
-            file.write(json_text(row) + "\n")
-            file.flush()
-            done[seed] = row
-    wanted = [done[seed] for _, seed in units if seed in done]
-    print(f"{len(wanted)} of {len(units)} runs")
-    bad = report(wanted)
+    wanted = run_missing(given.file, units, minutes=given.minutes, jobs=given.jobs, kept=_kept)
+    text, bad = report(wanted)
+    if len(wanted) == len(units) or given.out is None:
+        give(given.out, "campaign", text)
     sys.exit(1 if bad else 0)
 
 
-def report(rows: list[dict[str, Any]]) -> bool:
-    """Print figures for each scenario; whether anything was wrong in any run."""
-    print("| scenario | runs | people | frozen or lost | runs with any | overlaps | wall crossings "
-          "| frames off the floor | fallback, share of time |")  # fmt: skip
-    print("|---" * 9 + "|")
-    wrong = False
+def report(rows: list[dict[str, Any]]) -> tuple[str, bool]:
+    """Figures of each scenario, and whether anything was wrong in any run."""
+    lines, errors, wrong = [], [], False
     for name in [*dict.fromkeys(row["scenario"] for row in rows), "all"]:
         mine = [row for row in rows if name in (row["scenario"], "all")]
         failed = [row for row in mine if "error" in row]
@@ -112,19 +97,15 @@ def report(rows: list[dict[str, Any]]) -> bool:
         time_ = sum(row["person_s"] for row in good)
         share = sum(row["fallback_time_share"] * row["person_s"] for row in good) / (time_ or 1.0)
         stuck = sum(row["left_inside"] > 0 for row in good)
-        print(f"| {name} | {len(mine)} | {total['pedestrians']} | {total['left_inside']} | {stuck} "
-              f"| {total['overlaps']} | {total['wall_crossings']} | {total['off_floor']} "
-              f"| {share:.1%} |")  # fmt: skip
-        for row in failed:
-            print(f"seed {row['seed']}: {row['error']}")
-        wrong |= bool(failed or stuck or any(total[name] for name in COUNTED[1:]))
-    return wrong
+        lines.append([name, len(mine), total["pedestrians"], total["left_inside"], stuck,
+                      *(total[key] for key in COUNTED[2:]), f"{share:.1%}"])  # fmt: skip
+        errors += [f"seed {row['seed']}: {row['error']}" for row in failed if name != "all"]
+        wrong |= bool(failed or stuck or any(total[key] for key in COUNTED[1:]))
+    return "\n\n".join([table(HEADS, lines), *errors]), wrong
 
 
-def _rows(file: Path) -> list[dict[str, Any]]:
-    if not file.exists():
-        return []
-    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+def _kept(figures: dict[str, Any]) -> dict[str, Any]:
+    return {name: figures[name] for name in (*KEPT, "error") if name in figures}
 
 
 if __name__ == "__main__":

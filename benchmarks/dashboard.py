@@ -3,7 +3,8 @@
     python benchmarks/dashboard.py frames            # drawn while three models play at full speed
     python benchmarks/dashboard.py start             # from the command to the first crowd drawn
     python benchmarks/dashboard.py memory --minutes 10
-    python benchmarks/dashboard.py screenshots docs/images
+    python benchmarks/dashboard.py figures FOLDER    # all of these, as a block for a page
+    python benchmarks/dashboard.py screenshots FOLDER
 
 Needs `pip install 'mesa-mobility[test]'`, and Chromium: `--browser`, by default that on the path.
 """
@@ -25,7 +26,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from pages.blocks import give, machine, table
 from playwright.sync_api import Browser, Page, sync_playwright
+
+Rows = list[tuple[str, str]]
 
 CANVAS = "document.querySelector('.mm-crowd-canvas')"
 ARGUMENTS = (
@@ -117,8 +121,9 @@ COUNT = f"""async (seconds) => {{
 """Counts in the page from the first movement until everybody has left, or so many seconds."""
 
 
-def frames(browser: Browser, seconds: float) -> None:
-    """Print how many frames are drawn in a second while models play at full speed."""
+def frames(browser: Browser, seconds: float) -> Rows:
+    """How many frames are drawn in a second while models play at full speed."""
+    rows = []
     for model, parameters in SCENES.items():
         with served(model) as (address, _, _):
             page = open_page(browser, address)
@@ -142,10 +147,13 @@ def frames(browser: Browser, seconds: float) -> None:
                 flush=True,
             )
             page.close()
+        people = f"{model}, {parameters['pedestrians']:,} people"
+        rows.append((f"frames per second at full speed: {people}", f"{drawn / took:.0f}"))
+    return rows
 
 
-def start(browser: Browser, repeats: int) -> None:
-    """Print the seconds from the command to the first crowd drawn."""
+def start(browser: Browser, repeats: int) -> Rows:
+    """The seconds from the command to the first crowd drawn."""
     took = []
     for k in range(repeats + 1):
         with served("doorway") as (address, _, started):
@@ -154,10 +162,12 @@ def start(browser: Browser, repeats: int) -> None:
                 took.append(time.perf_counter() - started)
             page.close()
     print(f"page ready after {statistics.median(took):.1f} s (each: {[round(t, 1) for t in took]})")
+    figure = f"{statistics.median(took):.1f} s ({min(took):.1f} to {max(took):.1f})"
+    return [("from the command to the first crowd drawn, kernels compiled", figure)]
 
 
-def memory(browser: Browser, minutes: float) -> None:
-    """Print the memory of server and browser tab while the auditorium plays at full speed."""
+def memory(browser: Browser, minutes: float) -> Rows:
+    """The memory of server and browser tab while the auditorium plays at full speed."""
     with served("auditorium") as (address, process, _):
         page = open_page(browser, address)
         heap = page.context.new_cdp_session(page)
@@ -176,13 +186,17 @@ def memory(browser: Browser, minutes: float) -> None:
             samples.append((resident(process), used))
             if len(samples) % 12 == 0:
                 print(f"server {samples[-1][0]:.0f} MB, page {used:.0f} MB", flush=True)
-        for name, column in zip(("server", "page"), zip(*samples, strict=True), strict=True):
+        rows = []
+        for name, column in zip(("server", "browser tab"), zip(*samples, strict=True), strict=True):
             # Kernels, maps and buffers come in the first minute.
             steady = column[12:] or column
             print(
                 f"{name}: {steady[0]:.0f} MB after the first minute, {steady[-1]:.0f} MB at the "
                 f"end, from {min(steady):.0f} to {max(steady):.0f} MB between"
             )
+            what = f"memory over {minutes:g} minutes of the auditorium at full speed: {name}"
+            rows.append((what, f"{min(steady):.0f} to {max(steady):.0f} MB"))
+        return rows
 
 
 def resident(process: int) -> float:
@@ -236,8 +250,8 @@ def screenshots(browser: Browser, folder: Path) -> None:
 def main() -> None:
     """Run the measurements that the arguments name."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("what", choices=("frames", "start", "memory", "screenshots"))
-    parser.add_argument("folder", nargs="?", type=Path, help="for screenshots")
+    parser.add_argument("what", choices=("frames", "start", "memory", "figures", "screenshots"))
+    parser.add_argument("folder", nargs="?", type=Path, help="for figures and screenshots")
     parser.add_argument("--browser", default=shutil.which("chromium"))
     parser.add_argument("--repeats", type=int, default=3, help="of starting")
     parser.add_argument("--seconds", type=float, default=10.0, help="of play to count frames in")
@@ -251,9 +265,14 @@ def main() -> None:
             start(browser, chosen.repeats)
         elif chosen.what == "memory":
             memory(browser, chosen.minutes)
+        elif chosen.folder is None:
+            parser.error(f"{chosen.what}: expected a folder")
+        elif chosen.what == "figures":
+            rows = [*frames(browser, chosen.seconds), *start(browser, chosen.repeats)]
+            rows += memory(browser, chosen.minutes)
+            text = f"{machine()}\n\n{table(('what', 'measured'), rows)}"
+            give(chosen.folder, "dashboard-speed", text)
         else:
-            if chosen.folder is None:
-                parser.error("screenshots: expected a folder")
             screenshots(browser, chosen.folder)
         browser.close()
 

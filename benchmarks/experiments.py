@@ -3,6 +3,8 @@
     python benchmarks/experiments.py overhead --runs 10000 --workers 2 --store STORE
     python benchmarks/experiments.py coverage --store STORE
 
+--out FOLDER writes what either prints as a block for docs/explanation/scaling_experiments.md.
+
 The first runs people through a door on a Dask cluster on this machine. It prints the time of the
 runs, the time that the workers were there for them, processor time likewise, the memory of this
 process over time, and the files and messages. The second takes the runs of the store's first point
@@ -22,6 +24,7 @@ from pathlib import Path
 import numpy as np
 import psutil
 from distributed import Client, LocalCluster
+from pages.blocks import give, machine, table
 
 from mesa_mobility.experiments import (
     Experiment,
@@ -46,15 +49,19 @@ def main() -> None:
     parser.add_argument("--people", type=int, default=30)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--repetitions", type=int, default=100)
+    parser.add_argument("--out", type=Path, help="folder for the block")
     arguments = parser.parse_args()
     if arguments.what == "overhead":
-        overhead(arguments.store, arguments.runs, arguments.people, arguments.workers)
+        text = overhead(arguments.store, arguments.runs, arguments.people, arguments.workers)
     else:
-        coverage(arguments.store, arguments.repetitions)
+        text = coverage(arguments.store, arguments.repetitions)
+    give(arguments.out, f"experiments-{arguments.what}", text)
 
 
-def overhead(place: Path, runs: int, people: int, workers: int) -> None:
+def overhead(place: Path, runs: int, people: int, workers: int) -> str:
     """Run an experiment and compare the time of its runs with that of everything."""
+    if place.exists():
+        raise SystemExit(f"{place} is there: runs that it holds would not be timed")
     experiment = Experiment(
         "doorway", {"door_width": WIDTHS}, replications=runs // len(WIDTHS), seed=1,
         fixed={"pedestrians": people}, max_seconds=120, keep=("occupancy",),
@@ -92,16 +99,21 @@ def overhead(place: Path, runs: int, people: int, workers: int) -> None:
     files = [path for path in place.rglob("*") if path.is_file()]
     size = sum(store.shards().values())
     message = len(pickle.dumps(tuple((experiment.point(0), k) for k in range(100)))) / 100
-    print(f"load of the machine {os.getloadavg()}, {os.cpu_count()} processors")
-    print(f"wall clock: runs {own:.1f} s, workers there for {there:.1f} s: "
-          f"overhead {(there - own) / own:.1%}")  # fmt: skip
-    print(f"processor: runs {own_cpu:.1f} s, workers {sum(spent):.1f} s, driver and scheduler "
-          f"{driver:.1f} s: overhead {(used - own_cpu) / own_cpu:.1%}")  # fmt: skip
-    print(f"driver: {memory[-1][1] - first:+.1f} MB since a tenth of the runs")
-    print(f"driver and scheduler: {1e3 * driver / len(frame):.2f} ms of processor a run")
-    print(f"about {own / BATCH_SECONDS:.0f} batches of {BATCH_SECONDS:g} s")
-    print(f"files in the store: {len(files)}; {size / len(frame):.0f} bytes a row")
-    print(f"message to a worker: {message:.0f} bytes a run")
+    rows = [
+        ("wall time beyond the runs' own", "10 %",
+         f"{(there - own) / own:.1%}: runs {own:,.0f} s, workers there for {there:,.0f} s"),
+        ("processor time beyond the runs' own, driver and scheduler included", "",
+         f"{(used - own_cpu) / own_cpu:.1%}: {sum(spent):,.0f} s of workers and {driver:,.0f} s "
+         f"for {own_cpu:,.0f} s of runs"),
+        ("memory of the driver, with the scheduler in it, since a tenth of the runs", "+50 MB",
+         f"{memory[-1][1] - first:+.1f} MB"),
+        ("files in the store", "200", f"{len(files)}, with {size / len(frame):.0f} bytes a row"),
+        ("processor time of driver and scheduler", "", f"{1e3 * driver / len(frame):.1f} ms a run"),
+        ("batches", "", f"{own / BATCH_SECONDS:.0f} of {BATCH_SECONDS:g} s"),
+        ("message to a worker", "", f"{message:.0f} bytes a run"),
+    ]  # fmt: skip
+    told = f"{runs:,} runs of {people} people on {workers} workers. {machine()}"
+    return f"{told}\n\n{table(('figure', 'required', 'measured'), rows)}"
 
 
 def cpu_seconds(process: psutil.Process) -> float:
@@ -110,13 +122,19 @@ def cpu_seconds(process: psutil.Process) -> float:
     return float(times.user + times.system)
 
 
-def coverage(place: Path, repetitions: int) -> None:
+def coverage(place: Path, repetitions: int) -> str:
     """How often the stated interval holds the mean of all runs of a point."""
     frame = open_store(place).frame(series=True)
     frame = frame[frame["point"] == frame["point"].iloc[0]]
     egress, curves = frame.egress_s.to_numpy(float), frame.occupancy.to_numpy()
     true = float(egress.mean())
-    print(f"{len(egress)} runs: mean egress time {true:.3f} s, sd {egress.std(ddof=1):.3f} s")
+    told = (
+        f"The {len(egress):,} runs that stand for the truth have a mean egress time of "
+        f"{true:.2f} s and a standard deviation of {egress.std(ddof=1):.2f} s. The experiment is "
+        f"repeated {repetitions:,} times; the standard error of a share of all is at most "
+        f"{np.sqrt(0.05 * 0.95 / repetitions):.1%} at 95 %."
+    )
+    rows = []
     for precision in (
         Precision(("mean egress_s",), 0.02, occupancy=None),
         Precision(("mean egress_s",), 0.02, occupancy=OccupancyConvergence()),
@@ -142,13 +160,14 @@ def coverage(place: Path, repetitions: int) -> None:
         share = np.mean(held)
         hundreds = np.reshape(held[: repetitions // 100 * 100], (-1, 100)).sum(axis=1)
         within = int(np.sum((hundreds >= 92) & (hundreds <= 98)))
-        noise = np.sqrt(share * (1 - share) / repetitions)
-        print(
-            f"{asked}, to {precision.tolerance:.0%}: {sum(held)} of {repetitions} intervals hold "
-            f"the mean, {share:.1%} (standard error {noise:.1%}); {sum(held[:100])} of the first "
-            f"100, 92 to 98 in {within} of {len(hundreds)} hundreds; "
-            f"{min(counts)} to {max(counts)} runs, median {np.median(counts):.0f}"
-        )
+        rows.append((
+            f"{asked} to {precision.tolerance:.0%}",
+            f"{min(counts)} to {max(counts)}, {np.median(counts):.0f}",
+            sum(held[:100]), f"{share:.1%}", f"{within} of {len(hundreds)}",
+        ))  # fmt: skip
+    heads = ("requested precision", "runs: range, median", "of the first 100", "of all",
+             "hundreds with 92 to 98")  # fmt: skip
+    return f"{told}\n\n{table(heads, rows)}"
 
 
 if __name__ == "__main__":

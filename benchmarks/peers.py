@@ -1,6 +1,7 @@
 """This package and JuPedSim on the same scenarios, side by side.
 
 python benchmarks/peers.py room bottleneck open-1000 [--rounds 3] [--alone]
+    [--out FOLDER]
 
 Each run is a process of its own; the two take turns. Timed is the simulation alone:
 compilation and setting up are printed apart. Seconds of processor time count all threads.
@@ -10,20 +11,30 @@ from __future__ import annotations
 
 import argparse
 import json
-import platform
 import resource
 import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pages.blocks import give, machine, table
 from scenarios import SCENARIOS, Scenario, open_walk
 
 LIMIT_S = 600.0
 """Simulated seconds after which a floor that is not empty is given up."""
+
+TITLES = {
+    "room": "room: 750 people, two 1.2 m doors, until empty",
+    "bottleneck": "bottleneck: 150 people, one 1.0 m door, until empty",
+    "open-1000": "open walk, 1,000 people, 0.5 per m2, 10 s",
+    "open-10000": "open walk, 10,000 people",
+}
+"""Of scenarios, for the page."""
 
 PEERS = ("mesa-mobility", "jupedsim")
 
@@ -144,6 +155,7 @@ def main() -> None:
     parser.add_argument("scenarios", nargs="*", default=["room", "bottleneck", "open-1000"])
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--alone", action="store_true", help="this package only")
+    parser.add_argument("--out", type=Path, help="folder for a block, with JuPedSim beside")
     parser.add_argument("--child", choices=PEERS, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.child:
@@ -169,8 +181,28 @@ def main() -> None:
                 flush=True,
             )
         results.append({"scenario": name, "ratio_cpu": ratios, "ratio_rate": rates, "runs": runs})
-    machine = {"python": platform.python_version(), "machine": platform.machine()}
-    print(json.dumps({"results": results, **machine}))
+    print(json.dumps({"results": results}))
+    if given.out is not None and not given.alone:
+        give(given.out, "peers", side_by_side(results))
+
+
+def side_by_side(results: list[dict[str, Any]]) -> str:
+    """Processor time of both, and person-seconds simulated in a second of it."""
+    rows = []
+    for each in results:
+        cpu, rate = (
+            [statistics.median(turn[k][key] for turn in each["runs"]) for k in range(len(PEERS))]
+            for key in ("cpu_s", "person_s_per_cpu_s")
+        )
+        rows.append((
+            TITLES.get(each["scenario"], each["scenario"]), f"{cpu[0]:.2f}", f"{cpu[1]:.3g}",
+            f"{statistics.median(each['ratio_cpu']):.1f}", f"{rate[0]:,.0f}", f"{rate[1]:,.0f}",
+        ))  # fmt: skip
+    heads = ("scenario", "CPU s here", "CPU s JuPedSim", "ratio",
+             "person-seconds per CPU-second here", "JuPedSim")  # fmt: skip
+    rounds = len(results[0]["runs"])
+    told = f"Medians of {rounds} rounds; JuPedSim {version('jupedsim')}. {machine()}"
+    return f"{told}\n\n{table(heads, rows)}"
 
 
 if __name__ == "__main__":

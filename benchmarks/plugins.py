@@ -1,15 +1,18 @@
 """The price of plug-ins: CPU a simulated second of 750 people in a room.
 
-python benchmarks/plugins.py
+python benchmarks/plugins.py [--out FOLDER]
 """
 
 from __future__ import annotations
 
+import argparse
 import statistics
 import time
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pages.blocks import give, machine, table
 from scenarios import room
 
 from mesa_mobility import (
@@ -86,12 +89,15 @@ def make(kind: type[Pedestrian] = Pedestrian, *terms: CostTerm) -> PedestrianMod
 
 
 def main() -> None:
-    """Print the middle of some rounds for each; what is compiled on the way does not count."""
+    """Give the middle of some rounds for each; what is compiled on the way does not count."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, help="folder for the block")
+    given = parser.parse_args()
     kinds: dict[str, tuple[type[Pedestrian], tuple[CostTerm, ...]]] = {
-        "nothing": (Pedestrian, ()),
-        "a compiled term with a field": (Pedestrian, (Avoid(0.1),)),
-        "step() in Python": (Counting, ()),
-        "a term in NumPy over options": (Pedestrian, (KeepLeft(0.1),)),
+        "without plug-ins": (Pedestrian, ()),
+        "with a compiled term over neighbours that takes a field": (Pedestrian, (Avoid(0.1),)),
+        "with a Python `step()` that reads the speed and writes a field": (Counting, ()),
+        "with a term in NumPy over options": (Pedestrian, (KeepLeft(0.1),)),
     }
     seconds: dict[str, list[float]] = {name: [] for name in kinds}
     for turn in range(1 + ROUNDS):
@@ -102,8 +108,12 @@ def main() -> None:
             model.run(max_seconds=WARM_UP + SECONDS)
             if turn > 0:
                 seconds[name].append((time.process_time() - start) / SECONDS)
-    for name, each in seconds.items():
-        print(f"{name}: {statistics.median(each):.4f} CPU s ({min(each):.4f}-{max(each):.4f})")
+    rows = [
+        (name, f"{statistics.median(each):.3f} ({min(each):.3f} to {max(each):.3f})")
+        for name, each in seconds.items()
+    ]
+    text = table(("model", "CPU s per simulated second, median and range"), rows)
+    give(given.out, "plugins", f"{machine()}\n\n{text}")
 
 
 if __name__ == "__main__":

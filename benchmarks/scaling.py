@@ -1,6 +1,6 @@
 """Cost of a simulated person-second against people, density, options and processors.
 
-python benchmarks/scaling.py [--most 100000] [--plot docs/images/scaling.png]
+python benchmarks/scaling.py [--most 100000] [--out FOLDER]
 
 Open walk, 10 s, compilation not counted; the last three parts are in processes of their own. A
 person-second costs more or less as its decisions do, so their number is printed as well. Memory is
@@ -19,8 +19,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
+from pages.blocks import give, machine, table
 from peers import our_model
 from scenarios import Scenario, open_walk
 
@@ -114,14 +115,20 @@ def memory(people: int) -> dict[str, Any]:
     gc.collect()
     each = (resident() - before) / people
     print(f"memory     people {people:8d}: {each:6.0f} bytes a person", flush=True)
-    return {"people": people, "bytes_per_person": each}
+    return {
+        "people": people,
+        "bytes_per_person": each,
+        "before": before,
+        "record": model.crowd.records.dtype.itemsize,
+        "agenda": model.crowd.agenda.dtype.itemsize,
+    }
 
 
 def main() -> None:
-    """Run all parts, print tables and one JSON line, and draw the plot."""
+    """Run all parts, print tables and one JSON line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--most", type=int, default=100_000)
-    parser.add_argument("--plot")
+    parser.add_argument("--out", type=Path, help="folder for blocks and picture")
     given = parser.parse_args()
     timed(open_walk(20, seconds=1.0))
     people = [
@@ -161,20 +168,56 @@ def main() -> None:
         "memory": held,
     }
     print(json.dumps(parts))
-    if given.plot:
-        figure, axes = plt.subplots(1, 3, figsize=(12, 3.6), layout="constrained", sharey=True)
-        columns = (("people", "people", "people"), ("density", "per_m2", "persons/m2"))
-        for axis, (part, key, label) in zip(
-            axes, (*columns, ("options", "mean", "options per cluster (mean)")), strict=True
-        ):
-            axis.plot([run[key] for run in parts[part]],
-                      [run["us_per_person_s"] for run in parts[part]], "o-")  # fmt: skip
-            axis.set_xlabel(label)
-            axis.grid(alpha=0.3)
-        axes[0].set_xscale("log")
-        axes[0].set_ylabel("microseconds of CPU a person-second")
-        axes[0].set_ylim(bottom=0.0)
-        figure.savefig(given.plot, dpi=110)
+    if given.out is not None:
+        give(given.out, "scaling", tables(parts))
+        give(given.out, "memory", memory_table(held[0]))
+        draw(parts, given.out / "scaling.png")
+
+
+def tables(parts: dict[str, list[dict[str, Any]]]) -> str:
+    """Microseconds a person-second against people, density and options."""
+    columns = (
+        ("people", "people", "people, at 0.5 per m2"),
+        ("density", "per_m2", "people per m2"),
+        ("options", "mean", "options per cluster, on average"),
+    )
+    told = [f"One run each. {machine()}"]
+    for part, key, label in columns:
+        heads = [f"{run[key]:,}" for run in parts[part]]
+        costs = [f"{run['us_per_person_s']:.1f}" for run in parts[part]]
+        told.append(table((label, *heads), [("microseconds of CPU per person-second", *costs)]))
+    return "\n\n".join(told)
+
+
+def memory_table(held: dict[str, Any]) -> str:
+    """Memory of the process and of a person."""
+    rows = [
+        ("Python, the libraries and the map", f"{held['before'] / 1e6:.0f} MB"),
+        ("a person, resident", f"{held['bytes_per_person'] / 1e3:.2f} kB"),
+        ("- record and agenda of a person", f"{held['record']} + {held['agenda']} bytes"),
+    ]
+    people = f"{held['people']:,}"
+    return f"With {people} people who have walked for a second.\n\n{table(('what', 'size'), rows)}"
+
+
+def draw(parts: dict[str, list[dict[str, Any]]], picture: Path) -> None:
+    """The same as a picture."""
+    figure = Figure(figsize=(12, 3.6), layout="constrained")
+    columns = (("people", "people", "people"), ("density", "per_m2", "persons/m2"))
+    for axes, (part, key, label) in zip(
+        figure.subplots(1, 3, sharey=True),
+        (*columns, ("options", "mean", "options per cluster (mean)")),
+        strict=True,
+    ):
+        axes.plot([run[key] for run in parts[part]],
+                  [run["us_per_person_s"] for run in parts[part]], "o-")  # fmt: skip
+        axes.set_xlabel(label)
+        axes.grid(alpha=0.3)
+    first = figure.axes[0]
+    first.set_xscale("log")
+    first.set_ylabel("microseconds of CPU a person-second")
+    first.set_ylim(bottom=0.0)
+    figure.savefig(picture, dpi=110)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""Draw a run as a moving picture: the one at the head of README.md.
+"""Draw a run as a moving picture of discs, from above.
 
     mesa-mobility run doorway --seed 1 --out out/doorway
-    python docs/animation.py out/doorway docs/images/doorway.webp
+    python docs/animation.py out/doorway out/doorway.webp
 
 People are discs of their body core with a stroke for the facing, coloured by speed. The suffix of
 the picture chooses its format: .webp, .gif or .png (animated).

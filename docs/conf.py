@@ -22,7 +22,12 @@ author = "the mesa-mobility developers"
 version = release = installed_version("mesa-mobility")
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["_build", "reference/command_line_generated.md", "tutorials/recordings"]
+exclude_patterns = [
+    "_build",
+    "figures",
+    "reference/command_line_generated.md",
+    "tutorials/recordings",
+]
 
 html_theme = "furo"
 html_static_path = ["_static"]

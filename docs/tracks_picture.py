@@ -51,8 +51,11 @@ WITHOUT = replace(
     },
     shares=((0.5, 0.25, 0.0),),
     most_acceleration=None,
-    anticipation=False,
-    speed_adaptation=False,
+    tactics=tuple(
+        name
+        for name in PRESETS["default"].tactics
+        if name not in ("anticipation", "speed_adaptation")
+    ),
 )
 ROWS = {"without": WITHOUT, "default preset": PRESETS["default"]}
 

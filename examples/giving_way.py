@@ -1,6 +1,5 @@
-"""Five people meet three in a corridor 0.8 m wide: the three step into a niche, or go back."""
+"""Five people meet three in a corridor 0.6 m wide: they pass at a niche, or some go back."""
 
-from mesa_mobility.behaviors import Yielding
 from shapely import box, union_all
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
@@ -10,23 +9,23 @@ class NarrowCorridor(PedestrianModel):
     """A corridor between two rooms, with a niche or without."""
 
     def __init__(self, niche=True, rng=None):
-        parts = [box(0, 0, 8, 8), box(8, 3.6, 32, 4.4), box(32, 0, 40, 8)]
+        parts = [box(0, 0, 8, 8), box(8, 3.7, 32, 4.3), box(32, 0, 40, 8)]
         if niche:
-            parts.append(box(18, 4.4, 22, 5.4))
+            parts.append(box(18, 4.3, 22, 5.3))
         exits = [Exit("west", (0, 1), (0, 7)), Exit("east", (40, 1), (40, 7))]
         super().__init__(FloorPlan(union_all(parts), exits=exits), rng=rng)
-        self.add_tactic(Yielding())
-        self.add_pedestrians([(16 - 0.6 * k, 4) for k in range(5)], headings=0.0, exits=["east"])
-        self.add_pedestrians([(24 + 0.6 * k, 4) for k in range(3)], headings=3.14, exits=["west"])
+        self.add_pedestrians([(16 - 0.9 * k, 4) for k in range(5)], headings=0.0, exits=["east"])
+        self.add_pedestrians([(24 + 0.9 * k, 4) for k in range(3)], headings=3.14, exits=["west"])
 
 
 def main():
     for niche in (True, False):
         model = NarrowCorridor(niche, rng=1)
+        [giving_way] = [each for each in model.tactics if each.name == "giving_way"]
         farthest, gave_way = 0.0, set()
         while model.inside and model.elapsed < 200.0:
             model.step()
-            gave_way |= set(model.tactics[-1].giving_way)
+            gave_way |= set(giving_way.making_way)
             back = [each.position[0] for each in model.agents if each.row >= 5]
             farthest = max([farthest, *back])
         print(

@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility import (
     Deciding,
@@ -30,6 +30,9 @@ from mesa_mobility.schema import Kind, Several, Whole
 # one person is there at a time.
 _SERVED, _CLOSEST = 0.25, 0.5
 
+# Core radius of those whose spacing a counter gives, metres.
+_CORE = 0.14
+
 # Seconds in which somebody gets to its place, and its least speed on the last steps, m/s.
 _GETS_THERE, _LEAST = 1.0, 0.4
 
@@ -48,7 +51,8 @@ class Counter:
         line: (x, y) points in metres, from where people are served to the end of the line, beyond
             which it goes on straight.
         service: seconds that it takes to serve somebody, or a distribution of them.
-        spacing: metres between two people in the line.
+        spacing: metres between two people in the line with cores of 0.14 m. Others keep as much
+            free between their cores.
 
     Raises:
         ModelError: fewer than two points, one of them twice in a row, or numbers out of range.
@@ -78,12 +82,25 @@ class Counter:
         return Visit(shapely.Point(self.line[0]).buffer(_SERVED), stay=self.service)
 
     def places(self, count: int) -> NDArray[np.float64]:
-        """(count, 2) places in the line, metres; the first is where people are served."""
+        """(count, 2) places in the line, metres, of people with cores of 0.14 m; the first is where
+        people are served."""
+        return self._at(np.arange(count, dtype=np.float64) * self.spacing)
+
+    def places_of(self, cores: ArrayLike) -> NDArray[np.float64]:
+        """(n, 2) places in the line, metres, of people with (n,) core radii, the first one first.
+
+        Two of them have as much free between their cores as two with cores of 0.14 m.
+        """
+        radii = np.asarray(cores, dtype=np.float64)
+        apart = radii[1:] + radii[:-1] + (self.spacing - 2.0 * _CORE)
+        return self._at(np.cumsum([0.0, *apart])[: len(radii)])
+
+    def _at(self, along: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n, 2) points of the line that are ``along`` metres from its beginning."""
         points = np.array(self.line)
         steps = np.diff(points, axis=0)
         lengths = np.hypot(*steps.T)
         ends = np.cumsum(lengths)
-        along = self.spacing * np.arange(count)
         on = np.minimum(np.searchsorted(ends, along, side="left"), len(steps) - 1)
         beyond = along - (ends[on] - lengths[on])
         found: NDArray[np.float64] = points[on] + steps[on] * (beyond / lengths[on])[:, None]
@@ -142,6 +159,7 @@ class Queueing(Tactic):
             # Two may come to an empty counter at once, and the second one step up to it first.
             self._lines[number].sort(key=lambda row: not self._is_served(row))
             if len(who):
+                self._let_by(counter, self._lines[number])
                 self._line_up(counter, self._lines[number], who, deciding, desired)
         self._standing.intersection_update(row for line in self._lines for row in line)
 
@@ -153,6 +171,20 @@ class Queueing(Tactic):
         stop = journeys.next_stop(row, crowd)
         return next((n for n, each in enumerate(self.counters) if each.visit == stop), -1)
 
+    def _let_by(self, counter: Counter, line: list[int]) -> None:
+        """Change the order of two one after the other, of whom the second stands in front.
+
+        People who come from aside join behind somebody who is still on the way to their place. If
+        they get there first, neither could pass the other.
+        """
+        crowd = self._model.crowd
+        for k in range(len(line) - 1):
+            place = counter.places_of(crowd.core[line])[k]
+            pair = line[k : k + 2]
+            away = np.hypot(crowd.x[pair] - place[0], crowd.y[pair] - place[1])
+            if away[1] < away[0] - _MOVES_UP and not self._is_served(pair[0]):
+                line[k : k + 2] = pair[::-1]
+
     def _line_up(
         self,
         counter: Counter,
@@ -163,23 +195,23 @@ class Queueing(Tactic):
     ) -> None:
         """Set points and speeds of those ``who`` decide and go to a counter."""
         rows, held, ahead = deciding.pedestrians, [], []
-        places = counter.places(len(line) + len(who) + 1)
-        seen = lines_of_sight(
-            deciding.site.plan, deciding.positions[who], np.tile(places[len(line)], (len(who), 1))
-        )
-        away = np.hypot(*(deciding.positions[who] - places[len(line)]).T)
+        cores = self._model.crowd.core
+        ends = np.array([counter.places_of(cores[[*line, row]])[-1] for row in rows[who]])
+        seen = lines_of_sight(deciding.site.plan, deciding.positions[who], ends)
+        away = np.hypot(*(deciding.positions[who] - ends).T)
         # The nearest to the end of the line joins it first.
         for k in np.lexsort((rows[who], away)).tolist():
             row, here = int(rows[who[k]]), deciding.positions[who[k]]
             if row not in line:
-                if np.hypot(*(places[: len(line) + 1] - here).T).min() <= _JOINS:
+                places = counter.places_of(cores[[*line, row]])
+                if np.hypot(*(places - here).T).min() <= _JOINS:
                     line.append(row)
                 elif seen[k]:
-                    desired.points[who[k]] = places[len(line)]
+                    desired.points[who[k]] = places[-1]
                     continue
                 else:
                     continue
-            place = line.index(row)
+            places, place = counter.places_of(cores[line]), line.index(row)
             off = float(np.hypot(*(places[place] - here)))
             stands = off <= (_MOVES_UP if row in self._standing else _STANDS) and place > 0
             if stands:

@@ -145,6 +145,7 @@ def _said(place: str, *, as_json: bool) -> dict[str, Any]:
                 "Asked for": "as many as it takes" if asked is None else f"{asked} runs",
                 "Missing": "-" if counts["missing"] is None else f"{counts['missing']}",
                 "Done": f"{counts['done']}",
+                "Blocked": f"{counts['blocked']}",
                 "Stalled": f"{counts['stalled']}",
                 "Failed": f"{counts['failed']}",
                 "Timed out": f"{counts['timed_out']}",

@@ -100,6 +100,7 @@ def answer_of(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
         "target": candidates.targets[0].tolist(),
         "preferred_speed": float(candidates.preferred_speeds[0]),
         "fallback": chosen < 0,
+        "blocked_by": None if explained.blocked_by < 0 else explained.blocked_by,
         "options": [
             {
                 "option": int(own.rows[candidates.options[k]]),
@@ -127,6 +128,9 @@ def _heading(values: dict[str, Any]) -> dict[str, str]:
         "Person": f"{values['person']}, {values['type']}",
         "Decided": f"at {values['time']:.2f} s at ({x:.2f}, {y:.2f})",
         "Wants": f"to ({tx:.2f}, {ty:.2f}) at {values['preferred_speed']:.2f} m/s",
+        "Alone": "they would hit nobody"
+        if values["blocked_by"] is None
+        else f"they would hit person {values['blocked_by']}",
         "Options": f"{len(options)}, of which {free} hit nothing",
         "Took": "the fallback: no option was free"
         if taken is None

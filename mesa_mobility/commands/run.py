@@ -36,6 +36,9 @@ from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
 STALLED = 1
 
+NAMED = 10
+"""People named in the last line at most."""
+
 
 def run(
     model: ModelName,
@@ -161,13 +164,29 @@ def run(
     if interrupted:
         say(f"interrupted after {simulation.elapsed:.1f} simulated seconds: results up to there")
         raise typer.Exit(INTERRUPTED)
+    stood = _said_of_blocked(summary)
     if simulation.stalled:
         reason = summary.get("stall_reason")
         say(
             f"stalled: {simulation.inside} people left inside after {simulation.elapsed:.1f} s"
             + (f": {reason}" if reason else "")
+            + (f"; blocked: {stood}" if stood else "")
         )
         raise typer.Exit(STALLED)
+    if stood:
+        say(f"blocked: {stood}")
+
+
+def _said_of_blocked(summary: dict[str, Any]) -> str:
+    """How many have stood for a minute without a reason, and who; nothing if nobody has."""
+    rows = [each["person"] for each in summary.get("blocked") or []]
+    if not rows:
+        return ""
+    from mesa_mobility.crowd.running.blocking import in_words
+
+    people = "person" if len(rows) == 1 else "people"
+    who = in_words(rows) if len(rows) <= NAMED else f"{', '.join(map(str, rows[:NAMED]))}, ..."
+    return f"{len(rows)} {people} stood for a minute without a reason ({who})"
 
 
 def _simulate(
@@ -206,6 +225,7 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
         "Everybody out": f"after {egress:.1f} s"
         if egress is not None
         else f"no: {summary['left_inside']} left inside",
+        "Blocked": _said_of_blocked(summary) or "nobody stood for a minute without a reason",
         "Mean speed": "-" if speed is None else f"{speed:.2f} m/s",
         **{f"  {each['type']}": _figures_of_type(each) for each in types},
         "Decisions": f"{summary['decisions']}",

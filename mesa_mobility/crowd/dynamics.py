@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Protocol
 from weakref import WeakValueDictionary
 
@@ -29,7 +30,8 @@ from mesa_mobility.crowd.running.statistics import Statistics
 from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
-from mesa_mobility.crowd.state.people_grid import Grid, build_grid
+from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
+from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
@@ -200,13 +202,17 @@ class Dynamics(Saved):
             statistics.count_people(model.elapsed)
 
     def candidates(self, rows: NDArray[np.int64]) -> Candidates:
-        """Movement options of the people in ``rows`` if they decided now."""
+        """Movement options of the people in ``rows`` if they decided now.
+
+        Raises:
+            ModelError: one of them is not inside.
+        """
         scene = self._scene
         return make_candidates(
             rows,
             scene.repertoire.table,
             scene.crowd,
-            self._grid(),
+            self._grid(rows),
             scene.environment.surroundings,
             scene.rules,
             self._moment.aside(),
@@ -225,18 +231,41 @@ class Dynamics(Saved):
             self._moment.aside(),
             scene.repertoire,
             scene.crowd,
-            self._grid(),
+            self._grid(np.array([row])),
             scene.environment.surroundings,
             scene.rules,
             model.terms,
             [each.name for each in scene.types],
         )
-        return judge(
+        judged = judge(
             weighed,
             scene.repertoire.table,
             scene.crowd,
             scene.environment.surroundings,
             scene.rules,
+        )
+        return replace(judged, blocked_by=int(self.wishes(np.array([row])).blockers[0]))
+
+    def wishes(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64] | None = None,
+        speeds: NDArray[np.float64] | None = None,
+    ) -> Wishes:
+        """What the people in ``rows`` would do if nobody else were there; see ``World.wishes``."""
+        scene, model, people = self._scene, self._model, self._model.population
+        crowd = scene.crowd
+        if points is None:
+            points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
+        return self._scheduler.wishes(
+            rows,
+            points,
+            crowd.preferred[rows] if speeds is None else speeds,
+            self._moment,
+            people.departed.together_with(people.present),
+            crowd,
+            scene.environment.surroundings,
+            model.terms,
         )
 
     def _let_in(self) -> None:
@@ -319,7 +348,11 @@ class Dynamics(Saved):
         if model.recorder is not None:
             model.recorder.add(model.frame, rows, self._scene.crowd)
 
-    def _grid(self) -> Grid:
+    def _grid(self, rows: NDArray[np.int64]) -> Grid:
+        """A grid of everybody, among them those in ``rows``."""
         people, crowd = self._model.population, self._scene.crowd
         people.see_off(self._model.frame)
-        return build_grid(people.departed.together_with(people.present), crowd.x, crowd.y)
+        everybody = people.departed.together_with(people.present)
+        if not np.isin(rows, everybody).all():
+            raise ModelError(f"candidates: got the rows {rows}, expected people inside")
+        return grid_of_frame(everybody, crowd.records)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.journeys.visit import Route
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import ContentError, ModelError
 from mesa_mobility.floorplan import FloorPlan
@@ -85,6 +86,23 @@ class World(Protocol):
     @property
     def tactics(self) -> Sequence[Any]:
         """The steps from a target to what people want of their next movement, in order."""
+
+    def wishes(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64] | None = None,
+        speeds: NDArray[np.float64] | None = None,
+    ) -> Wishes:
+        """What people would do if nobody else were there, and who is in the way of that.
+
+        Cost terms written in NumPy do not count: they may look at the others.
+
+        Args:
+            rows: (n,) these people, who are inside.
+            points: (n, 2) where each wants to go, metres; by default the target of their last
+                decision.
+            speeds: (n,) how fast, m/s; by default as at their last decision.
+        """
 
     @property
     def frame(self) -> int:

@@ -14,8 +14,10 @@ from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.model import adding
+from mesa_mobility.crowd.model.blocked import blocked_by
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.model.reporters import add_agent_reporter, add_reporter
+from mesa_mobility.crowd.model.summary import summary
 from mesa_mobility.crowd.people.pedestrian import last_number, number_from
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.distributions import Distribution
@@ -64,8 +66,11 @@ class PedestrianModel(CrowdModel):
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
         time: ``elapsed``, and between two steps the time of Mesa's events, seconds.
-        stalled: whether for a minute nobody has left and people have come no nearer to an exit;
-            ``stall_reason`` says why, and ``go_on`` and ``run`` give it another minute.
+        blocked: people who have stood for a minute although they want to move, without a reason: a
+            ``person``, ``since`` when, and the ``ring`` of people that they belong to.
+        stalled: whether for a minute nobody has left and people have come no nearer to an exit, or
+            everybody who wants to move is among ``blocked``; ``stall_reason`` says why, and
+            ``go_on`` and ``run`` give it another minute.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
         events_at_first: events that Mesa itself has scheduled.
         framework_attributes: names of the attributes that this class has made.
@@ -95,7 +100,9 @@ class PedestrianModel(CrowdModel):
     add_source = adding.add_source
     add_reporter = add_reporter
     add_agent_reporter = add_agent_reporter
+    blocked_by = blocked_by
     save = save_model
+    summary = summary
 
     def person_data(self) -> dict[str, ArrayLike]:
         """What trajectories say of each person besides their place; models may add to it.

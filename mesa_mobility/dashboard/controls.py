@@ -26,6 +26,9 @@ STATES = {
 }
 """What the page calls the states of a ``Status``."""
 
+TOLD = 5
+"""Blocked people that the page lists at most."""
+
 
 @solara.component
 def BehaviourControls(session: Session) -> None:
@@ -127,8 +130,22 @@ def TimeControls(session: Session) -> None:
         # Apart from it: a pace that changes each second is not read aloud.
         if playing and status.pace:
             solara.Text(f"{status.pace:.1f} x real time")
+    said_aloud(standing_in_words(status), "mm-standing")
 
 
 def in_words(status: Status) -> str:
     """A run's state, and why nobody gets out."""
     return f"{STATES[status.state]}{f': {status.reason}' if status.reason else ''}"
+
+
+def standing_in_words(status: Status) -> str:
+    """Who has stood for a minute without a reason, and who is in the way of each."""
+    told = [
+        f"{row} (in the way: {', '.join(map(str, chain))})" if chain else f"{row}"
+        for row, chain in status.blocked[:TOLD]
+    ]
+    if not told:
+        return ""
+    more = len(status.blocked) - len(told)
+    people = "person" if len(status.blocked) == 1 else "people"
+    return f"blocked for a minute: {people} {'; '.join(told)}{f'; {more} more' if more else ''}"

@@ -21,7 +21,7 @@ from mesa_mobility.experiments.experiment import Experiment, check_parameters
 from mesa_mobility.experiments.missing import Runs, missing_runs
 from mesa_mobility.experiments.session import session_of
 from mesa_mobility.experiments.store import Store
-from mesa_mobility.experiments.storing.rows import DONE, RUNS, STALLED, TRAJECTORIES
+from mesa_mobility.experiments.storing.rows import ENDED, RUNS, TRAJECTORIES
 from mesa_mobility.experiments.workers.batches import (
     DEATHS,
     Batch,
@@ -76,8 +76,8 @@ class Progress:
 
     @property
     def failed(self) -> int:
-        """Runs that are neither done nor stalled."""
-        return self.ended - self.statuses[DONE] - self.statuses[STALLED]
+        """Runs that have failed or timed out."""
+        return self.ended - sum(self.statuses[each] for each in ENDED)
 
     def add(self, finished: Finished) -> None:
         """Add what a worker has finished."""

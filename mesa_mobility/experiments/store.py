@@ -36,11 +36,10 @@ from mesa_mobility.experiments.observed import estimate, observed
 from mesa_mobility.experiments.session import check_goes_on, check_inputs
 from mesa_mobility.experiments.storing.locks import is_locked, locked
 from mesa_mobility.experiments.storing.rows import (
-    DONE,
+    ENDED,
     FAILED,
     RUNS,
     SERIES,
-    STALLED,
     STATUSES,
     TRAJECTORIES,
     WORK,
@@ -214,7 +213,7 @@ class Store:
         table = self.table(columns)
         if not table.num_rows:
             return {}
-        if {DONE, STALLED} & {*pa.compute.unique(table["status"]).to_pylist()}:
+        if ENDED & {*pa.compute.unique(table["status"]).to_pylist()}:
             self._check_figures(precision.columns, table.schema)
         frame = table.to_pandas().sort_values(["point", "replication"])
         found = {}

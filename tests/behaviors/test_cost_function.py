@@ -132,12 +132,10 @@ def _only(options, k: int):
     fields |= {
         name: getattr(options, name)[k : k + 1]
         for name in (
-            "pedestrians",
-            "positions",
+            "places",
             "facings",
             "targets",
             "preferred_speeds",
-            "velocities",
             "cores",
             "types",
             "groups",
@@ -146,15 +144,11 @@ def _only(options, k: int):
     fields |= {
         name: getattr(options, name)[near]
         for name in (
-            "neighbours",
-            "neighbour_positions",
-            "neighbour_velocities",
-            "neighbour_directions",
+            "neighbour_places",
             "neighbour_facings",
             "neighbour_cores",
             "neighbour_types",
             "neighbour_groups",
-            "leads",
         )
     }
     walls = options.walls[options.wall_offsets[k] : options.wall_offsets[k + 1]]

@@ -9,9 +9,9 @@ from tests.fixtures.options import Chooser, Ending, candidates, one_option
 
 @pytest.mark.parametrize(
     ("metres", "seconds", "expected"),
-    # Of 0.4 m: nothing for standing, nearly all for the shortest step, half for half of 0.4 m.
-    [(0.0, 0.4, 0.0), (0.009, 0.4, 0.0), (0.009, 1.5, 0.0), (0.02, 0.4, 0.95), (0.1, 0.4, 0.75),
-     (0.2, 0.4, 0.5), (0.2, 1.5, 0.5), (0.4, 0.4, 0.0), (0.5, 0.8, 0.0), (1.9, 1.5, 0.0)],
+    # Of 0.4 m: nearly all for the shortest step, half for half of 0.4 m.
+    [(0.02, 0.4, 0.95), (0.1, 0.4, 0.75), (0.2, 0.4, 0.5), (0.2, 1.5, 0.5),
+     (0.4, 0.4, 0.0), (0.5, 0.8, 0.0), (1.9, 1.5, 0.0)],
 )  # fmt: skip
 def test_a_step_costs_what_it_is_short_of_one_that_is_worth_it(metres, seconds, expected):
     option = one_option(Ending(displacement=metres, duration=seconds), target=(20.0, 0.0))
@@ -21,8 +21,7 @@ def test_a_step_costs_what_it_is_short_of_one_that_is_worth_it(metres, seconds, 
 @pytest.mark.parametrize(
     ("speed", "metres", "seconds", "expected"),
     # Who wants 0.1 m/s covers 0.15 m in 1.5 s; 0.2 m/s are 0.3 m, and 0.3 m/s more than 0.4 m.
-    [(0.1, 0.15, 1.5, 0.0), (0.1, 0.05, 0.4, 2 / 3), (0.2, 0.15, 0.4, 0.5), (0.3, 0.1, 0.4, 0.75),
-     (0.1, 0.0, 0.4, 0.0)],
+    [(0.1, 0.15, 1.5, 0.0), (0.1, 0.05, 0.4, 2 / 3), (0.2, 0.15, 0.4, 0.5), (0.3, 0.1, 0.4, 0.75)],
 )  # fmt: skip
 def test_slow_people_make_short_steps(speed, metres, seconds, expected):
     option = candidates(
@@ -40,6 +39,30 @@ def test_those_who_want_to_stand_have_no_step_of_their_own():
         Chooser([Ending(displacement=0.1)], target=(20.0, 0.0), preferred_speed=0.0)
     )
     assert Stepping(length=0.4).cost(option) == pytest.approx([0.75], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("neighbour", "facing", "preferred", "expected"),
+    # The target is along x. People wait for somebody within 2 m on that side of them; else it
+    # costs the cosine of the angle by which they do not face it, and nothing if it is behind.
+    [((1.9, 0.0), 0.0, 1.0, 0.0), ((0.5, 1.8), 0.0, 1.0, 0.0), ((2.1, 0.0), 0.0, 1.0, 1.0),
+     ((-0.5, 0.0), 0.0, 1.0, 1.0), (None, 0.0, 1.0, 1.0), (None, math.pi / 3, 1.0, 0.5),
+     (None, math.pi, 1.0, 0.0), (None, 0.0, 0.0, 0.0)],
+)  # fmt: skip
+@pytest.mark.parametrize("metres", [0.0, 0.009])
+def test_standing_is_free_only_where_somebody_makes_room(
+    metres, neighbour, facing, preferred, expected
+):
+    around = [] if neighbour is None else [(neighbour, (0.0, 0.0), (1.0, 0.0), 1.0)]
+    option = candidates(
+        Chooser(
+            [Ending(heading=facing, displacement=metres)],
+            target=(20.0, 0.0),
+            preferred_speed=preferred,
+            neighbours=around,
+        )
+    )
+    assert Stepping().cost(option) == pytest.approx([expected], abs=1e-3)
 
 
 @pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])

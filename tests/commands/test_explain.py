@@ -71,6 +71,7 @@ def test_the_answer_is_that_of_the_decision_when_it_was_taken(command, saved, pe
     assert (answer["person"], answer["frame"]) == (person, live.frame)
     assert answer["position"] == live.candidates.positions[0].tolist()
     assert answer["target"] == live.candidates.targets[0].tolist()
+    assert answer["blocked_by"] == (None if live.blocked_by < 0 else live.blocked_by)
     options = answer["options"]
     assert len(options) == len(live.candidates) > 100
     costs = [each["cost"] for each in options]

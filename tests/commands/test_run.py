@@ -83,6 +83,27 @@ def test_a_stalled_evacuation_ends_with_status_one(command, tmp_path):
     assert (tmp_path / "trajectories.parquet").exists()
 
 
+def test_people_who_block_each_other_are_told_in_the_last_line(command):
+    model = "tests.fixtures.face_to_face:FaceToFace"
+    outcome = command("run", model, "--seconds", "61", "--json", "--no-progress")
+    assert outcome.status == 0, outcome.err
+    said = "2 people stood for a minute without a reason (0 and 1)"
+    assert outcome.err.splitlines()[-1] == f"blocked: {said}"
+    summary = last_line(outcome)
+    assert summary["stalled"] is False
+    assert [(each["person"], each["since_s"], each["ring"]) for each in summary["blocked"]] == [
+        (0, 0.0, [1, 0]),
+        (1, 0.0, [0, 1]),
+    ]
+    outcome = command("run", model, "--set", "waiting=0", "--no-progress")
+    assert outcome.status == 1
+    assert outcome.err.splitlines()[-1].endswith(
+        f"nobody has come nearer to an exit for 60 s: people 0 and 1 are in each other's way; "
+        f"blocked: {said}"
+    )
+    assert f"Blocked            {said}" in outcome.out
+
+
 def test_settings_preset_map_and_seed_reach_the_model(command, tmp_path):
     map_file = tmp_path / "some.npz"
     map_file.touch()

@@ -5,25 +5,23 @@ from mesa_mobility.behaviors.steering import anticipation, speed_adaptation
 from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd import precompile
-from mesa_mobility.crowd.planning import decision, decision_order, grid
+from mesa_mobility.crowd.conflicts import notes
+from mesa_mobility.crowd.planning import decision, decision_order
 from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
-from mesa_mobility.crowd.tactics import impatience, turns
 
 FUNCTIONS = [
     decision.decide,
     decision_order.select_due,
     advance._move,
     people_grid.build_grid,
-    grid._write_headways,
+    people_grid._sorted,
+    people_grid._fill,
     departed.walk_on,
     departed.move_on,
     departed.merge,
-    impatience.pick,
-    impatience.turn,
     anticipation._turn_aside,
     speed_adaptation._adapt_speeds,
-    turns.find_mouths,
-    turns.give_turns,
+    notes.find_hindered,
     aggregates._look_over,
     aggregates.split_active,
 ]

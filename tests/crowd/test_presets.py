@@ -56,23 +56,6 @@ def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_short
     np.testing.assert_allclose(sorted(found), sorted(expected), atol=1e-6)
 
 
-def test_only_in_the_default_do_people_look_for_a_way_round():
-    # A person that can only stand: its target stays for 5 s, and then turns now and then.
-    for preset, turns in (("paper", False), ("default", True)):
-        model = model_of(corridor(), make_map([[stand(), stand(45)]]), preset=preset, rng=1)
-        person = put(model, 2.0, 2.0)
-        advance(model, 1)
-        straight_on = person.target.tolist()
-        advance(model, 149)
-        assert person.target.tolist() == straight_on
-        aims = []
-        for _ in range(100):
-            advance(model, 12)
-            aims.append(person.target.tolist() != straight_on)
-        assert any(aims) == turns
-        assert not all(aims)
-
-
 def test_the_same_constants_in_both():
     for preset in PRESETS:
         (term,) = (t for t in model_of(corridor(), strider(), preset=preset).terms

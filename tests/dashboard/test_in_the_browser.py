@@ -121,6 +121,8 @@ def test_a_click_opens_the_decision_with_its_numbers(tab):
     assert shown["totals"] == pytest.approx(explained.totals, rel=1e-5)
     assert np.array_equal(shown["verdicts"], explained.verdicts)
     assert shown["chosen"] == explained.chosen
+    assert shown["blockedBy"] == explained.blocked_by
+    assert shown["arrow"] == (explained.blocked_by >= 0)
 
     # The numbers of the option under the pointer.
     table = tab.page.get_by_role("table", name="costs")

@@ -11,10 +11,12 @@ pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]
 from mesa_mobility.models import Doorway, OpenSpace
 
 from mesa_mobility import CostTerm
+from mesa_mobility.dashboard.controls import standing_in_words
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.session import IF_NOW, Session
 from mesa_mobility.dashboard.views.charts import charts, csv_text
 from mesa_mobility.live.clock import FULL_SPEED
+from tests.fixtures.face_to_face import FaceToFace
 from tests.fixtures.waiting import until
 
 
@@ -183,6 +185,19 @@ def stalled_session(session):
     session.set_speed(FULL_SPEED)
     session.play(True)
     until(lambda: session.status.value.state == "stalled", 60)
+
+
+def test_people_who_block_each_other_are_listed(session):
+    session.build(Recipe(FaceToFace, {"rng": 1}))
+    until(lambda: session.status.value.inside == 3)
+    assert standing_in_words(session.status.value) == ""
+    session.set_speed(FULL_SPEED)
+    session.play(True)
+    until(lambda: session.status.value.blocked, 60)
+    assert session.status.value.blocked == ((0, (1, 0)), (1, (0, 1)))
+    assert standing_in_words(session.status.value) == (
+        "blocked for a minute: people 0 (in the way: 1, 0); 1 (in the way: 0, 1)"
+    )
 
 
 CHANGES = {

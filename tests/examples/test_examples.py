@@ -142,8 +142,7 @@ def test_shop_window(capsys: pytest.CaptureFixture[str]) -> None:
 def test_giving_way(capsys: pytest.CaptureFixture[str]) -> None:
     niche, none = run("giving_way", capsys).splitlines()
 
-    # The three stand in the niche, or go back beyond the corridor, which ends at 32 m.
-    assert numbers(r"(\d+) gave way", niche + none) == [3, 3]
+    # They pass at the niche; without it some go back beyond the corridor, which ends at 32 m.
     assert numbers(r"x = (\S+) m", niche)[0] < 27.0
     assert numbers(r"x = (\S+) m", none)[0] > 32.0
 

@@ -6,7 +6,7 @@ import pyarrow.dataset as dataset
 import pytest
 
 from mesa_mobility.errors import ModelError
-from mesa_mobility.experiments import open_store, run_experiment
+from mesa_mobility.experiments import Experiment, open_store, run_experiment
 from mesa_mobility.experiments.design.points import point_key, seed_of_run
 from tests.fixtures.experiment_models import Quick
 from tests.fixtures.quick_experiments import quick
@@ -30,6 +30,18 @@ def test_a_row_has_parameters_seed_times_and_figures(serial):
     assert first.wall_s >= 0.0
     # A figure that has the name of a parameter has another one here.
     assert list(frame.summary_x) == list(frame.x)
+
+
+def test_a_run_that_ends_with_people_who_block_each_other_says_so(tmp_path):
+    model, values = "tests.fixtures.face_to_face:FaceToFace", [90.0, 0.0]
+    asked = Experiment(model, {"waiting": values}, replications=1, seed=1, max_seconds=62.0)
+    store = run_experiment(asked, tmp_path / "s", executor="serial")
+    frame = store.frame().set_index("waiting")
+    # Where nobody waits, the third leaves, and those who are left can all not move.
+    assert frame.status.to_dict() == {90.0: "blocked", 0.0: "stalled"}
+    assert frame.blocked.to_dict() == {90.0: 2.0, 0.0: 2.0}
+    counts = store.status()
+    assert (counts["blocked"], counts["stalled"], counts["failed"]) == (1, 1, 0)
 
 
 def test_arrow_reads_the_folder_as_it_is(serial):

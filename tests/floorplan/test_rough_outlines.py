@@ -13,7 +13,6 @@ from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Router
 from mesa_mobility.floorplan.floor.outline import GRID, simplified
-from mesa_mobility.floorplan.routing.passages import narrow_passages
 from mesa_mobility.floorplan.walls.narrow_gaps import closed_gaps
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
 from tests.fixtures.rough_outlines import rough_plan, walk_out
@@ -61,11 +60,10 @@ def _waves(n: int, length: float, wave: float = 0.6) -> Polygon:
 def test_a_diagonal_lane_of_steps_is_one_smooth_lane(angle: float) -> None:
     plan = _turned(*_stairs(160, 0.05, 1.0), angle)
     started = time.process_time()
-    router, passages = Router(plan), narrow_passages(plan)
-    # A minute and a half, and thousands of mouths, when each step was a corner.
+    router = Router(plan)
+    # A minute and a half when each step was a corner.
     assert time.process_time() - started < 5.0
     assert len(router.graph) < 20
-    assert len(passages.mouths) <= 2
     assert len(plan.walls) > 300
 
 
@@ -114,17 +112,6 @@ def test_along_exits_and_gates_every_vertex_is_kept() -> None:
     middles = (plan.walls[:, :2] + plan.walls[:, 2:]) / 2
     assert not ((middles[:, 0] > 5) & (middles[:, 0] < 6) & (middles[:, 1] < 1)).any()
     assert abs(middles[:, 0] - 2).min() < 0.15
-
-
-def test_an_error_of_the_geometry_library_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails(*_: object, **__: object) -> None:
-        raise shapely.errors.GEOSException("TopologyException: non-noded\nintersection at 1 2")
-
-    plan = FloorPlan(_stairs(10, 0.3, 1.0)[0], exits=[_stairs(10, 0.3, 1.0)[1]])
-    smooth_floor(plan)
-    monkeypatch.setattr(shapely, "union_all", fails)
-    with pytest.raises(FloorPlanError, match=r"narrow passages: .* intersection at 1 2$"):
-        narrow_passages(plan)
 
 
 @settings(max_examples=30, deadline=None)

@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined, internal
-from mesa_mobility.compiled.intrinsics import prefetch
 from mesa_mobility.compiled.simd import LANES, WIDE
-from mesa_mobility.crowd.collision.sampled import SLACK, Close, EgoPose, lay_ahead, off_box2
-from mesa_mobility.crowd.collision.simd_boxes import extent, levels_within
+from mesa_mobility.crowd.collision.sampled import SLACK, Close, Decider
+from mesa_mobility.crowd.collision.simd_boxes import extent, levels_within, off_box2
 from mesa_mobility.crowd.collision.simd_tests import drop_within, places_within
 from mesa_mobility.crowd.collision.walls import (
     BARRIER_FIELDS,
@@ -25,7 +24,7 @@ from mesa_mobility.crowd.collision.walls import (
     places_beside,
 )
 from mesa_mobility.crowd.options.option_groups import AT_X, AT_Y, LANE_FIELDS, OptionGroups
-from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
+from mesa_mobility.crowd.options.table import LEVELS, SAMPLES
 from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import Box
 from mesa_mobility.crowd.state.records import CrowdState
@@ -33,19 +32,15 @@ from mesa_mobility.crowd.state.records import CrowdState
 ALL_LANES = 2**LANES - 1
 """Bits of all options of a group."""
 
-_AHEAD = 4
-"""People whose paths are prefetched."""
-
 
 class Bodies(NamedTuple):
-    """Bodies at the levels, in a pedestrian's coordinates.
+    """Who of the people close may be hit at the levels.
 
-    ``known`` (levels,) number of people; ``at`` (levels, 3, n) x, y and the distance to keep,
-    metres.
+    ``known`` (levels,) their number; ``at`` (levels, n) for each the place of x in ``Close.ahead``.
     """
 
     known: NDArray[np.int64]
-    at: NDArray[np.float32]
+    at: NDArray[np.int64]
 
 
 class Fences(NamedTuple):
@@ -72,12 +67,10 @@ class Blocks(NamedTuple):
 
 @force_inlined()
 def cull_groups(
-    me: EgoPose,
-    frame: int,
+    me: Decider,
     close: Close,
     barriers: Barriers,
     exits_from: float,
-    table: OptionTable,
     groups: OptionGroups,
     state: CrowdState,
     to: Blocks,
@@ -86,13 +79,11 @@ def cull_groups(
 
     Args:
         me: the pedestrian.
-        frame: now.
         close: people who may come in the way.
         barriers: walls within reach that do not touch the body.
         exits_from: metres to the nearest open exit.  Levels by which options may reach it are not
             tested: the pedestrian may have left.
-        table: options of all capabilities.
-        groups: these options in groups, with the extent of each.
+        groups: options of all capabilities in groups, with the extent of each.
         state: the crowd.
         to: is written.
 
@@ -114,25 +105,20 @@ def cull_groups(
         levels += 1
     within = (1 << levels) - 1
     for a in range(count if levels > 0 else 0):
-        if a + _AHEAD < count:
-            prefetch(table.path, max(state.option[close.people[a + _AHEAD].who], 0), 192)
-        lay_ahead(a, me, frame, table, state, close)
-        apart = close.people[a].apart - SLACK
-        bits = within & levels_within(close.ahead, 2 * SAMPLES * a, SAMPLES, spanned.spans, apart)
+        at = 3 * SAMPLES * a
+        bits = within & levels_within(close.ahead, at, SAMPLES, spanned.spans)
         # Without branches, which could not be predicted.
         for level in range(len(LEVELS)):
             met = bodies.known[level]
-            bodies.at[level, 0, met] = close.ahead[a, 0, LEVELS[level]]
-            bodies.at[level, 1, met] = close.ahead[a, 1, LEVELS[level]]
-            bodies.at[level, 2, met] = apart
+            bodies.at[level, met] = at + LEVELS[level]
             bodies.known[level] = met + (bits >> level & 1)
-    circles, row, size, far = groups.at, groups.at.shape[2], bodies.at.shape[2], fences.at.shape[2]
+    circles, row, size, far = groups.at, groups.at.shape[2], bodies.at.shape[1], fences.at.shape[2]
     keep = me.core + MARGIN - SLACK
     for level in range(levels):
         which = 3 * level * row + first, row, n
         if bodies.known[level] > 0:
-            there = 3 * level * size, size, bodies.known[level]
-            drop_within(circles, which, bodies.at, there, dropped)
+            there = level * size, bodies.known[level]
+            drop_within(circles, which, close.ahead, bodies.at, there, dropped)
         if barriers.known > 0:
             span = spanned.spans
             spans = span[0, level], span[1, level], span[2, level], span[3, level]
@@ -147,19 +133,18 @@ def cull_groups(
             walls = fences.known[level]
             if bodies.known[level] + walls > 0:
                 box = extent(circles, 3 * level * row + first, row, n, dropped)
-                _keep_bodies(box, level, bodies)
+                _keep_bodies(box, level, close.ahead, bodies)
                 _keep_fences(box, keep, fences.at[level], walls, level, fences)
     return free
 
 
 @internal()
-def _keep_bodies(box: Box, level: int, bodies: Bodies) -> None:
+def _keep_bodies(box: Box, level: int, ahead: NDArray[np.float32], bodies: Bodies) -> None:
     """Drop the bodies at a level that no option within a box can hit."""
-    kept = 0
-    at = bodies.at[level]
+    kept, at, of = 0, bodies.at[level], ahead.flat
     for m in range(bodies.known[level]):
-        x, y, apart = at[0, m], at[1, m], at[2, m]
-        at[0, kept], at[1, kept], at[2, kept] = x, y, apart
+        x, y, apart = of[at[m]], of[at[m] + SAMPLES], of[at[m] + 2 * SAMPLES]
+        at[kept] = at[m]
         kept += int(off_box2(x, y, box) < apart * apart)
     bodies.known[level] = kept
 
@@ -193,7 +178,7 @@ def _keep_fences(
 
 @internal()
 def free_options(
-    group: int, wanted: int, blocks: Blocks, apart: float, groups: OptionGroups
+    group: int, wanted: int, close: Close, blocks: Blocks, apart: float, groups: OptionGroups
 ) -> int:
     """Bits of the ``wanted`` ones of a group's 8 options that are free at all levels.
 
@@ -203,7 +188,7 @@ def free_options(
     # Lanes without an option do not count.
     free = wanted & ((1 << (groups.first[group + 1] - groups.first[group])) - 1)
     start = group * LANE_FIELDS * LANES
-    size, far = bodies.at.shape[2], fences.at.shape[2]
+    size, far = bodies.at.shape[1], fences.at.shape[2]
     row = (AT_Y - AT_X) * LANES
     for level in range(len(LEVELS)):
         at = start + (AT_X + level) * LANES
@@ -211,7 +196,6 @@ def free_options(
             first, known = BARRIER_FIELDS * level * far, fences.known[level]
             free &= ~places_beside(groups.lanes, at, row, fences.at, first, far, known, apart)
         if bodies.known[level] > 0 and free != 0:
-            free &= ~places_within(
-                groups.lanes, at, row, bodies.at, 3 * level * size, size, bodies.known[level]
-            )
+            there = level * size, bodies.known[level]
+            free &= ~places_within(groups.lanes, at, row, close.ahead, bodies.at, there)
     return free

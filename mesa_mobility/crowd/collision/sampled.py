@@ -19,51 +19,47 @@ from mesa_mobility.crowd.collision.simd_boxes import near_box
 from mesa_mobility.crowd.collision.simd_transforms import samples_to_ego
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable, in_lines
 from mesa_mobility.crowd.state.clearances import MARGIN
-from mesa_mobility.crowd.state.paths import Box, box_of, position_at
+from mesa_mobility.crowd.state.paths import box_of, position_at
+from mesa_mobility.crowd.state.people_grid import COVERED, Grid
 from mesa_mobility.crowd.state.records import CrowdState
 
 SLACK = 1e-5
 """Metres for the rounding of single precision."""
 
+_AHEAD = 4
+"""People whose paths are prefetched."""
 
-class EgoPose(NamedTuple):
-    """A deciding pedestrian: position (m), cosine and sine of its heading, and core radius (m)."""
+
+class Decider(NamedTuple):
+    """Somebody who decides.
+
+    Fields: ``row`` in the crowd; ``kind`` index of the pedestrian type; ``x``, ``y`` metres; ``c``,
+    ``s`` cosine and sine of the heading; ``core`` radius, metres; ``record`` (9 + fields,) the same
+    as cost terms read it (see ``costs.layout``).
+    """
 
     row: int
+    kind: int
     x: float
     y: float
     c: float
     s: float
     core: float
-
-
-NEARBY = np.dtype(
-    [
-        ("who", "i8"),
-        ("apart", "f8"),
-        ("laid", "?"),
-    ],
-    align=True,
-)
-"""Record of a person who may come in the way, in the deciding pedestrian's coordinates, metres.
-
-Fields: ``who`` row; ``apart`` the distance that the cores keep; ``laid``, whether the path is
-transformed.
-"""
+    record: NDArray[np.float64]
 
 
 class Close(NamedTuple):
     """People whose movement may come in the way.
 
-    Fields: ``people`` (n,) records of ``NEARBY``.  In the deciding pedestrian's coordinates,
-    metres: ``sweeps`` (3, n and padding) x, y and radius of circles around their remaining paths,
-    the distance to keep included; ``ahead`` (n, 2, 16) their positions at the sample times;
-    ``known`` (2,) how many of ``people`` may come in the way, and from which index on to the end
-    are those who are too close already.
+    Fields: ``who`` (n,) their rows in the crowd; ``known`` (2,) how many of them may come in the
+    way, and from which index on to the end are those who are too close already. In the deciding
+    pedestrian's coordinates, metres: ``sweeps`` (3, n and padding) x, y and radius of circles
+    around their remaining paths, the distance to keep included; ``ahead`` (n, 3, 16) x and y at the
+    sample times, and the distance that the cores keep.
     """
 
     known: NDArray[np.int64]
-    people: NDArray[np.void]
+    who: NDArray[np.int64]
     sweeps: NDArray[np.float32]
     ahead: NDArray[np.float32]
 
@@ -72,82 +68,56 @@ def make_close(people: int) -> Close:
     """Arrays for a number of people."""
     return Close(
         np.zeros(2, np.int64),
-        np.empty(people, NEARBY),
+        np.empty(people, np.int64),
         np.zeros((3, people + WIDE), np.float32),
-        in_lines((people, 2, SAMPLES), np.float32),
+        in_lines((people, 3, SAMPLES), np.float32),
     )
 
 
-@internal()
-def off_box2(x: float, y: float, box: Box) -> float:
-    """Squared distance from (x, y) to a box, m2; 0 within it."""
-    x0, y0, x1, y1 = box
-    dx, dy = max(x0 - x, x - x1, 0.0), max(y0 - y, y - y1, 0.0)
-    return dx * dx + dy * dy
-
-
 @force_inlined()
-def broad_phase_neighbours(
-    me: EgoPose,
+def lay_close(
+    me: Decider,
     near: NDArray[np.int64],
-    sweeps: NDArray[np.float64],
-    box: Box,
+    grid: Grid,
+    frame: int,
+    table: OptionTable,
     state: CrowdState,
-    picked: NDArray[np.int64],
-    dropped: NDArray[np.int32],
     to: Close,
 ) -> None:
-    """Write those of ``near`` who may come into a box in the pedestrian's coordinates.
+    """Write the people at indices ``near`` of the frame's grid.
 
-    For those who are too close already the exact test has a rule of its own. ``sweeps`` (3, n) has
-    x, y and radius of circles around their paths; ``picked`` and ``dropped`` are workspace.
+    For those who are too close already the exact test has a rule of its own.
     """
-    sweep_x, sweep_y, radius = sweeps[0], sweeps[1], sweeps[2]
-    px, py, c, s = me.x, me.y, me.c, me.s
-    own = me.core + MARGIN + SLACK
-    for a in range(len(near)):
-        dx, dy = sweep_x[a] - px, sweep_y[a] - py
-        x, y = c * dx + s * dy, c * dy - s * dx
-        sweep = radius[a] + own
-        dropped[a] = np.int32(off_box2(x, y, box) >= sweep * sweep)
-    n = 0
-    for a in range(len(near)):
-        picked[n] = a
-        n += 1 - dropped[a]
-    for q in range(n):
-        prefetch(state, near[picked[q]], 256)
-    count, touching = 0, len(to.people)
-    for q in range(n):
-        a = picked[q]
-        j = near[a]
+    for a in near:
+        prefetch(state, grid.people[a], 256)
+    keep, count, touching = me.core + MARGIN + SLACK, 0, len(to.who)
+    for a in near:
+        j = grid.people[a]
         apart = me.core + state.core[j] + MARGIN
-        dx, dy = state.x[j] - px, state.y[j] - py
+        dx, dy = grid.x[a] - me.x, grid.y[a] - me.y
         if dx * dx + dy * dy < apart * apart:
             touching -= 1
-            to.people[touching].who = j
+            to.who[touching] = j
             continue
-        dx, dy = sweep_x[a] - px, sweep_y[a] - py
-        somebody = to.people[count]
-        somebody.who = j
-        to.sweeps[0, count], to.sweeps[1, count] = c * dx + s * dy, c * dy - s * dx
-        to.sweeps[2, count] = radius[a] + own + SLACK
-        somebody.apart = apart
-        somebody.laid = False
+        to.who[count] = j
+        dx, dy = grid.table[COVERED, a] - me.x, grid.table[COVERED + 1, a] - me.y
+        to.sweeps[0, count], to.sweeps[1, count] = me.c * dx + me.s * dy, me.c * dy - me.s * dx
+        to.sweeps[2, count] = grid.table[COVERED + 2, a] + keep + SLACK
+        to.ahead[count, 2, :] = np.float32(apart - SLACK)
         count += 1
     to.known[0], to.known[1] = count, touching
+    for a in range(count):
+        if a + _AHEAD < count:
+            prefetch(table.path, max(state.option[to.who[a + _AHEAD]], 0), 192)
+        _lay_ahead(a, me, frame, table, state, to)
 
 
 @internal()
-def lay_ahead(
-    a: int, me: EgoPose, frame: int, table: OptionTable, state: CrowdState, close: Close
+def _lay_ahead(
+    a: int, me: Decider, frame: int, table: OptionTable, state: CrowdState, close: Close
 ) -> None:
-    """Write the positions of close person a at the sample times, unless done."""
-    somebody = close.people[a]
-    if somebody.laid:
-        return
-    somebody.laid = True
-    j = somebody.who
-    ahead = close.ahead
+    """Write the positions of close person a at the sample times."""
+    j, ahead = close.who[a], close.ahead
     if state.option[j] >= 0 and state.spacing[j] == SAMPLE_FRAMES:
         past = frame - state.start[j]
         first = min(past // SAMPLE_FRAMES, SAMPLES - 1)
@@ -156,7 +126,7 @@ def lay_ahead(
         c, s = state.from_c[j], state.from_s[j]
         turn = me.c * c + me.s * s, me.c * s - me.s * c
         place = me.c * dx + me.s * dy, me.c * dy - me.s * dx
-        at = 2 * SAMPLES * a
+        at = 3 * SAMPLES * a
         samples_to_ego(table.path, state.option[j], first, share, turn, place, ahead, at)
         return
     for k in range(SAMPLES):
@@ -167,12 +137,9 @@ def lay_ahead(
 
 @internal()
 def sampled_collision(
-    me: EgoPose,
-    frame: int,
     own: NDArray[np.float32],
     stride: float,
     first: int,
-    table: OptionTable,
     state: CrowdState,
     close: Close,
     unsure: NDArray[np.int64],
@@ -180,15 +147,12 @@ def sampled_collision(
     """People whom a path hits, certainly or possibly.
 
     Args:
-        me: the pedestrian.
-        frame: now.
         own: (3, 16) the path at the sample times, in the pedestrian's coordinates.
         stride: greatest distance between two successive samples, metres.
         first: index of the person to test first: options close in rank mostly hit the same
             person.
-        table: options of all capabilities.
         state: the crowd.
-        close: these people; positions are written when they are first needed.
+        close: these people.
         unsure: gets rows of people left to the exact test.
 
     Returns:
@@ -209,10 +173,8 @@ def sampled_collision(
             bits &= bits - 1
             if block >= 0 and a == first:
                 continue
-            lay_ahead(a, me, frame, table, state, close)
-            x, y = close.ahead[a, 0], close.ahead[a, 1]
-            j = close.people[a].who
-            least = np.float32(close.people[a].apart - SLACK)
+            x, y, least = close.ahead[a, 0], close.ahead[a, 1], close.ahead[a, 2, 0]
+            j = close.who[a]
             far = np.float32(least + half + 0.5 * state.stride[j])
             least2, far2 = least * least, far * far
             hit, near = False, False

@@ -17,7 +17,7 @@ from numba.core import cgutils
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined
-from mesa_mobility.compiled.simd import WIDE
+from mesa_mobility.compiled.simd import LANES, WIDE
 from mesa_mobility.compiled.twins import with_twin
 from mesa_mobility.compiled.vectors import (
     DOUBLE,
@@ -34,6 +34,7 @@ from mesa_mobility.compiled.vectors import (
     whole,
 )
 from mesa_mobility.crowd.options.table import LEVELS
+from mesa_mobility.crowd.state.paths import Box
 
 NOTHING = np.float32(0.0)
 ENDLESS = np.float32(np.inf)
@@ -51,6 +52,38 @@ def near_box(
         x, y, radius = of[at + lane], of[at + row + lane], of[at + 2 * row + lane]
         dx, dy = _beyond(x, left, right), _beyond(y, low, high)
         bits |= int(dx * dx + dy * dy < radius * radius) << lane
+    return bits
+
+
+@force_inlined()
+def off_box2(x: float, y: float, box: Box) -> float:
+    """Squared distance from (x, y) to a box, m2; 0 within it."""
+    x0, y0, x1, y1 = box
+    dx, dy = max(x0 - x, x - x1, 0.0), max(y0 - y, y - y1, 0.0)
+    return dx * dx + dy * dy
+
+
+@force_inlined()
+def sweeps_near(
+    circles: NDArray[np.float64],
+    at: int,
+    row: int,
+    pose: tuple[float, float, float, float],
+    keep: float,
+    box: Box,
+) -> int:
+    """Bits of those of 8 circles in the world that come nearer than ``keep`` to a box.
+
+    The box is in the coordinates of somebody with ``pose``: place, cosine and sine of the heading.
+    Other arguments as of ``drop_within``.
+    """
+    of = circles.flat
+    px, py, c, s = pose
+    bits = 0
+    for lane in range(LANES):
+        dx, dy = of[at + lane] - px, of[at + row + lane] - py
+        x, y, radius = c * dx + s * dy, c * dy - s * dx, of[at + 2 * row + lane] + keep
+        bits |= int(off_box2(x, y, box) < radius * radius) << lane
     return bits
 
 
@@ -107,15 +140,15 @@ def extent(typingctx, circles, at, row, n, dropped):
 
 
 @force_inlined()
-def levels_within(
-    ahead: NDArray[np.float32], at: int, row: int, spans: NDArray[np.float32], apart: float
-) -> int:
-    """Bits of the levels at which somebody is less than ``apart`` from a box.
+def levels_within(ahead: NDArray[np.float32], at: int, row: int, spans: NDArray[np.float32]) -> int:
+    """Bits of the levels at which somebody is nearer to a box than the distance to keep.
 
-    ``ahead`` C-contiguous: x at the 16 samples from place ``at`` on, y ``row`` places farther on;
-    ``spans`` (4, levels), C-contiguous: least x and y, greatest x and y of the boxes.
+    ``ahead`` C-contiguous: x at the 16 samples from place ``at`` on, y ``row`` places and the
+    distance twice as many farther on; ``spans`` (4, levels), C-contiguous: least x and y, greatest
+    x and y of the boxes.
     """
-    of, most = ahead.flat, np.float32(apart) * np.float32(apart)
+    of, apart = ahead.flat, ahead.flat[at + 2 * row]
+    most = apart * apart
     bits = 0
     for level in range(len(LEVELS)):
         sample = at + LEVELS[level]

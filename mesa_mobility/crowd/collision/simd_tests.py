@@ -17,7 +17,7 @@ from numba import types
 from numba.core import cgutils
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.simd import LANES, WIDE
+from mesa_mobility.compiled.simd import LANES, SAMPLES, WIDE
 from mesa_mobility.compiled.twins import with_twin
 from mesa_mobility.compiled.vectors import (
     BIT,
@@ -41,12 +41,10 @@ from mesa_mobility.compiled.vectors import (
 NOTHING = np.float32(0.0)
 
 
-def _away2(builder: Any, x: Any, y: Any, bodies: Start, at: Any, row: Any) -> tuple[Any, Any]:
+def _away2(builder: Any, x: Any, y: Any, bodies: Start, at: Any) -> tuple[Any, Any]:
     """Squared distances of places from a body, and the distance to keep from it."""
-    of = [
-        spread(builder, load_one(builder, bodies, builder.add(at, k)), x.type.count)
-        for k in (ir.Constant(LONG, 0), row, builder.add(row, row))
-    ]
+    rows = [builder.add(at, ir.Constant(LONG, k * SAMPLES)) for k in range(3)]
+    of = [spread(builder, load_one(builder, bodies, row), x.type.count) for row in rows]
     dx, dy = builder.fsub(x, of[0]), builder.fsub(y, of[1])
     return builder.fadd(builder.fmul(dx, dx), builder.fmul(dy, dy)), of[2]
 
@@ -55,43 +53,47 @@ def _plain_drop_within(
     circles: NDArray[np.float32],
     which: tuple[int, int, int],
     bodies: NDArray[np.float32],
-    there: tuple[int, int, int],
+    places: NDArray[np.int64],
+    there: tuple[int, int],
     dropped: NDArray[np.int32],
 ) -> None:
     at, row, n = which
-    first, size, known = there
-    of, body = circles.flat, bodies.flat
+    first, known = there
+    of, body, starts = circles.flat, bodies.flat, places.flat
     for k in range(n):
         x, y, radius = of[at + k], of[at + row + k], of[at + 2 * row + k]
         found = dropped[k] != 0
-        for b in range(first, first + known):
-            dx, dy = x - body[b], y - body[b + size]
-            room = body[b + 2 * size] - radius
+        for m in range(first, first + known):
+            b = starts[m]
+            dx, dy = x - body[b], y - body[b + SAMPLES]
+            room = body[b + 2 * SAMPLES] - radius
             room = room if room > NOTHING else NOTHING
             found |= dx * dx + dy * dy < room * room
         dropped[k] = found
 
 
 @with_twin(_plain_drop_within)
-def drop_within(typingctx, circles, which, bodies, there, dropped):
+def drop_within(typingctx, circles, which, bodies, places, there, dropped):
     """Set ``dropped`` of those of n circles that lie wholly within a body.
 
     Args:
         circles: C-contiguous.
         which: ``(at, row, n)``: x of the first circle at place ``at``, its y ``row`` places and its
             radius twice as many farther on; how many circles.
-        bodies: C-contiguous.
-        there: ``(first, size, known)``: x of the first body at place ``first``, its y ``size``
-            places and its distance to keep twice as many farther on; how many bodies.
+        bodies: C-contiguous, 16 numbers a row.
+        places: C-contiguous: where in ``bodies`` the x of each one is, with its y a row and its
+            distance to keep two rows farther on.
+        there: ``(first, known)``: the first of ``places`` that counts; how many do.
         dropped: by circle.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
         bodies = start_of(context, builder, sig.args[2], args[2])
-        marks = start_of(context, builder, sig.args[4], args[4])
+        places = start_of(context, builder, sig.args[3], args[3])
+        marks = start_of(context, builder, sig.args[5], args[5])
         at, row, n = wholes(context, builder, sig.args[1], args[1])
-        first, size, known = wholes(context, builder, sig.args[3], args[3])
+        first, known = wholes(context, builder, sig.args[4], args[4])
         wide = ir.Constant(LONG, WIDE)
         found = cgutils.alloca_once(builder, ir.VectorType(BIT, WIDE))
         with cgutils.for_range_slice(builder, ir.Constant(LONG, 0), n, wide) as (block, _):
@@ -99,8 +101,8 @@ def drop_within(typingctx, circles, which, bodies, there, dropped):
             before = load(builder, marks, block, WIDE)
             builder.store(builder.icmp_signed("!=", before, same(INT, WIDE, 0)), found)
             with cgutils.for_range(builder, known) as loop:
-                body = builder.add(first, loop.index)
-                away2, apart = _away2(builder, x, y, bodies, body, size)
+                body = load_one(builder, places, builder.add(first, loop.index))
+                away2, apart = _away2(builder, x, y, bodies, body)
                 room = more_of(builder, builder.fsub(apart, radius), same(FLOAT, WIDE, 0.0))
                 within = builder.fcmp_ordered("<", away2, builder.fmul(room, room))
                 builder.store(builder.or_(builder.load(found), within), found)
@@ -108,7 +110,7 @@ def drop_within(typingctx, circles, which, bodies, there, dropped):
             store(builder, dropped, marks, block)
         return context.get_dummy_value()
 
-    return types.void(circles, which, bodies, there, dropped), codegen
+    return types.void(circles, which, bodies, places, there, dropped), codegen
 
 
 def _plain_places_within(
@@ -116,49 +118,51 @@ def _plain_places_within(
     at: int,
     row: int,
     bodies: NDArray[np.float32],
-    first: int,
-    size: int,
-    known: int,
+    which: NDArray[np.int64],
+    there: tuple[int, int],
 ) -> int:
-    of, body = places.flat, bodies.flat
+    of, body, starts = places.flat, bodies.flat, which.flat
+    first, known = there
     bits = 0
     for lane in range(LANES):
         x, y = of[at + lane], of[at + row + lane]
         within = False
-        for b in range(first, first + known):
-            dx, dy, apart = x - body[b], y - body[b + size], body[b + 2 * size]
+        for m in range(first, first + known):
+            b = starts[m]
+            dx, dy, apart = x - body[b], y - body[b + SAMPLES], body[b + 2 * SAMPLES]
             within |= bool(dx * dx + dy * dy < apart * apart)
         bits |= int(within) << lane
     return bits
 
 
 @with_twin(_plain_places_within)
-def places_within(typingctx, places, at, row, bodies, first, size, known):
+def places_within(typingctx, places, at, row, bodies, which, there):
     """A mask of 8 bits: which of 8 places lie within a body.
 
     Args:
         places: C-contiguous.
         at: index of the x of the first place.
         row: y of a place is this far after its x.
-        bodies, first, size, known: as in ``drop_within``.
+        bodies, which, there: as ``bodies``, ``places`` and ``there`` of ``drop_within``.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         begin = start_of(context, builder, sig.args[0], args[0])
         bodies = start_of(context, builder, sig.args[3], args[3])
+        which = start_of(context, builder, sig.args[4], args[4])
         at, row = (whole(context, builder, sig.args[k], args[k]) for k in (1, 2))
-        first, size, known = (whole(context, builder, sig.args[k], args[k]) for k in (4, 5, 6))
+        first, known = wholes(context, builder, sig.args[5], args[5])
         x = load(builder, begin, at, LANES)
         y = load(builder, begin, builder.add(at, row), LANES)
         found = cgutils.alloca_once_value(builder, same(BIT, LANES, 0))
         with cgutils.for_range(builder, known) as loop:
-            body = builder.add(first, loop.index)
-            away2, apart = _away2(builder, x, y, bodies, body, size)
+            body = load_one(builder, which, builder.add(first, loop.index))
+            away2, apart = _away2(builder, x, y, bodies, body)
             within = builder.fcmp_ordered("<", away2, builder.fmul(apart, apart))
             builder.store(builder.or_(builder.load(found), within), found)
         return bits_of(builder, builder.load(found))
 
-    return types.int64(places, at, row, bodies, first, size, known), codegen
+    return types.int64(places, at, row, bodies, which, there), codegen
 
 
 def _plain_places_near(

@@ -41,7 +41,7 @@ from mesa_mobility.compiled.vectors import (
     whole,
     wholes,
 )
-from mesa_mobility.crowd.collision.sampled import EgoPose
+from mesa_mobility.crowd.collision.sampled import Decider
 
 BARRIER_FIELDS = 5
 """Rows of barriers: x and y of one end, x and y from there to the other, the inverse square of its
@@ -60,7 +60,7 @@ NOTHING, ALL = np.float32(0.0), np.float32(1.0)
 
 @internal()
 def walls_to_ego(
-    me: EgoPose,
+    me: Decider,
     walls: NDArray[np.float64],
     farthest: float,
     radius: float,

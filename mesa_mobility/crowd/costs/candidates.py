@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.errors import ModelError
 
 
@@ -45,23 +47,17 @@ class Candidates:
         options: (n,) row of the option in the capability's table.
         owner: (n,) index in the batch (0 to b - 1) of the option's pedestrian.
         offsets: (b + 1,) options of pedestrian i are rows ``offsets[i]:offsets[i + 1]``.
-        pedestrians: (b,) rows of the pedestrians in the crowd (``Pedestrian.row``).
-        positions: (b, 2) metres.
+        grid: people, and where they are; only columns of its table are kept of them.
+        places: (b,) columns of the pedestrians.
         facings: (b,) headings, radians.
         targets: (b, 2) metres.
         preferred_speeds: (b,) m/s; 0 for somebody without a route.
-        velocities: (b, 2) mean velocity of the movement that has just ended, m/s.
         cores: (b,) core radius, metres.
         types: (b,) index of the pedestrian type in ``model.pedestrian_types``.
         neighbour_offsets: (b + 1,) neighbours of pedestrian i are rows
-            ``neighbour_offsets[i]:neighbour_offsets[i + 1]`` of the arrays below.
-        neighbours: (q,) rows of the neighbours in the crowd: people whom a movement of each, of
-            the longest of their types, can bring together.
-        neighbour_positions: (q, 2) metres.
-        neighbour_velocities: (q, 2) mean velocity of their movement under way, m/s.
-        neighbour_directions: (q, 2) unit vector to their target; (0, 0) at the target.
-        leads: (q,) metres by which their route is shorter than the pedestrian's; not a number if
-            neither has a route.
+            ``neighbour_offsets[i]:neighbour_offsets[i + 1]`` of the arrays of neighbours.
+        neighbour_places: (q,) columns of the neighbours: people whom a movement of each, of the
+            longest of their types, can bring together.
         wall_offsets: (b + 1,) walls of pedestrian i are rows
             ``wall_offsets[i]:wall_offsets[i + 1]`` of ``walls``.
         walls: (w, 4) x1, y1, x2, y2 of walls and closed exits, metres: those no farther than the
@@ -85,20 +81,15 @@ class Candidates:
     options: NDArray[np.int64]
     owner: NDArray[np.int64]
     offsets: NDArray[np.int64]
-    pedestrians: NDArray[np.int64]
-    positions: NDArray[np.float64]
+    grid: Grid
+    places: NDArray[np.int64]
     facings: NDArray[np.float64]
     targets: NDArray[np.float64]
     preferred_speeds: NDArray[np.float64]
-    velocities: NDArray[np.float64]
     cores: NDArray[np.float64]
     types: NDArray[np.int64]
     neighbour_offsets: NDArray[np.int64]
-    neighbours: NDArray[np.int64]
-    neighbour_positions: NDArray[np.float64]
-    neighbour_velocities: NDArray[np.float64]
-    neighbour_directions: NDArray[np.float64]
-    leads: NDArray[np.float64]
+    neighbour_places: NDArray[np.int64]
     wall_offsets: NDArray[np.int64]
     walls: NDArray[np.float64]
     groups: NDArray[np.int64]
@@ -115,6 +106,53 @@ class Candidates:
         for array in (*vars(self).values(), *self.fields.values(), *self.neighbour_fields.values()):
             if isinstance(array, np.ndarray):
                 array.setflags(write=False)
+
+    @cached_property
+    def pedestrians(self) -> NDArray[np.int64]:
+        """(b,) rows of the pedestrians in the crowd (``Pedestrian.row``)."""
+        return _fixed(self.grid.people[self.places])
+
+    @cached_property
+    def positions(self) -> NDArray[np.float64]:
+        """(b, 2) metres."""
+        return self._of(0, self.places)
+
+    @cached_property
+    def velocities(self) -> NDArray[np.float64]:
+        """(b, 2) mean velocity of the movement that has just ended, m/s."""
+        return self._of(2, self.places)
+
+    @cached_property
+    def neighbours(self) -> NDArray[np.int64]:
+        """(q,) rows of the neighbours in the crowd."""
+        return _fixed(self.grid.people[self.neighbour_places])
+
+    @cached_property
+    def neighbour_positions(self) -> NDArray[np.float64]:
+        """(q, 2) metres."""
+        return self._of(0, self.neighbour_places)
+
+    @cached_property
+    def neighbour_velocities(self) -> NDArray[np.float64]:
+        """(q, 2) mean velocity of their movement under way, m/s."""
+        return self._of(2, self.neighbour_places)
+
+    @cached_property
+    def neighbour_directions(self) -> NDArray[np.float64]:
+        """(q, 2) unit vector to their target; (0, 0) at the target."""
+        return self._of(4, self.neighbour_places)
+
+    @cached_property
+    def leads(self) -> NDArray[np.float64]:
+        """(q,) metres by which their route is shorter than the pedestrian's; not a number if
+        neither has a route."""
+        own = np.repeat(self.places, np.diff(self.neighbour_offsets))
+        with np.errstate(invalid="ignore"):
+            return _fixed(self.grid.table[6, own] - self.grid.table[6, self.neighbour_places])
+
+    def _of(self, row: int, places: NDArray[np.int64]) -> NDArray[np.float64]:
+        """(n, 2) two rows of the table of the grid at some places, read-only."""
+        return _fixed(np.ascontiguousarray(self.grid.table[row : row + 2, places].T))
 
     def field(self, name: str) -> NDArray[np.float64]:
         """(b,) what a kernel with ``fields=(name,)`` takes of each pedestrian.
@@ -168,6 +206,12 @@ class Candidates:
         """
         velocity = self.neighbour_velocities[neighbours]
         return self.neighbour_positions[neighbours] + velocity * self.durations[rows, None]
+
+
+def _fixed(values: NDArray[Any]) -> NDArray[Any]:
+    """The values, read-only."""
+    values.setflags(write=False)
+    return values
 
 
 def _chosen(name: str, at_hand: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:

@@ -53,6 +53,7 @@ class CompiledTerm(CostTerm):
                 of.preferred_speeds,
                 of.velocities,
                 of.cores,
+                nearest_ahead(of),
                 *(of.field(name) for name in kernel.fields),
             ]
         )
@@ -66,6 +67,7 @@ class CompiledTerm(CostTerm):
                     *of.neighbour_directions.T,
                     of.leads,
                     np.empty_like(of.leads),
+                    np.empty_like(of.leads),
                     *(of.neighbour_field(name) for name in kernel.fields),
                 ]
             )
@@ -75,6 +77,17 @@ class CompiledTerm(CostTerm):
             offsets = of.wall_offsets
             return _each_wall(kernel.address, of.owner, ends, offsets, of.walls, own, at, numbers)
         return _each_option(kernel.address, of.offsets, ends, own, at, numbers)
+
+
+def nearest_ahead(of: Candidates) -> NDArray[np.float64]:
+    """(b,) metres to the nearest neighbour on the side of the target; inf without any."""
+    counts = np.diff(of.neighbour_offsets)
+    whose = np.repeat(np.arange(len(counts)), counts)
+    there = of.neighbour_positions - of.positions[whose]
+    ahead = (there * (of.targets - of.positions)[whose]).sum(axis=1) > 0.0
+    nearest = np.full(len(counts), np.inf)
+    np.minimum.at(nearest, whose[ahead], np.hypot(*there[ahead].T))
+    return nearest
 
 
 def numbers_of(term: CompiledTerm, kernel: CostKernel) -> list[Any]:

@@ -68,8 +68,8 @@ call_pair_loop = _caller(PairKernel.signature)
 out)``."""
 
 call_pairs_loop = _caller(PairKernel.all_pairs)
-"""Add the weighted costs of n options for each of m neighbours to ``out``: ``(m, n, ends, others,
-own, at, numbers, weight, out)``."""
+"""Add the weighted costs of n options for each of m neighbours to ``out``: ``(m, which, n, ends,
+others, own, at, numbers, weight, out)``; ``which`` are the columns of the neighbours."""
 
 call_wall_loop = _caller(WallKernel.signature)
 """Cost of one option for the worst of n walls: ``(n, ends, walls, own, at, numbers)``."""

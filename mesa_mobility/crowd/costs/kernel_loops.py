@@ -39,9 +39,10 @@ def {name}(n, ends, width, others, row, own, at, numbers, out):
 """
 
 PAIRS_LOOP = """
-def {name}(m, n, ends, width, others, row, own, at, numbers, weight, out):
+def {name}(m, which, n, ends, width, others, row, own, at, numbers, weight, out):
     me, p = {me}, {p}
-    for a in range(m):
+    for b in range(m):
+        a = which[b]
         other = {other}
         for k in range(n):
             option = {option}
@@ -72,7 +73,7 @@ def me_of(fields: Sequence[str], declared: Sequence[str]) -> str:
         fields: those that are laid out for the kernel.
         declared: those among them that the model declares.
     """
-    known = [f"own[{row}]" for row in range(8)]
+    known = [f"own[{row}]" for row in range(9)]
     more = [_laid(name, fields, "own[at[{}]]") for name in (*KERNEL_FIELDS[1:], *declared)]
     return f"Me({', '.join([*known, *more])})"
 

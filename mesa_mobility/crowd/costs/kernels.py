@@ -190,7 +190,7 @@ class PairKernel(CostKernel):
     records = ("option", "me", "other", NUMBERS)
     loop = PAIR_LOOP
     signature = types.void(_N, *_ROWS, *_ROWS, *_PERSON, FLOATS)
-    all_pairs: ClassVar[Any] = types.void(_N, _N, *_ROWS, *_ROWS, *_PERSON, _F, FLOATS)
+    all_pairs: ClassVar[Any] = types.void(_N, INTS, _N, *_ROWS, *_ROWS, *_PERSON, _F, FLOATS)
 
     @cached_property
     def _compiled_pairs(self) -> Any:

@@ -14,28 +14,16 @@ END_X, END_Y, END_UX, END_UY, SECONDS, SPEED = range(6)
 END_ROWS = 6
 
 
-# Others (8 + fields, n), the neighbours of a pedestrian: the first fields of the record Other, room
-# for costs, and from row FIELDS on the fields that terms take.
-OTHER_X, OTHER_Y, OTHER_VX, OTHER_VY, OTHER_EX, OTHER_EY, LEAD, COST, FIELDS = range(9)
+# Others (9 + fields, n), the neighbours of a pedestrian: the first fields of the record Other, room
+# for costs, workspace, and from row FIELDS on the fields that terms take.
+OTHER_X, OTHER_Y, OTHER_VX, OTHER_VY, OTHER_EX, OTHER_EY, LEAD, COST, AWAY, FIELDS = range(10)
 
-# The pedestrian (8 + fields,): the first fields of the record Me, and from FIELDS on the fields
+# The pedestrian (9 + fields,): the first fields of the record Me, and from FIELDS on the fields
 # that terms take.
-ME_X, ME_Y, ME_TARGET_X, ME_TARGET_Y, ME_PREFERRED, ME_VX, ME_VY, ME_CORE = range(8)
+ME_X, ME_Y, ME_TARGET_X, ME_TARGET_Y, ME_PREFERRED, ME_VX, ME_VY, ME_CORE, ME_AHEAD = range(9)
 
 KERNEL_FIELDS = ("core", "heading", "type", "group")
 """Fields that are laid out for the terms that read them, besides those that the model declares."""
-
-
-class Own(NamedTuple):
-    """The deciding pedestrian as cost terms see it.
-
-    Attributes:
-        kind: index of its type.
-        record: (8 + fields,) as in this module.
-    """
-
-    kind: int
-    record: NDArray[np.float64]
 
 
 class KernelTable(NamedTuple):

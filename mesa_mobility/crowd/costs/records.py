@@ -67,6 +67,7 @@ class Me(NamedTuple):
         vx: mean velocity of the movement that has just ended.
         vy: mean velocity of the movement that has just ended.
         core: core radius.
+        ahead: distance to the nearest neighbour on the side of the target, infinite without any.
         heading: facing, counter-clockwise from +x.
         type: index of the pedestrian type.
         group: number of the group, 0 for none.
@@ -80,6 +81,7 @@ class Me(NamedTuple):
     vx: float
     vy: float
     core: float
+    ahead: float
     heading: float
     type: float
     group: float

@@ -268,7 +268,6 @@ def write_records(
     agenda["checked"][rows] = frame - 1
     agenda["nearest"][rows] = np.inf
     agenda["corner"][rows] = NO_CORNER
-    agenda["mouth"][rows] = 0
     agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 
 

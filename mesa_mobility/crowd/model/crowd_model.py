@@ -31,10 +31,13 @@ from mesa_mobility.crowd.people.space import space_of
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset
+from mesa_mobility.crowd.running.blocking import Blockers
 from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder, movements_under_way
 from mesa_mobility.crowd.running.stall import StallWatch, stall_reason
+from mesa_mobility.crowd.running.standing import Blocked, StandingWatch
 from mesa_mobility.crowd.running.statistics import Statistics
 from mesa_mobility.crowd.saved import Saved
+from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
@@ -127,6 +130,7 @@ class CrowdModel(mesa.Model):
         self.statistics = Statistics(self.population, self.crowd)
         self.waits = Waits()
         self.dynamics = Dynamics(self, scene)
+        self._standing_watch = StandingWatch()
         self._stall_watch, self.stalled = StallWatch(), False
         add_occupants(floor_plan, self.population)
         self.datacollector = DataCollector(model_reporters=REPORTERS)
@@ -158,6 +162,7 @@ class CrowdModel(mesa.Model):
             "population": self.population,
             "sources": self.sources,
             "statistics": self.statistics,
+            "standing": self._standing_watch,
             "stall_watch": self._stall_watch,
             "dynamics": self.dynamics,
         }
@@ -206,7 +211,15 @@ class CrowdModel(mesa.Model):
     @property
     def stall_reason(self) -> str | None:
         """Why the evacuation has stalled, in a few words; None if it has not."""
-        return stall_reason(self.floor_plan, self.population.aggregates) if self.stalled else None
+        if not self.stalled:
+            return None
+        return stall_reason(self.floor_plan, self.population.aggregates, self._stall_watch.ring)
+
+    @property
+    def blocked(self) -> list[Blocked]:
+        """The people inside who have stood for a minute although they want to move, without a
+        reason, by row: a ``Blocked`` each."""
+        return [each for each in self._standing_watch.now if self.crowd.active[each.person]]
 
     def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
         """Take people out of the model."""
@@ -250,13 +263,16 @@ class CrowdModel(mesa.Model):
                 if self.crowd.active[agent.row]:  # others may have removed it
                     agent.step()
         people, end, before = self.population, self.frame + self.frames_per_step, self.inside
+        self._standing_watch.look(self)
         while self.frame < end:
             self.dynamics.advance(end)
             tell_time(self)
+            self._standing_watch.look(self)
             if before and len(people.present) == 0 and not self.sources.expecting:
                 break  # the last person has left: the step ends here
         people.take_out_inactive()
         people.look_over(self.frame)
+        had_stalled = self.stalled
         self.stalled = self._stall_watch.stalled(
             self.frame,
             people.rows,
@@ -264,7 +280,11 @@ class CrowdModel(mesa.Model):
             people.aggregates,
             people.count - self.inside,
             self.journeys.crossed,
+            self._standing_watch.nobody_can_move,
         )
+        if self.stalled and not had_stalled:
+            rings = Blockers(self, self._standing_watch.minute).rings(self.rows.tolist())
+            self._stall_watch.ring = rings[0] if rings else []
         self.datacollector.collect(self)
         self.running = (self.inside > 0 or self.sources.expecting) and not self.stalled
 
@@ -309,6 +329,15 @@ class CrowdModel(mesa.Model):
         """Movement options of the people in ``rows`` if they decided now."""
         return self.dynamics.candidates(rows)
 
+    def wishes(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64] | None = None,
+        speeds: NDArray[np.float64] | None = None,
+    ) -> Wishes:
+        """What people would do if nobody else were there; see ``World.wishes``."""
+        return self.dynamics.wishes(rows, points, speeds)
+
     def explain(self, row: int) -> Explanation:
         """The decision of the person in ``row`` if it decided now, before all others.
 
@@ -317,36 +346,10 @@ class CrowdModel(mesa.Model):
         Raises:
             ModelError: nobody inside has this row.
         """
-        if not (0 <= row < self.population.count and self.crowd.active[row]):
-            raise ModelError(f"pedestrian {row}: expected the row of somebody inside")
+        self.check_inside(row)
         return self.dynamics.explain(row)
 
-    def summary(self) -> dict[str, Any]:
-        """Figures of the run so far, ready for JSON.
-
-        Returns:
-            ``model``, ``preset``, ``rules`` (all that the preset decides), ``pedestrians``,
-            ``simulated_s``, ``egress_s`` (None while anybody is inside or to come, or where nobody
-            ever was), ``left_inside``, ``stalled``,
-            ``stall_reason`` (None unless stalled), ``decisions``, ``fallback_decision_share``,
-            ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy``
-            ([[t, inside], ...] each second).
-        """
-        last_left = self.statistics.last_left
-        out = self.inside == 0 and last_left is not None and not self.sources.expecting
-        return {
-            "model": type(self).__name__,
-            "preset": self.preset,
-            "rules": self.rules.numbers(),
-            "pedestrians": self.population.count,
-            "simulated_s": round(self.elapsed, 6),
-            "egress_s": round(last_left or 0.0, 6) if out else None,
-            "left_inside": self.inside,
-            "stalled": self.stalled,
-            "stall_reason": self.stall_reason,
-            "decisions": int(self.crowd.decisions.sum()),
-            "fallback_decision_share": self.statistics.fallback_decision_share,
-            "fallback_time_share": self.statistics.fallback_time_share,
-            "mean_speed_mps": self.statistics.mean_speed_so_far,
-            "occupancy": [list(row) for row in self.statistics.occupancy],
-        }
+    def check_inside(self, row: int) -> None:
+        """Raise ModelError if nobody inside has this row."""
+        if not (0 <= row < self.population.count and self.crowd.active[row]):
+            raise ModelError(f"pedestrian {row}: expected the row of somebody inside")

@@ -22,7 +22,7 @@ from mesa_mobility.crowd.planning.evaluation.neighbour_costs import ENOUGH, LITT
 from mesa_mobility.crowd.planning.evaluation.opened_groups import NOT_A_NUMBER, open_groups
 from mesa_mobility.crowd.planning.evaluation.option_costs import wall_cost
 from mesa_mobility.crowd.planning.feasibility import option_gone_or_blocked
-from mesa_mobility.crowd.planning.workspace import DecisionContext, FrameContext, Workspace
+from mesa_mobility.crowd.planning.workspace import DecisionContext, FrameContext, Opened, Workspace
 
 NONE = -1
 
@@ -57,11 +57,13 @@ def turns_less(o: int, than: int, table: OptionTable) -> bool:
 
 
 @internal()
-def standing(count: int, work: Workspace) -> int:
+def standing(count: int, options: Opened) -> int:
     """Index of the cheapest of ``count`` options that covers no ground; ``count`` if all do."""
     found = count
     for k in range(count):
-        if work.ends[SPEED, k] == 0.0 and (found == count or work.least[k] < work.least[found]):
+        if options.ends[SPEED, k] == 0.0 and (
+            found == count or options.least[k] < options.least[found]
+        ):
             found = k
     return found
 
@@ -88,7 +90,8 @@ def cheapest_free(
         The option's row in the table, that of the least turn if several cost the same, -1 if all
         hit something, -2 if a cost is not a number; the frame of leaving by an exit, or -1.
     """
-    table, terms, own, bounds, first = scene.table, scene.terms, now.own, now.bounds, now.first
+    table, terms, me, options = scene.table, scene.terms, now.me, work.opened
+    bounds, first = now.bounds, now.first
     # Typed, as functions are compiled once more for literal numbers.
     best, leaving, most = NONE, -1, np.inf
     band, count, met, k = np.int64(0), np.int64(0), np.int64(0), np.int64(0)
@@ -98,7 +101,7 @@ def cheapest_free(
         while stays or (up_to < DEAREST and dearest > up_to and up_to < most):
             opened = 0
             if stays:
-                work.picked[0] = now.stay
+                options.picked[0] = now.stay
                 bounds[now.stay - first] = np.inf
                 opened = 1
             else:
@@ -110,52 +113,50 @@ def cheapest_free(
                 else:
                     up_to = DEAREST
                 band += 1
-                opened = pick_between(bounds, above, up_to, first, work.picked)
+                opened = pick_between(bounds, above, up_to, first, options.picked)
             if opened > 0:
                 count = open_groups(now, approximate, scene, count, opened, most, work)
             if count < 0:
                 return NOT_A_NUMBER, -1
             if stays:
                 stays = False
-                k = standing(count, work)
+                k = standing(count, options)
                 if k < count:
-                    dearest = work.least[k]
-                    work.approximate[k] = False
+                    dearest = options.least[k]
+                    options.approximate[k] = False
                     break
             if count > 0:
-                k = place_of_least(work.least, count)
-                dearest = work.least[k]
+                k = place_of_least(options.least, count)
+                dearest = options.least[k]
         if dearest > most or dearest > DEAREST:
             return best, leaving
-        o, this, least = work.rows[k], k, dearest
-        work.least[this] = np.inf
-        k = place_of_least(work.least, count)
-        dearest = work.least[k]
+        o, this, least = options.rows[k], k, dearest
+        options.least[this] = np.inf
+        k = place_of_least(options.least, count)
+        dearest = options.least[k]
         # This one is likely to be next.
-        prefetch(table.path, work.rows[k], 192)
-        prefetch(table.options, work.rows[k], 32)
-        if work.unwalled[this]:
-            work.unwalled[this] = False
-            more = wall_cost(own, this, work.ends, now.walls, terms.wall)
+        prefetch(table.path, options.rows[k], 192)
+        prefetch(table.options, options.rows[k], 32)
+        if options.unwalled[this]:
+            options.unwalled[this] = False
+            more = wall_cost(me, this, options.ends, now.walls, terms.wall)
             if not abs(more) < np.inf:
                 return NOT_A_NUMBER, -1
-            work.costs[this] += more
+            options.costs[this] += more
             bound = least + LITTLE_LESS * more
             if min(dearest, most) < bound:
-                work.least[this] = bound
+                options.least[this] = bound
                 continue
-        if work.approximate[this]:
+        if options.approximate[this]:
             # All relevant neighbours.
-            work.approximate[this] = False
-            enough, count_all = _enough(most, work.costs[this]), now.foremost
-            more = pair_cost(
-                own, this, work.ends, count_all, work.foremost, enough, terms.pair, work.sums
-            )
+            options.approximate[this] = False
+            enough, some, around = _enough(most, options.costs[this]), now.foremost, work.neighbours
+            more = pair_cost(me, this, options.ends, some, 0, around, enough, terms.pair)
             if more == ENOUGH:
                 continue
-            bound = work.costs[this] + LITTLE_LESS * more
+            bound = options.costs[this] + LITTLE_LESS * more
             if min(dearest, most) < bound < np.inf:
-                work.least[this] = bound
+                options.least[this] = bound
                 continue
         hard_bodies = scene.rules.hard_bodies
         gone, who = option_gone_or_blocked(
@@ -164,11 +165,11 @@ def cheapest_free(
         met = np.int64(who)
         if gone < -1:
             continue
-        cost = work.costs[this]
+        cost = options.costs[this]
         if not now.has_negative_pairs:
-            enough, count_all = _enough(most, cost), now.neighbours
+            enough, everybody, around = _enough(most, cost), now.neighbours, work.neighbours
             more = pair_cost(
-                own, this, work.ends, count_all, work.others, enough, terms.pair, work.sums
+                me, this, options.ends, everybody, now.foremost, around, enough, terms.pair
             )
             if more == ENOUGH:
                 continue

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,32 +12,26 @@ from mesa_mobility.compiled.intrinsics import store_release, take_number
 from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
 from mesa_mobility.crowd.collision.broad_phase import cull_groups
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
-from mesa_mobility.crowd.collision.sampled import EgoPose, broad_phase_neighbours
+from mesa_mobility.crowd.collision.sampled import Decider
 from mesa_mobility.crowd.collision.walls import Barriers, walls_to_ego
-from mesa_mobility.crowd.costs.layout import FIELDS, LEAD, Own
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES
 from mesa_mobility.crowd.planning.branch_and_bound import CROWD, FEW, NONE, cheapest_free
-from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, least
+from mesa_mobility.crowd.planning.evaluation.lanes import least
 from mesa_mobility.crowd.planning.evaluation.opened_groups import NOT_A_NUMBER
-from mesa_mobility.crowd.planning.evaluation.option_costs import group_bounds, lay_self
+from mesa_mobility.crowd.planning.evaluation.option_costs import group_bounds
 from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
     mark_relevant,
     select_relevant,
 )
 from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.planning.feasibility import Obstacles
-from mesa_mobility.crowd.planning.grid import (
-    Nearby,
-    cover_in,
-    farthest_range,
-    keep_interacting,
-    neighbours_within,
-    place_in,
-)
+from mesa_mobility.crowd.planning.grid import place_in
+from mesa_mobility.crowd.planning.neighbours import gather_neighbours
 from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
 from mesa_mobility.crowd.planning.workspace import DecisionContext, FrameContext, Workspace
 from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import commit, to_world
+from mesa_mobility.crowd.state.people_grid import cover_in
 
 
 @entry_point()
@@ -99,17 +92,15 @@ class Situation(NamedTuple):
 
     Attributes:
         me: the pedestrian.
-        own: the same as cost terms see it.
         place: their place in the grid.
-        neighbours: number of columns of ``Workspace.others``.
+        neighbours: number of columns of ``Neighbours.others``.
         walls: walls within reach, with squared distances.
         barriers: those that do not touch the body, in the pedestrian's coordinates.
         exits_from: metres to the nearest open exit.
         farthest: metres that the longest option covers.
     """
 
-    me: EgoPose
-    own: Own
+    me: Decider
     place: int
     neighbours: int
     walls: NDArray[np.float64]
@@ -150,39 +141,22 @@ def _decide_one(
 @inlined()
 def _gather(i: int, scene: FrameContext, work: Workspace) -> Situation:
     """The people, walls and exits around pedestrian i; writes neighbours and walls to ``work``."""
-    state, grid, ranges = scene.state, scene.grid, scene.rules.interaction_ranges
-    x, y, heading, core = state.x[i], state.y[i], state.heading[i], state.core[i]
-    me = EgoPose(i, x, y, math.cos(heading), math.sin(heading), core)
-    own = lay_self(me, state, scene.terms, work.own)
-    others, place = work.others, place_in(grid, x, y, i)
-    nearby = Nearby(work.near, work.sweeps, work.interacting, others)
-    counts_within = farthest_range(i, ranges, state)
-    n_near, count = neighbours_within(
-        grid, scene.moving, x, y, place, scene.rules.search_radius, counts_within, nearby
-    )
-    if len(ranges) > 1:
-        count = keep_interacting(i, count, ranges, state, work.interacting, others)
-    route, lead = state.route[i], others[LEAD]
-    for a in range(count):
-        lead[a] = route - lead[a]
-    for row in range(FIELDS, len(others)):
-        for a in range(count):
-            others[row, a] = scene.terms.fields[work.interacting[a], row - FIELDS]
-    fill_lane(count, others)
+    state = scene.state
+    x, y, core = state.x[i], state.y[i], state.core[i]
+    # The box that the options and the fallback can reach.
+    aside = state.preferred[i] * FALLBACK_SECONDS
+    whole = scene.groups.clusters[state.cluster[i]].whole
+    x0, y0 = min(whole[0], -aside), min(whole[1], -aside)
+    box = x0, y0, max(whole[2], aside), max(whole[3], aside)
+    place = place_in(scene.grid, x, y, i)
+    me, count = gather_neighbours(i, place, box, scene, work.neighbours)
     destination, farthest = state.destination[i], scene.table.farthest[state.cluster[i]]
     reach = wall_reach(farthest, core)
     walls = work.walls[: near_walls(scene.around, x, y, destination, reach, work.walls)]
     n_clear = walls_to_ego(me, walls, farthest, core + MARGIN, work.barriers)
     barriers = Barriers(work.barriers, n_clear)
     exits_from = exit_distance(scene.around, x, y, destination)
-    # The box that the options and the fallback can reach.
-    aside = state.preferred[i] * FALLBACK_SECONDS
-    whole = scene.groups.clusters[state.cluster[i]].whole
-    x0, y0 = min(whole[0], -aside), min(whole[1], -aside)
-    box = x0, y0, max(whole[2], aside), max(whole[3], aside)
-    hard = work.near[: n_near if scene.rules.hard_bodies else 0]
-    broad_phase_neighbours(me, hard, work.sweeps, box, state, work.unsure, work.dropped, work.close)
-    return Situation(me, own, place, count, walls, barriers, exits_from, farthest)
+    return Situation(me, place, count, walls, barriers, exits_from, farthest)
 
 
 @inlined()
@@ -190,11 +164,9 @@ def _drop_blocked(around: Situation, scene: FrameContext, work: Workspace) -> in
     """Mark the groups of options that certainly hit something; returns how many are left."""
     return cull_groups(
         around.me,
-        scene.frame,
-        work.close,
+        work.neighbours.close,
         around.barriers,
         around.exits_from,
-        scene.table,
         scene.groups,
         scene.state,
         work.blocks,
@@ -212,17 +184,15 @@ def _bound(
     work: Workspace,
 ) -> tuple[bool, DecisionContext]:
     """Lower bounds of the costs in groups of options; whether all are numbers, and the search."""
-    me, own, count, terms = around.me, around.own, around.neighbours, scene.terms
+    me, count, terms = around.me, around.neighbours, scene.terms
     spanned = scene.groups.clusters[scene.state.cluster[me.row]]
     bounds, dropped = work.bounds[: spanned.last - spanned.first], work.blocks.dropped
     bounds[:] = 0.0
     if bounded:
-        group_bounds(me, own, spanned.first, scene.groups, terms.bound, work.ends, bounds)
+        group_bounds(me, spanned.first, scene.groups, terms.bound, work.opened.ends, bounds)
     foremost = 0
     if not has_negative_pairs and len(terms.pair.address) > 0:
-        foremost = select_relevant(
-            own, work.others, count, work.unsure, work.dropped, work.foremost
-        )
+        foremost = select_relevant(me, count, work.neighbours)
     bad = 0
     for a in range(len(bounds)):
         bad |= int(dropped[a] == 0) & int(not abs(bounds[a]) < np.inf)
@@ -231,7 +201,6 @@ def _bound(
     work.bounds[len(bounds) : len(bounds) + AT_ONCE] = np.inf
     now = DecisionContext(
         me,
-        own,
         spanned.first,
         bounds,
         bounds[place_of_least(work.bounds, len(bounds))],
@@ -271,15 +240,15 @@ def _commit(
         )
     else:
         standing = scene.rules.standing[state.type_index[i]]
-        people, near, count = work.close.people, work.unsure, work.close.known[0]
+        close, near, count = work.neighbours.close, work.unsure, work.neighbours.close.known[0]
         for a in range(count):
-            near[a] = people[a].who
-        for a in range(work.close.known[1], len(people)):
-            near[count] = people[a].who
+            near[a] = close.who[a]
+        for a in range(close.known[1], len(close.who)):
+            near[count] = close.who[a]
             count += 1
         leaves = around.exits_from <= around.farthest
         obstacles = Obstacles(
             around.walls, scene.around, near[:count], leaves, scene.rules.hard_bodies
         )
         fall_back(i, scene.frame, scene.table, state, obstacles, standing, work.path)
-    cover_in(scene.moving, around.place, i, state)
+    cover_in(scene.grid, around.place, i, state)

@@ -27,6 +27,7 @@ from mesa_mobility.crowd.state.paths import to_world
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
+from mesa_mobility.crowd.state.wishes import NOBODY
 
 FREE, WALL, PERSON = 0, 1, 2
 """Verdicts on an option: it hits nothing, a wall, or a person."""
@@ -51,6 +52,8 @@ class Explanation:
         knots: (n,) number of valid samples of each path; beyond them the end is repeated.
         neighbour_ends: (q, 2) ends of the neighbours' committed movements, metres.
         chosen: index of the option taken, or -1 for the fallback.
+        blocked_by: row of whom they would hit first with what they would do if nobody else were
+            there, or -1.
     """
 
     pedestrian: int
@@ -67,6 +70,7 @@ class Explanation:
     knots: NDArray[np.int64]
     neighbour_ends: NDArray[np.float64]
     chosen: int
+    blocked_by: int = NOBODY
 
     @property
     def totals(self) -> NDArray[np.float64]:

@@ -153,7 +153,7 @@ def option_gone_or_blocked(
         -2 or -3 if it hits something, else the frame of leaving or -1; the index of the close
         person to test first for the next option.
     """
-    me, walls = now.me, now.walls
+    me, walls, close = now.me, now.walls, work.neighbours.close
     reach, stride = np.float64(table.options[o].reach), np.float64(table.options[o].stride)
     exits_near = reach >= now.exits_from
     # Left to the exact tests: whether it hits a wall, and the people in doubt.
@@ -166,19 +166,17 @@ def option_gone_or_blocked(
         most = me.core + MARGIN + 0.5 * stride + 3.0 * SLACK
         walled = now.barriers.known < len(walls) or off2 < most * most
         if hard_bodies:
-            who, doubtful = sampled_collision(
-                me, frame, table.path[o], stride, met, table, state, work.close, work.unsure
-            )
+            who, doubtful = sampled_collision(table.path[o], stride, met, state, close, work.unsure)
             if who >= 0:
                 return -2, who
     elif hard_bodies:
         # People who leave on the way may miss those ahead: the exact test decides.
-        doubtful = work.close.known[0]
+        doubtful = close.known[0]
         for a in range(doubtful):
-            work.unsure[a] = work.close.people[a].who
+            work.unsure[a] = close.who[a]
     if hard_bodies:
-        for a in range(work.close.known[1], len(work.close.people)):
-            work.unsure[doubtful] = work.close.people[a].who
+        for a in range(close.known[1], len(close.who)):
+            work.unsure[doubtful] = close.who[a]
             doubtful += 1
     if not walled and doubtful == 0:
         return gone, met

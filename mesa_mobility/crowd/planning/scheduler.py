@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from copy import copy, deepcopy
-from typing import Any
+from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,17 +18,18 @@ from mesa_mobility.crowd.costs.candidates import Moment
 from mesa_mobility.crowd.costs.layout import FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.planning.alone import wishes_of
 from mesa_mobility.crowd.planning.decision import decide
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
 from mesa_mobility.crowd.planning.evaluation.sample_checks import SampleChecks, check_terms
 from mesa_mobility.crowd.planning.evaluation.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
-from mesa_mobility.crowd.planning.grid import headways
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import FrameContext, Rules, Workspace, make_workspace
-from mesa_mobility.crowd.state.people_grid import Grid, build_grid
-from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.people_grid import Grid, build_grid, grid_of_frame
+from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
+from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.errors import ModelError
 
 
@@ -92,7 +94,7 @@ class DecisionScheduler:
         table, groups = self._repertoire.table, self._repertoire.groups
         compiled, others = self._compiled(terms, crowd)
         extra, extra_offsets = NO_EXTRA
-        grid = build_grid(rows, crowd.x, crowd.y)
+        grid = grid_of_frame(rows, crowd.records)
         if others:
             extra, extra_offsets = extra_costs(
                 others, order, table, crowd, grid, around, self._rules, moment, self._types
@@ -104,9 +106,8 @@ class DecisionScheduler:
             )
             check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
         state = crowd.records
-        moving = headways(grid, state)
         scene = FrameContext(
-            moment.frame, table, groups, state, grid, around, compiled, self._rules, moving
+            moment.frame, table, groups, state, grid, around, compiled, self._rules
         )
         threads = 1 if PLAIN else threads_for(len(order))
         fields = compiled.fields.shape[1]
@@ -144,9 +145,66 @@ class DecisionScheduler:
         at = int(np.flatnonzero(order == watch.pedestrian)[0])
         if at > 0:
             part(0, at)
-        watch.decision = judge(weighed, table, crowd, around, self._rules)
+        row = order[at : at + 1]
+        target = np.column_stack([crowd.target_x[row], crowd.target_y[row]])
+        speed = crowd.preferred[row]
+        wish = self.wishes(row, target, speed, moment, rows, crowd, around, terms)
+        judged = judge(weighed, table, crowd, around, self._rules)
+        watch.decision = replace(judged, blocked_by=int(wish.blockers[0]))
         part(at, len(order))
         watch.commits(crowd, self._rules.first_option)
+
+    def wishes(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64],
+        speeds: NDArray[np.float64],
+        moment: Moment,
+        inside: NDArray[np.int64],
+        crowd: Crowd,
+        around: Surroundings,
+        terms: Sequence[CostTerm],
+    ) -> Wishes:
+        """What people would do if nobody else were there, and who is in the way of that.
+
+        Cost terms written in NumPy do not count: they may look at the others.
+
+        Args:
+            rows: (n,) these people.
+            points: (n, 2) where each wants to go, metres.
+            speeds: (n,) how fast, m/s.
+            moment: now.
+            inside: rows of everybody inside.
+            crowd: the crowd.
+            around: walls and exits.
+            terms: cost terms.
+        """
+        compiled, _ = self._compiled(terms, crowd)
+        alone, fields = cast(CrowdState, crowd.records[rows]), compiled.fields
+        alone["target_x"], alone["target_y"] = points.T
+        alone["preferred"] = speeds
+        order = np.arange(len(rows), dtype=np.int64)
+        grid = grid_of_frame(order, alone)
+        # Nothing is near to a place that is no number, not even somebody else at the same place.
+        grid.x[:] = np.nan
+        scene = FrameContext(
+            moment.frame,
+            self._repertoire.table,
+            self._repertoire.groups,
+            alone,
+            grid,
+            around,
+            compiled._replace(fields=fields[rows] if fields.size else fields),
+            self._rules._replace(hard_bodies=False),
+        )
+        extra, offsets = NO_EXTRA
+        [work] = self._works_for(1, len(inside), around, len(terms), fields.shape[1])
+        self._decide(order, new_queue(len(order)), scene, extra, offsets, work)
+        everybody = build_grid(inside, crowd.x, crowd.y)
+        reach = self._rules.search_radius
+        return wishes_of(
+            alone, rows, moment.frame, self._repertoire.table, everybody, crowd.records, reach
+        )
 
     def _works_for(
         self, threads: int, people: int, around: Surroundings, terms: int, fields: int
@@ -156,16 +214,16 @@ class DecisionScheduler:
         people = min(people, self._most_near)
         works = self._works
         if works and (
-            people > len(works[0].marks)
+            people > len(works[0].neighbours.marks)
             or walls > len(works[0].walls)
-            or terms > len(works[0].sums.by_term)
-            or FIELDS + fields != len(works[0].others)
+            or terms > len(works[0].neighbours.by_term)
+            or FIELDS + fields != len(works[0].neighbours.others)
         ):
             works.clear()
         while len(works) < threads:
             if works:
-                people, walls = len(works[0].marks), len(works[0].walls)
-                terms = len(works[0].sums.by_term)
+                people, walls = len(works[0].neighbours.marks), len(works[0].walls)
+                terms = len(works[0].neighbours.by_term)
             options = int(np.diff(self._repertoire.table.offsets).max())
             clusters = self._repertoire.groups.clusters
             most = int((clusters["last"] - clusters["first"]).max())

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.simd import AT_ONCE, LANES, WIDE
 from mesa_mobility.crowd.collision.broad_phase import Blocks, Bodies, Fences
-from mesa_mobility.crowd.collision.sampled import Close, EgoPose, make_close
+from mesa_mobility.crowd.collision.sampled import Close, Decider, make_close
 from mesa_mobility.crowd.collision.walls import BARRIER_FIELDS, Barriers
-from mesa_mobility.crowd.costs.layout import FIELDS, SPEED, Own, Terms
+from mesa_mobility.crowd.costs.layout import FIELDS, SPEED, Terms
 from mesa_mobility.crowd.options.option_groups import OptionGroups
 from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
 from mesa_mobility.crowd.state.people_grid import Grid
@@ -47,13 +47,10 @@ class FrameContext(NamedTuple):
         table: options of all capabilities.
         groups: these options in groups, with the extent of each.
         state: the crowd; targets must be set.
-        grid: grid of people in this frame.
+        grid: the people in this frame.
         around: walls and exits.
         terms: compiled terms.
         rules: the model's constants.
-        moving: (8, people) in the order of the grid.  Velocities, directions and route lengths
-            are those at the beginning of the frame, also of those who have just decided.  The
-            circles that people cover are kept up to date.
     """
 
     frame: int
@@ -64,7 +61,6 @@ class FrameContext(NamedTuple):
     around: Surroundings
     terms: Terms
     rules: Rules
-    moving: NDArray[np.float64]
 
 
 class DecisionContext(NamedTuple):
@@ -72,7 +68,6 @@ class DecisionContext(NamedTuple):
 
     Attributes:
         me: the pedestrian.
-        own: the same as cost terms see it.
         first: the first group of its cluster.
         bounds: lower bound of the costs in each group from there on; inf where all options are
             certainly blocked.
@@ -81,16 +76,15 @@ class DecisionContext(NamedTuple):
         extra: weighted costs of the NumPy terms, or empty.
         barriers: those that do not touch the body, in the pedestrian's coordinates.
         stay: the group to test first, or -1.
-        neighbours: number of columns of ``Workspace.others``.
-        foremost: number of columns of ``Workspace.foremost``.
+        neighbours: number of columns of ``Neighbours.others``.
+        foremost: number of its first columns, who are likely to cost most.
         exits_from: metres to the nearest open exit.
         has_negative_pairs: whether pair or wall terms may be negative, so that every option needs
             them.
         ranked: whether groups are opened in rising order of their bounds.
     """
 
-    me: EgoPose
-    own: Own
+    me: Decider
     first: int
     bounds: NDArray[np.float64]
     lowest: float
@@ -105,37 +99,38 @@ class DecisionContext(NamedTuple):
     ranked: bool
 
 
-class PairSums(NamedTuple):
-    """Workspace for sums over neighbours.
+class Neighbours(NamedTuple):
+    """Who decides, and the people around: all that a decision reads of them.
 
     Attributes:
+        own: (9 + fields,) who decides, as cost terms read it; fields as in ``costs.layout``.
+        near: places in the grid of those whose paths may lead to where the pedestrian may walk.
+        close: their movements in the pedestrian's coordinates.
+        rows: rows in the crowd of those who count in cost terms.
+        others: (9 + fields, n) the same as cost terms read them, first those likely to cost most.
+        moved: for each of these, the column with which it has changed places, one after the other.
+        marks: for each of these, bits of the pair terms that it matters to.
+        marked: their columns that matter to one pair term.
         by_term: cost by pair term.
         first: (1,) the pair term to evaluate first.
     """
 
+    own: NDArray[np.float64]
+    near: NDArray[np.int64]
+    close: Close
+    rows: NDArray[np.int64]
+    others: NDArray[np.float64]
+    moved: NDArray[np.int64]
+    marks: NDArray[np.int64]
+    marked: NDArray[np.int64]
     by_term: NDArray[np.float64]
     first: NDArray[np.int64]
 
 
-class Workspace(NamedTuple):
-    """Scratch arrays of one thread, reused from decision to decision.
+class Opened(NamedTuple):
+    """Groups and options that the search has opened.
 
     Attributes:
-        near: rows of the people near.
-        interacting: rows of the neighbours, those of them who count in cost terms.
-        unsure: rows of people left to the exact test.
-        others: the neighbours as pair terms see them; rows as in ``costs.layout``.
-        sweeps: (3, n) circles around the paths of the people near.
-        foremost: the neighbours who are likely to cost most.
-        marks: for each of ``foremost``, bits of the pair terms that it matters to.
-        some: the marked columns of ``foremost``.
-        dropped: by neighbour, whether it is out of reach.
-        close: neighbours who may come in the way.
-        blocks: their positions, and the walls, at each level of time; groups that certainly hit
-            something.
-        walls: walls in reach.
-        barriers: the same in the pedestrian's coordinates.
-        bounds: lower bound of the cost of each group.
         picked: groups just opened.
         free: bits of their options that hit nobody in the sampled test.
         lanes: ends of the 8 options of each group.
@@ -146,25 +141,8 @@ class Workspace(NamedTuple):
         least: lower bound of its whole cost.
         approximate: whether the bound can still be raised by more neighbours.
         unwalled: whether the wall terms are left out of the cost so far.
-        sums: of costs from neighbours.
-        own: the pedestrian as cost terms see it.
-        path: one path.
     """
 
-    near: NDArray[np.int64]
-    interacting: NDArray[np.int64]
-    unsure: NDArray[np.int64]
-    others: NDArray[np.float64]
-    sweeps: NDArray[np.float64]
-    foremost: NDArray[np.float64]
-    marks: NDArray[np.int64]
-    some: NDArray[np.float64]
-    dropped: NDArray[np.int32]
-    close: Close
-    blocks: Blocks
-    walls: NDArray[np.float64]
-    barriers: NDArray[np.float32]
-    bounds: NDArray[np.float64]
     picked: NDArray[np.int64]
     free: NDArray[np.int64]
     lanes: NDArray[np.float64]
@@ -175,9 +153,46 @@ class Workspace(NamedTuple):
     least: NDArray[np.float64]
     approximate: NDArray[np.bool_]
     unwalled: NDArray[np.bool_]
-    sums: PairSums
-    own: NDArray[np.float64]
+
+
+class Workspace(NamedTuple):
+    """Scratch arrays of one thread, reused from decision to decision.
+
+    Attributes:
+        neighbours: who decides, and the people around.
+        unsure: rows of people left to the exact test.
+        blocks: people close and walls at each level of time; groups that certainly hit something.
+        walls: walls in reach.
+        barriers: the same in the pedestrian's coordinates.
+        bounds: lower bound of the cost of each group.
+        opened: groups and options that the search has opened.
+        path: one path.
+    """
+
+    neighbours: Neighbours
+    unsure: NDArray[np.int64]
+    blocks: Blocks
+    walls: NDArray[np.float64]
+    barriers: NDArray[np.float32]
+    bounds: NDArray[np.float64]
+    opened: Opened
     path: NDArray[np.float64]
+
+
+def make_neighbours(people: int, terms: int, fields: int) -> Neighbours:
+    """Arrays for numbers of people, of terms and of fields that terms take."""
+    return Neighbours(
+        own=np.empty(FIELDS + fields),
+        near=np.empty(people + LANES, np.int64),
+        close=make_close(people),
+        rows=np.empty(people + LANES, np.int64),
+        others=np.empty((FIELDS + fields, people + LANES)),
+        moved=np.empty(people + 1, np.int64),
+        marks=np.empty(people, np.int64),
+        marked=np.empty(people + 1, np.int64),
+        by_term=np.empty(terms),
+        first=np.zeros(1, np.int64),
+    )
 
 
 def make_workspace(
@@ -187,20 +202,12 @@ def make_workspace(
     fields that terms take."""
     lanes = LANES * groups
     return Workspace(
-        near=np.empty(people + LANES, np.int64),
-        interacting=np.empty(people + LANES, np.int64),
+        neighbours=make_neighbours(people, terms, fields),
         unsure=np.empty(people, np.int64),
-        others=np.empty((FIELDS + fields, people + LANES)),
-        sweeps=np.empty((3, people + LANES)),
-        foremost=np.empty((FIELDS + fields, people + LANES)),
-        marks=np.empty(people, np.int64),
-        some=np.empty((FIELDS + fields, people + LANES)),
-        dropped=np.empty(people, np.int32),
-        close=make_close(people),
         blocks=Blocks(
             Bodies(
                 np.empty(len(LEVELS), np.int64),
-                np.empty((len(LEVELS), 3, people + 1), np.float32),
+                np.empty((len(LEVELS), people + 1), np.int64),
             ),
             Fences(
                 np.empty(len(LEVELS), np.int64),
@@ -211,17 +218,17 @@ def make_workspace(
         walls=np.empty((walls, 5)),
         barriers=np.empty((BARRIER_FIELDS, walls), np.float32),
         bounds=np.empty(groups + AT_ONCE),
-        picked=np.empty(groups + LANES, np.int64),
-        free=np.empty(groups, np.int64),
-        lanes=np.empty((SPEED + 1, lanes)),
-        lane_costs=np.empty(lanes),
-        rows=np.empty(options + LANES, np.int64),
-        ends=np.empty((SPEED + 1, options + LANES)),
-        costs=np.empty(options + LANES),
-        least=np.empty(options + AT_ONCE),
-        approximate=np.empty(options, np.bool_),
-        unwalled=np.empty(options, np.bool_),
-        sums=PairSums(np.empty(terms), np.zeros(1, np.int64)),
-        own=np.empty(FIELDS + fields),
+        opened=Opened(
+            picked=np.empty(groups + LANES, np.int64),
+            free=np.empty(groups, np.int64),
+            lanes=np.empty((SPEED + 1, lanes)),
+            lane_costs=np.empty(lanes),
+            rows=np.empty(options + LANES, np.int64),
+            ends=np.empty((SPEED + 1, options + LANES)),
+            costs=np.empty(options + LANES),
+            least=np.empty(options + AT_ONCE),
+            approximate=np.empty(options, np.bool_),
+            unwalled=np.empty(options, np.bool_),
+        ),
         path=np.empty((3, SAMPLES)),
     )

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, FRAMES_A_SECOND
+from mesa_mobility.crowd.running.blocking import in_words
 from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.aggregates import Aggregates
 from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
 from mesa_mobility.floorplan import FloorPlan
-from mesa_mobility.schema import Array, Each, Kind, Maybe, Real, Whole
+from mesa_mobility.schema import Array, Each, Kind, Maybe, Real, Several, Whole
 
 STALL_SECONDS = 60.0
 """Time without progress after which an evacuation has stalled."""
@@ -38,9 +39,16 @@ class StallWatch(Saved):
     in a jam who change places, or step back and forth, make none: their route lengths add up to the
     same. A single person on a long route counts by itself. After a change of route, progress is
     measured along the new one.
+
+    A crowd of which nobody can move has stalled as well, once this watch has gone on for as long.
+
+    Attributes:
+        ring: rows of people who are in each other's way, once it has stalled; empty if none are.
     """
 
     saved: ClassVar[Mapping[str, Kind]] = {
+        "ring": Several(Whole(below="people")),
+        "_first": Whole(-1, LAST_FRAME),
         "_since": Real(0.0),
         "_look": Whole(high=2 * LAST_FRAME),
         "_mark": Each(Whole(-1), Whole(), Whole()),
@@ -55,6 +63,8 @@ class StallWatch(Saved):
     }
 
     def __init__(self) -> None:
+        self.ring: list[int] = []
+        self._first = -1
         self._since = 0.0
         self._look = 0
         self._mark: tuple[int, int, int] = (-1, 0, 0)
@@ -70,8 +80,9 @@ class StallWatch(Saved):
         seen: Aggregates,
         gone: int,
         crossed: int,
+        nobody_can_move: bool = False,
     ) -> bool:
-        """Whether there has been no progress for ``STALL_SECONDS``.
+        """Whether there has been no progress for ``STALL_SECONDS``, or nobody can move.
 
         Args:
             frame: now.
@@ -80,7 +91,10 @@ class StallWatch(Saved):
             seen: aggregates of the people inside.
             gone: people who have left so far.
             crossed: gates that people have crossed on their journeys so far.
+            nobody_can_move: whether everybody who wants to move has stood for a minute.
         """
+        if self._first < 0:
+            self._first = frame
         elapsed = frame * FRAME_SECONDS
         now = (gone, seen.going, crossed)
         # Others may be standing because one person has not set off yet.
@@ -92,7 +106,8 @@ class StallWatch(Saved):
             gained = self._gained(rows, crowd)
             if gained.sum() > NEARER_TOGETHER * len(rows) or (gained > NEARER_ALONE).any():
                 self._begin(elapsed, rows, crowd)
-        return seen.people > 0 and elapsed - self._since >= STALL_SECONDS - 1e-9
+        since = self._first * FRAME_SECONDS if nobody_can_move else self._since
+        return seen.people > 0 and elapsed - since >= STALL_SECONDS - 1e-9
 
     def _begin(self, elapsed: float, rows: NDArray[np.int64], crowd: Crowd) -> None:
         self._since = elapsed
@@ -120,10 +135,17 @@ class StallWatch(Saved):
         return np.where(with_way, start, 0.0) - np.where(with_way, route, 0.0)
 
 
-def stall_reason(plan: FloorPlan, seen: Aggregates) -> str:
-    """Why an evacuation has stalled, in a few words."""
+def stall_reason(plan: FloorPlan, seen: Aggregates, ring: Sequence[int] = ()) -> str:
+    """Why an evacuation has stalled, in a few words.
+
+    Args:
+        plan: the floor plan.
+        seen: aggregates of the people inside.
+        ring: rows of people who are in each other's way.
+    """
     if plan.exits and not plan.open_exits():
         return "every exit is closed"
     if seen.going == 0:
         return "nobody inside has a way to go"
-    return f"nobody has come nearer to an exit for {STALL_SECONDS:.0f} s"
+    said = f"nobody has come nearer to an exit for {STALL_SECONDS:.0f} s"
+    return f"{said}: people {in_words(ring)} are in each other's way" if ring else said

@@ -63,6 +63,8 @@ PERSON_FIELDS: dict[str, Array] = {
     "target_y": _METRES,
     "route": Array("f8", (), -FARTHEST, FARTHEST, infinite=True),
     "preferred": Array("f8", (), 0.0, 100.0),
+    # As wide as what is beside it, so that there are no bytes between.
+    "presses": Array("i8", (), 0, 1),
     "end": _FRAME,
     "cluster": Array("i4", (), 0, below="clusters"),
     "destination": Array("i4", (), 0, below="destinations"),
@@ -87,7 +89,8 @@ or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``from_x``
 ``from_heading`` where it starts, with cosine and sine ``from_c`` and ``from_s`` of an option's,
 ``to_x``, ``to_y``, ``to_heading`` where it ends, ``box`` (4,) what the path covers: least x, least
 y, greatest x, greatest y, ``stride`` most metres on the way in the time between two samples.
-Where to: ``target_x``, ``target_y``, ``route`` (metres left).
+Where to: ``target_x``, ``target_y``, ``route`` (metres left); ``presses`` (whether others count in
+the decision by their bodies alone, not in cost terms).
 Counters: ``decisions``, ``fallbacks``, ``fallback_frames``, ``active_frames``.
 
 Frames have 31 bits, which last for two years.
@@ -111,7 +114,6 @@ AGENDA_FIELDS: dict[str, Array] = {
     "crossed": _COUNT,
     "group": Array("i4", (), 0, below="groups+1"),
     "corner": Array("i4", (), -1),
-    "mouth": Array("i4", (), -LAST_FRAME, LAST_FRAME),
     "checked": Array("f8", (), -1.0, LAST_FRAME),
     "nearest": Array("f8", (), -FARTHEST, FARTHEST, infinite=True),
     "since": _SECONDS,
@@ -127,8 +129,7 @@ its last decision); ``sets_off``, frame of its first decision; ``waits_until``,
 frame before which it does not walk; ``journey``, the number of its journey, 0 for none;
 ``crossed``, gates of it that it has crossed up to frame ``checked``; ``group``, the
 number of its group, 0 for none; ``corner``, number of the next corner of its route;
-``mouth``, number from 1 on of the mouth by which it is about to enter a narrow passage, minus that
-number if it leaves by the mouth, else 0; ``nearest``, shortest route so far, metres, and ``since``,
+``nearest``, shortest route so far, metres, and ``since``,
 time of its last progress, s; ``desired_speed``, the preferred speed of its last decision, m/s, and
 ``behind``, its accumulated distance error, metres.
 """
@@ -179,6 +180,7 @@ class Crowd:
     type_index: NDArray[np.int16]
     knots: NDArray[np.int8]
     active: NDArray[np.bool_]
+    presses: NDArray[np.int64]
     decisions: NDArray[np.int32]
     fallbacks: NDArray[np.int32]
     fallback_frames: NDArray[np.int32]

@@ -25,7 +25,8 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     Numbers of options are base64 float32, options in the order of the explanation's: ``costs``
     (terms, n) weighted, ``totals``, ``verdicts``, ``blockers``, ``ends`` (n, 2), ``durations``,
     ``speeds``, ``paths`` (n, 16, 2) and ``knots``. A neighbour is row, x, y, core radius, and x, y
-    of where its movement leads. ``lost`` says that there is no way to the target.
+    of where its movement leads. ``lost`` says that there is no way to the target. ``blocked_by`` is
+    the row of whom they would hit first if they did what they would do alone, or -1.
     """
     row, crowd, candidates = explained.pedestrian, model.crowd, explained.candidates
     kind = model.pedestrian_types[int(crowd.type_index[row])]
@@ -47,6 +48,7 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
         "heading": float(candidates.facings[0]),
         "target": candidates.targets[0].tolist(),
         "chosen": explained.chosen,
+        "blocked_by": explained.blocked_by,
         "terms": list(explained.terms),
         "weights": explained.weights.tolist(),
         "options": len(candidates),

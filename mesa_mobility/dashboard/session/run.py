@@ -110,7 +110,8 @@ class Run:
         elif state == "stalled":
             reason = NO_WAY
         clock.measure(model.elapsed)
-        return Status(state, model.elapsed, model.inside, clock.pace, reason)
+        blocked = tuple((each.person, each.ring) for each in model.blocked)
+        return Status(state, model.elapsed, model.inside, clock.pace, reason, blocked)
 
 
 class ByHand:

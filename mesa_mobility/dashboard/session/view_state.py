@@ -48,6 +48,8 @@ class Status:
         inside: people inside.
         pace: simulated seconds in a second, while playing.
         reason: why nobody gets out, or "".
+        blocked: rows of people who have stood for a minute without a reason, and of the chain of
+            people who are in the way of each.
     """
 
     state: str = "no model"
@@ -55,6 +57,7 @@ class Status:
     inside: int = 0
     pace: float = 0.0
     reason: str = ""
+    blocked: tuple[tuple[int, tuple[int, ...]], ...] = ()
 
 
 class Shown:

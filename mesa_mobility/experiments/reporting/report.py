@@ -14,7 +14,14 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.design.points import point_key
 from mesa_mobility.experiments.observed import estimate, is_time, observed
 from mesa_mobility.experiments.reporting.pictures import picture_of, value_text
-from mesa_mobility.experiments.storing.rows import FAILED, SERIES, STALLED, STATUSES, TIMED_OUT
+from mesa_mobility.experiments.storing.rows import (
+    BLOCKED,
+    FAILED,
+    SERIES,
+    STALLED,
+    STATUSES,
+    TIMED_OUT,
+)
 from mesa_mobility.experiments.storing.shards import RUN_COLUMNS
 from mesa_mobility.reports.html import Page
 from mesa_mobility.reports.versions import add_versions
@@ -150,6 +157,7 @@ def _lacking(frame: pd.DataFrame, figure: str) -> str:
     if not len(of):
         return ""
     counts = {
+        "blocked": int((of["status"] == BLOCKED).sum()),
         "stalled": int((of["status"] == STALLED).sum()),
         "timed out": int((of["status"] == TIMED_OUT).sum()),
     }

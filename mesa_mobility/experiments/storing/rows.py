@@ -5,7 +5,12 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 DONE, FAILED, STALLED, TIMED_OUT = "done", "failed", "stalled", "timed_out"
-STATUSES = (DONE, FAILED, STALLED, TIMED_OUT)
+BLOCKED = "blocked"
+"""Ended, with people inside who stood for a minute without a reason while others could move."""
+
+STATUSES = (DONE, BLOCKED, STALLED, FAILED, TIMED_OUT)
+ENDED = {DONE, BLOCKED, STALLED}
+"""Statuses of runs that have come to an end by themselves or at ``max_seconds``."""
 
 SERIES = {"types", "occupancy"}
 """Columns that hold lists."""

@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 from fsspec.implementations.local import LocalFileSystem
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.experiments.storing.rows import DONE, FAILED, STALLED, TIMED_OUT, Row
+from mesa_mobility.experiments.storing.rows import ENDED, FAILED, TIMED_OUT, Row
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.parquet import METADATA_KEY
 from mesa_mobility.results.seal import FIELD, UNSEALED, check_open, seal_open
@@ -54,7 +54,7 @@ _FIGURES: dict[str, pa.DataType] = {
     "occupancy": pa.list_(pa.int64()),
     "stall_reason": pa.string(),
 }
-_RANK = {DONE: 0, STALLED: 0, TIMED_OUT: 1, FAILED: 2}
+_RANK = {**dict.fromkeys(ENDED, 0), TIMED_OUT: 1, FAILED: 2}
 _OLD = 600.0
 """Seconds after which a file that is being written counts as left behind."""
 

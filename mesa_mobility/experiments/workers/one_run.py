@@ -15,7 +15,15 @@ from typing import Any
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.design.points import Point, point_key, run_name, seed_of_run
 from mesa_mobility.experiments.experiment import model_class
-from mesa_mobility.experiments.storing.rows import DONE, FAILED, SERIES, STALLED, TIMED_OUT, Row
+from mesa_mobility.experiments.storing.rows import (
+    BLOCKED,
+    DONE,
+    FAILED,
+    SERIES,
+    STALLED,
+    TIMED_OUT,
+    Row,
+)
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.reports.inputs import inputs_of
 from mesa_mobility.runs.jobs import one_line
@@ -68,7 +76,7 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
         row["inputs"] = json.dumps(inputs_of(model, _class(setup.model)[1], point), sort_keys=True)
         row["warning"] = _warning(model)
         _advance(model, setup, wall)
-        row["status"] = STALLED if getattr(model, "stalled", False) else DONE
+        row["status"] = _status(model)
         row |= _figures(model, set(row), occupancy=setup.occupancy)
     except TimedOut as error:
         row |= {"status": TIMED_OUT, "error": str(error)}
@@ -80,6 +88,13 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
     row["wall_s"] = time.perf_counter() - wall
     row["cpu_s"] = time.process_time() - cpu
     return row, model
+
+
+def _status(model: Any) -> str:
+    """The status of a run that has ended."""
+    if getattr(model, "stalled", False):
+        return STALLED
+    return BLOCKED if _has_pedestrians(model) and model.blocked else DONE
 
 
 def first_columns(setup: Setup, point: Point, replication: int) -> Row:
@@ -188,7 +203,10 @@ def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
             row[f"summary_{name}" if name in taken or name in SERIES else str(name)] = value
     if not _has_pedestrians(model):
         return row
-    row |= {f"summary_{n}" if n in taken else n: v for n, v in _by_type(model).items()}
+    more = _by_type(model)
+    if "blocked" in summary:
+        more["blocked"] = float(len(summary["blocked"]))
+    row |= {f"summary_{n}" if n in taken else n: v for n, v in more.items()}
     if occupancy:
         row["occupancy"] = [people for _, people in summary["occupancy"]]
     return row

@@ -18,6 +18,9 @@ _LEAST_BEYOND = 0.3
 # step straight through could end where that node is out of view again (metres).
 _THROUGH = 0.05
 
+# The way on from a corner is in view up to a point that is found by halving this often: 6 cm.
+_HALVINGS = 5
+
 # How far past a corner people may aim, as shares of the distance beyond a gate; the first that
 # keeps the next node in view is taken.
 _PAST_CORNER = (0.5, 0.25, 0.125)
@@ -51,7 +54,8 @@ def aim_at(
     if ways.kind[node] == CORNER and after[node] < 0:  # a point, at which the route ends
         px, py = nx, ny
     elif ways.kind[node] == CORNER:
-        px, py = past_corner(sight, ways, x, y, ways.xy[node, 0], ways.xy[node, 1], after[node])
+        qx, qy = _way_on(sight, ways, x, y, node, after[node], own)
+        px, py = past_corner(sight, ways, x, y, qx, qy, after[node])
     else:
         leaves = ways.kind[node] == EXIT
         if after[node] < 0:
@@ -65,6 +69,28 @@ def aim_at(
         px, py = _through(sight, ways, x, y, px, py, gate, own)
         corner = -1
     return length, opening, px, py, corner
+
+
+@internal()
+def _way_on(
+    sight: Sight, ways: Ways, x: float, y: float, corner: int, after: int, own: float
+) -> tuple[float, float]:
+    """The farthest point in view on the way on from a corner, the corner itself if there is none.
+
+    At the corner of a narrow way there is no room straight past it. With the corner itself as
+    target, people would stop there, since every step leads away from it.
+    """
+    nx, ny = ways.xy[corner]
+    dx, dy = ways.xy[after, 0] - nx, ways.xy[after, 1] - ny
+    seen, step = 0.0, min(1.0, ways.beyond / max(np.hypot(dx, dy), 1e-9))
+    for _ in range(_HALVINGS):
+        step /= 2.0
+        share = seen + step
+        if clear_line(
+            sight, x, y, nx + share * dx, ny + share * dy, ways.view_clearance, own, NO_WALL
+        ):
+            seen = share
+    return nx + seen * dx, ny + seen * dy
 
 
 @internal()

@@ -71,8 +71,8 @@ def test_a_bunch_follows_round_a_wall_stands_and_leaves_by_the_leaders_exit():
     away = sorted(np.hypot(*(person.position - guide.position)) for person in people)
     # A half circle of r metres holds 1.57 r2 people at 1 person/m2: 2.5 m for ten.
     assert away[4] < 2.5
-    # One at the edge may have no room to come as near as it should, and still look for a way.
-    assert sorted(person.speed for person in people)[-2] < 0.1
+    # Two at the edge may have no room to come as near as they should, and still look for a way.
+    assert sorted(person.speed for person in people)[-3] < 0.1
     model.run(max_seconds=60)
     assert model.inside == 0
     assert (model.crowd.x[[person.row for person in people]] > 15.0).all()

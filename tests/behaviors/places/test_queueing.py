@@ -5,7 +5,7 @@ import pytest
 from mesa_mobility.behaviors import Counter, Queueing
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan, Gate, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
 from mesa_mobility.distributions import Uniform
 from mesa_mobility.errors import ModelError
 from tests.fixtures.checkpoints import check_going_on
@@ -84,6 +84,36 @@ def test_places_in_a_line():
     counter = Counter([(2, 0), (1, 0), (1, 2)], service=1.0, spacing=0.5)
     expected = [(2, 0), (1.5, 0), (1, 0), (1, 0.5), (1, 1), (1, 1.5), (1, 2), (1, 2.5)]
     assert counter.places(8) == pytest.approx(np.array(expected))
+
+
+def test_places_leave_as_much_free_between_larger_bodies():
+    counter = Counter([(10, 6), (3, 6)], service=4.0, spacing=0.6)
+    # 0.32 m between two cores of 0.14 m; 0.81, 1.02 and 0.89 m from middle to middle.
+    found = counter.places_of([0.14, 0.35, 0.35, 0.22])
+    assert found == pytest.approx(np.array([(10, 6), (9.19, 6), (8.17, 6), (7.28, 6)]))
+    assert counter.places_of([0.14] * 3) == pytest.approx(counter.places(3))
+
+
+def first_to_last(kind, rng):
+    """Seconds from the first of six who is served to the last."""
+    counter = Counter([(10, 6), (1, 6)], service=2.0)
+    queueing = Queueing([counter])
+    model = model_of(hall(), MobilityMap.named(kind), frames_per_step=3, record=False, rng=rng)
+    model.add_tactic(queueing)
+    model.add_pedestrians([(3.0 + 0.9 * k, 3.0) for k in range(6)], route=[counter.visit])
+    served = {}
+    while len(served) < 6 and model.elapsed < 100:
+        model.step()
+        for row in queueing.line(counter)[:1]:
+            if model.journeys.stays.stands(row):
+                served.setdefault(row, model.elapsed)
+    return max(served.values()) - min(served.values()) if len(served) == 6 else np.inf
+
+
+# Before, some of them joined behind people whom they then stood in front of, for ever.
+@pytest.mark.parametrize(("kind", "rng"), [("crutches", 1), ("wheelchair_manual", 5)])
+def test_a_queue_with_walking_aids_moves_up(kind, rng):
+    assert first_to_last(kind, rng) < 1.5 * first_to_last("able_bodied", rng)
 
 
 def test_others_do_not_care():

@@ -29,13 +29,13 @@ from mesa_mobility.crowd.options.table import LEVELS
 
 
 @njit
-def _drop(circles, at, row, n, bodies, first, size, known, dropped):
-    drop_within(circles, (at, row, n), bodies, (first, size, known), dropped)
+def _drop(circles, at, row, n, bodies, places, first, known, dropped):
+    drop_within(circles, (at, row, n), bodies, places, (first, known), dropped)
 
 
 @njit
-def _within(places, at, row, bodies, first, size, known):
-    return places_within(places, at, row, bodies, first, size, known)
+def _within(places, at, row, bodies, which, first, known):
+    return places_within(places, at, row, bodies, which, (first, known))
 
 
 @njit
@@ -44,8 +44,8 @@ def _extent(circles, at, row, n, dropped):
 
 
 @njit
-def _levels(ahead, at, row, spans, apart):
-    return levels_within(ahead, at, row, spans, apart)
+def _levels(ahead, at, row, spans):
+    return levels_within(ahead, at, row, spans)
 
 
 @njit
@@ -113,20 +113,27 @@ def rng():
     return np.random.default_rng(5)
 
 
+def _some_bodies(rng):
+    """Some of 9 bodies, and the places of their x at sample 4."""
+    who = rng.permutation(9)
+    return who, 3 * SAMPLES * who + 4
+
+
 @pytest.mark.parametrize("n", [1, 15, 16, 17, 40])
 @pytest.mark.parametrize("known", [0, 1, 7])
 def test_circles_within_a_body_are_dropped(rng, n, known):
-    first, size = 3, 11
+    first = 3
     row = first + n + WIDE
     circles = rng.uniform(-1.0, 1.0, (3, row)).astype(np.float32)
     circles[2] = rng.uniform(0.0, 0.6, row)
-    bodies = rng.uniform(-1.0, 1.0, (2, 3, size)).astype(np.float32)
-    bodies[:, 2] = rng.uniform(0.0, 1.5, (2, size))
+    bodies = rng.uniform(-1.0, 1.0, (9, 3, SAMPLES)).astype(np.float32)
+    bodies[:, 2] = rng.uniform(0.0, 1.5, (9, SAMPLES))
+    who, places = _some_bodies(rng)
     dropped = np.zeros(n + WIDE, dtype=np.int32)
     dropped[:n:5] = 1
-    _drop(circles, first, row, n, bodies, 3 * size, size, known, dropped)
+    _drop(circles, first, row, n, bodies, places, 2, known, dropped)
     x, y, radius = circles[:, first : first + n, None]
-    body_x, body_y, apart = bodies[1, :, :known]
+    body_x, body_y, apart = bodies[who[2 : 2 + known], :, 4].T
     away = np.hypot(x - body_x, y - body_y)
     expected = (away + radius < apart).any(axis=1)
     expected[::5] = True
@@ -136,11 +143,13 @@ def test_circles_within_a_body_are_dropped(rng, n, known):
 @pytest.mark.parametrize("known", [0, 1, 6])
 def test_places_within_a_body_are_marked_by_bits(rng, known):
     places = rng.uniform(-1.0, 1.0, (4, 5, LANES)).astype(np.float32)
-    bodies = rng.uniform(-1.0, 1.0, (3, 9)).astype(np.float32)
-    bodies[2] = rng.uniform(0.1, 0.6, 9)
-    bits = _within(places, (2 * 5 + 1) * LANES, 2 * LANES, bodies, 0, 9, known)
-    away = np.hypot(places[2, 1, :, None] - bodies[0], places[2, 3, :, None] - bodies[1])
-    within = (away < bodies[2])[:, :known].any(axis=1)
+    bodies = rng.uniform(-1.0, 1.0, (9, 3, SAMPLES)).astype(np.float32)
+    bodies[:, 2] = rng.uniform(0.1, 0.6, (9, SAMPLES))
+    who, which = _some_bodies(rng)
+    bits = _within(places, (2 * 5 + 1) * LANES, 2 * LANES, bodies, which, 0, known)
+    body_x, body_y, apart = bodies[who[:known], :, 4].T
+    away = np.hypot(places[2, 1, :, None] - body_x, places[2, 3, :, None] - body_y)
+    within = (away < apart).any(axis=1)
     assert [bool(bits >> lane & 1) for lane in range(LANES)] == within.tolist()
 
 
@@ -168,13 +177,13 @@ def test_a_box_is_drawn_around_the_circles_that_are_left(rng, n):
 
 
 def test_levels_at_which_a_person_is_near_a_box_are_marked_by_bits():
-    ahead = np.full((3, 2, SAMPLES), 9.0, dtype=np.float32)
+    ahead = np.full((3, 3, SAMPLES), 9.0, dtype=np.float32)
     boxes = np.array([[-1.0, -2.0, 1.0, 2.0]] * len(LEVELS), dtype=np.float32)
     # Within it; 0.5 m beside it; 0.5 m off its corner either way, 0.71 m; 2 m ahead of it.
-    ahead[1][:, list(LEVELS)] = [[0.0, -1.5, 1.5, 3.0], [0.0, 1.0, 2.5, 0.0]]
-    at = 2 * SAMPLES
-    assert _levels(ahead, at, SAMPLES, np.ascontiguousarray(boxes.T), 0.6) == 0b0011
-    assert _levels(ahead, at, SAMPLES, np.ascontiguousarray(boxes.T), 0.8) == 0b0111
+    ahead[1][:2, list(LEVELS)] = [[0.0, -1.5, 1.5, 3.0], [0.0, 1.0, 2.5, 0.0]]
+    for apart, bits in ((0.6, 0b0011), (0.8, 0b0111)):
+        ahead[1, 2] = apart
+        assert _levels(ahead, 3 * SAMPLES, SAMPLES, np.ascontiguousarray(boxes.T)) == bits
 
 
 @pytest.mark.parametrize("n", [1, 8, 31, 32, 33, 100])

@@ -24,11 +24,11 @@ _compress = njit(simd._plain_compress)
 
 
 @njit
-def _by_hand(circles, row, n, bodies, size, known, barriers, far, fences, apart, marks, others):
-    simd_tests.drop_within(circles, (0, row, n), bodies, (0, size, known), marks)
+def _by_hand(circles, row, n, bodies, which, known, barriers, far, fences, apart, marks, others):
+    simd_tests.drop_within(circles, (0, row, n), bodies, which, (1, known), marks)
     walls.drop_beside(circles, (0, row, n), barriers, (0, far, fences), apart, others)
     return (
-        simd_tests.places_within(circles, 1, row, bodies, 0, size, known),
+        simd_tests.places_within(circles, 1, row, bodies, which, (1, known)),
         walls.places_beside(circles, 1, row, barriers, 0, far, fences, apart),
     )
 
@@ -50,22 +50,23 @@ seeds = st.integers(0, 2**32 - 1)
 @settings(deadline=None)
 def test_what_lies_within_bodies_and_walls(seed, n, known, fences, apart):
     rng = np.random.default_rng(seed)
-    row, size, far = n + 2 * WIDE, 8, 5
+    row, far = n + 2 * WIDE, 5
     circles = rng.uniform(-1.0, 1.0, (3, row)).astype(np.float32)
     circles[2] = rng.uniform(0.0, 0.3, row)
-    bodies = rng.uniform(-1.0, 1.0, (3, size)).astype(np.float32)
+    bodies = rng.uniform(-1.0, 1.0, (8, 3, SAMPLES)).astype(np.float32)
+    which = 3 * SAMPLES * rng.permutation(8) + rng.integers(0, SAMPLES, 8)
     barriers = rng.uniform(-1.0, 1.0, (BARRIER_FIELDS, far)).astype(np.float32)
     barriers[4] = 1.0 / (barriers[2] ** 2 + barriers[3] ** 2)
     marks = np.ones((4, n + WIDE), dtype=np.int32)
     marks[:, :n] = rng.integers(0, 5, n) == 0
     bits = _by_hand(
-        circles, row, n, bodies, size, known, barriers, far, fences, apart, marks[0], marks[1]
+        circles, row, n, bodies, which, known, barriers, far, fences, apart, marks[0], marks[1]
     )
-    _dropped_within(circles, (0, row, n), bodies, (0, size, known), marks[2])
+    _dropped_within(circles, (0, row, n), bodies, which, (1, known), marks[2])
     _dropped_beside(circles, (0, row, n), barriers, (0, far, fences), apart, marks[3])
     assert (marks[:2, :n] == marks[2:, :n]).all()
     assert bits == (
-        _bits_within(circles, 1, row, bodies, 0, size, known),
+        _bits_within(circles, 1, row, bodies, which, (1, known)),
         _bits_beside(circles, 1, row, barriers, 0, far, fences, apart),
     )
 

@@ -7,7 +7,7 @@ import pytest
 from numba import njit
 
 from mesa_mobility.compiled.simd import LANES, SAMPLES, WIDE
-from mesa_mobility.crowd.collision.sampled import EgoPose
+from mesa_mobility.crowd.collision.sampled import Decider
 from mesa_mobility.crowd.collision.walls import (
     BARRIER_FIELDS,
     drop_beside,
@@ -22,7 +22,7 @@ ENDS = np.array([[0.5, -1.0, 0.5, 1.0], [-1.0, -0.6, 1.0, -0.6], [-0.4, 0.3, -0.
 
 @njit
 def _lay(row, x, y, c, s, core, walls, farthest, radius, to):
-    return walls_to_ego(EgoPose(row, x, y, c, s, core), walls, farthest, radius, to)
+    return walls_to_ego(Decider(row, 0, x, y, c, s, core, walls[0]), walls, farthest, radius, to)
 
 
 @njit

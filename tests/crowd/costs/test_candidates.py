@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import make_map, stand, straight, strider
 from tests.fixtures.options import Chooser, Ending, candidates
 from tests.fixtures.scenes import advance, corridor, model_of, put, statues
@@ -51,6 +52,17 @@ def test_the_shortest_options_come_in_parts_too(in_parts):
     assert options.durations[order] == pytest.approx([0.4] * 7 + [0.8, 1.5])
     assert options.speeds[order] == pytest.approx([0.0] * 4 + [0.3125, 0.625] + [1.25] * 3)
     assert options.points[order, 0] == pytest.approx([1.0 + step for step in expected])
+
+
+def test_nobody_who_is_not_inside_has_options(whole):
+    model = model_of(corridor(), strider(), preset=whole)
+    gone, stays = put(model, 1.0, 2.0), put(model, 3.0, 2.0)
+    row = gone.row
+    gone.remove()
+    with pytest.raises(
+        ModelError, match=r"^candidates: got the rows \[0 1\], expected people inside"
+    ):
+        model.candidates(np.array([row, stays.row]))
 
 
 def test_options_name_rows_of_the_persons_own_capability(whole):

@@ -4,15 +4,12 @@ import numpy as np
 import pytest
 from numba import njit
 
-from mesa_mobility.crowd.planning.grid import (
-    COVERED,
-    Nearby,
-    cover_in,
-    headways,
-    neighbours_within,
-    place_in,
-)
-from mesa_mobility.crowd.state.people_grid import build_grid
+from mesa_mobility.crowd.collision.sampled import Decider
+from mesa_mobility.crowd.planning.grid import place_in
+from mesa_mobility.crowd.planning.neighbours import neighbours_within
+from mesa_mobility.crowd.planning.workspace import make_neighbours
+from mesa_mobility.crowd.state.clearances import MARGIN
+from mesa_mobility.crowd.state.people_grid import COVERED, build_grid, cover_in, grid_of_frame
 from mesa_mobility.crowd.state.records import Crowd
 
 
@@ -22,14 +19,13 @@ def _place(grid, x, y, who):
 
 
 @njit
-def _cover(moving, at, i, state):
-    cover_in(moving, at, i, state)
+def _cover(grid, at, i, state):
+    cover_in(grid, at, i, state)
 
 
 @njit
-def _within(grid, moving, x, y, own, radius, range_, near, sweeps, interacting, others):
-    to = Nearby(near, sweeps, interacting, others)
-    return neighbours_within(grid, moving, x, y, own, radius, range_, to)
+def _within(grid, me, place, radius, counts_within, box, to):
+    return neighbours_within(grid, me, place, radius, counts_within, box, to)
 
 
 @pytest.fixture
@@ -53,46 +49,46 @@ def test_everybody_is_found_in_the_grid(crowd):
 
 
 def test_what_is_kept_of_people_is_in_the_order_of_the_grid(crowd):
-    grid = build_grid(np.arange(50), crowd.x, crowd.y)
-    kept = headways(grid, crowd.records)
-    people = grid.people
-    assert (kept[:2] == [crowd.vx[people], crowd.vy[people]]).all()
-    assert kept[2] == pytest.approx(np.full(50, 0.6))
-    assert kept[3] == pytest.approx(np.full(50, 0.8))
+    grid = grid_of_frame(np.arange(50), crowd.records)
+    kept, people = grid.table, grid.people
+    assert (kept[:2] == [crowd.x[people], crowd.y[people]]).all()
+    assert (kept[2:4] == [crowd.vx[people], crowd.vy[people]]).all()
+    assert (kept[:2] == [grid.x, grid.y]).all()
+    assert kept[4] == pytest.approx(np.full(50, 0.6))
+    assert kept[5] == pytest.approx(np.full(50, 0.8))
     assert kept[COVERED] == pytest.approx(crowd.box[people, 0] + 0.3)
     assert kept[COVERED + 1] == pytest.approx(crowd.box[people, 1] + 0.4)
     assert kept[COVERED + 2] == pytest.approx(np.full(50, 0.75))
 
 
 def test_what_somebody_covers_is_kept_up_to_date(crowd):
-    grid = build_grid(np.arange(50), crowd.x, crowd.y)
-    kept = headways(grid, crowd.records)
-    before = kept.copy()
+    grid = grid_of_frame(np.arange(50), crowd.records)
+    before = grid.table.copy()
     crowd.box[7] = 0.7, 1.6, 1.3, 2.4
     at = int(np.flatnonzero(grid.people == 7)[0])
-    _cover(kept, at, 7, crowd.records)
-    assert kept[COVERED:, at] == pytest.approx([1.0, 2.0, 0.75])
-    before[COVERED:, at] = kept[COVERED:, at]
-    assert (kept == before).all()
+    _cover(grid, at, 7, crowd.records)
+    assert grid.table[COVERED:, at] == pytest.approx([1.0, 2.0, 0.75])
+    before[COVERED:, at] = grid.table[COVERED:, at]
+    assert (grid.table == before).all()
 
 
 @pytest.mark.parametrize(("radius", "range_"), [(0.5, 0.5), (3.0, 2.0), (30.0, 4.0)])
-def test_neighbours_are_copied_in_the_order_of_the_grid(crowd, radius, range_):
-    grid = build_grid(np.arange(50), crowd.x, crowd.y)
-    kept = headways(grid, crowd.records)
-    near, interacting = np.zeros((2, 58), dtype=np.int64)
-    others, sweeps = np.zeros((8, 58)), np.zeros((3, 58))
+def test_neighbours_are_found_in_the_order_of_the_grid(crowd, radius, range_):
+    grid = grid_of_frame(np.arange(50), crowd.records)
+    x, y, to = grid.x, grid.y, make_neighbours(50, 0, 0)
+    c, s, x0, y0, x1, y1 = 0.6, 0.8, -0.5, -1.0, 1.5, 0.75
     for i in range(0, 50, 7):
-        own = int(np.flatnonzero(grid.people == i)[0])
-        found, count = _within(
-            grid, kept, crowd.x[i], crowd.y[i], own, radius, range_, near, sweeps, interacting,
-            others,
-        )  # fmt: skip
-        away = np.hypot(grid.x - crowd.x[i], grid.y - crowd.y[i])
-        expected = np.flatnonzero((away <= radius) & (grid.people != i))
-        assert near[:found].tolist() == grid.people[expected].tolist()
-        assert (sweeps[:, :found] == kept[COVERED:, expected]).all()
-        expected = np.flatnonzero((away <= range_) & (grid.people != i))
-        assert interacting[:count].tolist() == grid.people[expected].tolist()
-        assert (others[:2, :count] == [grid.x[expected], grid.y[expected]]).all()
-        assert (others[2 : 2 + COVERED, :count] == kept[:COVERED, expected]).all()
+        px, py = crowd.x[i], crowd.y[i]
+        me = Decider(i, 0, px, py, c, s, 0.25, to.own)
+        place = int(np.flatnonzero(grid.people == i)[0])
+        found, count = _within(grid, me, place, radius, range_, (x0, y0, x1, y1), to)
+        away, others = np.hypot(x - px, y - py), grid.people != i
+        dx, dy, circle = grid.table[COVERED] - px, grid.table[COVERED + 1] - py, grid.table[9]
+        ahead, left = c * dx + s * dy, c * dy - s * dx
+        off = np.hypot(ahead - np.clip(ahead, x0, x1), left - np.clip(left, y0, y1))
+        reach = off < circle + 0.25 + MARGIN
+        expected = np.flatnonzero((away <= radius) & others & reach)
+        assert to.near[:found].tolist() == expected.tolist()
+        expected = np.flatnonzero((away <= range_) & others)
+        assert to.rows[:count].tolist() == grid.people[expected].tolist()
+        assert (to.others[:COVERED, :count] == grid.table[:COVERED, expected]).all()

@@ -6,9 +6,8 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.compiled import threads
-from mesa_mobility.crowd.planning.grid import headways
 from mesa_mobility.crowd.state import aggregates
-from mesa_mobility.crowd.state.people_grid import build_grid
+from mesa_mobility.crowd.state.people_grid import grid_of_frame
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.scenes import model_of
 
@@ -26,8 +25,7 @@ def test_the_same_by_any_number_of_threads(monkeypatch, count):
     crowd.records["vx"][:24] = np.linspace(0.0, 1.5, 24)
     alone = np.empty((24, 2))
     known = aggregates.aggregate(rows, 0, crowd, alone)
-    grid = build_grid(rows, crowd.x, crowd.y)
-    before = headways(grid, crowd.records).copy()
+    before = grid_of_frame(rows, crowd.records).table.tobytes()
     monkeypatch.setattr(threads, "THREADS", count)
     monkeypatch.setattr(threads, "BLOCK", 5)
     shared = np.empty((24, 2))
@@ -36,4 +34,4 @@ def test_the_same_by_any_number_of_threads(monkeypatch, count):
     assert (found.people, found.going, found.awaited) == (24, 23, 2)
     assert known == pytest.approx(found, rel=1e-12)
     assert found.speeds == pytest.approx(np.hypot(crowd.vx[:24], crowd.vy[:24]).sum())
-    assert headways(grid, crowd.records).tobytes() == before.tobytes()
+    assert grid_of_frame(rows, crowd.records).table.tobytes() == before

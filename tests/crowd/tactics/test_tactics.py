@@ -42,8 +42,8 @@ def names(model):
 
 def test_those_of_the_presets():
     everything = [
-        "corner_spreading", "visits", "speed_zones", "speed_rules", "taking_turns", "giving_way",
-        "waiting", "speed_compensation", "anticipation", "speed_adaptation", "impatience",
+        "corner_spreading", "visits", "speed_zones", "speed_rules", "giving_way",
+        "waiting", "speed_compensation", "anticipation", "speed_adaptation",
         "stepping_off",
     ]  # fmt: skip
     assert names(model_of(corridor(), strider())) == everything
@@ -92,17 +92,17 @@ def test_what_a_tactic_gives_is_checked():
 
 
 def test_a_preset_of_ones_own_is_saved_with_the_figures():
-    tactics = ("visits", "impatience")
+    tactics = ("visits", "stepping_off")
     mine = replace(PRESETS["default"], name="mine", terms={"target_distance": 2.0}, tactics=tactics)
     model = model_of(corridor(), strider(), preset=mine)
     assert model.preset == "mine"
     assert [(term.name, term.weight) for term in model.terms] == [("target_distance", 2.0)]
-    assert names(model) == ["visits", "impatience"]
+    assert names(model) == ["visits", "stepping_off"]
     rules = model.summary()["rules"]
     assert (rules["name"], rules["terms"], rules["tactics"]) == (
         "mine",
         {"target_distance": 2.0},
-        ["visits", "impatience"],
+        ["visits", "stepping_off"],
     )
     assert Preset(**rules) == mine
 

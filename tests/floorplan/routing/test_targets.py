@@ -3,7 +3,7 @@ from math import hypot
 import numpy as np
 import pytest
 import shapely
-from shapely import LineString, box
+from shapely import LineString, Point, box
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Router
@@ -35,13 +35,18 @@ def test_an_exit_is_aimed_at_from_behind(plans, place: tuple, expected: tuple) -
     assert Router(plans["room"]()).targets([place], [0]).gates.tolist() == [0]
 
 
+def passes(start, end, corner) -> float:
+    """Metres by which the straight way between two points passes a corner."""
+    return float(LineString([start, end]).distance(Point(corner)))
+
+
 def test_along_the_wall_the_jamb_comes_first(plans) -> None:
     found = Router(plans["room"]()).targets([(1, 0.3)], [0])
     assert found.gates.tolist() == [-1]
     x, y = found.points[0]
-    # On the straight way through (4.2, 0.2), and past it.
+    # Past the route's corner (4.2, 0.2), and nearer to the jamb at (4, 0).
     assert x > 4.2
-    assert (y - 0.3) * 3.2 == pytest.approx((x - 1) * -0.1, abs=1e-3)
+    assert 0.13 <= passes((1, 0.3), (x, y), (4, 0)) < hypot(0.2, 0.2)
 
 
 @pytest.mark.parametrize("place", [(1.5, 1.5), (2.5, 2.5), (7.5, 1.5), (6.0, 7.0), (3.0, 1.0)])
@@ -55,8 +60,9 @@ def test_a_door_that_the_jamb_hides_in_part_is_aimed_through(plans, place: tuple
 def test_targets_past_a_corner_have_the_way_on_in_view(plans) -> None:
     found = Router(plans["l_corridor"]()).targets([(1, 1)], [0])
     x, y = found.points[0]
-    # On the straight way through (10.2, 1.8), 1 m past it.
-    assert (x, y) == pytest.approx((10.2 + 9.2 / hypot(9.2, 0.8), 1.8 + 0.8 / hypot(9.2, 0.8)))
+    # 1 m past the way on from the route's corner (10.2, 1.8), and nearer to the wall's at (10, 2).
+    assert (x - 10.2) * hypot(x - 1, y - 1) == pytest.approx(x - 1, abs=1e-3)
+    assert 0.13 <= passes((1, 1), (x, y), (10, 2)) < hypot(0.2, 0.2)
 
 
 def test_a_gate_on_the_way_is_aimed_through(plans) -> None:
@@ -69,10 +75,10 @@ def test_a_gate_on_the_way_is_aimed_through(plans) -> None:
 def test_the_near_jamb_comes_before_a_gate_that_is_not_in_view(plans) -> None:
     found = Router(plans["two_rooms_turning_back"]()).targets([(5.7, 0.5)], [0])
     assert found.gates.tolist() == [-1]
-    # Past (5.8, 2.2), which is clear of the door's lower corner (6, 2).
+    # Past (5.8, 2.2), and nearer to the door's lower corner at (6, 2).
     x, y = found.points[0]
     assert y > 2.2
-    assert (x - 5.7) / (y - 0.5) == pytest.approx(0.1 / 1.7)
+    assert 0.13 <= passes((5.7, 0.5), (x, y), (6, 2)) < hypot(0.2, 0.2)
 
 
 def test_at_a_gate_too_narrow_for_a_body_nobody_aims(plans) -> None:

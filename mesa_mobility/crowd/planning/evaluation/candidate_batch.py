@@ -11,7 +11,7 @@ from mesa_mobility.compiled.decorators import internal, kept
 from mesa_mobility.crowd.collision.exact import near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
-from mesa_mobility.crowd.planning.grid import farthest_range, interact, people_within
+from mesa_mobility.crowd.planning.grid import farthest_range, interact, people_within, place_in
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
@@ -24,7 +24,7 @@ def pairs_of(
     """(len(rows),) options of each pedestrian times its neighbours: the size of its pair arrays."""
     clusters = state.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]
-    offsets, _ = _all_neighbours(rows, grid, state.records, rules.interaction_ranges)
+    _, offsets, _ = _all_neighbours(rows, grid, state.records, rules.interaction_ranges)
     return counts * np.maximum(np.diff(offsets), 1)
 
 
@@ -46,9 +46,10 @@ def make_candidates(
         np.arange(offsets[-1], dtype=np.int64) - offsets[owner] + table.offsets[clusters][owner]
     )
     x, y, heading = _lay_ends(rows, owner, options, table, state.records)
-    neighbour_offsets, neighbours = _all_neighbours(
+    places, neighbour_offsets, neighbour_places = _all_neighbours(
         rows, grid, state.records, rules.interaction_ranges
     )
+    neighbours = grid.people[neighbour_places]
     wall_offsets, walls = _all_walls(rows, table, around, state.records)
     durations = table.options.frames[options] * FRAME_SECONDS
     speeds = table.options.speed[options].astype(np.float64)
@@ -61,20 +62,15 @@ def make_candidates(
         options=options - rules.first_option[state.type_index[rows]][owner],
         owner=owner,
         offsets=offsets,
-        pedestrians=rows.copy(),
-        positions=np.column_stack([state.x[rows], state.y[rows]]),
+        grid=grid,
+        places=places,
         facings=state.heading[rows],
         targets=np.column_stack([state.target_x[rows], state.target_y[rows]]),
         preferred_speeds=np.where(np.isfinite(state.route[rows]), state.preferred[rows], 0.0),
-        velocities=np.column_stack([state.vx[rows], state.vy[rows]]),
         cores=state.core[rows],
         types=state.type_index[rows].astype(np.int64),
         neighbour_offsets=neighbour_offsets,
-        neighbours=neighbours,
-        neighbour_positions=np.column_stack([state.x[neighbours], state.y[neighbours]]),
-        neighbour_velocities=np.column_stack([state.vx[neighbours], state.vy[neighbours]]),
-        neighbour_directions=_directions(neighbours, state),
-        leads=_leads(np.repeat(rows, np.diff(neighbour_offsets)), neighbours, state),
+        neighbour_places=neighbour_places,
         wall_offsets=wall_offsets,
         walls=walls,
         groups=state.agenda["group"][rows].astype(np.int64),
@@ -87,21 +83,6 @@ def make_candidates(
         time=moment.frame * FRAME_SECONDS,
         rng=moment.rng,
     )
-
-
-def _directions(rows: NDArray[np.int64], state: Crowd) -> NDArray[np.float64]:
-    to = np.column_stack(
-        [state.target_x[rows] - state.x[rows], state.target_y[rows] - state.y[rows]]
-    )
-    away = np.sqrt((to**2).sum(axis=1))[:, None]
-    return np.divide(to, away, out=np.zeros_like(to), where=away > 0.0)
-
-
-def _leads(
-    rows: NDArray[np.int64], neighbours: NDArray[np.int64], state: Crowd
-) -> NDArray[np.float64]:
-    with np.errstate(invalid="ignore"):  # neither has a way
-        return state.route[rows] - state.route[neighbours]
 
 
 @kept()
@@ -127,16 +108,18 @@ def _lay_ends(
 @kept()
 def _all_neighbours(
     rows: NDArray[np.int64], grid: Grid, state: CrowdState, ranges: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """(len(rows),) places in the grid, (len(rows) + 1,) offsets, and places of the neighbours."""
     found = np.empty(len(grid.people), np.int64)
-    offsets = np.zeros(len(rows) + 1, np.int64)
+    places, offsets = np.empty(len(rows), np.int64), np.zeros(len(rows) + 1, np.int64)
     for d in range(len(rows)):
+        places[d] = place_in(grid, state.x[rows[d]], state.y[rows[d]], rows[d])
         offsets[d + 1] = offsets[d] + _neighbours(rows[d], grid, state, ranges, found)
     everyone = np.empty(offsets[-1], np.int64)
     for d in range(len(rows)):
         count = _neighbours(rows[d], grid, state, ranges, found)
         everyone[offsets[d] : offsets[d + 1]] = found[:count]
-    return offsets, everyone
+    return places, offsets, everyone
 
 
 @internal()
@@ -147,13 +130,12 @@ def _neighbours(
     ranges: NDArray[np.float64],
     found: NDArray[np.int64],
 ) -> int:
-    """Write the rows of the people who count for i.  Returns their number."""
+    """Write the places in the grid of the people who count for i.  Returns their number."""
     farthest = farthest_range(i, ranges, state)
     count, kept = people_within(grid, state.x[i], state.y[i], i, farthest, found), 0
     for a in range(count):
-        j = grid.people[found[a]]
-        found[kept] = j
-        kept += int(interact(i, j, ranges, state))
+        found[kept] = found[a]
+        kept += int(interact(i, grid.people[found[a]], ranges, state))
     return kept
 
 

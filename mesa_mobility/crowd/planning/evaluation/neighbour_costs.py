@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined, internal
 from mesa_mobility.compiled.simd import LANES, any_of
+from mesa_mobility.crowd.collision.sampled import Decider
 from mesa_mobility.crowd.costs.kernel_calls import call_pair_loop, call_pairs_loop
-from mesa_mobility.crowd.costs.layout import COST, FIELDS, KernelTable, Own, Terms
+from mesa_mobility.crowd.costs.layout import COST, KernelTable, Terms
 from mesa_mobility.crowd.planning.evaluation.lanes import in_lanes
-from mesa_mobility.crowd.planning.workspace import DecisionContext, PairSums, Workspace
+from mesa_mobility.crowd.planning.workspace import DecisionContext, Neighbours, Workspace
 
 LITTLE_LESS = 1.0 - 1e-9
 """Factor by which a sum over some neighbours is reduced, so that rounding cannot lift it above the
@@ -22,38 +23,43 @@ ENOUGH = -1.0
 
 @internal()
 def pair_cost(
-    own: Own,
+    me: Decider,
     k: int,
     ends: NDArray[np.float64],
     count: int,
-    others: NDArray[np.float64],
+    moved: int,
+    around: Neighbours,
     enough: float,
     table: KernelTable,
-    sums: PairSums,
 ) -> float:
     """Weighted sum of the pair terms of option k over the first ``count`` neighbours.
 
     Args:
-        own: the pedestrian.
+        me: the pedestrian.
         k: the option.
         ends: (6, n) ends of options.
-        count: number of neighbours.
-        others: (8 + fields, n) the neighbours, in full lanes (see ``fill_lane``).
+        count: number of neighbours, from the first column on.
+        moved: number of them who were moved to the front, if they are to be summed in the order of
+            the grid: the last bit of a sum depends on it.
+        around: these, in full lanes (see ``fill_lane``).
         enough: limit above which the sum does not matter; finite only if no pair cost is negative.
-        table: the pair terms.
-        sums: workspace; the term to evaluate first becomes the one that exceeded the limit.
+        table: the pair terms; that which exceeds the limit is the first to be evaluated next time.
 
     Returns:
         The sum, or ``ENOUGH`` if it certainly exceeds the limit.
     """
-    costs, n, so_far, option = others[COST], len(table.address), 0.0, ends[:, k:]
-    lanes, first_term = in_lanes(count), sums.first[0] if sums.first[0] < n else 0
+    others, n, so_far, option = around.others, len(table.address), 0.0, ends[:, k:]
+    costs, by_term = others[COST], around.by_term
+    lanes, first_term = in_lanes(count), around.first[0] if around.first[0] < n else 0
     for q in range(n):
         t = first_term + q if first_term + q < n else first_term + q - n
         call_pair_loop(
             table.address[t],
-            (lanes, option, others, own.record, table.fields[t], table.numbers[t], costs),
+            (lanes, option, others, me.record, table.fields[t], table.numbers[t], costs),
         )
+        for b in range(moved - 1, -1, -1):
+            a = around.moved[b]
+            costs[a], costs[b] = costs[b], costs[a]
         summed = 0.0
         for first in range(0, count, LANES):
             # Most neighbours are too far away to cost anything: additions, which wait for one
@@ -61,15 +67,15 @@ def pair_cost(
             if any_of(costs, first):
                 for a in range(first, min(first + LANES, count)):
                     summed += costs[a]
-        sums.by_term[t] = table.weight[own.kind, t] * summed
-        so_far += sums.by_term[t]
+        by_term[t] = table.weight[me.kind, t] * summed
+        so_far += by_term[t]
         if enough < so_far * LITTLE_LESS < np.inf:
-            sums.first[0] = t
+            around.first[0] = t
             return ENOUGH
     # In the order of the terms, whichever came first.
     total = 0.0
     for t in range(n):
-        total += sums.by_term[t]
+        total += by_term[t]
     return total
 
 
@@ -82,34 +88,19 @@ def pair_costs_at_least(
     Options are in full lanes (see ``fill_ends``). A bound sums over the foremost neighbours, or if
     ``approximate`` over the marked ones among them. It holds whatever the order of summation.
     """
-    n, own, table, some = in_lanes(last - first), now.own, terms.pair, work.some
-    least, ends = work.least[first : first + n], work.ends[:, first:]
+    n, me, table = in_lanes(last - first), now.me, terms.pair
+    around, marked = work.neighbours, work.neighbours.marked
+    least, ends = work.opened.least[first : first + n], work.opened.ends[:, first:]
     least[:] = 0.0
     for t in range(len(terms.pairs_address)):
-        counting, given = now.foremost, work.foremost
-        if approximate:
-            counting, given = 0, some
-            for a in range(now.foremost):
-                if work.marks[a] >> t & 1:
-                    for row in range(COST):
-                        some[row, counting] = work.foremost[row, a]
-                    for row in range(FIELDS, len(some)):
-                        some[row, counting] = work.foremost[row, a]
-                    counting += 1
-        weight = table.weight[own.kind, t]
+        count = 0
+        for a in range(now.foremost):
+            marked[count] = a
+            count += int(not approximate or around.marks[a] >> t & 1)
+        at, numbers, weight = table.fields[t], table.numbers[t], table.weight[me.kind, t]
         call_pairs_loop(
             terms.pairs_address[t],
-            (
-                counting,
-                n,
-                ends,
-                given,
-                own.record,
-                table.fields[t],
-                table.numbers[t],
-                weight,
-                least,
-            ),
+            (count, marked, n, ends, around.others, me.record, at, numbers, weight, least),
         )
     for k in range(last - first):
         # A value that is not a number is found by the sum over all neighbours.

@@ -45,14 +45,15 @@ def open_groups(
     most: float,
     work: Workspace,
 ) -> int:
-    """Bound the costs of the options in the first ``opened`` groups of ``work.picked``.
+    """Bound the costs of the options in the first ``opened`` groups of ``Opened.picked``.
 
     Options that end within somebody or a wall, or cost more than ``most``, are left out.
 
     Returns the number of open options, ``count`` before this call; -2 if a cost is not a number.
     """
     me, groups, terms = now.me, scene.groups, scene.terms
-    picked, free = work.picked, work.free
+    to, close = work.opened, work.neighbours.close
+    picked, free = to.picked, to.free
     apart, pose = me.core + MARGIN - SLACK, (me.x, me.y, me.c, me.s)
     # The cost is faster to test than blockage.
     has_cost_limit = most < np.inf
@@ -64,14 +65,14 @@ def open_groups(
             prefetch(groups.lanes, picked[q + _AHEAD], 416)
         g, bits = picked[q], ALL_LANES
         if not has_cost_limit:
-            bits = free_options(g, bits, work.blocks, apart, groups)
+            bits = free_options(g, bits, close, work.blocks, apart, groups)
         seconds = groups.ends[DURATION, g]
-        lanes_to_world(groups.lanes, g, work.lanes, LANES * n, pose, seconds)
+        lanes_to_world(groups.lanes, g, to.lanes, LANES * n, pose, seconds)
         picked[n], free[n] = g, bits
         n += int(bits != 0)
     if n == 0:
         return count
-    costs = work.lane_costs[: LANES * n]
+    costs = to.lane_costs[: LANES * n]
     costs[:] = 0.0
     if len(now.extra) > 0:
         base = scene.table.offsets[scene.state.cluster[me.row]]
@@ -79,33 +80,33 @@ def open_groups(
             row = groups.first[picked[q]]
             for lane in range(groups.first[picked[q] + 1] - row):
                 costs[LANES * q + lane] = now.extra[row + lane - base]
-    option_costs(now.own, work.lanes, terms.option, costs)
+    option_costs(me, to.lanes, terms.option, costs)
     bad, kept = 0, count
     for q in range(n):
         g, bits = picked[q], free[q] & no_more_than(costs, LANES * q, most)
         if has_cost_limit and bits != 0:
-            bits = free_options(g, bits, work.blocks, apart, groups)
+            bits = free_options(g, bits, close, work.blocks, apart, groups)
         # Only values that are not numbers compare as no more than the least number.
         bad |= bits & no_more_than(costs, LANES * q, _LEAST)
-        press_numbers(groups.first[g], bits, work.rows, kept)
-        compress(work.lane_costs, 0, LANES * q, bits, work.costs, 0, kept, 1)
-        compress(work.lanes, 0, LANES * q, bits, work.ends, 0, kept, END_ROWS)
+        press_numbers(groups.first[g], bits, to.rows, kept)
+        compress(to.lane_costs, 0, LANES * q, bits, to.costs, 0, kept, 1)
+        compress(to.lanes, 0, LANES * q, bits, to.ends, 0, kept, END_ROWS)
         kept += bits_set(bits)
     if now.has_negative_pairs:
-        count_all, others, sums = now.neighbours, work.others, work.sums
+        around, everybody = work.neighbours, now.neighbours
         for k in range(count, kept):
-            pairs = pair_cost(now.own, k, work.ends, count_all, others, np.inf, terms.pair, sums)
-            work.costs[k] += pairs + wall_cost(now.own, k, work.ends, now.walls, terms.wall)
-            bad |= int(not abs(work.costs[k]) < np.inf)
+            pairs = pair_cost(me, k, to.ends, everybody, 0, around, np.inf, terms.pair)
+            to.costs[k] += pairs + wall_cost(me, k, to.ends, now.walls, terms.wall)
+            bad |= int(not abs(to.costs[k]) < np.inf)
     if bad != 0:
         return NOT_A_NUMBER
     has_walls = len(terms.wall.address) > 0 and not now.has_negative_pairs
-    fill_ends(count, kept, work.ends)
+    fill_ends(count, kept, to.ends)
     pair_costs_at_least(now, approximate, count, kept, terms, work)
     for k in range(count, kept):
-        work.least[k] += work.costs[k]
-        work.approximate[k] = approximate
-        work.unwalled[k] = has_walls
+        to.least[k] += to.costs[k]
+        to.approximate[k] = approximate
+        to.unwalled[k] = has_walls
     for k in range(kept, kept + AT_ONCE):
-        work.least[k] = np.inf
+        to.least[k] = np.inf
     return kept

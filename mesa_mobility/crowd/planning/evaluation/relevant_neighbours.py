@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import force_inlined, internal
+from mesa_mobility.crowd.collision.sampled import Decider
 from mesa_mobility.crowd.costs.kernel_calls import call_pair_loop
 from mesa_mobility.crowd.costs.layout import (
     COST,
     ME_PREFERRED,
     ME_TARGET_X,
     ME_TARGET_Y,
-    ME_X,
-    ME_Y,
     OTHER_EX,
     OTHER_EY,
     OTHER_VX,
@@ -25,11 +23,10 @@ from mesa_mobility.crowd.costs.layout import (
     SECONDS,
     SPEED,
     KernelTable,
-    Own,
 )
 from mesa_mobility.crowd.options.option_groups import DURATION, FASTEST, SLOWEST, OptionGroups
-from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane, in_lanes, pick_between
-from mesa_mobility.crowd.planning.workspace import DecisionContext, Workspace
+from mesa_mobility.crowd.planning.evaluation.lanes import in_lanes, pick_between
+from mesa_mobility.crowd.planning.workspace import DecisionContext, Neighbours, Workspace
 
 AHEAD = 1.5
 """Look-ahead in seconds for people who come near: the longest option."""
@@ -63,56 +60,42 @@ def mark_relevant(
     Returns:
         False if there are too few neighbours to leave any out.
     """
-    count, own, others, marks = now.foremost, now.own, work.foremost, work.marks
+    count, me, others = now.foremost, now.me, work.neighbours.others
+    marks = work.neighbours.marks
     if count <= FEW_NEIGHBOURS or len(table.address) > MOST_TERMS:
         return False
-    n = pick_between(now.bounds, -np.inf, now.lowest + LIKELY, 0, work.picked)
+    n = pick_between(now.bounds, -np.inf, now.lowest + LIKELY, 0, work.opened.picked)
     marks[:count] = 0
-    costs, ends, of, lanes = others[COST], work.ends, groups.ends, in_lanes(count)
+    costs, ends, of, lanes = others[COST], work.opened.ends, groups.ends, in_lanes(count)
     for asked in range(PROBE_GROUPS):
-        a = work.picked[(2 * asked + 1) * n // (2 * PROBE_GROUPS)]
+        a = work.opened.picked[(2 * asked + 1) * n // (2 * PROBE_GROUPS)]
         g = now.first + a
         ends[SECONDS, a] = of[DURATION, g]
         ends[SPEED, a] = 0.5 * (of[SLOWEST, g] + of[FASTEST, g])
         for t in range(len(table.address)):
             call_pair_loop(
                 table.address[t],
-                (lanes, ends[:, a:], others, own.record, table.fields[t], table.numbers[t], costs),
+                (lanes, ends[:, a:], others, me.record, table.fields[t], table.numbers[t], costs),
             )
             for b in range(count):
-                marks[b] |= int(costs[b] * table.weight[own.kind, t] > WORTH_MENTION) << t
+                marks[b] |= int(costs[b] * table.weight[me.kind, t] > WORTH_MENTION) << t
     return True
 
 
 @internal()
-def select_relevant(
-    own: Own,
-    others: NDArray[np.float64],
-    count: int,
-    picked: NDArray[np.int64],
-    dropped: NDArray[np.int32],
-    to: NDArray[np.float64],
-) -> int:
-    """Copy the relevant ones of the first ``count`` neighbours, who are likely to cost most.
+def select_relevant(me: Decider, count: int, neighbours: Neighbours) -> int:
+    """Move the relevant ones of the first ``count`` neighbours, likely to cost most, to the front.
 
     They would come near if the pedestrian walked to its target at its preferred speed, or come
     towards it. A sum of pair terms over them alone is a lower bound of the sum over all.
 
-    Args:
-        own: the pedestrian.
-        others: (8 + fields, n) its neighbours.
-        count: their number.
-        picked: workspace.
-        dropped: workspace.
-        to: (8 + fields, n) gets a copy.
-
-    Returns:
-        Their number.
+    Returns their number.
     """
-    own_x, own_y = own.record[ME_X], own.record[ME_Y]
-    ex, ey = own.record[ME_TARGET_X] - own_x, own.record[ME_TARGET_Y] - own_y
+    others, moved, relevant = neighbours.others, neighbours.moved, neighbours.marks
+    own_x, own_y = me.x, me.y
+    ex, ey = me.record[ME_TARGET_X] - own_x, me.record[ME_TARGET_Y] - own_y
     away = math.sqrt(ex * ex + ey * ey)
-    along = own.record[ME_PREFERRED] / away if away > 0.0 else 0.0
+    along = me.record[ME_PREFERRED] / away if away > 0.0 else 0.0
     own_vx, own_vy = along * ex, along * ey
     x, y, vx, vy = others[OTHER_X], others[OTHER_Y], others[OTHER_VX], others[OTHER_VY]
     to_x, to_y = others[OTHER_EX], others[OTHER_EY]
@@ -126,15 +109,14 @@ def select_relevant(
         towards = dx * to_x[a] + dy * to_y[a] < 0.0
         facing = ex * to_x[a] + ey * to_y[a] < 0.0
         beside = abs(dy * to_x[a] - dx * to_y[a]) < NEAR
-        dropped[a] = np.int32(not (near | (towards & facing & beside)))
+        relevant[a] = np.int64(near | (towards & facing & beside))
     n = 0
     for a in range(count):
-        picked[n] = a
-        n += 1 - dropped[a]
+        moved[n] = a
+        n += relevant[a]
     for row in range(len(others)):
-        given, copied = others[row], to[row]
-        if row != COST:
-            for k in range(n):
-                copied[k] = given[picked[k]]
-    fill_lane(n, to)
+        of = others[row]
+        for b in range(n):
+            a = moved[b]
+            of[a], of[b] = of[b], of[a]
     return n

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates
-from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm
+from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm, nearest_ahead
 from mesa_mobility.crowd.costs.kernels import CostKernel, PairKernel, WallKernel
 from mesa_mobility.crowd.costs.records import Option, Options, Wall
 from mesa_mobility.crowd.costs.terms import CostTerm
@@ -152,7 +152,8 @@ def _option(candidates: Candidates, k: int) -> Option:
 
 def _me(kernel: CostKernel, of: Candidates) -> Any:
     places = [*of.positions[0], *of.targets[0]]
-    values = [*places, of.preferred_speeds[0], *of.velocities[0], of.cores[0], of.facings[0]]
+    body = [of.cores[0], nearest_ahead(of)[0], of.facings[0]]
+    values = [*places, of.preferred_speeds[0], *of.velocities[0], *body]
     declared = [of.field(name)[0] for name in kernel.declared]
     return kernel.kinds["me"](*map(float, [*values, of.types[0], of.groups[0], *declared]))
 

@@ -81,6 +81,7 @@ const OPTIONS = {
         ctx.stroke();
         this.dot(ctx, d.chosen, 4.5 * r);
       }
+      this.paintBlocker(ctx, r);
       if (!d.lost) this.paintTarget(ctx, r);
       this.paintKey(ctx, r, side);
       this.refresh();
@@ -152,6 +153,28 @@ const OPTIONS = {
       ctx.moveTo(x, y);
       ctx.lineTo(x + 1.5 * size * Math.cos(d.heading), y - 1.5 * size * Math.sin(d.heading));
       ctx.stroke();
+    },
+    blocker() {
+      return this.decision.neighbours.find((each) => each[0] === this.decision.blocked_by);
+    },
+    paintBlocker(ctx, r) {
+      // From edge to edge of the bodies where there is room, else from centre to centre.
+      const other = this.blocker();
+      if (!other) return;
+      const d = this.decision, from = this.place(...d.position), to = this.place(other[1], other[2]);
+      const dx = to[0] - from[0], dy = to[1] - from[1], far = Math.hypot(dx, dy) || 1;
+      const [ux, uy] = [dx / far, dy / far], head = 9 * r, wide = 5 * r;
+      ctx.strokeStyle = ctx.fillStyle = this.colours.hitsPerson;
+      ctx.lineWidth = 3.5 * r;
+      ctx.beginPath();
+      ctx.moveTo(...from);
+      ctx.lineTo(to[0] - head * ux, to[1] - head * uy);
+      ctx.stroke();
+      ctx.beginPath();
+      ctx.moveTo(...to);
+      ctx.lineTo(to[0] - head * ux - wide * uy, to[1] - head * uy + wide * ux);
+      ctx.lineTo(to[0] - head * ux + wide * uy, to[1] - head * uy - wide * ux);
+      ctx.fill();
     },
     paintTarget(ctx, r) {
       // At the edge, where the target lies farther than that.

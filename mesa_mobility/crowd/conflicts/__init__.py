@@ -1,0 +1,1 @@
+"""Conflicts: people who block each other, and who of them makes way."""

@@ -1,0 +1,294 @@
+"""Giving way: people who block each other make way in a fixed order.
+
+Everybody who takes the cheapest free option ends, now and then, in a ring of people each of whom
+is in the way of the next.  Waiting resolves no ring.  As in priority inheritance with backtracking
+(Okumura et al., Artificial Intelligence 310, 2022), an order says who goes first, and whoever is in
+their way makes way; so do, in turn, those who are in the way of that.  Here people have bodies and
+recorded movements instead of nodes of a graph, so they are asked to leave a stretch of the way
+free, and whoever has no room aside walks ahead along that way until there is some.  If nobody can
+make room, the first comes last and makes way themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.conflicts.notes import (
+    NOTE,
+    NOTE_FIELDS,
+    blank_notes,
+    find_hindered,
+    join,
+    pass_on,
+    resolve,
+    served_by,
+    stop_making_way,
+)
+from mesa_mobility.crowd.conflicts.places import (
+    AHEAD,
+    AROUND,
+    Body,
+    Way,
+    distances_to_way,
+    places_aside,
+    places_to_set_out,
+)
+from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.schema import Kind, Records
+
+NEAR = 2.5
+"""Metres from somebody who makes way within which others look whether they come towards them."""
+
+SIDESTEP = 0.8
+"""Highest speed of those who make way, m/s."""
+
+ARRIVED = 0.1
+"""Metres from the place at which somebody stands who makes way."""
+
+FACES = 0.7
+"""Cosine of the angle to their target from which on people face it."""
+
+GAINED = 0.05
+"""Metres by which a movement must lead nearer to somewhere for it to be a way there."""
+
+BEYOND = 1.0
+"""Metres by which those aim beyond a place who would rather stand than take so short a step, such
+as people in wheelchairs. They stop once they are clear."""
+
+LEGS = 3
+"""Most straight pieces of the way that is left free."""
+
+GOES_ON = 0.5
+"""Seconds for which somebody goes on to make way whose own way still leads across the other's."""
+
+
+class GiveWay(Tactic):
+    """People who block each other make way in a fixed order.
+
+    Somebody is hindered who has made no progress for some seconds. They are blocked by the person
+    whom the option would hit first that they would take alone (``World.wishes``). Where people
+    block each other in a ring, the one with the shortest route goes first, and the person in their
+    way makes way: to the nearest place that leaves the next 4 m of that route free, or along the
+    route where there is none. Whoever is in the way of that makes way, too. They go on when their
+    own way no longer leads across that of the first.
+    """
+
+    name = "giving_way"
+
+    saved: ClassVar[Mapping[str, Kind]] = {"_notes": Records(NOTE, NOTE_FIELDS, ("known",))}
+
+    def __init__(self) -> None:
+        self._notes = blank_notes(0)
+
+    def bind(self, model: World) -> None:
+        """Keep the model, which knows what people would do alone."""
+        self._model = model
+
+    @property
+    def making_way(self) -> list[int]:
+        """Rows of those who make way, as noted at their last decision."""
+        making: list[int] = np.flatnonzero(self._notes["first"] != NOBODY).tolist()
+        return making
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Send those aside who make way."""
+        if desired.newcomers:
+            return
+        rows, now, crowd = deciding.pedestrians, deciding.elapsed, deciding.inside.crowd
+        if len(crowd.core) > len(self._notes):
+            known, self._notes = self._notes, blank_notes(len(crowd.core))
+            self._notes[: len(known)] = known
+        notes = self._notes
+        crowd.presses[rows] = 0
+        hindered = np.zeros(len(rows), np.bool_)
+        find_hindered(rows, now, crowd.records, crowd.agenda, hindered)
+        if not hindered.any() and not (notes["first"][deciding.inside.pedestrians] >= 0).any():
+            notes["blocker"][rows] = NOBODY
+            return
+        goes = ~deciding.waiting
+        self._go_on(deciding, desired, np.flatnonzero(goes & (notes["first"][rows] != NOBODY)))
+        stop_making_way(rows, now, crowd.records, notes)
+        served = np.isin(rows, served_by(notes, deciding.inside.pedestrians))
+        stays = notes["first"][rows] == NOBODY
+        near = self._near_others(deciding) & stays & goes & ~(hindered | served)
+        who = np.flatnonzero(near)
+        if len(who):
+            join(
+                rows[who], self._wishes(deciding, desired, who).blockers, now, crowd.records, notes
+            )
+        who = np.flatnonzero((hindered | served) & goes & stays)
+        if len(who):
+            wishes = self._wishes(deciding, desired, who)
+            aims = desired.targets.points[who]
+            walled = (_gains(wishes, aims) < GAINED) & hindered[who]
+            # Whoever does not face their target turns first.
+            to = aims - deciding.positions[who]
+            ahead = np.cos(np.arctan2(to[:, 1], to[:, 0]) - crowd.heading[rows[who]])
+            walled &= ahead > FACES
+            crowd.presses[rows[who]] = hindered[who] & ~walled & (wishes.blockers == NOBODY)
+            resolve(
+                rows[who],
+                wishes.blockers,
+                walled,
+                served[who],
+                now,
+                crowd.records,
+                crowd.agenda,
+                notes,
+            )
+        who = np.flatnonzero(notes["first"][rows] != NOBODY)
+        if len(who):
+            self._make_way(who, deciding, desired)
+            crowd.agenda["since"][rows[who]] = now
+
+    def compile_ahead(self) -> None:
+        """Compile the order, with nobody in conflict."""
+        nobody, notes, crowd = np.empty(0, dtype=np.int64), blank_notes(2), Crowd(2)
+        none, state, agenda = np.empty(0, dtype=np.bool_), crowd.records, crowd.agenda
+        find_hindered(nobody, 0.0, state, agenda, none)
+        stop_making_way(nobody, 0.0, state, notes)
+        join(nobody, nobody, 0.0, state, notes)
+        resolve(nobody, nobody, none, none, 0.0, state, agenda, notes)
+        pass_on(nobody, nobody, 0.0, state, notes)
+
+    def _wishes(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> Wishes:
+        """What some of those who decide would do alone on their own way."""
+        rows = deciding.pedestrians[who]
+        speeds = deciding.inside.crowd.agenda["speed"][rows]
+        return self._model.wishes(rows, desired.targets.points[who], speeds)
+
+    def _near_others(self, deciding: Deciding) -> NDArray[np.bool_]:
+        """(n,) whether each is near somebody who makes way."""
+        inside, crowd = deciding.inside.pedestrians, deciding.inside.crowd
+        others = inside[self._notes["first"][inside] != NOBODY]
+        to = deciding.positions[:, None] - np.column_stack([crowd.x[others], crowd.y[others]])
+        near: NDArray[np.bool_] = (np.hypot(to[..., 0], to[..., 1]) < NEAR).any(axis=1)
+        return near
+
+    def _go_on(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> None:
+        """Let those go on making way whose own way still leads across that of the others."""
+        if len(who) == 0:
+            return
+        wishes, crowd = self._wishes(deciding, desired, who), deciding.inside.crowd
+        for k, row in enumerate(deciding.pedestrians[who].tolist()):
+            path = wishes.paths[k, :, : wishes.pieces[k] + 1].T
+            for other in self._ways(row, deciding):
+                off, along = distances_to_way(path, other.points)
+                if ((off < other.body.core + crowd.core[row]) & (along > 0.0)).any():
+                    until = deciding.elapsed + GOES_ON
+                    self._notes["until"][row] = max(self._notes["until"][row], until)
+
+    def _make_way(self, who: NDArray[np.intp], deciding: Deciding, desired: Desired) -> None:
+        """Set points and speeds of those who make way, and ask those who are in the way of that."""
+        rows, crowd, notes = deciding.pedestrians[who], deciding.inside.crowd, self._notes
+        points, speeds = desired.points.copy(), desired.speeds.copy()
+        places = [self._places(row, deciding) for row in rows.tolist()]
+        best = np.array(
+            [
+                each[0] if len(each) else here
+                for each, here in zip(places, deciding.positions[who], strict=True)
+            ]
+        )
+        own = np.minimum(crowd.agenda["speed"][rows], SIDESTEP)
+        wishes = self._model.wishes(rows, best, own)
+        blockers = wishes.blockers.copy()
+        short = _gains(wishes, best) < GAINED
+        arrived = np.hypot(*(best - deciding.positions[who]).T) < ARRIVED
+        for k in np.flatnonzero(short & ~arrived).tolist():
+            # Whoever does not set off for so short a step aims beyond, or tries other places.
+            step = best[k] - deciding.positions[who[k]]
+            beyond = best[k] + BEYOND / np.hypot(*step) * step
+            others = np.concatenate([[beyond], places[k][1:]])
+            copies = np.full(len(others), who[k])
+            tried = self._model.wishes(
+                deciding.pedestrians[copies], others, own[k].repeat(len(others))
+            )
+            moves = np.flatnonzero(_gains(tried, others) >= GAINED)
+            at, short[k] = (moves[0], False) if len(moves) else (0, True)
+            best[k], blockers[k] = others[at], tried.blockers[at]
+        notes["x"][rows], notes["y"][rows] = best.T
+        stands = arrived
+        points[who] = np.where(stands[:, None], deciding.positions[who], best)
+        speeds[who] = np.where(stands, 0.0, own)
+        desired.points, desired.speeds = points, speeds
+        back = stands & (notes["first"][rows] == rows)
+        moving = ~stands
+        # Who is waited for has not failed yet while somebody still gets on with making room.
+        gets_on = rows[moving & ~short & (blockers == NOBODY)]
+        crowd.presses[gets_on] = 1
+        notes["served"][notes["first"][gets_on]] = deciding.elapsed
+        pass_on(rows[moving], blockers[moving], deciding.elapsed, crowd.records, notes)
+        notes["first"][rows[back]] = NOBODY
+
+    def _places(self, row: int, deciding: Deciding) -> NDArray[np.float64]:
+        """(k, 2) where somebody may make way to, metres, the best place first."""
+        crowd, inside = deciding.inside.crowd, deciding.inside.pedestrians
+        me, ways = _body(row, deciding), self._ways(row, deciding)
+        concerned = [row, self._notes["first"][row], self._notes["asked_by"][row]]
+        reach = AROUND + me.core + crowd.core[inside].max()
+        near = inside[
+            (np.hypot(crowd.x[inside] - me.place[0], crowd.y[inside] - me.place[1]) < reach)
+            & ~np.isin(inside, concerned)
+        ]
+        places = np.column_stack([crowd.x[near], crowd.y[near]])
+        # Nobody makes way to where somebody else does.
+        others = near[self._notes["first"][near] != NOBODY]
+        wanted = np.column_stack([self._notes["x"][others], self._notes["y"][others]])
+        taken = np.concatenate([places, wanted])
+        cores = np.concatenate([crowd.core[near], crowd.core[others]])
+        if not ways:
+            to = crowd.destination[[row]].astype(np.int64)
+
+            def aims(places: NDArray[np.float64]) -> NDArray[np.float64]:
+                return deciding.site.targets(places, to.repeat(len(places))).points
+
+            return places_to_set_out(deciding.site.plan, me, aims, taken, cores)
+        return places_aside(deciding.site.plan, me, ways, taken, cores)
+
+    def _ways(self, row: int, deciding: Deciding) -> list[Way]:
+        """The ways that somebody leaves free: of the first, and of who has asked them."""
+        first, by = int(self._notes["first"][row]), int(self._notes["asked_by"][row])
+        if first == row:
+            return []
+        ways = [Way(_body(first, deciding), _way(first, deciding))]
+        if self._notes["first"][by] == first and deciding.inside.crowd.active[by]:
+            body = _body(by, deciding)
+            to = np.array([self._notes["x"][by], self._notes["y"][by]])
+            ways.append(Way(body, np.array([body.place, to])))
+        return ways
+
+
+def _gains(wishes: Wishes, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) metres by which people would get nearer to points (n, 2) alone."""
+    ends = wishes.paths[np.arange(len(points)), :, wishes.pieces]
+    gains: NDArray[np.float64] = np.hypot(*(wishes.paths[:, :, 0] - points).T)
+    gains -= np.hypot(*(ends - points).T)
+    return gains
+
+
+def _body(row: int, deciding: Deciding) -> Body:
+    crowd = deciding.inside.crowd
+    return Body(np.array([crowd.x[row], crowd.y[row]]), float(crowd.core[row]))
+
+
+def _way(row: int, deciding: Deciding) -> NDArray[np.float64]:
+    """(k, 2) points of the next metres of somebody's route."""
+    crowd, left = deciding.inside.crowd, AHEAD
+    way = [np.array([crowd.x[row], crowd.y[row]])]
+    destination = crowd.destination[[row]].astype(np.int64)
+    for _ in range(LEGS):
+        step = deciding.site.targets(way[-1][None], destination).points[0] - way[-1]
+        length = float(np.hypot(*step))
+        if length < 1e-6 or left <= 0.0:
+            break
+        way.append(way[-1] + step * min(1.0, left / length))
+        left -= length
+    return np.array(way if len(way) > 1 else way * 2)

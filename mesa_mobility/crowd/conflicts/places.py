@@ -1,0 +1,157 @@
+"""Where somebody may stand who makes way for another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.floorplan import FloorPlan, lines_of_sight
+
+AHEAD = 4.0
+"""Metres of a way that are left free: the longest movement, 3 m, and room to stop."""
+
+ROOM = 0.1
+"""Metres between the cores of two who pass each other: bodies sway by 3 to 12 cm."""
+
+CLEAR = 0.05
+"""Metres between a core and the walls beside the way of somebody who sets out again."""
+
+TAKEN = 0.5
+"""Metres that somebody would rather go than ask another to move."""
+
+EFFORT = 0.1
+"""Metres along a way or aside of it that a metre of walking is worth where no place is free."""
+
+FAR = 100.0
+"""Metres that somebody would rather go to a place that leaves the ways free."""
+
+TRIED = 40
+"""Most places that are tried until somebody can move to one."""
+
+AROUND = 2.4
+"""Metres within which a place is looked for."""
+
+_DISTANCES = AROUND * np.array([0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0])
+_ANGLES = np.deg2rad(np.arange(0.0, 360.0, 15.0))
+_STEPS = np.concatenate(
+    [[[0.0, 0.0]]]
+    + [far * np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)]) for far in _DISTANCES]
+)
+
+
+class Body(NamedTuple):
+    """Where somebody is, (2,) metres, and their core radius, metres."""
+
+    place: NDArray[np.float64]
+    core: float
+
+
+class Way(NamedTuple):
+    """Somebody who is to pass, and (k, 2) points of their way, metres."""
+
+    body: Body
+    points: NDArray[np.float64]
+
+
+def places_aside(
+    plan: FloorPlan,
+    me: Body,
+    ways: Sequence[Way],
+    taken: NDArray[np.float64],
+    cores: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """The places at which somebody leaves the ways of others free, the nearest first.
+
+    Then those follow that lie farthest along the ways and aside of them: whoever has no room aside
+    leads on those whom they make way for.
+
+    Args:
+        plan: the floor plan.
+        me: who makes way.
+        ways: those that are to be free.
+        taken: (m, 2) where others stand or are about to, metres.
+        cores: (m,) their core radii, metres.
+
+    Returns:
+        (k, 2) metres, at most ``TRIED``; their own place is one of them.
+    """
+    ends = me.place + _STEPS
+    starts = np.broadcast_to(me.place, ends.shape)
+    can = lines_of_sight(plan, starts, ends, me.core) & plan.contains(ends)
+    for way in ways:
+        # Nobody makes way through those who are to pass, nor comes nearer to them.
+        apart = _distances_to_legs(way.body.place, starts, ends)
+        can &= apart >= min(me.core + way.body.core, apart[0]) - 1e-6
+    can[0] = True
+    ends, far = ends[can], np.hypot(*_STEPS[can].T)
+    clear, along = np.ones(len(ends), np.bool_), np.zeros(len(ends))
+    aside = np.full(len(ends), np.inf)
+    for way in ways:
+        off, on = distances_to_way(ends, way.points)
+        clear &= off >= me.core + way.body.core + ROOM
+        along, aside = along + on, np.minimum(aside, off)
+    to = ends[:, None] - taken
+    crowded = (np.hypot(to[..., 0], to[..., 1]) < cores + me.core).sum(axis=1)
+    cost = np.where(clear, far, FAR - along - aside + EFFORT * far) + TAKEN * crowded
+    # None is worse than to stay, which comes first among all of them.
+    order = cost.argsort(kind="stable")
+    return ends[order[: int(np.flatnonzero(order == 0)[0]) + 1][:TRIED]]
+
+
+def places_to_set_out(
+    plan: FloorPlan,
+    me: Body,
+    aims: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    taken: NDArray[np.float64],
+    cores: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """The places from which the way to its target passes walls with room, the nearest first.
+
+    Args:
+        plan: the floor plan.
+        me: who goes there, since walls are in their way from where they are.
+        aims: gives the targets (n, 2) of places (n, 2), metres.
+        taken: (m, 2) where others stand or are about to, metres.
+        cores: (m,) their core radii, metres.
+
+    Returns:
+        (k, 2) metres, at most ``TRIED``, maybe none.
+    """
+    ends = (me.place + _STEPS)[1:]
+    starts = np.broadcast_to(me.place, ends.shape)
+    can = lines_of_sight(plan, starts, ends, me.core) & plan.contains(ends)
+    ends, far = ends[can], np.hypot(*_STEPS[1:][can].T)
+    can = lines_of_sight(plan, ends, aims(ends), me.core + CLEAR)
+    ends, far = ends[can], far[can]
+    to = ends[:, None] - taken
+    crowded = (np.hypot(to[..., 0], to[..., 1]) < cores + me.core).sum(axis=1)
+    return ends[(far + TAKEN * crowded).argsort(kind="stable")[:TRIED]]
+
+
+def distances_to_way(
+    points: NDArray[np.float64], way: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(n,) metres from points (n, 2) to a way (k, 2), and along it to the nearest place on it."""
+    start, step = way[:-1], np.diff(way, axis=0)
+    length = np.maximum(np.hypot(step[:, 0], step[:, 1]), 1e-9)
+    share = np.clip(((points[:, None] - start) * step).sum(axis=2) / length**2, 0.0, 1.0)
+    off = points[:, None] - start - share[..., None] * step
+    away = np.hypot(off[..., 0], off[..., 1])
+    rows, nearest = np.arange(len(points)), away.argmin(axis=1)
+    before = np.cumsum(length) - length
+    return away[rows, nearest], (before + share * length)[rows, nearest]
+
+
+def _distances_to_legs(
+    point: NDArray[np.float64], starts: NDArray[np.float64], ends: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(n,) metres from a point to straight legs."""
+    step = ends - starts
+    length2 = np.maximum((step**2).sum(axis=1), 1e-12)
+    share = np.clip(((point - starts) * step).sum(axis=1) / length2, 0.0, 1.0)
+    off = starts + share[:, None] * step - point
+    distances: NDArray[np.float64] = np.hypot(off[:, 0], off[:, 1])
+    return distances

@@ -1,0 +1,49 @@
+"""The figures of a model's run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mesa_mobility.crowd.model.crowd_model import CrowdModel
+
+
+def summary(model: CrowdModel) -> dict[str, Any]:
+    """Figures of the run so far, ready for JSON.
+
+    Returns:
+        ``model``, ``preset``, ``rules`` (all that the preset decides), ``pedestrians``,
+        ``simulated_s``, ``egress_s`` (None while anybody is inside or to come, or where nobody
+        ever was), ``left_inside``, ``stalled``,
+        ``stall_reason`` (None unless stalled), ``blocked`` (everybody who has ever stood for a
+        minute without a reason: ``person``, ``since_s``, ``ring`` as rows, and whether they
+        still do, ``stands``), ``decisions``, ``fallback_decision_share``,
+        ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy``
+        ([[t, inside], ...] each second).
+    """
+    last_left, standing = model.statistics.last_left, model.blocked
+    out = model.inside == 0 and last_left is not None and not model.sources.expecting
+    return {
+        "model": type(model).__name__,
+        "preset": model.preset,
+        "rules": model.rules.numbers(),
+        "pedestrians": model.population.count,
+        "simulated_s": round(model.elapsed, 6),
+        "egress_s": round(last_left or 0.0, 6) if out else None,
+        "left_inside": model.inside,
+        "stalled": model.stalled,
+        "stall_reason": model.stall_reason,
+        "blocked": [
+            {
+                "person": each.person,
+                "since_s": each.since,
+                "ring": list(each.ring),
+                "stands": each in standing,
+            }
+            for each in model._standing_watch.reported.values()
+        ],
+        "decisions": int(model.crowd.decisions.sum()),
+        "fallback_decision_share": model.statistics.fallback_decision_share,
+        "fallback_time_share": model.statistics.fallback_time_share,
+        "mean_speed_mps": model.statistics.mean_speed_so_far,
+        "occupancy": [list(row) for row in model.statistics.occupancy],
+    }

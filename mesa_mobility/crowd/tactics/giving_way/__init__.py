@@ -1,1 +1,0 @@
-"""Wide people at openings too narrow for two of them."""

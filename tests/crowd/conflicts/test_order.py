@@ -1,0 +1,131 @@
+"""Rings of people who block each other, and who of them makes way."""
+
+import numpy as np
+import pytest
+
+from mesa_mobility.crowd.conflicts.notes import (
+    AGREED,
+    GIVES_UP,
+    LATER,
+    PATIENCE,
+    blank_notes,
+    find_hindered,
+    join,
+    pass_on,
+    resolve,
+    stop_making_way,
+)
+from mesa_mobility.crowd.state.records import Crowd
+
+
+def crowd_of(*routes: float) -> Crowd:
+    """People inside with these metres to go, who have made no progress since the start."""
+    crowd = Crowd(len(routes))
+    crowd.active[:] = True
+    crowd.route[:] = routes
+    crowd.agenda["speed"] = 1.3
+    return crowd
+
+
+def resolved(crowd: Crowd, blockers: list[int], notes=None, served=(), at: float = 10.0):
+    """The notes after a search for rings among all of them."""
+    rows = np.arange(len(blockers))
+    notes = blank_notes(len(rows)) if notes is None else notes
+    nobody, waited_for = np.zeros(len(rows), bool), np.isin(rows, served)
+    given = np.array(blockers), nobody, waited_for, at, crowd.records, crowd.agenda
+    resolve(rows, *given, notes)
+    return notes
+
+
+def test_of_a_ring_the_one_in_the_way_of_the_shortest_route_makes_way():
+    notes = resolved(crowd_of(9.0, 3.0, 5.0), [1, 2, 0])
+    assert notes["first"].tolist() == [-1, -1, 1]
+    assert notes["asked_by"][2] == 1
+    assert notes["until"][2] == 10.0 + AGREED
+
+
+def test_of_two_as_far_the_first_in_the_crowd_goes_first():
+    assert resolved(crowd_of(4.0, 4.0), [1, 0])["first"].tolist() == [-1, 0]
+
+
+def test_a_chain_is_no_ring():
+    # 2 waits for 1, who waits for 0, who is in nobody's way.
+    assert (resolved(crowd_of(1.0, 2.0, 3.0), [-1, 0, 1])["first"] == -1).all()
+
+
+def test_a_chain_that_leads_into_a_ring_waits():
+    # 3 has the shortest route, but is in nobody's way: the ring is of 0 and 1.
+    notes = resolved(crowd_of(5.0, 6.0, 7.0, 1.0), [1, 0, 1, 2])
+    assert notes["first"].tolist() == [-1, 0, -1, -1]
+
+
+def test_whoever_has_made_way_comes_after_those_who_follow():
+    crowd, notes = crowd_of(3.0, 4.0), blank_notes(2)
+    notes["later"][0] = 20.0
+    assert resolved(crowd, [1, 0], notes, at=10.0)["first"].tolist() == [1, -1]
+    # Later than that the shorter route counts again.
+    assert resolved(crowd, [1, 0], blank_notes(2), at=21.0)["first"].tolist() == [-1, 0]
+
+
+def test_those_in_the_way_of_somebody_who_makes_way_do_so_too():
+    crowd = crowd_of(3.0, 4.0, 5.0)
+    notes = resolved(crowd, [1, 0, -1])
+    pass_on(np.array([1]), np.array([2]), 11.0, crowd.records, notes)
+    assert notes["first"].tolist() == [-1, 0, 0]
+    assert notes["asked_by"][2] == 1
+    # But not for somebody who comes later in the order than they.
+    crowd.route[2] = 1.0
+    notes["first"][2], notes["later"][2] = -1, 0.0
+    pass_on(np.array([1]), np.array([2]), 12.0, crowd.records, notes)
+    assert notes["first"][2] == -1
+
+
+@pytest.mark.parametrize(("x", "joins"), [(-1.0, False), (3.0, True)])
+def test_whoever_comes_towards_somebody_who_makes_way_joins(x, joins):
+    crowd = crowd_of(3.0, 4.0, 5.0)
+    notes = resolved(crowd, [1, 0, -1])
+    # 1 is at 0 and makes way to x = 2; 2 stands behind or ahead.
+    notes["x"][1], crowd.x[2] = 2.0, x
+    join(np.array([2]), np.array([1]), 11.0, crowd.records, notes)
+    assert (notes["first"][2] == 0) == joins
+
+
+def test_the_first_comes_last_if_nobody_can_make_room():
+    crowd = crowd_of(3.0, 4.0)
+    notes = resolved(crowd, [1, 0], at=10.0)
+    crowd.agenda["since"][:] = 10.0
+    at = 10.0 + GIVES_UP
+    assert resolved(crowd, [1, 0], notes, served=[0], at=at)["first"].tolist() == [-1, 0]
+    assert resolved(crowd, [1, 0], notes, served=[0], at=at + 0.1)["first"].tolist() == [1, -1]
+    assert notes["later"][0] == pytest.approx(at + 0.1 + LATER)
+
+
+def test_people_stop_making_way_in_time_and_for_people_who_are_gone():
+    crowd = crowd_of(3.0, 4.0, 5.0)
+    notes = blank_notes(3)
+    notes["first"][1:], notes["until"][1], notes["until"][2] = 0, 5.0, 20.0
+    stop_making_way(np.arange(3), 10.0, crowd.records, notes)
+    assert notes["first"].tolist() == [-1, -1, 0]
+    crowd.active[0] = False
+    stop_making_way(np.arange(3), 10.0, crowd.records, notes)
+    assert notes["first"].tolist() == [-1, -1, -1]
+
+
+def hindered(crowd: Crowd, at: float) -> list[bool]:
+    found = np.zeros(len(crowd.route), bool)
+    find_hindered(np.arange(len(found)), at, crowd.records, crowd.agenda, found)
+    return found.tolist()
+
+
+def test_who_is_hindered():
+    crowd = crowd_of(5.0, 5.0, 5.0, np.inf)
+    # A slow person takes 2 x 0.25 / 0.05 = 10 s for the progress that counts.
+    crowd.agenda["speed"][1] = 0.05
+    crowd.agenda["nearest"] = 5.0
+    crowd.agenda["waits_until"][2] = 300
+    assert hindered(crowd, PATIENCE) == [False] * 4
+    assert hindered(crowd, PATIENCE + 0.1) == [True, False, False, False]
+    assert hindered(crowd, 10.1) == [True, True, False, False]
+    # 0.3 m nearer is progress, 0.2 m is none.
+    crowd.route[:2] = 4.7, 4.8
+    assert hindered(crowd, 11.0) == [False, True, False, False]

@@ -1,0 +1,76 @@
+"""Where somebody stands who makes way."""
+
+import numpy as np
+import pytest
+from shapely import box
+
+from mesa_mobility import Exit, FloorPlan
+from mesa_mobility.crowd.conflicts.places import (
+    ROOM,
+    Body,
+    Way,
+    distances_to_way,
+    places_aside,
+    places_to_set_out,
+)
+
+NOBODY = np.empty((0, 2)), np.empty(0)
+
+
+def aside(height: float, taken=NOBODY, core: float = 0.2):
+    """Places of somebody at x = 5 in the middle of a corridor; another comes along the middle."""
+    y = height / 2
+    other = Body(np.array([3.0, y]), core)
+    way = Way(other, np.array([[3.0, y], [7.0, y]]))
+    plan = FloorPlan(box(0, 0, 10, height), exits=[Exit("end", (10, 0), (10, height))])
+    return places_aside(plan, Body(np.array([5.0, y]), core), [way], *taken)
+
+
+def test_the_nearest_place_leaves_the_way_free():
+    places = aside(3.0)
+    # Cores of 0.2 m and room of 0.1 m are 0.5 m.
+    assert abs(places[0, 1] - 1.5) >= 0.4 + ROOM
+    assert np.hypot(*(places[0] - (5.0, 1.5))) < 0.8
+    # Walls are kept clear of.
+    assert (np.abs(places[:, 1] - 1.5) <= 1.3).all()
+
+
+def test_where_there_is_no_room_aside_they_walk_ahead():
+    places = aside(0.8)
+    assert places[0, 0] == pytest.approx(5.0 + 2.4, abs=0.1)
+    assert places[0, 1] == pytest.approx(0.4, abs=0.2)
+
+
+def test_a_place_where_somebody_stands_is_worth_a_little_way():
+    free = aside(3.0)[0]
+    elsewhere = aside(3.0, taken=(free[None], np.array([0.2])))[0]
+    assert np.hypot(*(elsewhere - free)) >= 0.4
+
+
+def test_nobody_passes_through_those_who_come():
+    for place in aside(3.0):
+        leg = np.linspace((5.0, 1.5), place, 50)
+        assert np.hypot(*(leg - (3.0, 1.5)).T).min() >= 0.4 - 1e-6
+
+
+def test_setting_out_again_beside_a_jamb():
+    rooms = box(0, 0, 4, 4).union(box(4, 1.5, 4.2, 2.5)).union(box(4.2, 0, 8, 4))
+    plan = FloorPlan(rooms, exits=[Exit("end", (8, 1), (8, 3))])
+    me = Body(np.array([3.7, 1.75]), 0.35)
+
+    def through(places):
+        return np.broadcast_to((6.0, 2.0), places.shape)
+
+    places = places_to_set_out(plan, me, through, *NOBODY)
+    # The way from each leads through the middle 0.2 m of the door, 1 m wide, for 0.4 m of body.
+    for x, y in places[places[:, 0] < 4.0]:
+        for at in (4.0, 4.2):
+            assert abs(y + (2.0 - y) * (at - x) / (6.0 - x) - 2.0) <= 0.1 + 0.02
+    assert places[0, 0] < 4.0
+
+
+def test_distances_to_a_way():
+    way = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0]])
+    off, along = distances_to_way(np.array([[1.0, 0.5], [3.0, 1.0], [-1.0, 0.0]]), way)
+    assert off == pytest.approx([0.5, 1.0, 1.0])
+    assert along == pytest.approx([1.0, 3.0, 0.0])
