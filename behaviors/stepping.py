@@ -26,9 +26,10 @@ def _waiting(me: Me, ux: float, uy: float, waits_for: float) -> float:
     dx = me.target_x - me.x
     dy = me.target_y - me.y
     way = math.sqrt(dx * dx + dy * dy)
-    faced = (ux * dx + uy * dy) / way if way > 0.0 else 0.0
-    alone = me.ahead >= waits_for and me.preferred_speed > 0.0
-    return max(faced, 0.0) if alone else 0.0
+    if me.ahead < waits_for or me.preferred_speed <= 0.0 or way <= 0.0:
+        return 0.0
+    turned = ((ux - math.cos(me.heading)) * dx + (uy - math.sin(me.heading)) * dy) / way
+    return 1.0 - min(max(turned, 0.0), 1.0)
 
 
 @option_kernel
@@ -58,10 +59,10 @@ class Stepping(CompiledTerm):
     a queue wait until there is room for one that is, and stand quietly until then. Of those who
     walk anyway it favours no option.
 
-    Only people make room, walls do not.  So somebody who faces their target and has nobody on that
-    side within ``waits_for`` gains nothing by standing, and it costs as much as the shortest step.
-    Alone before a narrow corner, people else stood for half a minute.  Turning on the spot costs
-    less, by the cosine of the angle between facing and target, since it is a way to go on.
+    Only people make room, walls do not.  So somebody who has nobody on the side of their target
+    within ``waits_for`` gains nothing by standing, and it costs as much as the shortest step.
+    Alone before a narrow corner, people else stood for half a minute.  Turning on the spot is a
+    way to go on, and costs less by what the cosine of the angle between facing and target gains.
 
     Slow people make short steps: for somebody who wants to cover less than ``length`` in the
     longest movement, 1.5 s, l is what they want to cover.  With the full length, people who want

@@ -42,27 +42,35 @@ def test_those_who_want_to_stand_have_no_step_of_their_own():
 
 
 @pytest.mark.parametrize(
-    ("neighbour", "facing", "preferred", "expected"),
-    # The target is along x. People wait for somebody within 2 m on that side of them; else it
-    # costs the cosine of the angle by which they do not face it, and nothing if it is behind.
-    [((1.9, 0.0), 0.0, 1.0, 0.0), ((0.5, 1.8), 0.0, 1.0, 0.0), ((2.1, 0.0), 0.0, 1.0, 1.0),
-     ((-0.5, 0.0), 0.0, 1.0, 1.0), (None, 0.0, 1.0, 1.0), (None, math.pi / 3, 1.0, 0.5),
-     (None, math.pi, 1.0, 0.0), (None, 0.0, 0.0, 0.0)],
+    ("neighbour", "preferred", "expected"),
+    # The target is along x. People wait for somebody within 2 m on that side of them.
+    [((1.9, 0.0), 1.0, 0.0), ((0.5, 1.8), 1.0, 0.0), ((2.1, 0.0), 1.0, 1.0),
+     ((-0.5, 0.0), 1.0, 1.0), (None, 1.0, 1.0), (None, 0.0, 0.0)],
 )  # fmt: skip
 @pytest.mark.parametrize("metres", [0.0, 0.009])
-def test_standing_is_free_only_where_somebody_makes_room(
-    metres, neighbour, facing, preferred, expected
-):
+def test_standing_is_free_only_where_somebody_makes_room(metres, neighbour, preferred, expected):
     around = [] if neighbour is None else [(neighbour, (0.0, 0.0), (1.0, 0.0), 1.0)]
     option = candidates(
         Chooser(
-            [Ending(heading=facing, displacement=metres)],
+            [Ending(displacement=metres)],
             target=(20.0, 0.0),
             preferred_speed=preferred,
             neighbours=around,
         )
     )
     assert Stepping().cost(option) == pytest.approx([expected], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("target", "facing", "expected"),
+    # From facing x; the cosine between facing and target gains nothing, or so much.
+    [((20.0, 0.0), 0.0, 1.0), ((20.0, 0.0), math.pi, 1.0), ((0.0, 20.0), 0.0, 1.0),
+     ((0.0, 20.0), math.pi / 6, 0.5), ((0.0, 20.0), math.pi / 2, 0.0),
+     ((-20.0, 0.0), math.pi / 3, 0.5), ((-20.0, 0.0), math.pi, 0.0)],
+)  # fmt: skip
+def test_turning_on_the_spot_costs_less_by_what_it_gains(target, facing, expected):
+    option = one_option(Ending(heading=facing, displacement=0.0), target=target)
+    assert Stepping().cost(option) == pytest.approx([expected], abs=1e-6)
 
 
 @pytest.mark.parametrize("value", [0.0, -0.1, math.nan, math.inf])
