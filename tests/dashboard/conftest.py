@@ -38,6 +38,9 @@ PATIENCE_MS = 180_000
 IMPATIENCE_MS = 15_000
 """For the first page of a server that has failed to show one before."""
 
+WAIT_MS = 60_000
+"""For what a page is to show once it is open."""
+
 SILENT: set[str] = set()
 """Servers that have not shown a page yet, by address."""
 
@@ -162,7 +165,7 @@ class Dashboard:
         page.goto(address)
         self.wait(f"() => {CANVAS}?.shown?.().drawn > 0")
         SILENT.discard(here)
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(WAIT_MS)
 
     def _console(self, message: Any) -> None:
         # The tests take screenshots and read pixels, which the page does not.
@@ -180,6 +183,26 @@ class Dashboard:
 
     def wait(self, condition: str, argument: Any = None) -> None:
         self.page.wait_for_function(condition, arg=argument)
+
+    def expect(self, what: Any) -> Any:
+        """Playwright's claims of the page or of a part of it, which it waits for."""
+        from playwright.sync_api import expect
+
+        expect.set_options(timeout=WAIT_MS)
+        return expect(what)
+
+    def comes_to(self, script: str, expected: Any) -> None:
+        """Wait until a script gives what is expected; otherwise tell what it gave last."""
+        end = time.monotonic() + WAIT_MS / 1000
+        while (found := self.page.evaluate(script)) != expected and time.monotonic() < end:
+            self.page.wait_for_timeout(50)
+        assert found == expected
+
+    def turn_to(self, name: str) -> None:
+        """Click a tab, and wait until its panel is the only one."""
+        self.page.get_by_role("tab", name=name).click()
+        self.page.get_by_role("tabpanel", name=name).wait_for()
+        self.expect(self.page.get_by_role("tabpanel")).to_have_count(1)
 
     def shown(self) -> dict[str, Any]:
         """The state drawn on the crowd's canvas."""
@@ -206,6 +229,7 @@ class Dashboard:
 
     def step(self, times: int = 1) -> None:
         for _ in range(times):
+            self.wait(f"() => !{SHOWN}.moving")
             before = self.shown()["elapsed"]
             self.button("Step").click()
             self.at_rest(before + 0.1)
@@ -224,10 +248,6 @@ class Dashboard:
         field = self.page.get_by_label(name, exact=True)
         field.fill(text)
         field.press("Enter")
-
-    def message(self, name: str) -> str:
-        """The message below the field of a parameter."""
-        return str(self.below(name).inner_text())
 
     def below(self, name: str) -> Any:
         """What stands below the field of a parameter."""
@@ -253,7 +273,9 @@ class Dashboard:
     def click_person(self, row: int) -> None:
         person = next(each for each in self.people() if each[0] == row)
         self.click_at(person[1], person[2])
-        self.wait(f"(row) => {DECISION}.shown()?.pedestrian === row", row)
+        self.wait(
+            f"(row) => {SHOWN}.selected === row && {DECISION}.shown()?.pedestrian === row", row
+        )
 
 
 @pytest.fixture

@@ -72,13 +72,13 @@ def open_bodies(open_tab):
 @pytest.mark.slow
 def test_people_walk_in_three_dimensions_and_the_plan_comes_back(open_bodies):
     tab = open_bodies()
-    shown = tab.page.evaluate(f"() => {BODIES}")
-    assert (shown["inside"], sum(shown["figures"])) == (60, 60)
+    tab.wait(f"() => {BODIES}.inside === 60 && {BODIES}.figures.reduce((a, b) => a + b) === 60")
     tab.play()
     tab.wait(f"() => {BODIES}.elapsed > 1.5 && {BODIES}.drawn > 10")
     assert tab.page.evaluate(f"() => {BODIES}.figures")[2] == 0  # all have limbs
     tab.button("Pause").click()
     tab.button("Play").wait_for()
+    tab.wait("() => !document.querySelector('.mm-bodies').__vue__.moving(performance.now())")
     before = tab.page.evaluate(f"() => {BODIES}.elapsed")
     tab.button("plan").click()
     tab.wait("() => document.querySelector('.mm-crowd-canvas')?.shown?.().drawn > 0")

@@ -7,6 +7,7 @@ import pytest
 from mesa_mobility.models import Doorway
 
 from tests.dashboard.selectors import SHOWN
+from tests.fixtures.waiting import until
 
 MODEL = '''
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
@@ -79,7 +80,7 @@ def test_two_models_and_twenty_resets_leave_nothing_behind(open_tab, server):
     play_and_reset("auditorium", 750, 20)
     play_and_reset("doorway", 60, 20)
     assert np.array_equal(tab.people()[:, 0], Doorway(rng=1).rows)
-    assert server.threads() <= threads
+    until(lambda: server.threads() <= threads)
 
 
 @pytest.mark.slow

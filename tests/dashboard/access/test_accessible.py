@@ -64,8 +64,8 @@ def test_a_session_with_the_keyboard_alone_from_start_to_decision(open_tab):
     tab_to(page, "to the next decision")
     page.keyboard.press("Enter")
     page.get_by_text("Decision as taken at").wait_for()
-    assert page.get_by_role("table", name="costs").get_by_role("row").count() > 3
-    assert page.get_by_role("img", name="movement options of person 7").count() == 1
+    page.get_by_role("table", name="costs").get_by_role("row").nth(3).wait_for()
+    tab.expect(page.get_by_role("img", name="movement options of person 7")).to_have_count(1)
 
 
 @pytest.mark.thorough
@@ -78,9 +78,9 @@ def test_tabs_are_turned_by_arrows(tab):
     ):
         tab.page.keyboard.press(key)
         tab.page.get_by_role("tabpanel", name=name).wait_for()
-        assert looking(tab.page, "focused") == name
-        assert tab.page.get_by_role("tab", selected=True).inner_text() == name
-        assert tab.page.get_by_role("tabpanel").count() == 1
+        tab.expect(tab.page.get_by_role("tab", name=name)).to_be_focused()
+        tab.expect(tab.page.get_by_role("tab", selected=True)).to_have_text([name])
+        tab.expect(tab.page.get_by_role("tabpanel")).to_have_count(1)
     # Charts of the first tab, which was left before they could be drawn, are drawn now.
     tab.page.locator(".solara-echarts canvas").first.wait_for()
 
@@ -88,9 +88,10 @@ def test_tabs_are_turned_by_arrows(tab):
 @pytest.mark.thorough
 def test_only_errors_are_alerts_and_the_status_is_told_politely(tab):
     page = tab.page
-    assert page.get_by_role("alert").count() == 0
     status = page.locator(".mm-status")
-    assert (status.get_attribute("role"), status.inner_text()) == ("status", "ready")
+    tab.expect(status).to_have_text("ready")
+    tab.expect(status).to_have_attribute("role", "status")
+    assert page.get_by_role("alert").count() == 0
     tab.play()
     tab.wait(f"() => {SHOWN}.elapsed > 2.2")
     # The pace beside it changes each second, and is not read aloud.
@@ -98,20 +99,18 @@ def test_only_errors_are_alerts_and_the_status_is_told_politely(tab):
     tab.pause()
     tab.set("pedestrians", "many")
     page.get_by_role("alert").filter(has_text="expected a whole number").wait_for()
-    assert page.get_by_role("alert").count() == 1
-    assert (
-        page.get_by_role("textbox", name="pedestrians", exact=True).get_attribute("aria-invalid")
-        == "true"
-    )
+    tab.expect(page.get_by_role("alert")).to_have_count(1)
+    field = page.get_by_role("textbox", name="pedestrians", exact=True)
+    tab.expect(field).to_have_attribute("aria-invalid", "true")
 
 
 def looked_at(tab):
     """In each tab what is wrong for people who do not see it."""
     found = []
     for name in ("Simulation", "Mobility map", "Saved run"):
-        tab.page.get_by_role("tab", name=name).click()
-        tab.page.get_by_role("tabpanel", name=name).wait_for()
+        tab.turn_to(name)
         tab.page.wait_for_timeout(300)
+        tab.wait("() => document.getAnimations().every((each) => each.playState !== 'running')")
         found += [f"{name}, {each}" for each in looking(tab.page, "nameless")]
         found += [f"{name}, contrast {each}" for each in looking(tab.page, "faint")]
         levels = looking(tab.page, "levels")
@@ -127,8 +126,8 @@ def test_names_roles_headings_and_contrast(open_tab, scheme):
     tab.step(2)
     tab.click_person(23)
     assert looked_at(tab) == []
-    assert tab.page.title() == "doorway - mesa-mobility"
-    assert tab.page.evaluate("() => document.documentElement.lang") == "en"
+    tab.expect(tab.page).to_have_title("doorway - mesa-mobility")
+    tab.expect(tab.page.locator("html")).to_have_attribute("lang", "en")
 
 
 @pytest.mark.thorough

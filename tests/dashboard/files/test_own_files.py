@@ -1,6 +1,7 @@
 """Models in files, floor plans and saved runs of the folder that the dashboard was started in."""
 
 import os
+import re
 from urllib.parse import urlsplit
 
 import pytest
@@ -128,9 +129,10 @@ def test_models_plans_and_runs_are_opened(own_tab):
     inside(tab, 40)
     tab.set("pedestrians", "12")
     inside(tab, 12)
+    tab.page.wait_for_url("**set.pedestrians=12**")
     tab.page.reload()
     tab.wait(f"() => {SHOWN.replace(').', ')?.')}?.inside === 12")
-    assert "model=room.py" in tab.page.url
+    tab.expect(tab.page).to_have_url(re.compile("model=room.py"))
     tab.choose("model", "broken.py")
     tab.page.get_by_text("broken.py:1: cannot be loaded: SyntaxError").wait_for()
     tab.choose("model", "floor_plan")
@@ -151,11 +153,11 @@ def test_models_plans_and_runs_are_opened(own_tab):
 @pytest.mark.slow
 def test_a_saved_run_plays_in_a_frame_of_its_own(own_tab):
     tab = own_tab
-    tab.page.get_by_role("tab", name="Saved run").click()
+    tab.turn_to("Saved run")
     tab.choose("saved run", "out/nine")
     frame = tab.page.frame_locator("iframe.mm-saved")
     frame.locator("body[data-ready=yes]").wait_for()
-    assert "9 people" in frame.locator("#title").inner_text()
+    tab.expect(frame.locator("#title")).to_contain_text("9 people")
     assert float(frame.locator("#time").get_attribute("max")) == pytest.approx(3.0)
     # It has no access to the page around it.
     sealed = "() => { try { return String(parent.document) } catch (error) { return error.name } }"
@@ -170,9 +172,8 @@ def test_on_a_network_no_python_file_is_offered(start_dashboard, open_tab, own_f
     place = urlsplit(server.address)
     tab = open_tab(f"http://127.0.0.1:{place.port}/?{place.query}")
     offered = tab.page.get_by_label("model", exact=True).locator("option")
-    names = [text.strip() for text in offered.all_text_contents()]
-    assert "floor_plan" in names
-    assert [name for name in names if ".py" in name] == []
+    tab.expect(offered.filter(has_text=re.compile(r"^\s*floor_plan\s*$"))).to_have_count(1)
+    assert [text for text in offered.all_text_contents() if ".py" in text] == []
 
 
 HELPLESS = """() => [...document.querySelectorAll("button, a, input, select, [role='tab']")]
@@ -190,16 +191,17 @@ def test_every_control_says_what_it_is_for(own_tab):
     tab.play()
     tab.wait(f"() => {SHOWN}.elapsed > 1.5")
     tab.pause()
-    assert tab.page.evaluate(HELPLESS) == []
+    tab.comes_to(HELPLESS, [])
     tab.button("three dimensions").click()
     tab.page.locator(".mm-bodies").wait_for()
-    assert tab.page.evaluate(HELPLESS) == []
+    tab.comes_to(HELPLESS, [])
     for name in ("Mobility map", "Saved run"):
-        tab.page.get_by_role("tab", name=name).click()
+        tab.turn_to(name)
         tab.page.locator(".mm-panel:visible .mm-entry").first.wait_for()
-        assert tab.page.evaluate(HELPLESS) == []
-    tab.page.get_by_role("tab", name="Simulation").click()
+        tab.comes_to(HELPLESS, [])
+    tab.turn_to("Simulation")
     for model in ("room.py", "floor_plan", "mixed_evacuation"):
         tab.choose("model", model)
+        tab.expect(tab.page).to_have_title(f"{model} - mesa-mobility")
         tab.page.wait_for_timeout(500)
-        assert tab.page.evaluate(HELPLESS) == []
+        tab.comes_to(HELPLESS, [])

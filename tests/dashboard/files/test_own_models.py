@@ -54,7 +54,7 @@ def plays_and_slides(tab):
     slider.focus()
     slider.press("ArrowRight")
     inside(tab, 41)
-    assert tab.page.get_by_label("pedestrians", exact=True).input_value() == "41"
+    tab.expect(tab.page.get_by_label("pedestrians", exact=True)).to_have_value("41")
     slider.press("ArrowLeft")
     inside(tab, 40)
     # JSON has no NaN: the page reports a message that it cannot read.
@@ -125,13 +125,13 @@ def test_a_refresh_comes_back_to_the_same_run(tab):
     tab.page.wait_for_url("**weight.headway=2.5**")
     tab.step(4)
     before, elapsed = tab.people(), tab.shown()["elapsed"]
-    assert "set.pedestrians=17" in tab.page.url
+    tab.page.wait_for_url("**set.pedestrians=17**")
     tab.page.reload()
     tab.wait(f"() => {SHOWN.replace(').', ')?.')}?.inside === 17")
     tab.at_rest(elapsed)
     assert tab.people().tolist() == before.tolist()
-    assert tab.page.get_by_label("pedestrians", exact=True).input_value() == "17"
-    assert tab.page.get_by_label("weight of headway", exact=True).input_value() == "2.5"
+    tab.expect(tab.page.get_by_label("pedestrians", exact=True)).to_have_value("17")
+    tab.expect(tab.page.get_by_label("weight of headway", exact=True)).to_have_value("2.5")
     tab.step(1)
 
 
@@ -140,6 +140,7 @@ def test_an_address_alone_sets_up_the_same_model_in_another_tab(tab, open_tab, s
     tab.set("pedestrians", "18")
     inside(tab, 18)
     tab.step(2)
+    tab.page.wait_for_url(re.compile(r"run=.*set\.pedestrians=18"))
     other = open_tab(server.known(tab.page.url))
     inside(other, 18)
     # The run is that of the tab that is open.
@@ -154,7 +155,8 @@ def test_both_fields_that_are_wrong_are_marked(tab):
     tab.set("pedestrians", "")
     tab.set("door width", "wide")
     tab.page.get_by_text("door_width: got 'wide', expected a number").wait_for()
-    assert tab.message("pedestrians") == "pedestrians: got nothing, expected a whole number"
+    expected = "pedestrians: got nothing, expected a whole number"
+    tab.expect(tab.below("pedestrians")).to_have_text(expected)
     assert tab.shown()["inside"] == 60
 
 

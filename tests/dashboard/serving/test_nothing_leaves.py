@@ -50,7 +50,10 @@ def test_no_connection_leaves_this_machine_while_all_of_the_page_is_used(start_d
     tab.page.reload()
     tab.wait(f"() => {SHOWN.replace(').', ')?.')}?.inside === 50")
     library = "/_solara/cdn/@widgetti/vue3-something"
-    assert tab.page.evaluate(f"async () => (await fetch('{library}')).status") == 404
+    answered = tab.page.expect_response(f"**{library}")
+    noted = tab.page.expect_console_message(lambda message: "404" in message.text)
+    with answered, noted:
+        assert tab.page.evaluate(f"async () => (await fetch('{library}')).status") == 404
     # The browser notes the answer twice; nothing else has happened.
     assert len(tab.trouble) == 2
     assert all("404" in line for line in tab.trouble)
