@@ -1,12 +1,12 @@
 """Giving way: people who block each other make way in a fixed order.
 
-Everybody who takes the cheapest free option ends, now and then, in a ring of people each of whom
-is in the way of the next.  Waiting resolves no ring.  As in priority inheritance with backtracking
-(Okumura et al., Artificial Intelligence 310, 2022), an order says who goes first, and whoever is in
-their way makes way; so do, in turn, those who are in the way of that.  Here people have bodies and
-recorded movements instead of nodes of a graph, so they are asked to leave a stretch of the way
-free, and whoever has no room aside walks ahead along that way until there is some.  If nobody can
-make room, the first comes last and makes way themselves.
+People who take the cheapest free option block each other in a ring now and then: each is in the way
+of another.  Waiting resolves no ring.  As in priority inheritance with backtracking (Okumura et
+al., Artificial Intelligence 310, 2022), an order says who goes first.  Whoever is in their way makes
+way, and so does, in turn, whoever is in the way of that.  Here people have bodies and recorded
+movements instead of nodes of a graph.  So they leave a stretch of the way free, and whoever has no
+room aside walks ahead along that way until there is some.  If nobody can make room, the first comes
+last and makes way themselves.
 """
 
 from __future__ import annotations
@@ -73,12 +73,12 @@ GOES_ON = 0.5
 class GiveWay(Tactic):
     """People who block each other make way in a fixed order.
 
-    Somebody is hindered who has made no progress for some seconds. They are blocked by the person
-    whom the option would hit first that they would take alone (``World.wishes``). Where people
-    block each other in a ring, the one with the shortest route goes first, and the person in their
-    way makes way: to the nearest place that leaves the next 4 m of that route free, or along the
-    route where there is none. Whoever is in the way of that makes way, too. They go on when their
-    own way no longer leads across that of the first.
+    A person is hindered if they have made no progress for some seconds. Whoever would be hit first
+    by the option that they would take alone blocks them (``World.wishes``). If people block each
+    other in a ring, the one with the shortest route goes first, and the person in their way makes
+    way: to the nearest place that leaves the next 4 m of that route free, or ahead along the route
+    if there is none. Whoever is in the way of that makes way, too. People go on when their own way
+    no longer leads across that of the first.
     """
 
     name = "giving_way"
