@@ -6,14 +6,13 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Protocol
-from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.crowd.bindings import Behaving, Bindings
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
-from mesa_mobility.crowd.costs.terms import CostTerm, without_weight
-from mesa_mobility.crowd.hooks import Plugin, World, check_behaviours, keeps_its_model
+from mesa_mobility.crowd.costs.terms import without_weight
 from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED, Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.journeys.waiting import Waits
@@ -33,24 +32,14 @@ from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
 from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
-from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
-from mesa_mobility.crowd.tactics.tactic import Tactic
-from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.schema import Flag, Kind, Whole
 
-# The model that has bound a behaviour last, by the behaviour's identity.
-_SERVES: WeakValueDictionary[int, Dynamics] = WeakValueDictionary()
 
-
-class Run(World, Protocol):
+class Run(Behaving, Protocol):
     """A model as its dynamics see it: what may change at any time, and what they change."""
 
-    terms: list[CostTerm]
-    tactics: list[Tactic]
-    speed_rules: list[SpeedRule]
-    target_choice: TargetChoice
     population: Population
     sources: Sources
     statistics: Statistics
@@ -89,8 +78,7 @@ class Dynamics(Saved):
         self._desired_motion = DesiredMotion(scene.environment, scene.crowd)
         # Frame of the next event other than walking: a decision, or somebody leaves.
         self._next = 0
-        self._bound: list[Plugin] = []
-        self._keeping: list[Plugin] = []
+        self._bindings = Bindings()
         self._grouped = False
         self._plan_version = scene.plan.version
 
@@ -118,36 +106,7 @@ class Dynamics(Saved):
         if model.population.groups and not self._grouped:
             self._grouped = True
             model.speed_rules += self._scene.preset.make_group_paces()
-        now = [*model.terms, *model.speed_rules, model.target_choice, *model.tactics]
-        if now == self._bound:
-            self._check_shared()
-            return
-        check_behaviours("terms", model.terms, CostTerm)
-        check_behaviours("speed_rules", model.speed_rules, SpeedRule)
-        check_behaviours("target_choice", [model.target_choice], TargetChoice)
-        check_behaviours("tactics", model.tactics, Tactic)
-        for kind in model.pedestrian_types:
-            names = [term.name for term in model.terms if term.is_for(kind.name)]
-            for name in names:
-                if names.count(name) > 1:
-                    raise ModelError(
-                        f"terms: two of them are named {name!r}, expected names of their own"
-                    )
-        known = set(map(id, self._bound))
-        self._bound, self._keeping = now, [each for each in now if keeps_its_model(each)]
-        for each in now:
-            if id(each) not in known:
-                _SERVES[id(each)] = self
-                each.bind(model)
-
-    def _check_shared(self) -> None:
-        """Raise ModelError where another model has bound a behaviour of this one meanwhile."""
-        for each in self._keeping:
-            if _SERVES.setdefault(id(each), self) is not self:
-                raise ModelError(
-                    f"behaviour {each.name!r}: serves another model by now, expected an object of "
-                    "its own for each model"
-                )
+        self._bindings.bind(model)
 
     def insert(self, positions: ArrayLike, new: Newcomers) -> list[Pedestrian]:
         """Put people on the floor; see ``PedestrianModel.add_pedestrians``.

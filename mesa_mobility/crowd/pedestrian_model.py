@@ -14,8 +14,8 @@ from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.model import adding
-from mesa_mobility.crowd.model.blocked import blocked_by
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
+from mesa_mobility.crowd.model.questions import blocked_by, decided, explain, under_way
 from mesa_mobility.crowd.model.reporters import add_agent_reporter, add_reporter
 from mesa_mobility.crowd.model.summary import summary
 from mesa_mobility.crowd.people.pedestrian import last_number, number_from
@@ -101,6 +101,9 @@ class PedestrianModel(CrowdModel):
     add_reporter = add_reporter
     add_agent_reporter = add_agent_reporter
     blocked_by = blocked_by
+    decided = decided
+    explain = explain
+    under_way = under_way
     save = save_model
     summary = summary
 

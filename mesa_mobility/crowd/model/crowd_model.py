@@ -28,11 +28,11 @@ from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
 from mesa_mobility.crowd.people.space import space_of
-from mesa_mobility.crowd.planning.explanation import Explanation, Watch
+from mesa_mobility.crowd.planning.explanation import Watch
 from mesa_mobility.crowd.population import Population as People
 from mesa_mobility.crowd.presets import Preset
 from mesa_mobility.crowd.running.blocking import Blockers
-from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder, movements_under_way
+from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.running.stall import StallWatch, stall_reason
 from mesa_mobility.crowd.running.standing import Blocked, StandingWatch
 from mesa_mobility.crowd.running.statistics import Statistics
@@ -196,18 +196,6 @@ class CrowdModel(mesa.Model):
         """The capability of each pedestrian type."""
         return self._scene.repertoire.capabilities
 
-    def decided(self, since: int = 0) -> dict[str, NDArray[np.generic]] | None:
-        """The decisions from frame ``since`` on, see ``DecisionRecorder.arrays``; None if they are
-        not recorded."""
-        if self.decisions is None:
-            return None
-        return self.decisions.arrays(self._scene.repertoire, since)
-
-    def under_way(self) -> dict[str, NDArray[np.generic]]:
-        """What everybody inside is doing now: an entry for each of ``rows``, otherwise as
-        ``decided``."""
-        return movements_under_way(self.crowd, self.rows, self._scene.repertoire)
-
     @property
     def stall_reason(self) -> str | None:
         """Why the evacuation has stalled, in a few words; None if it has not."""
@@ -337,17 +325,6 @@ class CrowdModel(mesa.Model):
     ) -> Wishes:
         """What people would do if nobody else were there; see ``World.wishes``."""
         return self.dynamics.wishes(rows, points, speeds)
-
-    def explain(self, row: int) -> Explanation:
-        """The decision of the person in ``row`` if it decided now, before all others.
-
-        It keeps the target of its last decision. Set ``watch`` to have decisions as they are taken.
-
-        Raises:
-            ModelError: nobody inside has this row.
-        """
-        self.check_inside(row)
-        return self.dynamics.explain(row)
 
     def check_inside(self, row: int) -> None:
         """Raise ModelError if nobody inside has this row."""
