@@ -112,7 +112,7 @@ class Queueing(Tactic):
 
     They join the line within a metre of its end, face along it while they stand, and move up as
     those before them do. The first steps up to the counter, is served and goes on with its route.
-    In the line people are patient.
+    Those who stand in the line count as waiting.
 
     Args:
         counters: the counters; ``counters`` may be added to while the model runs.

@@ -2,11 +2,11 @@
 
 People who take the cheapest free option block each other in a ring now and then: each is in the way
 of another.  Waiting resolves no ring.  As in priority inheritance with backtracking (Okumura et
-al., Artificial Intelligence 310, 2022), an order says who goes first.  Whoever is in their way makes
-way, and so does, in turn, whoever is in the way of that.  Here people have bodies and recorded
-movements instead of nodes of a graph.  So they leave a stretch of the way free, and whoever has no
-room aside walks ahead along that way until there is some.  If nobody can make room, the first comes
-last and makes way themselves.
+al., Artificial Intelligence 310, 2022), an order says who goes first.  Whoever is in their way
+makes way, and so does, in turn, whoever is in the way of that.  Here people have bodies and
+recorded movements instead of nodes of a graph.  So they leave a stretch of the way free, and
+whoever has no room aside walks ahead along that way until there is some.  If nobody can make room,
+the first comes last and makes way themselves.
 """
 
 from __future__ import annotations

@@ -37,8 +37,8 @@ LATER = 30.0
 people wait patiently (Transportation Research Board, Highway Capacity Manual, 2000, chapter 18)."""
 
 CLOSELY = 100.0
-"""Metres by which the routes of those who follow closely are longer, at most: everybody near enough to
-be blocked follows closely."""
+"""Metres by which the routes of those who follow closely are longer, at most: everybody near enough
+to be blocked follows closely."""
 
 _SECONDS = Array("f8", (), -1.0, 1e9)
 

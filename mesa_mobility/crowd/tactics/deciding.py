@@ -91,9 +91,9 @@ class Deciding(NamedTuple):
     ) -> None:
         """Let some wait where they are until they decide again, 0.4 s later.
 
-        As all who wait, they stay patient and count as people who stand, for others who look ahead
-        and for the test whether a run has stalled. A tactic that holds them at each decision lets
-        them wait for as long as it does.
+        As all who wait, they are never hindered, and count as people who stand, for others who look
+        ahead and for the test whether a run has stalled. A tactic that holds them at each decision
+        lets them wait for as long as it does.
 
         Args:
             desired: what all of them want so far.
