@@ -10,7 +10,7 @@ import solara
 
 from mesa_mobility import MobilityError, PedestrianModel
 from mesa_mobility.dashboard.address import Address, Start, read, write
-from mesa_mobility.dashboard.controls import BehaviourControls, TimeControls
+from mesa_mobility.dashboard.controls import BehaviourControls, TimeControls, standing_in_words
 from mesa_mobility.dashboard.forms import ParameterForm
 from mesa_mobility.dashboard.model_files import load_offered, offered_models
 from mesa_mobility.dashboard.quiet import keep_quiet
@@ -26,6 +26,7 @@ from mesa_mobility.dashboard.views.page_frame import PageFrame
 from mesa_mobility.dashboard.widgets.choosing import OneOf, Tabs
 from mesa_mobility.dashboard.widgets.fields import Choice, TextField
 from mesa_mobility.dashboard.widgets.text import Note, heading
+from mesa_mobility.dashboard.widgets.text import status as said_aloud
 from mesa_mobility.plugins import registry
 
 DEFAULT_MODEL = "doorway"
@@ -136,10 +137,10 @@ def Dashboard(
 def _Simulation(session: Session) -> None:
     with solara.Div(classes=["mm-time"]):
         TimeControls(session)
-    _Problem(session)
     with solara.Div(classes=["mm-halves"]):
         with solara.Div(classes=["mm-left"]):
             _Crowd(session)
+            _Messages(session)
         with solara.Div(classes=["mm-right"]):
             _Decision(session)
             # Beside the crowd, where they are seen without scrolling until a decision is shown.
@@ -170,6 +171,9 @@ def _Map(session: Session) -> None:
 STYLE = (
     ".mm-halves { display: flex; flex-wrap: wrap; gap: 12px; }"
     ".mm-left { flex: 3 1 480px; min-width: 0; } .mm-right { flex: 2 1 380px; min-width: 0; }"
+    # In a low window they cover the lower end of the crowd.
+    ".mm-messages { position: sticky; bottom: 0; background: #fff; }"
+    ".theme--dark .mm-messages { background: #121212; }"
     ".mm-table { font-size: 13px; border-spacing: 0; padding: 6px 0; }"
     ".mm-table th { text-align: left; } .mm-table td, .mm-table th { padding: 1px 12px 1px 0;"
     " vertical-align: top; border-bottom: 1px solid #8884; overflow-wrap: anywhere; }"
@@ -191,11 +195,14 @@ STYLE = (
 
 
 @solara.component
-def _Problem(session: Session) -> None:
-    if session.problem.value:
-        solara.Error(session.problem.value, dense=True)
-    for notice in session.notices.value:
-        Note(notice)
+def _Messages(session: Session) -> None:
+    # Below the crowd, which would move under the pointer if they came above it.
+    with solara.Div(classes=["mm-messages"]):
+        said_aloud(standing_in_words(session.status.value))
+        if session.problem.value:
+            solara.Error(session.problem.value, dense=True)
+        for notice in session.notices.value:
+            Note(notice)
 
 
 @solara.component

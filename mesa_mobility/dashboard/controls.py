@@ -130,7 +130,6 @@ def TimeControls(session: Session) -> None:
         # Apart from it: a pace that changes each second is not read aloud.
         if playing and status.pace:
             solara.Text(f"{status.pace:.1f} x real time")
-    said_aloud(standing_in_words(status), "mm-standing")
 
 
 def in_words(status: Status) -> str:

@@ -1,12 +1,15 @@
 """Users' own pages, and cleaning up when pages are closed."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from mesa_mobility.models import Doorway
 
-from tests.dashboard.selectors import SHOWN
+from mesa_mobility.crowd import FREE
+from tests.dashboard.selectors import CANVAS, SHOWN
+from tests.fixtures import face_to_face
 from tests.fixtures.waiting import until
 
 MODEL = '''
@@ -35,7 +38,37 @@ MESA = (
     + "from mesa_mobility.dashboard import make_crowd_view\n\n"
     + "page = SolaraViz(Room(rng=5), components=[make_crowd_view('density')])\n"
 )
+FORBIDDING = """
+import numpy as np
+
+from mesa_mobility import CostTerm
+
+
+class Forbidding(CostTerm):
+    name = "forbidding"
+
+    def cost(self, candidates):
+        return np.where(candidates.headings > candidates.facings[candidates.owner], 1e200, 0.0)
+
+
+class Model(Room):
+    def __init__(self, rng: int | None = None):
+        super().__init__(rng=rng)
+        self.terms.append(Forbidding())
+"""
+FORBIDDEN = (
+    MODEL
+    + FORBIDDING
+    + "\n\nfrom mesa_mobility.dashboard import Dashboard\n\npage = Dashboard(Model)\n"
+)
+BLOCKED = (
+    "from blocked import FaceToFace\nfrom mesa_mobility.dashboard import Dashboard\n\n"
+    "page = Dashboard(FaceToFace)\n"
+)
 ELAPSED = f"{SHOWN}.elapsed"
+VIEW = "document.querySelector('.mm-decision').__vue__"
+COLOURS = f"Array.from({VIEW}.o.totals, (_, k) => {VIEW}.colour(k))"
+PLACE = f"(({{ x, y, width, height }}) => [x, y, width, height])({CANVAS}.getBoundingClientRect())"
 
 
 @pytest.mark.thorough
@@ -48,6 +81,38 @@ def test_a_model_of_somebodys_own_has_a_page(start_server, open_tab):
     tab.click_person(2)
     tab.choose("model", "straight_walk")
     tab.wait(f"() => {SHOWN}.inside === 50")
+
+
+@pytest.mark.thorough
+def test_options_that_are_forbidden_have_the_colour_of_the_dearest(start_server, open_tab):
+    tab = open_tab(start_server(FORBIDDEN).address)
+    tab.click_person(2)
+    # Costs go to the page in single precision, in which 1e200 is infinite.
+    shown = tab.decision()
+    free, infinite = np.array(shown["verdicts"]) == FREE, np.isinf(shown["totals"])
+    assert (free & infinite).any()
+    assert (free & ~infinite).any()
+    colours = np.array(tab.page.evaluate(f"() => {COLOURS}"))
+    assert set(colours[free & infinite]) == {"rgb(68,1,84)"}
+    assert len(set(colours[free & ~infinite])) > 10
+
+
+@pytest.mark.thorough
+def test_messages_leave_the_crowd_where_it_is(start_server, open_tab):
+    blocked = Path(face_to_face.__file__).read_text()
+    tab = open_tab(start_server(BLOCKED, blocked=blocked).address, height=600)
+    place = tab.page.evaluate(f"() => {PLACE}")
+    tab.choose("speed", "full")
+    tab.play()
+    standing = tab.page.get_by_text("blocked for a minute: people 0")
+    standing.wait_for()
+    assert tab.page.evaluate(f"() => {PLACE}") == place
+    tab.set("person", "99")
+    alert = tab.page.get_by_role("alert").filter(has_text="expected at most 2")
+    # Also where the window is too low for the whole page.
+    for message in (alert, standing):
+        tab.expect(message).to_be_in_viewport(ratio=1.0)
+    assert tab.page.evaluate(f"() => {PLACE}") == place
 
 
 @pytest.mark.thorough

@@ -19,7 +19,7 @@ from mesa_mobility.dashboard.session.observer import Observer
 
 def packed(values: ArrayLike) -> str:
     """Numbers as base64 of little-endian float32, rows one after the other."""
-    # Beyond 3e38, as a cost with an absurd weight, they are infinite.
+    # Beyond 3e38, as a behaviour may charge for what nobody shall do, they are infinite.
     with np.errstate(over="ignore"):
         flat = np.ascontiguousarray(values, dtype="<f4")
     return base64.b64encode(flat.tobytes()).decode("ascii")

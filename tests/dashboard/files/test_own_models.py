@@ -85,7 +85,7 @@ def test_a_model_without_annotations_takes_what_is_typed(start_server, open_tab,
     tab.set("pedestrians", "many")
     tab.page.get_by_text("pedestrians: got 'many', expected a whole number").wait_for()
     # No map lies in the folder, so there is none to choose.
-    assert tab.page.get_by_label("mobility map").count() == 0
+    assert tab.page.get_by_label("mobility map", exact=True).count() == 0
     tab.set("pedestrians", "13")
     inside(tab, 13)
     tab.play()

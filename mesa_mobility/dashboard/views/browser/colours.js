@@ -20,9 +20,8 @@ const COLOURED = {
   },
 };
 
-// The first colour also where the share is not a number, as between two infinite costs.
 function blend(colours, share) {
-  const at = (share > 0 ? Math.min(share, 1) : 0) * (colours.length - 1);
+  const at = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
   const k = Math.min(Math.floor(at), colours.length - 2), u = at - k;
   const part = (i, p) => parseInt(colours[i].slice(p, p + 2), 16);
   const mix = (p) => Math.round(part(k, p) + u * (part(k + 1, p) - part(k, p)));

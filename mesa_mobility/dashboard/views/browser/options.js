@@ -49,9 +49,10 @@ const OPTIONS = {
       const order = Array.from({ length: d.options }, (_, k) => k)
         .sort((a, b) => o.totals[b] - o.totals[a]);
       const free = order.filter((k) => o.verdicts[k] === 0);
-      // A few very dear ones would make all others look alike: a tenth share the last colour.
-      this.dearest = free.length ? o.totals[free[Math.floor(free.length / 10)]] : 1;
-      this.cheapest = free.length ? o.totals[free[free.length - 1]] : 0;
+      // A few very dear ones would make all others look alike: a tenth share the last colour, and all infinite ones.
+      const finite = free.filter((k) => Number.isFinite(o.totals[k]));
+      this.dearest = finite.length ? o.totals[finite[Math.floor(finite.length / 10)]] : 1;
+      this.cheapest = finite.length ? o.totals[finite[finite.length - 1]] : 0;
       if (this.rejected) {
         ctx.lineWidth = 0.7 * r;
         for (const k of order) {
