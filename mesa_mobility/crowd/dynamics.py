@@ -234,7 +234,9 @@ class Dynamics(Saved):
             inflow.count(model.frame)
             while inflow.waiting:
                 places = inflow.entrance.draw(PLACES_TRIED, model.rng)
-                place = model.population.first_free(places, inflow.next_type, model.frame)
+                place = model.population.first_free(
+                    places, inflow.next_type, inflow.newcomers, model.frame
+                )
                 if place is None:
                     break
                 self.insert([place], inflow.newcomers)

@@ -22,6 +22,7 @@ from mesa_mobility.crowd.state.advance import Moved
 from mesa_mobility.crowd.state.aggregates import EMPTY, Aggregates, aggregate, split_active
 from mesa_mobility.crowd.state.departed import ROWS, Departed
 from mesa_mobility.errors import ModelError
+from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
 from mesa_mobility.schema import MOST, Either, Kind, Members, Several, Text, Whole
 
 
@@ -219,17 +220,25 @@ class Population(Saved):
         self.departed.set_off(frame, scene.crowd, scene.environment.surroundings.exits)
 
     def first_free(
-        self, places: NDArray[np.float64], type_index: int, frame: int
+        self, places: NDArray[np.float64], type_index: int, new: Newcomers, frame: int
     ) -> NDArray[np.float64] | None:
-        """(2,) the first of (n, 2) places with room for a body of this type, or None."""
-        scene = self._scene
+        """(2,) the first of (n, 2) places at which somebody of this type can come in, or None.
+
+        Doors that have closed and obstacles that have been added since may leave no room there, or
+        no way out.
+        """
+        scene, width = self._scene, self._scene.types[type_index].half_width
+        destination, _ = scene.journeys.start(new.exits, new.route, new.loop, type_index)
+        places = places[scene.plan.contains(places)]
+        room = distances_to_walls(scene.plan, places, width) >= width
+        places = places[room & ~scene.environment.without_way_out(places, destination)]
         if not scene.rules.hard_bodies:
             return places[0] if len(places) else None
         # People who have just crossed an exit still take up room.
         there = self.departed.together_with(self.present)
         free = first_free(
             places,
-            scene.types[type_index].half_width,
+            width,
             frame,
             there,
             scene.repertoire.table,

@@ -32,6 +32,10 @@ GIVES_UP = 8.0
 """Seconds without progress after which those for whom others make way come last: so there is no
 room for the others to make."""
 
+LONGEST = 40.0
+"""Seconds without progress after which they come last even while others still make room: people
+may make room in turns without end, and to walk out of a way of 20 m takes so long."""
+
 LATER = 30.0
 """Seconds for which whoever has made way lets others pass who follow closely: the longest that
 people wait patiently (Transportation Research Board, Highway Capacity Manual, 2000, chapter 18)."""
@@ -49,6 +53,7 @@ NOTE_FIELDS: dict[str, Array] = {
     "until": _SECONDS,
     "served": _SECONDS,
     "later": _SECONDS,
+    "sooner": _SECONDS,
     "x": Array("f8", (), -FARTHEST, FARTHEST),
     "y": Array("f8", (), -FARTHEST, FARTHEST),
 }
@@ -60,7 +65,8 @@ NOTE = np.dtype([(name, kind.dtype) for name, kind in NOTE_FIELDS.items()], alig
 themselves where they first have to go back from a wall;
 ``asked_by``: who has asked them to, the first or somebody who makes way for the first; ``until``:
 when they stop making way; ``served``: since when others make way for them; ``later``: until when
-they come after those who follow closely, seconds; ``x``, ``y``: where they make way to, metres.
+they come after those who follow closely, ``sooner``: until when they come before those, seconds;
+``x``, ``y``: where they make way to, metres.
 Rows are -1 for nobody.
 """
 
@@ -106,10 +112,17 @@ def goes_before(i: int, j: int, elapsed: float, state: CrowdState, notes: NDArra
 
     Whoever has less far to go comes first, since it clears the way for those behind. Who has just
     made way comes after those who follow closely, so that no two make way for each other in turns.
+    Who has found no room to make comes before them.
     """
-    mine = state[i].route + (CLOSELY if notes[i]["later"] > elapsed else 0.0)
-    theirs = state[j].route + (CLOSELY if notes[j]["later"] > elapsed else 0.0)
+    mine, theirs = _place(i, elapsed, state, notes), _place(j, elapsed, state, notes)
     return bool(mine < theirs or (mine == theirs and i < j))
+
+
+@internal()
+def _place(i: int, elapsed: float, state: CrowdState, notes: NDArray[np.void]) -> float:
+    """Place of person i in the order, metres of a route."""
+    later, sooner = notes[i]["later"] > elapsed, notes[i]["sooner"] > elapsed
+    return float(state[i].route + CLOSELY * later - CLOSELY * sooner)
 
 
 @internal()
@@ -194,19 +207,18 @@ def resolve(
         i, j = rows[k], blockers[k]
         if notes[i]["first"] != NOBODY:
             continue
-        if served[k]:
-            if elapsed - max(notes[i]["served"], agenda[i]["since"]) <= GIVES_UP:
-                if j != NOBODY:
-                    ask(j, i, i, elapsed, state, notes)
-                continue
-            for other in range(len(notes)):
-                if notes[other]["first"] == i:
-                    notes[other]["first"], notes[other]["later"] = NOBODY, elapsed
-            notes[i]["later"] = elapsed + LATER
         if walled[k]:
             notes[i]["first"], notes[i]["asked_by"] = i, i
             notes[i]["until"] = elapsed + GIVES_UP
-        if j == NOBODY or walled[k]:
+            continue
+        if served[k]:
+            waited = elapsed - agenda[i]["since"]
+            if min(waited, elapsed - notes[i]["served"]) <= GIVES_UP and waited <= LONGEST:
+                if j != NOBODY:
+                    ask(j, i, i, elapsed, state, notes)
+                continue
+            _give_up(i, elapsed, notes)
+        if j == NOBODY:
             continue
         # A ring has no more members than there are people; a chain may lead into one.
         slow, fast = i, j
@@ -221,6 +233,22 @@ def resolve(
             at = _next(at, notes)
         notes[first]["served"] = elapsed
         ask(notes[first]["blocker"], first, first, elapsed, state, notes)
+
+
+@internal()
+def _give_up(i: int, elapsed: float, notes: NDArray[np.void]) -> None:
+    """Have person i come last, and the nearest first of those who have found no room for them."""
+    at = notes[i]["blocker"]
+    for _ in range(len(notes)):
+        if at == NOBODY or notes[at]["first"] == i:
+            break
+        at = notes[at]["blocker"]
+    for other in range(len(notes)):
+        if notes[other]["first"] == i:
+            notes[other]["first"], notes[other]["later"] = NOBODY, elapsed
+    notes[i]["later"], notes[i]["sooner"] = elapsed + LATER, elapsed
+    if at != NOBODY and at != i:
+        notes[at]["sooner"] = elapsed + LATER
 
 
 @internal()

@@ -19,6 +19,10 @@ ROOM = 0.1
 CLEAR = 0.05
 """Metres between a core and the walls beside the way of somebody who sets out again."""
 
+ROOMS = (1.0, 0.85, 0.7, 0.5)
+"""Shares of the core and ``CLEAR`` that a way keeps from walls, the best first. Targets of wide
+bodies lie near walls, and ways to them cut corners that bodies go round in an arc."""
+
 TAKEN = 0.5
 """Metres that somebody would rather go than ask another to move."""
 
@@ -110,6 +114,8 @@ def places_to_set_out(
 ) -> NDArray[np.float64]:
     """The places from which the way to its target passes walls with room, the nearest first.
 
+    Where there is none, those from which it passes them with the most of their ``ROOMS``.
+
     Args:
         plan: the floor plan.
         me: who goes there, since walls are in their way from where they are.
@@ -124,8 +130,12 @@ def places_to_set_out(
     starts = np.broadcast_to(me.place, ends.shape)
     can = lines_of_sight(plan, starts, ends, me.core) & plan.contains(ends)
     ends, far = ends[can], np.hypot(*_STEPS[1:][can].T)
-    can = lines_of_sight(plan, ends, aims(ends), me.core + CLEAR)
-    ends, far = ends[can], far[can]
+    targets = aims(ends)
+    for share in ROOMS:
+        room = lines_of_sight(plan, ends, targets, share * (me.core + CLEAR))
+        if room.any():
+            break
+    ends, far = ends[room], far[room]
     to = ends[:, None] - taken
     crowded = (np.hypot(to[..., 0], to[..., 1]) < cores + me.core).sum(axis=1)
     return ends[(far + TAKEN * crowded).argsort(kind="stable")[:TRIED]]

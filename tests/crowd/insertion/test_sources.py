@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from shapely import LineString, box
 
-from mesa_mobility import Source
+from mesa_mobility import Exit, FloorPlan, Gate, Source
 from mesa_mobility.distributions import Uniform
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.results import Trajectories, check_safety
@@ -164,6 +164,25 @@ def test_nobody_appears_where_no_way_leads_out():
     rows = model.recorder.arrays()
     assert len(np.unique(rows["person"])) > 20
     assert rows["x"].min() > 12.2
+
+
+def test_nobody_appears_where_there_is_no_room_any_more():
+    plan = FloorPlan(
+        box(0, 0, 20, 4),
+        exits=[Exit("east", (20, 0), (20, 4))],
+        gates=[Gate("door", (2.0, 0.0), (2.0, 4.0))],
+    )
+    model = model_of(plan, strider())
+    model.add_source(Source(area=box(1.0, 0.5, 3.0, 3.5), rate=20.0, number=60))
+    plan.add_obstacle(box(2.5, 0.0, 3.5, 2.0))
+    plan.close_gate("door")
+    advance(model, 60)
+    rows = model.recorder.arrays()
+    started = np.unique(rows["person"], return_index=True)[1]
+    assert len(started) >= 5
+    x, y = rows["x"][started], rows["y"][started]
+    assert (abs(x - 2.0) >= 0.12).all()
+    assert ((x <= 2.5 - 0.12) | (y >= 2.0 + 0.12)).all()
 
 
 def test_nobody_appears_beside_a_person_crossing_the_exit():
