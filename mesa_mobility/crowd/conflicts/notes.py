@@ -33,12 +33,13 @@ GIVES_UP = 8.0
 room for the others to make."""
 
 LONGEST = 40.0
-"""Seconds without progress after which they come last even while others still make room: people
-may make room in turns without end, and to walk out of a way of 20 m takes so long."""
+"""Seconds without progress after which they come last even while others still make room, since
+people may make room in turns without end. In this time they walk out of a way of 30 m."""
 
 LATER = 30.0
 """Seconds for which whoever has made way lets others pass who follow closely: the longest that
-people wait patiently (Transportation Research Board, Highway Capacity Manual, 2000, chapter 18)."""
+people wait patiently (Transportation Research Board, Highway Capacity Manual, 2000, chapter 18).
+Whoever has found no room to make comes first for as long."""
 
 CLOSELY = 100.0
 """Metres by which the routes of those who follow closely are longer, at most: everybody near enough

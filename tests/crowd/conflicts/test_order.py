@@ -7,6 +7,7 @@ from mesa_mobility.crowd.conflicts.notes import (
     AGREED,
     GIVES_UP,
     LATER,
+    LONGEST,
     PATIENCE,
     blank_notes,
     find_hindered,
@@ -27,12 +28,14 @@ def crowd_of(*routes: float) -> Crowd:
     return crowd
 
 
-def resolved(crowd: Crowd, blockers: list[int], notes=None, served=(), at: float = 10.0):
+def resolved(
+    crowd: Crowd, blockers: list[int], notes=None, served=(), at: float = 10.0, walled=()
+):
     """The notes after a search for rings among all of them."""
     rows = np.arange(len(blockers))
     notes = blank_notes(len(rows)) if notes is None else notes
-    nobody, waited_for = np.zeros(len(rows), bool), np.isin(rows, served)
-    given = np.array(blockers), nobody, waited_for, at, crowd.records, crowd.agenda
+    held, waited_for = np.isin(rows, walled), np.isin(rows, served)
+    given = np.array(blockers), held, waited_for, at, crowd.records, crowd.agenda
     resolve(rows, *given, notes)
     return notes
 
@@ -98,6 +101,38 @@ def test_the_first_comes_last_if_nobody_can_make_room():
     assert resolved(crowd, [1, 0], notes, served=[0], at=at)["first"].tolist() == [-1, 0]
     assert resolved(crowd, [1, 0], notes, served=[0], at=at + 0.1)["first"].tolist() == [1, -1]
     assert notes["later"][0] == pytest.approx(at + 0.1 + LATER)
+
+
+def test_whoever_has_found_no_room_comes_first():
+    # 0 waits for 1, who follows, and who waits for 2, who makes way and has the longest route.
+    crowd, notes = crowd_of(3.0, 4.0, 9.0, 1.0), blank_notes(4)
+    notes["first"][2], notes["served"][0] = 0, 10.0
+    crowd.agenda["since"][:] = 10.0
+    at = 10.0 + GIVES_UP + 0.1
+    resolved(crowd, [1, 2, -1, -1], notes, served=[0], at=at)
+    assert notes["first"].tolist() == [-1] * 4
+    assert notes["sooner"].tolist() == pytest.approx([at, 0.0, at + LATER, 0.0])
+    # In the ring that they are found in next, they go first, and even before who is nearly out.
+    assert resolved(crowd, [1, 2, 0, -1], notes, at=at + PATIENCE)["first"].tolist()[0] == 2
+    crowd.agenda["since"][:] = at
+    assert resolved(crowd, [-1, -1, 3, 2], notes, at=at + PATIENCE)["first"].tolist()[3] == 2
+    later = resolved(crowd, [-1, -1, 3, 2], blank_notes(4), at=at + LATER + 1.0)
+    assert later["first"].tolist() == [-1, -1, 3, -1]
+
+
+def test_nobody_waits_for_ever_for_those_who_make_room_in_turns():
+    crowd = crowd_of(3.0, 4.0)
+    notes = resolved(crowd, [1, 0], at=10.0)
+    for at, first in ((LONGEST, [-1, 0]), (LONGEST + 0.1, [1, -1])):
+        notes["served"][0] = at  # somebody has just got on with making room
+        assert resolved(crowd, [1, 0], notes, served=[0], at=at)["first"].tolist() == first
+
+
+def test_whoever_is_held_by_a_wall_goes_back_though_others_make_way():
+    crowd, notes = crowd_of(3.0, 4.0), blank_notes(2)
+    notes["first"][1], notes["served"][0] = 0, 10.0
+    resolved(crowd, [-1, -1], notes, served=[0], at=10.0, walled=[0])
+    assert notes["first"].tolist() == [0, 0]
 
 
 def test_people_stop_making_way_in_time_and_for_people_who_are_gone():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapely import box
+from shapely import box, union_all
 
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.crowd.conflicts.places import (
@@ -67,6 +67,22 @@ def test_setting_out_again_beside_a_jamb():
         for at in (4.0, 4.2):
             assert abs(y + (2.0 - y) * (at - x) / (6.0 - x) - 2.0) <= 0.1 + 0.02
     assert places[0, 0] < 4.0
+
+
+def test_where_no_way_passes_walls_with_room_the_widest_is_taken():
+    door = box(4, 1.85, 4.2, 2.15)  # 0.3 m wide, for a body of 0.4 m
+    floor = union_all([box(0, 0, 4, 4), door, box(4.2, 0, 8, 4)])
+    plan = FloorPlan(floor, exits=[Exit("end", (8, 0), (8, 4))])
+
+    def through(places):
+        return np.broadcast_to((6.0, 2.0), places.shape)
+
+    places = places_to_set_out(plan, Body(np.array([3.0, 1.0]), 0.2), through, *NOBODY)
+    # 0.5 of 0.2 m and 0.05 m are 0.125 m: within 0.025 m of the middle of the door.
+    assert len(places)
+    for x, y in places[places[:, 0] < 4.0]:
+        for at in (4.0, 4.2):
+            assert abs(y + (2.0 - y) * (at - x) / (6.0 - x) - 2.0) <= 0.025 + 0.005
 
 
 def test_distances_to_a_way():
