@@ -27,6 +27,7 @@ from mesa_mobility.crowd.conflicts.notes import (
     resolve,
     served_by,
     stop_making_way,
+    wait_behind,
 )
 from mesa_mobility.crowd.conflicts.places import (
     AHEAD,
@@ -38,6 +39,7 @@ from mesa_mobility.crowd.conflicts.places import (
     places_to_set_out,
 )
 from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
@@ -110,6 +112,9 @@ class GiveWay(Tactic):
         crowd.presses[rows] = 0
         hindered = np.zeros(len(rows), np.bool_)
         find_hindered(rows, now, crowd.records, crowd.agenda, hindered)
+        if hindered.any():
+            people = build_grid(deciding.inside.pedestrians, crowd.x, crowd.y)
+            wait_behind(rows, now, people, crowd.records, crowd.agenda, hindered)
         if not hindered.any() and not (notes["first"][deciding.inside.pedestrians] >= 0).any():
             notes["blocker"][rows] = NOBODY
             return
@@ -154,6 +159,8 @@ class GiveWay(Tactic):
         nobody, notes, crowd = np.empty(0, dtype=np.int64), blank_notes(2), Crowd(2)
         none, state, agenda = np.empty(0, dtype=np.bool_), crowd.records, crowd.agenda
         find_hindered(nobody, 0.0, state, agenda, none)
+        people = build_grid(nobody, crowd.x, crowd.y)
+        wait_behind(nobody, 0.0, people, state, agenda, none)
         stop_making_way(nobody, 0.0, state, notes)
         join(nobody, nobody, 0.0, state, notes)
         resolve(nobody, nobody, none, none, 0.0, state, agenda, notes)

@@ -15,7 +15,9 @@ from mesa_mobility.crowd.conflicts.notes import (
     pass_on,
     resolve,
     stop_making_way,
+    wait_behind,
 )
+from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.crowd.state.records import Crowd
 
 
@@ -28,9 +30,7 @@ def crowd_of(*routes: float) -> Crowd:
     return crowd
 
 
-def resolved(
-    crowd: Crowd, blockers: list[int], notes=None, served=(), at: float = 10.0, walled=()
-):
+def resolved(crowd: Crowd, blockers: list[int], notes=None, served=(), at: float = 10.0, walled=()):
     """The notes after a search for rings among all of them."""
     rows = np.arange(len(blockers))
     notes = blank_notes(len(rows)) if notes is None else notes
@@ -164,3 +164,19 @@ def test_who_is_hindered():
     # 0.3 m nearer is progress, 0.2 m is none.
     crowd.route[:2] = 4.7, 4.8
     assert hindered(crowd, 11.0) == [False, True, False, False]
+
+
+@pytest.mark.parametrize(
+    ("ahead", "target", "since", "waits"),
+    # They are at 0, walk along x, and have not got on since 0 s; it is 10 s.
+    [((1.5, 0.5), 20.0, 9.0, True), ((2.1, 0.0), 20.0, 9.0, False), ((-0.5, 0.0), 20.0, 9.0, False),
+     ((1.5, 0.5), -20.0, 9.0, False), ((1.5, 0.5), 20.0, 7.5, False)],
+)  # fmt: skip
+def test_nobody_is_hindered_in_a_jam_that_moves_on(ahead, target, since, waits):
+    crowd = crowd_of(5.0, 4.0)
+    crowd.x[1], crowd.y[1] = ahead
+    crowd.target_x[:] = 20.0, target
+    crowd.agenda["since"][1] = since
+    people, found = build_grid(np.arange(2), crowd.x, crowd.y), np.array([True, False])
+    wait_behind(np.arange(2), 10.0, people, crowd.records, crowd.agenda, found)
+    assert found.tolist() == [not waits, False]
