@@ -17,17 +17,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.conflicts.hindrance import find_hindered, wait_behind
 from mesa_mobility.crowd.conflicts.notes import (
     NOTE,
     NOTE_FIELDS,
     blank_notes,
-    find_hindered,
     join,
     pass_on,
     resolve,
     served_by,
     stop_making_way,
-    wait_behind,
 )
 from mesa_mobility.crowd.conflicts.places import (
     AHEAD,

@@ -3,19 +3,17 @@
 import numpy as np
 import pytest
 
+from mesa_mobility.crowd.conflicts.hindrance import PATIENCE, find_hindered, wait_behind
 from mesa_mobility.crowd.conflicts.notes import (
     AGREED,
     GIVES_UP,
     LATER,
     LONGEST,
-    PATIENCE,
     blank_notes,
-    find_hindered,
     join,
     pass_on,
     resolve,
     stop_making_way,
-    wait_behind,
 )
 from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.crowd.state.records import Crowd
