@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import entry_point
+from mesa_mobility.compiled.decorators import entry_point, internal
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.people_grid import Grid, cells_within
 from mesa_mobility.crowd.state.records import CrowdState
@@ -68,22 +68,31 @@ def wait_behind(
     long as somebody just ahead, who goes the same way, gets on.
     """
     for k in range(len(rows)):
-        i = rows[k]
-        if not hindered[k]:
-            continue
-        x, y = state[i].x, state[i].y
-        dx, dy = state[i].target_x - x, state[i].target_y - y
-        cx0, cx1, cy0, cy1 = cells_within(people, x, y, MOVES_ON)
-        for cy in range(cy0, cy1 + 1 if cx0 <= cx1 else cy0):
-            first, last = people.offsets[cy * people.nx + cx0], cy * people.nx + cx1 + 1
-            for a in range(first, people.offsets[last]):
-                j = people.people[a]
-                wx, wy = state[j].x - x, state[j].y - y
-                jx, jy = state[j].target_x - state[j].x, state[j].target_y - state[j].y
-                if (
-                    0.0 < wx * wx + wy * wy <= MOVES_ON * MOVES_ON
-                    and wx * dx + wy * dy > 0.0
-                    and jx * dx + jy * dy > 0.0
-                    and elapsed - agenda[j]["since"] <= PATIENCE
-                ):
-                    hindered[k] = False
+        if hindered[k]:
+            hindered[k] = not _moves_on(rows[k], elapsed, people, state, agenda)
+
+
+@internal()
+def _moves_on(
+    i: int, elapsed: float, people: Grid, state: CrowdState, agenda: NDArray[np.void]
+) -> bool:
+    """Whether somebody within ``MOVES_ON`` ahead of person i gets on, and goes the same way."""
+    x, y = state[i].x, state[i].y
+    dx, dy = state[i].target_x - x, state[i].target_y - y
+    cx0, cx1, cy0, cy1 = cells_within(people, x, y, MOVES_ON)
+    if cx0 > cx1:
+        return False
+    for cy in range(cy0, cy1 + 1):
+        row = cy * people.nx
+        for a in range(people.offsets[row + cx0], people.offsets[row + cx1 + 1]):
+            j = people.people[a]
+            wx, wy = state[j].x - x, state[j].y - y
+            jx, jy = state[j].target_x - state[j].x, state[j].target_y - state[j].y
+            if (
+                wx * dx + wy * dy > 0.0
+                and wx * wx + wy * wy <= MOVES_ON * MOVES_ON
+                and elapsed - agenda[j]["since"] <= PATIENCE
+                and jx * dx + jy * dy > 0.0
+            ):
+                return True
+    return False
