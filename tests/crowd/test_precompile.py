@@ -5,7 +5,7 @@ from mesa_mobility.behaviors.steering import anticipation, speed_adaptation
 from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd import precompile
-from mesa_mobility.crowd.conflicts import notes
+from mesa_mobility.crowd.conflicts import hindrance
 from mesa_mobility.crowd.planning import decision, decision_order
 from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
 
@@ -21,7 +21,8 @@ FUNCTIONS = [
     departed.merge,
     anticipation._turn_aside,
     speed_adaptation._adapt_speeds,
-    notes.find_hindered,
+    hindrance.find_hindered,
+    hindrance.wait_behind,
     aggregates._look_over,
     aggregates.split_active,
 ]
