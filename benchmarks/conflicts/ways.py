@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.csgraph import shortest_path
 from shapely.geometry.base import BaseGeometry
+from shapely.geometry.polygon import orient
 
 FloatArray = NDArray[np.float64]
 
@@ -118,7 +119,7 @@ def _corners(floor: BaseGeometry) -> FloatArray:
     """(k, 2) places beside the corners round which ways bend, ``ROUND`` from both walls."""
     places = [np.empty((0, 2))]
     for part in getattr(floor, "geoms", [floor]):
-        polygon = shapely.orient_polygons(part)  # the floor is on the left of each edge
+        polygon = orient(part)  # the floor is on the left of each edge
         for ring in (polygon.exterior, *polygon.interiors):
             points = shapely.get_coordinates(ring)[:-1]
             steps = np.roll(points, -1, axis=0) - points
