@@ -133,7 +133,7 @@ class GiveWay(Tactic):
             wishes = self._wishes(deciding, desired, who)
             aims = desired.targets.points[who]
             walled = (_gains(wishes, aims) < GAINED) & hindered[who]
-            # Whoever does not face their target turns first.
+            # People who do not face their target turn first.
             to = aims - deciding.positions[who]
             ahead = np.cos(np.arctan2(to[:, 1], to[:, 0]) - crowd.heading[rows[who]])
             walled &= ahead > FACES
@@ -166,7 +166,7 @@ class GiveWay(Tactic):
         pass_on(nobody, nobody, 0.0, state, notes)
 
     def _wishes(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> Wishes:
-        """What some of those who decide would do alone on their own way."""
+        """The wishes of some of those who decide, on their own way."""
         rows = deciding.pedestrians[who]
         speeds = deciding.inside.crowd.agenda["speed"][rows]
         return self._model.wishes(rows, desired.targets.points[who], speeds)
@@ -209,7 +209,7 @@ class GiveWay(Tactic):
         short = _gains(wishes, best) < GAINED
         arrived = np.hypot(*(best - deciding.positions[who]).T) < ARRIVED
         for k in np.flatnonzero(short & ~arrived).tolist():
-            # Whoever does not set off for so short a step aims beyond, or tries other places.
+            # People who do not set off for so short a step aim beyond, or try other places.
             step = best[k] - deciding.positions[who[k]]
             beyond = best[k] + BEYOND / np.hypot(*step) * step
             others = np.concatenate([[beyond], places[k][1:]])
@@ -221,13 +221,12 @@ class GiveWay(Tactic):
             at, short[k] = (moves[0], False) if len(moves) else (0, True)
             best[k], blockers[k] = others[at], tried.blockers[at]
         notes["x"][rows], notes["y"][rows] = best.T
-        stands = arrived
-        points[who] = np.where(stands[:, None], deciding.positions[who], best)
-        speeds[who] = np.where(stands, 0.0, own)
+        points[who] = np.where(arrived[:, None], deciding.positions[who], best)
+        speeds[who] = np.where(arrived, 0.0, own)
         desired.points, desired.speeds = points, speeds
-        back = stands & (notes["first"][rows] == rows)
-        moving = ~stands
-        # Who is waited for has not failed yet while somebody still gets on with making room.
+        back = arrived & (notes["first"][rows] == rows)
+        moving = ~arrived
+        # The first has not failed yet while somebody still gets on with making room.
         gets_on = rows[moving & ~short & (blockers == NOBODY)]
         crowd.presses[gets_on] = 1
         notes["served"][notes["first"][gets_on]] = deciding.elapsed

@@ -26,7 +26,7 @@ people may make room in turns without end. In this time they walk out of a way o
 LATER = 30.0
 """Seconds for which whoever has made way lets others pass who follow closely: the longest that
 people wait patiently (Transportation Research Board, Highway Capacity Manual, 2000, chapter 18).
-Whoever has found no room to make comes first for as long."""
+A person who has found no room to make comes first for as long."""
 
 CLOSELY = 100.0
 """Metres by which the routes of those who follow closely are longer, at most: everybody near enough
@@ -71,9 +71,9 @@ def blank_notes(count: int) -> NDArray[np.void]:
 def goes_before(i: int, j: int, elapsed: float, state: CrowdState, notes: NDArray[np.void]) -> bool:
     """Whether person i comes before person j in the order of those who do not make way.
 
-    Whoever has less far to go comes first, since it clears the way for those behind. Who has just
-    made way comes after those who follow closely, so that no two make way for each other in turns.
-    Who has found no room to make comes before them.
+    The person with less far to go comes first, since that clears the way for those behind. A person
+    who has just made way comes after those who follow closely, so that no two make way for each
+    other in turns. A person who has found no room to make comes before them.
     """
     mine, theirs = _place(i, elapsed, state, notes), _place(j, elapsed, state, notes)
     return bool(mine < theirs or (mine == theirs and i < j))

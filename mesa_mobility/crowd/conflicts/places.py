@@ -82,12 +82,10 @@ def places_aside(
     Returns:
         (k, 2) metres, at most ``TRIED``; their own place is one of them.
     """
-    ends = me.place + _STEPS
-    starts = np.broadcast_to(me.place, ends.shape)
-    can = lines_of_sight(plan, starts, ends, me.core) & plan.contains(ends)
+    ends, can = _within_reach(plan, me)
     for way in ways:
         # Nobody makes way through those who are to pass, nor comes nearer to them.
-        apart = _distances_to_legs(way.body.place, starts, ends)
+        apart = _distances_to_legs(way.body.place, me.place, ends)
         can &= apart >= min(me.core + way.body.core, apart[0]) - 1e-6
     can[0] = True
     ends, far = ends[can], np.hypot(*_STEPS[can].T)
@@ -97,9 +95,8 @@ def places_aside(
         off, on = distances_to_way(ends, way.points)
         clear &= off >= me.core + way.body.core + ROOM
         along, aside = along + on, np.minimum(aside, off)
-    to = ends[:, None] - taken
-    crowded = (np.hypot(to[..., 0], to[..., 1]) < cores + me.core).sum(axis=1)
-    cost = np.where(clear, far, FAR - along - aside + EFFORT * far) + TAKEN * crowded
+    cost = np.where(clear, far, FAR - along - aside + EFFORT * far)
+    cost += _cost_of_others(ends, me, taken, cores)
     # None is worse than to stay, which comes first among all of them.
     order = cost.argsort(kind="stable")
     return ends[order[: int(np.flatnonzero(order == 0)[0]) + 1][:TRIED]]
@@ -126,19 +123,39 @@ def places_to_set_out(
     Returns:
         (k, 2) metres, at most ``TRIED``, maybe none.
     """
-    ends = (me.place + _STEPS)[1:]
-    starts = np.broadcast_to(me.place, ends.shape)
-    can = lines_of_sight(plan, starts, ends, me.core) & plan.contains(ends)
-    ends, far = ends[can], np.hypot(*_STEPS[1:][can].T)
+    ends, can = _within_reach(plan, me)
+    can[0] = False  # their own place
+    ends, far = ends[can], np.hypot(*_STEPS[can].T)
     targets = aims(ends)
     for share in ROOMS:
         room = lines_of_sight(plan, ends, targets, share * (me.core + CLEAR))
         if room.any():
             break
     ends, far = ends[room], far[room]
-    to = ends[:, None] - taken
-    crowded = (np.hypot(to[..., 0], to[..., 1]) < cores + me.core).sum(axis=1)
-    return ends[(far + TAKEN * crowded).argsort(kind="stable")[:TRIED]]
+    cost = far + _cost_of_others(ends, me, taken, cores)
+    return ends[cost.argsort(kind="stable")[:TRIED]]
+
+
+def _within_reach(plan: FloorPlan, me: Body) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """(k, 2) places around somebody, their own the first, metres, and whether they can get to each
+    past the walls."""
+    ends = me.place + _STEPS
+    starts = np.broadcast_to(me.place, ends.shape)
+    return ends, lines_of_sight(plan, starts, ends, me.core) & plan.contains(ends)
+
+
+def _cost_of_others(
+    places: NDArray[np.float64],
+    me: Body,
+    taken: NDArray[np.float64],
+    cores: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """(n,) metres that those who stand at (n, 2) places, or are about to, are worth."""
+    to = places[:, None] - taken
+    cost: NDArray[np.float64] = TAKEN * (np.hypot(to[..., 0], to[..., 1]) < cores + me.core).sum(
+        axis=1
+    )
+    return cost
 
 
 def distances_to_way(
@@ -156,12 +173,12 @@ def distances_to_way(
 
 
 def _distances_to_legs(
-    point: NDArray[np.float64], starts: NDArray[np.float64], ends: NDArray[np.float64]
+    point: NDArray[np.float64], start: NDArray[np.float64], ends: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(n,) metres from a point to straight legs."""
-    step = ends - starts
+    """(n,) metres from a point to straight legs from one start."""
+    step = ends - start
     length2 = np.maximum((step**2).sum(axis=1), 1e-12)
-    share = np.clip(((point - starts) * step).sum(axis=1) / length2, 0.0, 1.0)
-    off = starts + share[:, None] * step - point
+    share = np.clip(((point - start) * step).sum(axis=1) / length2, 0.0, 1.0)
+    off = start + share[:, None] * step - point
     distances: NDArray[np.float64] = np.hypot(off[:, 0], off[:, 1])
     return distances

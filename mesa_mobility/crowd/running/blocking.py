@@ -7,20 +7,15 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.conflicts.hindrance import GETTING_NEARER, SLOW_PATIENCE
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.journeys.waiting import waiting
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.running.last_minute import LastMinute, ways_left
 from mesa_mobility.crowd.state.wishes import NOBODY
 
-GETTING_NEARER = 0.25
-"""Metres that somebody must come nearer for it to count as progress."""
-
 PATIENCE = 5
 """Seconds without progress after which somebody counts as blocked."""
-
-SLOW = 2.0
-"""For slow people, how many times as long as the progress takes at the speed that they want."""
 
 SLOWEST = 1.0 / 60.0
 """Preferred speed, m/s, up to which somebody does not want to move."""
@@ -45,7 +40,7 @@ def without_progress(
     """
     crowd, agenda = model.crowd, model.crowd.agenda
     wanted = np.maximum(agenda["speed"][rows], SLOWEST)
-    patience = np.maximum(PATIENCE, SLOW * GETTING_NEARER / wanted)
+    patience = np.maximum(PATIENCE, SLOW_PATIENCE * GETTING_NEARER / wanted)
     free = agenda["waits_until"][rows] * FRAME_SECONDS
     since = np.maximum(agenda["since"][rows], free)
     stuck = model.elapsed - since > patience
@@ -54,7 +49,7 @@ def without_progress(
         before = minute.at(int(model.elapsed) - PATIENCE)
         gained = np.full(len(rows), np.inf)
         if before is not None:
-            least = np.minimum(GETTING_NEARER, wanted * PATIENCE / SLOW)
+            least = np.minimum(GETTING_NEARER, wanted * PATIENCE / SLOW_PATIENCE)
             with np.errstate(invalid="ignore"):  # nobody comes nearer without a way
                 gained = (before.of(rows)[2] - ways_left(rows, crowd)) / least
         stuck = np.where(noted, stuck, gained < 1.0)
@@ -93,7 +88,7 @@ class Blockers:
         return self._known
 
     def chain(self, row: int) -> list[int]:
-        """Whoever is in the way of a person, whoever is in the way of that one, and so on; see
+        """The person in the way of somebody, the one in the way of that person, and so on; see
         ``PedestrianModel.blocked_by``."""
         known, chain, met = self.of([row]), list[int](), {row}
         while (row := known[row]) != NOBODY:

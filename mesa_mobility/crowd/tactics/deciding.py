@@ -37,7 +37,7 @@ class Desired:
     def stand(self, who: NDArray[Any], positions: NDArray[np.float64]) -> None:
         """Let some stand where they are with their next movement.
 
-        Whoever stands so for long counts as hindered; ``Deciding.hold`` is for those who wait.
+        People who stand so for long count as hindered; ``Deciding.hold`` is for those who wait.
 
         Args:
             who: which: (n,) of them true, or (k,) indices.
