@@ -21,7 +21,7 @@ def _length(preferred: float, length: float) -> float:
 
 
 @njit(error_model="numpy")
-def _waiting(me: Me, ux: float, uy: float, waits_for: float) -> float:
+def _waiting(me: Me, ux: float, uy: float, length: float, waits_for: float) -> float:
     # What it costs to stand with a facing (ux, uy): nothing where somebody ahead may make room.
     dx = me.target_x - me.x
     dy = me.target_y - me.y
@@ -29,7 +29,8 @@ def _waiting(me: Me, ux: float, uy: float, waits_for: float) -> float:
     if me.ahead < waits_for or me.preferred_speed <= 0.0 or way <= 0.0:
         return 0.0
     turned = ((ux - math.cos(me.heading)) * dx + (uy - math.sin(me.heading)) * dy) / way
-    return 1.0 - min(max(turned, 0.0), 1.0)
+    lost = min(LONGEST * me.preferred_speed / length, 1.0)
+    return lost * (1.0 - min(max(turned, 0.0), 1.0))
 
 
 @option_kernel
@@ -37,13 +38,13 @@ def _stepping(option: Option, me: Me, p: "Stepping") -> float:
     ground = option.speed * option.duration
     if ground > STANDS:
         return max(1.0 - ground / _length(me.preferred_speed, p.length), 0.0)
-    return _waiting(me, option.facing_x, option.facing_y, p.waits_for)
+    return _waiting(me, option.facing_x, option.facing_y, p.length, p.waits_for)
 
 
 @option_kernel
 def _stepping_bound(options: Options, me: Me, p: "Stepping") -> float:
     if options.fastest * options.duration <= STANDS:
-        waiting = _waiting(me, options.facing_x, options.facing_y, p.waits_for)
+        waiting = _waiting(me, options.facing_x, options.facing_y, p.length, p.waits_for)
         return max(waiting - options.turn, 0.0)
     if options.slowest * options.duration <= STANDS:
         return 0.0
@@ -63,6 +64,7 @@ class Stepping(CompiledTerm):
     within ``waits_for`` gains nothing by standing, and it costs as much as the shortest step.
     Alone before a narrow corner, people else stood for half a minute.  Turning on the spot is a
     way to go on, and costs less by what the cosine of the angle between facing and target gains.
+    Slow people, see below, lose a short step only: that share of ``length``.
 
     Slow people make short steps: for somebody who wants to cover less than ``length`` in the
     longest movement, 1.5 s, l is what they want to cover.  With the full length, people who want

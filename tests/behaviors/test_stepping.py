@@ -45,7 +45,8 @@ def test_those_who_want_to_stand_have_no_step_of_their_own():
     ("neighbour", "preferred", "expected"),
     # The target is along x. People wait for somebody within 2 m on that side of them.
     [((1.9, 0.0), 1.0, 0.0), ((0.5, 1.8), 1.0, 0.0), ((2.1, 0.0), 1.0, 1.0),
-     ((-0.5, 0.0), 1.0, 1.0), (None, 1.0, 1.0), (None, 0.0, 0.0)],
+     ((-0.5, 0.0), 1.0, 1.0), (None, 1.0, 1.0), (None, 0.0, 0.0),
+     (None, 0.1, 0.375)],
 )  # fmt: skip
 @pytest.mark.parametrize("metres", [0.0, 0.009])
 def test_standing_is_free_only_where_somebody_makes_room(metres, neighbour, preferred, expected):
