@@ -41,6 +41,7 @@ def fastest(kind):
     ("name", "speed", "factor"),
     [
         ("wheelchair_manual", 0.1725, 0.6),
+        pytest.param("slow", 0.167, 0.4, marks=pytest.mark.thorough),
         pytest.param("cane", 0.10, 0.6, marks=pytest.mark.thorough),
         pytest.param("cane", 0.15, 1.0, marks=pytest.mark.thorough),
         pytest.param("able_bodied", 0.12, 1.0, marks=pytest.mark.thorough),

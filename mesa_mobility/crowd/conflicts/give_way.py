@@ -110,7 +110,8 @@ class GiveWay(Tactic):
         notes = self._notes
         crowd.presses[rows] = 0
         hindered = np.zeros(len(rows), np.bool_)
-        find_hindered(rows, now, crowd.records, crowd.agenda, hindered)
+        speeds = _speeds(deciding, desired)
+        find_hindered(rows, speeds, now, crowd.records, crowd.agenda, hindered)
         if hindered.any():
             people = build_grid(deciding.inside.pedestrians, crowd.x, crowd.y)
             wait_behind(rows, now, people, crowd.records, crowd.agenda, hindered)
@@ -157,7 +158,7 @@ class GiveWay(Tactic):
         """Compile the order, with nobody in conflict."""
         nobody, notes, crowd = np.empty(0, dtype=np.int64), blank_notes(2), Crowd(2)
         none, state, agenda = np.empty(0, dtype=np.bool_), crowd.records, crowd.agenda
-        find_hindered(nobody, 0.0, state, agenda, none)
+        find_hindered(nobody, np.empty(0), 0.0, state, agenda, none)
         people = build_grid(nobody, crowd.x, crowd.y)
         wait_behind(nobody, 0.0, people, state, agenda, none)
         stop_making_way(nobody, 0.0, state, notes)
@@ -167,8 +168,7 @@ class GiveWay(Tactic):
 
     def _wishes(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> Wishes:
         """The wishes of some of those who decide, on their own way."""
-        rows = deciding.pedestrians[who]
-        speeds = deciding.inside.crowd.agenda["speed"][rows]
+        rows, speeds = deciding.pedestrians[who], _speeds(deciding, desired)[who]
         return self._model.wishes(rows, desired.targets.points[who], speeds)
 
     def _near_others(self, deciding: Deciding) -> NDArray[np.bool_]:
@@ -269,6 +269,12 @@ class GiveWay(Tactic):
             to = np.array([self._notes["x"][by], self._notes["y"][by]])
             ways.append(Way(body, np.array([body.place, to])))
         return ways
+
+
+def _speeds(deciding: Deciding, desired: Desired) -> NDArray[np.float64]:
+    """(n,) how fast people want to walk where they are, m/s, if nobody has them stand."""
+    own = deciding.inside.crowd.agenda["speed"][deciding.pedestrians]
+    return np.where(desired.speeds > 0.0, np.minimum(desired.speeds, own), own)
 
 
 def _gains(wishes: Wishes, points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -29,6 +29,7 @@ MOVES_ON = 2.0
 @entry_point()
 def find_hindered(
     rows: NDArray[np.int64],
+    speeds: NDArray[np.float64],
     elapsed: float,
     state: CrowdState,
     agenda: NDArray[np.void],
@@ -37,7 +38,7 @@ def find_hindered(
     """Note the progress of those in ``rows``, and write who has made none for some seconds.
 
     People who wait, or have not set off, are not hindered, nor are slow people who get on as fast
-    as they want.
+    as they want to where they are, ``speeds`` (n,) in m/s.
     """
     for k in range(len(rows)):
         i = rows[k]
@@ -48,7 +49,7 @@ def find_hindered(
             or not abs(route) < np.inf
         ):
             agenda[i]["nearest"], agenda[i]["since"] = route, elapsed
-        free, own = agenda[i]["waits_until"] * FRAME_SECONDS, agenda[i]["speed"]
+        free, own = agenda[i]["waits_until"] * FRAME_SECONDS, speeds[k]
         patience = max(PATIENCE, SLOW_PATIENCE * GETTING_NEARER / own) if own > 0.0 else np.inf
         hindered[k] = elapsed - max(agenda[i]["since"], free) > patience
 

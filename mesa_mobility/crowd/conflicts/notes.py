@@ -26,7 +26,7 @@ people may make room in turns without end. In this time they walk out of a way o
 LATER = 30.0
 """Seconds for which whoever has made way lets others pass who follow closely: the longest that
 people wait patiently (Transportation Research Board, Highway Capacity Manual, 2000, chapter 18).
-A person who has found no room to make comes first for as long."""
+A person who has found no room to make, or is held by a wall, comes first for as long."""
 
 CLOSELY = 100.0
 """Metres by which the routes of those who follow closely are longer, at most: everybody near enough
@@ -170,7 +170,7 @@ def resolve(
             continue
         if walled[k]:
             notes[i]["first"], notes[i]["asked_by"] = i, i
-            notes[i]["until"] = elapsed + GIVES_UP
+            notes[i]["until"], notes[i]["sooner"] = elapsed + GIVES_UP, elapsed + LATER
             continue
         if served[k]:
             waited = elapsed - agenda[i]["since"]

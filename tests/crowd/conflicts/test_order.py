@@ -133,6 +133,13 @@ def test_whoever_is_held_by_a_wall_goes_back_though_others_make_way():
     assert notes["first"].tolist() == [0, 0]
 
 
+def test_whoever_is_held_by_a_wall_comes_first_and_so_has_others_move():
+    crowd = crowd_of(4.0, 3.0)  # the other one comes first
+    asked = resolved(crowd, [1, 0], at=10.0, walled=[0])
+    pass_on(np.array([0]), np.array([1]), 10.0, crowd.records, asked)
+    assert asked["first"].tolist() == [0, 0]
+
+
 def test_people_stop_making_way_in_time_and_for_people_who_are_gone():
     crowd = crowd_of(3.0, 4.0, 5.0)
     notes = blank_notes(3)
@@ -144,24 +151,25 @@ def test_people_stop_making_way_in_time_and_for_people_who_are_gone():
     assert notes["first"].tolist() == [-1, -1, -1]
 
 
-def hindered(crowd: Crowd, at: float) -> list[bool]:
+def hindered(crowd: Crowd, speeds: list[float], at: float) -> list[bool]:
     found = np.zeros(len(crowd.route), bool)
-    find_hindered(np.arange(len(found)), at, crowd.records, crowd.agenda, found)
+    rows, speeds = np.arange(len(found)), np.array(speeds)
+    find_hindered(rows, speeds, at, crowd.records, crowd.agenda, found)
     return found.tolist()
 
 
 def test_who_is_hindered():
     crowd = crowd_of(5.0, 5.0, 5.0, np.inf)
     # A slow person takes 2 x 0.25 / 0.05 = 10 s for the progress that counts.
-    crowd.agenda["speed"][1] = 0.05
+    speeds = [1.0, 0.05, 1.0, 1.0]
     crowd.agenda["nearest"] = 5.0
     crowd.agenda["waits_until"][2] = 300
-    assert hindered(crowd, PATIENCE) == [False] * 4
-    assert hindered(crowd, PATIENCE + 0.1) == [True, False, False, False]
-    assert hindered(crowd, 10.1) == [True, True, False, False]
+    assert hindered(crowd, speeds, PATIENCE) == [False] * 4
+    assert hindered(crowd, speeds, PATIENCE + 0.1) == [True, False, False, False]
+    assert hindered(crowd, speeds, 10.1) == [True, True, False, False]
     # 0.3 m nearer is progress, 0.2 m is none.
     crowd.route[:2] = 4.7, 4.8
-    assert hindered(crowd, 11.0) == [False, True, False, False]
+    assert hindered(crowd, speeds, 11.0) == [False, True, False, False]
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
-from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm, checked_numbers, numbers_of
+from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm, checked_numbers
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
     CostKernel,
@@ -30,6 +31,8 @@ from mesa_mobility.plugins.output import numbers_given
 
 NO_EXTRA = np.empty(0), np.zeros(1, dtype=np.int64)
 """What ``extra_costs`` returns without NumPy terms."""
+
+_WEIGHTS = "weight", "weight_by_type", "for_types"
 
 BATCH_PAIRS = 2_000_000
 """Pairs of an option and a neighbour laid out at once for terms in NumPy; bounds memory."""
@@ -135,26 +138,36 @@ class CompiledTerms:
     def __init__(self, types: Sequence[str]) -> None:
         self._types = tuple(types)
         self._terms: list[CostTerm] = []
-        self._compiled: list[CompiledTerm] = []
+        self._reads: list[Callable[[CostTerm], object]] = []
         self._key: object = None
 
     def __call__(self, terms: Sequence[CostTerm], crowd: Crowd) -> tuple[Terms, list[CostTerm]]:
         """The table of the compiled terms, with the fields that they take, and the others."""
-        if self._terms != terms:
-            self._terms, self._key = list(terms), None
-            self._compiled = [term for term in terms if isinstance(term, CompiledTerm)]
-        key = (
-            [(term.weight, term.weight_by_type, term.for_types) for term in self._terms],
-            [numbers_of(term, each) for term in self._compiled for each in kernels_of(term)],
-        )
-        if key != self._key:
-            self._key = key
+        if self._terms != terms or self._key != self._read():
+            self._terms = list(terms)
             self._now = compile_terms(terms, self._types)
             self._fields = fields_of(terms)
+            self._reads = [_reader(term) for term in terms]
+            self._key = self._read()
         compiled, others = self._now
         if self._fields:
             compiled = compiled._replace(fields=field_values(self._fields, crowd))
         return compiled, others
+
+    def _read(self) -> list[object]:
+        """All that the table is made of; this is compared in each frame."""
+        try:
+            return [read(term) for read, term in zip(self._reads, self._terms, strict=True)]
+        except AttributeError:  # compiling names what is missing
+            return []
+
+
+def _reader(term: CostTerm) -> Callable[[CostTerm], object]:
+    """What reads all of a term that its table is made of."""
+    if not isinstance(term, CompiledTerm):
+        return attrgetter(*_WEIGHTS)
+    numbers = [name for kernel in kernels_of(term) for name in kernel.numbers]
+    return attrgetter(*_WEIGHTS, "kernel", "bound", *numbers)
 
 
 def _table(
