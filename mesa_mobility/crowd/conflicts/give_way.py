@@ -34,6 +34,7 @@ from mesa_mobility.crowd.conflicts.places import (
     Body,
     Way,
     distances_to_way,
+    leaves_free,
     places_aside,
     places_to_set_out,
 )
@@ -221,6 +222,9 @@ class GiveWay(Tactic):
             at, short[k] = (moves[0], False) if len(moves) else (0, True)
             best[k], blockers[k] = others[at], tried.blockers[at]
         notes["x"][rows], notes["y"][rows] = best.T
+        for row, place in zip(rows.tolist(), best, strict=True):
+            free = leaves_free(place[None], crowd.core[row], self._ways(row, deciding))
+            notes["aside"][row] = free[0]
         points[who] = np.where(arrived[:, None], deciding.positions[who], best)
         speeds[who] = np.where(arrived, 0.0, own)
         desired.points, desired.speeds = points, speeds

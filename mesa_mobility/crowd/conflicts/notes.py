@@ -42,6 +42,7 @@ NOTE_FIELDS: dict[str, Array] = {
     "served": _SECONDS,
     "later": _SECONDS,
     "sooner": _SECONDS,
+    "aside": Array("u1", (), 0, 1),
     "x": Array("f8", (), -FARTHEST, FARTHEST),
     "y": Array("f8", (), -FARTHEST, FARTHEST),
 }
@@ -54,7 +55,8 @@ themselves where they first have to go back from a wall;
 ``asked_by``: who has asked them to, the first or somebody who makes way for the first; ``until``:
 when they stop making way; ``served``: since when others make way for them; ``later``: until when
 they come after those who follow closely, ``sooner``: until when they come before those, seconds;
-``x``, ``y``: where they make way to, metres.
+``aside``: 1 if they have found a place to make way to that leaves the way free; ``x``, ``y``: where
+they make way to, metres.
 Rows are -1 for nobody.
 """
 
@@ -198,18 +200,13 @@ def resolve(
 
 @internal()
 def _give_up(i: int, elapsed: float, notes: NDArray[np.void]) -> None:
-    """Have person i come last, and the nearest first of those who have found no room for them."""
-    at = notes[i]["blocker"]
-    for _ in range(len(notes)):
-        if at == NOBODY or notes[at]["first"] == i:
-            break
-        at = notes[at]["blocker"]
+    """Have person i come last, and those first who have found no room to make for them."""
     for other in range(len(notes)):
         if notes[other]["first"] == i:
             notes[other]["first"], notes[other]["later"] = NOBODY, elapsed
+            if notes[other]["aside"] == 0:
+                notes[other]["sooner"] = elapsed + LATER
     notes[i]["later"], notes[i]["sooner"] = elapsed + LATER, elapsed
-    if at != NOBODY and at != i:
-        notes[at]["sooner"] = elapsed + LATER
 
 
 @internal()

@@ -89,17 +89,26 @@ def places_aside(
         can &= apart >= min(me.core + way.body.core, apart[0]) - 1e-6
     can[0] = True
     ends, far = ends[can], np.hypot(*_STEPS[can].T)
-    clear, along = np.ones(len(ends), np.bool_), np.zeros(len(ends))
-    aside = np.full(len(ends), np.inf)
+    along, aside = np.zeros(len(ends)), np.full(len(ends), np.inf)
     for way in ways:
         off, on = distances_to_way(ends, way.points)
-        clear &= off >= me.core + way.body.core + ROOM
         along, aside = along + on, np.minimum(aside, off)
+    clear = leaves_free(ends, me.core, ways)
     cost = np.where(clear, far, FAR - along - aside + EFFORT * far)
     cost += _cost_of_others(ends, me, taken, cores)
     # None is worse than to stay, which comes first among all of them.
     order = cost.argsort(kind="stable")
     return ends[order[: int(np.flatnonzero(order == 0)[0]) + 1][:TRIED]]
+
+
+def leaves_free(
+    places: NDArray[np.float64], core: float, ways: Sequence[Way]
+) -> NDArray[np.bool_]:
+    """(n,) whether somebody of this core radius leaves all ways free at places (n, 2)."""
+    free = np.ones(len(places), np.bool_)
+    for way in ways:
+        free &= distances_to_way(places, way.points)[0] >= core + way.body.core + ROOM
+    return free
 
 
 def places_to_set_out(

@@ -118,6 +118,15 @@ def test_whoever_has_found_no_room_comes_first():
     assert later["first"].tolist() == [-1, -1, 3, -1]
 
 
+def test_all_who_have_found_no_room_come_first_and_those_aside_do_not():
+    crowd, notes = crowd_of(3.0, 4.0, 9.0, 8.0, 7.0), blank_notes(5)
+    notes["first"][1:4], notes["served"][0], notes["aside"][2] = 0, 10.0, 1
+    crowd.agenda["since"][:] = 10.0
+    at = 10.0 + GIVES_UP + 0.1
+    resolved(crowd, [1, -1, -1, -1, -1], notes, served=[0], at=at)
+    assert notes["sooner"].tolist() == pytest.approx([at, at + LATER, 0.0, at + LATER, 0.0])
+
+
 def test_nobody_waits_for_ever_for_those_who_make_room_in_turns():
     crowd = crowd_of(3.0, 4.0)
     notes = resolved(crowd, [1, 0], at=10.0)

@@ -10,6 +10,7 @@ from mesa_mobility.crowd.conflicts.places import (
     Body,
     Way,
     distances_to_way,
+    leaves_free,
     places_aside,
     places_to_set_out,
 )
@@ -39,6 +40,14 @@ def test_where_there_is_no_room_aside_they_walk_ahead():
     places = aside(0.8)
     assert places[0, 0] == pytest.approx(5.0 + 2.4, abs=0.1)
     assert places[0, 1] == pytest.approx(0.4, abs=0.2)
+
+
+def test_which_places_leave_a_way_free():
+    way = Way(Body(np.array([0.0, 0.0]), 0.3), np.array([[0.0, 0.0], [4.0, 0.0]]))
+    # Cores of 0.3 and 0.2 m and room of 0.1 m are 0.6 m.
+    places = np.array([[2.0, 0.59], [2.0, 0.61], [2.0, -0.61], [4.5, 0.0], [4.61, 0.0]])
+    assert leaves_free(places, 0.2, [way]).tolist() == [False, True, True, False, True]
+    assert leaves_free(places, 0.2, []).all()
 
 
 def test_a_place_where_somebody_stands_is_worth_a_little_way():
