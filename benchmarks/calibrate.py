@@ -22,7 +22,7 @@ from pages.blocks import give, table
 
 from mesa_mobility import MobilityMap, PedestrianType
 from mesa_mobility.commands.console import progress_bar
-from mesa_mobility.crowd.presets import PRESETS
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.plugins.registry import load_behavior
 from mesa_mobility.results.files import json_text

@@ -20,7 +20,7 @@ from typing import Any
 from blocks import give
 
 from mesa_mobility import MobilityMap
-from mesa_mobility.crowd.presets import PRESETS
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.mobility.map_data import CORE_RADIUS
 
 TABLES = {

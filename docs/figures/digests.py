@@ -33,7 +33,7 @@ from mesa_mobility import (
     PedestrianType,
     __version__,
 )
-from mesa_mobility.crowd.presets import PRESETS
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.populations import presets as populations
 
 DIGITS = 12
@@ -98,8 +98,10 @@ def settings_of(preset: str) -> list[Any]:
     """All that a preset says, and the settings of its terms and tactics."""
     chosen = PRESETS[preset]
     behaviours = [*chosen.make_terms(), *chosen.make_tactics(), *chosen.make_group_paces()]
+    numbers = chosen.numbers()
+    del numbers["settings"]  # those of the behaviours, which follow
     return [
-        chosen.numbers(),
+        numbers,
         chosen.make_target_choice().settings(),
         [[each.name, each.settings()] for each in behaviours],
     ]

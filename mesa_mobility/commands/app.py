@@ -16,6 +16,7 @@ from mesa_mobility.commands.export import export
 from mesa_mobility.commands.maps.app import app as maps
 from mesa_mobility.commands.plan import plan
 from mesa_mobility.commands.plugins import listing, new
+from mesa_mobility.commands.preset import preset
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
@@ -46,6 +47,7 @@ app.command("render", hidden=True)(export)
 app.command("replay")(replay)
 app.command("explain")(explain)
 app.command("plan")(plan)
+app.command("preset")(preset)
 app.add_typer(maps, name="map")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(new.app, name="new")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,8 +16,12 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.models.making import PresetName, Settings, split_settings
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
+
+if TYPE_CHECKING:
+    from mesa_mobility.experiments import Experiment
 
 FAILED = 1
 
@@ -50,6 +55,8 @@ def run(
         str | None,
         typer.Option(metavar="ADDRESS", help="Of a Dask scheduler, instead of processes."),
     ] = None,
+    settings: Settings = None,
+    preset: PresetName = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what would be run, and run nothing.")
     ] = False,
@@ -64,7 +71,7 @@ def run(
 
     if scheduler is not None and workers is not None:
         raise ModelError("--workers: a scheduler has its own workers, expected one of the two")
-    experiment = read_experiment(file)
+    experiment = _with_settings(read_experiment(file), settings or [], preset)
     place = store if store is not None else str(file.with_suffix(""))
     if dry_run:
         missing = count_missing(experiment, place)
@@ -129,6 +136,27 @@ def report(
     from mesa_mobility.experiments import open_store, write_report
 
     say(f"written to {write_report(open_store(store), out)}")
+
+
+def _with_settings(experiment: Experiment, settings: list[str], preset: str | None) -> Experiment:
+    """An experiment with more parameters that are the same in all runs."""
+    from mesa_mobility.crowd.presets.naming import as_value, number_named
+    from mesa_mobility.crowd.presets.shipped import is_preset_file, preset_of
+    from mesa_mobility.experiments.experiment import model_class, model_name
+    from mesa_mobility.plugins.parameters import chosen
+
+    own, numbers = split_settings(settings)
+    called = model_name(experiment.model)
+    fixed = {
+        **experiment.fixed,
+        **chosen(model_class(experiment.model), called, own),
+        **{name: as_value(name, number_named(name), text) for name, text in numbers.items()},
+    }
+    if preset is not None:
+        preset_of(preset)
+        # Workers may run in another folder.
+        fixed["preset"] = str(Path(preset).absolute()) if is_preset_file(preset) else preset
+    return replace(experiment, fixed=fixed)
 
 
 def _said(place: str, *, as_json: bool) -> dict[str, Any]:

@@ -30,6 +30,7 @@ from mesa_mobility.commands.models.making import (
     Settings,
     create_model,
     origin_of,
+    set_numbers,
 )
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
@@ -106,6 +107,7 @@ def run(
                 record=record or True,
             )
             use_behaviors(simulation, behaviors or [])
+            set_numbers(simulation, model, settings)
 
     import pandas as pd
 

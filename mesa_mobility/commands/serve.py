@@ -19,6 +19,7 @@ from mesa_mobility.commands.models.making import (
     Seed,
     Settings,
     create_model,
+    set_numbers,
 )
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.interrupts import INTERRUPTED
@@ -81,6 +82,7 @@ def serve(
             if not isinstance(simulation, PedestrianModel):
                 raise ModelError(f"model {model}: expected a subclass of PedestrianModel")
             use_behaviors(simulation, behaviors or [])
+            set_numbers(simulation, model, settings or [])
             run = Run(simulation, rate)
 
     def ready() -> None:

@@ -14,6 +14,7 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.models.making import Numbers, Rules, rules_given
 from mesa_mobility.commands.verify import (
     FAILED,
     AsJson,
@@ -35,6 +36,8 @@ def validate(
     ] = None,
     seeds: Seeds = 1,
     jobs: Jobs = None,
+    preset: Rules = None,
+    numbers: Numbers = None,
     as_json: AsJson = False,
     out: Annotated[
         Path | None,
@@ -56,16 +59,17 @@ def validate(
     from mesa_mobility.verification import run_cases
 
     experiments = chosen(names or [])
+    rules = rules_given(preset, numbers or [])
     if out is not None:
         check_writable(out, _files(experiments))
     check_report(report_file)
-    numbers = range(1, seeds + 1)
+    runs = range(1, seeds + 1)
     cases = [each for experiment in experiments for each in experiment.cases]
     with progress_bar(shown=not no_progress) as report:
-        results = run_cases(cases, numbers, jobs or available_processors(), report)
+        results = run_cases(cases, runs, jobs or available_processors(), report, rules=rules)
     verdicts = {
         experiment.name: judged(
-            experiment, [[results[each, seed] for each in experiment.cases] for seed in numbers]
+            experiment, [[results[each, seed] for each in experiment.cases] for seed in runs]
         )
         for experiment in experiments
     }
@@ -76,7 +80,7 @@ def validate(
     if report_file is not None:
         from mesa_mobility.validation.report import write_report
 
-        write_report(experiments, verdicts, seeds, report_file)
+        write_report(experiments, verdicts, seeds, report_file, rules)
         say(f"written to {report_file}")
     _print_table(experiments, verdicts)
     if as_json:

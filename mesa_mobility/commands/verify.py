@@ -14,6 +14,7 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.models.making import Numbers, Rules, rules_given
 from mesa_mobility.runs.processes import available_processors
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ def verify(
     ] = None,
     seeds: Seeds = 1,
     jobs: Jobs = None,
+    preset: Rules = None,
+    numbers: Numbers = None,
     as_json: AsJson = False,
     report_file: ReportFile = None,
     no_progress: NoProgress = False,
@@ -55,6 +58,7 @@ def verify(
 
     check_report(report_file)
     tests = suite(ids or [])
+    rules = rules_given(preset, numbers or [])
     entries = catalogue()
     with progress_bar(shown=not no_progress) as report:
         outcomes = verify(
@@ -64,11 +68,12 @@ def verify(
             caps=[name for name, entry in entries.items() if entry.cap],
             progress=report,
             drawn=report_file is not None,
+            rules=rules,
         )
     if report_file is not None:
         from mesa_mobility.verification.report import write_report
 
-        write_report(entries, outcomes, report_file)
+        write_report(entries, outcomes, report_file, rules)
         say(f"written to {report_file}")
     _print_table(entries, outcomes)
     failing = [name for name, outcome in outcomes.items() if outcome.verdict == "fail"]

@@ -33,8 +33,13 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.planning.explanation import WALL as WALL
     from mesa_mobility.crowd.planning.explanation import Explanation as Explanation
     from mesa_mobility.crowd.planning.explanation import Watch as Watch
-    from mesa_mobility.crowd.presets import PRESETS as PRESETS
-    from mesa_mobility.crowd.presets import Preset as Preset
+    from mesa_mobility.crowd.presets.files import read_preset as read_preset
+    from mesa_mobility.crowd.presets.files import write_preset as write_preset
+    from mesa_mobility.crowd.presets.given import model_rules as model_rules
+    from mesa_mobility.crowd.presets.naming import ModelParameter as ModelParameter
+    from mesa_mobility.crowd.presets.preset import Preset as Preset
+    from mesa_mobility.crowd.presets.provenance import Provenance as Provenance
+    from mesa_mobility.crowd.presets.shipped import PRESETS as PRESETS
     from mesa_mobility.crowd.tactics.deciding import Deciding as Deciding
     from mesa_mobility.crowd.tactics.deciding import Desired as Desired
     from mesa_mobility.crowd.tactics.route_choice import RouteChoice as RouteChoice

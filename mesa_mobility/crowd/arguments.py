@@ -11,7 +11,7 @@ from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.people.pedestrian import Pedestrian, check_pedestrian_class
-from mesa_mobility.crowd.presets import Preset, read_preset
+from mesa_mobility.crowd.presets.preset import Preset
 from mesa_mobility.crowd.scene import Scene, make_scene
 from mesa_mobility.crowd.state.fields import read_fields
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
@@ -32,7 +32,7 @@ MOST_FRAMES = 108_000
 def read_scene(
     floor_plan: FloorPlan,
     *,
-    preset: str | Preset,
+    rules: Preset,
     mobility_map: MobilityMap | str | Path | None,
     pedestrian_types: Sequence[PedestrianType] | None,
     population: Population | Mapping[str | PedestrianType, float] | str | None,
@@ -44,10 +44,9 @@ def read_scene(
     Warns of maps that have failed their examination or have never been examined.
 
     Raises:
-        ModelError: an unknown preset, or types, fields or a class of agents that do not fit.
+        ModelError: types, fields or a class of agents that do not fit.
         MapError: an unusable map file.
     """
-    rules = read_preset(preset)
     check_pedestrian_class(pedestrian_class)
     kinds = read_fields(fields, taken=[*dir(pedestrian_class), "row", *KERNEL_FIELDS])
     shares = None if population is None else Population.of(population)

@@ -15,6 +15,7 @@ from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.model import adding
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
+from mesa_mobility.crowd.model.parameters import parameters, rules_used, set_parameters
 from mesa_mobility.crowd.model.questions import blocked_by, decided, explain, under_way
 from mesa_mobility.crowd.model.reporters import add_agent_reporter, add_reporter
 from mesa_mobility.crowd.model.summary import summary
@@ -33,7 +34,7 @@ class PedestrianModel(CrowdModel):
 
     Args:
         floor_plan: where people walk.
-        preset: "default", "paper", or rules of one's own.
+        preset: "default", "paper", a TOML file, or rules of one's own.
         mobility_map: a map, its file, or None for the able-bodied one that ships; stands
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
@@ -51,7 +52,8 @@ class PedestrianModel(CrowdModel):
 
     Attributes:
         preset: name of the preset.
-        rules: the preset.
+        rules: the preset, with the numbers that were given to the model.
+        numbers: where the numbers of its behaviours come from; see ``parameters``.
         space: Mesa's continuous space with everybody inside.
         crowd: the crowd's arrays; see ``Crowd``.
         population: who has come and who is inside; see ``Population``.
@@ -103,6 +105,9 @@ class PedestrianModel(CrowdModel):
     blocked_by = blocked_by
     decided = decided
     explain = explain
+    parameters = parameters
+    rules_used = rules_used
+    set_parameters = set_parameters
     under_way = under_way
     save = save_model
     summary = summary

@@ -25,7 +25,7 @@ from mesa_mobility.crowd.planning.decision_order import select_due
 from mesa_mobility.crowd.planning.evaluation.term_table import compile_terms
 from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.presets import preset_named
+from mesa_mobility.crowd.presets.shipped import PRESETS
 from mesa_mobility.crowd.state.advance import move
 from mesa_mobility.crowd.state.aggregates import aggregate, split_active
 from mesa_mobility.crowd.state.departed import merge, move_on, walk_on
@@ -91,7 +91,7 @@ def compile_the_rest() -> None:
     merge(nobody, nobody, nobody)
     aggregate(nobody, 0, crowd, np.empty((0, 2)))
     split_active(nobody, crowd.records, nobody, nobody)
-    preset = preset_named("default")
+    preset = PRESETS["default"]
     for tactic in preset.make_tactics():
         tactic.compile_ahead()
     compile_terms(preset.make_terms())

@@ -11,7 +11,7 @@ import numpy as np
 from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
 from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.presets import Preset
+from mesa_mobility.crowd.presets.preset import Preset
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType

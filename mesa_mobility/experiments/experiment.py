@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from mesa_mobility.crowd.model_files import find_model
+from mesa_mobility.crowd.presets.naming import as_value, is_number_name, number_named
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.convergence import Precision
 from mesa_mobility.experiments.design.designs import Design, Grid
@@ -137,6 +138,7 @@ def check_parameters(experiment: Experiment) -> None:
     kind = model_class(experiment.model)
     called = model_name(experiment.model)
     taken = parameters_of(kind)
+    check_numbers(experiment)
     for name in experiment.column_types():
         if name in ("rng", "record"):
             raise ModelError(f"experiment: {name} is a parameter, but each run is given its own")
@@ -152,10 +154,30 @@ def check_parameters(experiment: Experiment) -> None:
         if name not in taken:
             raise ModelError(f"model {called}: its constructor does not take {name}")
     for name in experiment.column_types():
-        if name not in taken:
+        if is_number_name(name):
+            check_follows_rules(kind, called, name)
+        elif name not in taken:
             raise ModelError(
                 f"model {called}: unknown parameter {name!r}{did_you_mean(name, taken)}"
             )
+
+
+def check_numbers(experiment: Experiment) -> None:
+    """Raise ModelError for an unknown number of a behaviour, or a value that is out of range."""
+    names = [name for name in experiment.column_types() if is_number_name(name)]
+    known = {name: number_named(name) for name in names}
+    for index in range(len(experiment.design)) if names else ():
+        point = experiment.point(index)
+        for name in names:
+            as_value(name, known[name], point[name])
+
+
+def check_follows_rules(kind: type, called: str, name: str) -> None:
+    """Raise ModelError unless a class makes models whose behaviours have numbers."""
+    from mesa_mobility.crowd import PedestrianModel
+
+    if not (issubclass(kind, PedestrianModel) or getattr(kind, "makes_models", False)):
+        raise ModelError(f"model {called}: has no behaviours, expected no parameter {name!r}")
 
 
 def model_name(model: type | str) -> str:

@@ -9,6 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from mesa_mobility.crowd.presets.shipped import is_preset_file
 from mesa_mobility.plugins.parameters import Parameter
 from mesa_mobility.populations import Population
 from mesa_mobility.reports.versions import sha256_of
@@ -38,7 +39,10 @@ def given_files(taken: Mapping[str, Parameter], values: Mapping[str, Any]) -> di
     for name, parameter in taken.items():
         value = values.get(name, parameter.default)
         if isinstance(value, str | Path) and (
-            name == "mobility_map" or parameter.files is not None or Path in parameter.kinds
+            name == "mobility_map"
+            or (name == "preset" and is_preset_file(value))
+            or parameter.files is not None
+            or Path in parameter.kinds
         ):
             found[name] = Path(value)
     return found
@@ -73,7 +77,10 @@ def inputs_of(
     if plan := getattr(model, "floor_plan", None):
         text = json.dumps(plan.to_geojson(), sort_keys=True)
         found["floor plan as GeoJSON"] = f"sha256 {hashlib.sha256(text.encode()).hexdigest()}"
-    if preset := getattr(model, "preset", None):
+    # A model of another package need not have rules.
+    if callable(rules := getattr(model, "rules_used", None)):
+        found |= rules()
+    elif preset := getattr(model, "preset", None):
         found["preset"] = str(preset)
     # A model with a map of its own need not use the population that it has by default.
     given = given_population(taken, values)

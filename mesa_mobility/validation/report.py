@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 
+from mesa_mobility.crowd.presets.given import Given
 from mesa_mobility.reports.html import Page, picture
 from mesa_mobility.validation.experiment import Experiment
 from mesa_mobility.verification import Check, Verdict
@@ -16,6 +17,7 @@ def write_report(
     verdicts: Mapping[str, Verdict],
     seeds: int,
     path: str | os.PathLike[str],
+    rules: Given | None = None,
 ) -> None:
     """Write how crowds compare with measured ones as one HTML page, which needs no other file.
 
@@ -24,6 +26,7 @@ def write_report(
         verdicts: by the experiments' names.
         seeds: number of seeds.
         path: of the page.
+        rules: that models followed instead of the default preset.
 
     Raises:
         ResultsError: it cannot be written.
@@ -54,7 +57,7 @@ def write_report(
             page.picture(
                 "", picture(each.draw(verdict.figures)), f"Measured and simulated: {each.what}"
             )
-    computed_with(page, seeds)
+    computed_with(page, seeds, rules)
     page.write(path)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeAlias
 
+from mesa_mobility.crowd.presets.given import Given
 from mesa_mobility.runs.jobs import Failed, run_jobs
 from mesa_mobility.runs.workers import Processes
 from mesa_mobility.verification.drawings import first_run_drawn
@@ -50,6 +51,7 @@ def run_cases(
     progress: Callable[[str, float, float], None] | None = None,
     *,
     drawn: bool = False,
+    rules: Given | None = None,
 ) -> Mapping[tuple[Case, int], Figures]:
     """Run every case for every seed.
 
@@ -62,6 +64,7 @@ def run_cases(
         progress: called with the run just done, the effort so far, and the total effort; at first
             before any run.
         drawn: whether figures have a ``drawing`` of the first run that they are from.
+        rules: what models follow instead of the default preset.
     """
     todo = [(each, seed) for each in dict.fromkeys(cases) for seed in seeds]
     todo.sort(key=lambda unit: -unit[0].effort)
@@ -70,7 +73,7 @@ def run_cases(
     done = 0.0
     if progress is not None:
         progress(f"the first of {len(todo)} runs", done, total)
-    for each, seed, figures in run_units(todo, jobs, drawn=drawn):
+    for each, seed, figures in run_units(todo, jobs, drawn=drawn, rules=rules):
         results[each, seed] = figures
         done += each.effort
         if progress is not None:
@@ -79,21 +82,28 @@ def run_cases(
 
 
 def run_units(
-    units: Iterable[tuple[Case, int]], jobs: int, *, drawn: bool = False
+    units: Iterable[tuple[Case, int]],
+    jobs: int,
+    *,
+    drawn: bool = False,
+    rules: Given | None = None,
 ) -> Iterator[tuple[Case, int, Figures]]:
     """Run cases, each with its seed, and yield each result as soon as it is there.
 
     Units are begun in their order; one is taken when a process is free for it.
     """
-    for (each, seed), found in run_jobs(partial(_run, drawn), units, Processes(jobs)):
+    for (each, seed), found in run_jobs(
+        partial(_run, drawn, rules or Given()), units, Processes(jobs)
+    ):
         # A scenario that raises fails its own test, not the whole suite.
         yield each, seed, {"error": found.error} if isinstance(found, Failed) else found
 
 
-def _run(drawn: bool, unit: tuple[Case, int]) -> Figures:
+def _run(drawn: bool, rules: Given, unit: tuple[Case, int]) -> Figures:
     each, seed = unit
-    if not drawn:
-        return each(seed)
-    with first_run_drawn() as drawings:
-        figures = each(seed)
+    with rules.followed():
+        if not drawn:
+            return each(seed)
+        with first_run_drawn() as drawings:
+            figures = each(seed)
     return {**figures, "drawing": drawings[0]} if drawings else figures

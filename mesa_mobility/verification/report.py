@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import Any
 
+from mesa_mobility.crowd.presets.given import Given
 from mesa_mobility.mobility import shipped_map_path
 from mesa_mobility.reports.html import Page, picture
 from mesa_mobility.reports.versions import add_versions, machine, sha256_of, versions
@@ -22,7 +23,10 @@ _MOST_PICTURES = 3
 
 
 def write_report(
-    entries: Mapping[str, Entry], outcomes: Mapping[str, Outcome], path: str | os.PathLike[str]
+    entries: Mapping[str, Entry],
+    outcomes: Mapping[str, Outcome],
+    path: str | os.PathLike[str],
+    rules: Given | None = None,
 ) -> None:
     """Write what tests asked for and found as one HTML page, which needs no other file.
 
@@ -30,6 +34,7 @@ def write_report(
         entries: of the catalogue, by id.
         outcomes: by id; their drawings are shown.
         path: of the page.
+        rules: that models followed instead of the default preset.
 
     Raises:
         ResultsError: it cannot be written.
@@ -39,8 +44,8 @@ def write_report(
     page.text(
         f"Passed: {verdicts.count('pass')}. Failed: {verdicts.count('fail')}. Over a design cap "
         f"that measured crowds exceed too: {verdicts.count('cap')}. Every test "
-        "runs with the default preset; overlaps of bodies and steps through walls are counted on "
-        "the recorded tracks, and a single one fails the test."
+        "runs with one preset, which is listed below; overlaps of bodies and steps through walls "
+        "are counted on the recorded tracks, and a single one fails the test."
     )
     page.table(
         "Summary", ["test", "what", "verdict"],
@@ -48,16 +53,16 @@ def write_report(
     )  # fmt: skip
     for name, outcome in outcomes.items():
         _test(page, entries[name], outcome)
-    computed_with(page, seeds=max(len(outcome.seeds) for outcome in outcomes.values()))
+    computed_with(page, seeds=max(len(outcome.seeds) for outcome in outcomes.values()), rules=rules)
     page.write(path)
 
 
-def computed_with(page: Page, seeds: int) -> None:
-    """Add what the runs of a standard's tests were computed with."""
+def computed_with(page: Page, seeds: int, rules: Given | None) -> None:
+    """Add what the runs of a standard's tests were computed with, its rules included."""
     written = datetime.now(UTC).isoformat(timespec="minutes")
     add_versions(
         page,
-        versions(),
+        {**versions(), **(rules or Given()).used()},
         {"map able_bodied": sha256_of(shipped_map_path("able_bodied"))},
         machine(),
         f"{f'Seeds 1 to {seeds}' if seeds > 1 else 'Seed 1'}. Written {written}.",

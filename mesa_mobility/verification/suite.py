@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mesa_mobility.crowd.presets.given import Given
 from mesa_mobility.verification.cases import Case, Figures, run_cases
 from mesa_mobility.verification.checks import Check, Verdict, exactly
 from mesa_mobility.verification.drawings import Drawing
@@ -71,6 +72,7 @@ def verify(
     caps: Sequence[str] = (),
     progress: Callable[[str, float, float], None] | None = None,
     drawn: bool = False,
+    rules: Given | None = None,
 ) -> dict[str, Outcome]:
     """Run tests and judge them; cases that several tests share are run once.
 
@@ -81,9 +83,10 @@ def verify(
         caps: ids of tests whose reported figures are design caps of the standard.
         progress: called with the progress of the runs.
         drawn: whether outcomes have drawings.
+        rules: what models follow instead of the default preset.
     """
     cases = [each for test in tests.values() for each in test.cases]
-    results = run_cases(cases, seeds, jobs, progress, drawn=drawn)
+    results = run_cases(cases, seeds, jobs, progress, drawn=drawn, rules=rules)
     outcomes = {}
     for name, test in tests.items():
         runs = [[results[each, seed] for each in test.cases] for seed in seeds]

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from mesa_mobility.behaviors import PreferredVelocity, VelocityChange
 
 from mesa_mobility import MobilityMap, Options
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.crowd.options.repertoire import repertoire
-from mesa_mobility.crowd.presets import preset_named
 from mesa_mobility.errors import ModelError
 from tests.fixtures.options import (
     Chooser,
@@ -129,7 +129,7 @@ def test_a_bound_is_worth_something():
 
 @pytest.mark.parametrize("preferred", [0.0, 0.7, 1.34])
 def test_bounds_hold_for_the_groups_of_the_map_that_ships(preferred):
-    rules = preset_named("default")
+    rules = PRESETS["default"]
     known = repertoire((MobilityMap.load(None),), rules.durations, rules.shares)
     rng = np.random.default_rng(3)
     bounds = np.append(known.table.groups, len(known.table.options))

@@ -62,9 +62,7 @@ def test_every_long_command_can_be_silent(words):
 def test_verification_says_at_the_start_how_much_there_is(monkeypatch):
     from mesa_mobility.verification import cases
 
-    monkeypatch.setattr(
-        cases, "run_units", lambda todo, jobs, drawn: ((*unit, {}) for unit in todo)
-    )
+    monkeypatch.setattr(cases, "run_units", lambda todo, jobs, **_: ((*unit, {}) for unit in todo))
     told = []
     each = cases.case(time.sleep, effort=2.0)
     cases.run_cases([each], [1, 2], 1, lambda *report: told.append(report))

@@ -5,17 +5,25 @@ from __future__ import annotations
 import platform
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from mesa_mobility.commands.console import some_path
 from mesa_mobility.errors import ModelError
 
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.presets.given import Given
+
 MODEL_HELP = "Name of a model; `mesa-mobility models` lists them. Or FILE.py, or FILE.py:NAME."
 ModelName = Annotated[str, typer.Argument(metavar="MODEL", help=MODEL_HELP)]
 PresetName = Annotated[
-    str | None, typer.Option("--preset", help="default or paper; without it the model's own.")
+    str | None,
+    typer.Option(
+        "--preset",
+        metavar="NAME|FILE",
+        help="default, paper or a TOML file; without it the model's own.",
+    ),
 ]
 Seed = Annotated[
     int | None,
@@ -23,7 +31,26 @@ Seed = Annotated[
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the model; repeatable."),
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A parameter of the model, or a number of a behaviour (headway.time=0.6); repeatable.",
+    ),
+]
+Numbers = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A number of a behaviour, as headway.time=0.6; repeatable. "
+        "`mesa-mobility preset` lists them.",
+    ),
+]
+Rules = Annotated[
+    str | None,
+    typer.Option(
+        "--preset", metavar="NAME|FILE", help="paper or a TOML file, instead of the default preset."
+    ),
 ]
 Behaviors = Annotated[
     list[str] | None,
@@ -60,7 +87,8 @@ def create_model(
     Args:
         kind: its class.
         name: what the user calls it.
-        settings: texts NAME=VALUE.
+        settings: texts NAME=VALUE. Those with a dot in the name are numbers of behaviours;
+            ``set_numbers`` makes sure that all of them are there, once behaviours were added.
         map_file: a mobility map, or None for the model's own.
         preset: rules by which people move, or None for the model's own.
         record: what the model records; a `PedestrianModel` does so even where its constructor does
@@ -71,9 +99,12 @@ def create_model(
         ModelError: a parameter that the constructor does not take, or a value that it refuses.
     """
     from mesa_mobility import PedestrianModel
+    from mesa_mobility.crowd.presets.given import Given
+    from mesa_mobility.crowd.presets.naming import COMMAND_LINE
     from mesa_mobility.plugins.parameters import NOT_SETTABLE, OWN_OPTION, chosen, parameters
 
-    keywords = {**chosen(kind, name, settings), **keywords}
+    own, numbers = split_settings(settings)
+    keywords = {**chosen(kind, name, own), **keywords}
     if map_file is not None:
         keywords["mobility_map"] = str(map_file)
     if preset is not None:
@@ -93,7 +124,8 @@ def create_model(
         if key not in NOT_SETTABLE
     }
     try:
-        model = kind(**keywords)
+        with Given(None, numbers, COMMAND_LINE).followed():
+            model = kind(**keywords)
     except ModelError as error:
         parameter, colon, rest = str(error).partition(":")
         if not colon or parameter not in OWN_OPTION or parameter not in keywords:
@@ -103,6 +135,75 @@ def create_model(
     if recorded_later:
         model.start_recording(record)
     return model, given
+
+
+def split_settings(settings: Iterable[str]) -> tuple[list[str], dict[str, str]]:
+    """Settings of a model, and texts of numbers of behaviours by name, from texts NAME=VALUE.
+
+    Raises:
+        ModelError: a number is given twice, or without a value.
+    """
+    own: list[str] = []
+    numbers: dict[str, str] = {}
+    for setting in settings:
+        name, equals, value = (part.strip() for part in setting.partition("="))
+        if "." not in name:
+            own.append(setting)
+            continue
+        if not equals:
+            raise ModelError(f"--set {setting}: expected NAME=VALUE")
+        if name in numbers:
+            raise ModelError(f"--set {setting}: {name} is set twice")
+        numbers[name] = value
+    return own, numbers
+
+
+def set_numbers(model: Any, name: str, settings: Iterable[str]) -> None:
+    """Set numbers of the behaviours that a model has by now.
+
+    Args:
+        model: the model.
+        name: what the user calls it.
+        settings: texts NAME=VALUE; those without a dot in the name are none of behaviours.
+
+    Raises:
+        ModelError: an unknown name, a value out of range, or a model without behaviours.
+    """
+    from mesa_mobility import PedestrianModel
+    from mesa_mobility.crowd.presets.naming import COMMAND_LINE
+
+    _, numbers = split_settings(settings)
+    if not numbers:
+        return
+    if not isinstance(model, PedestrianModel):
+        raise ModelError(
+            f"model {name}: has no behaviours, expected no --set {next(iter(numbers))}"
+        )
+    model.set_parameters(numbers, COMMAND_LINE)
+
+
+def rules_given(preset: str | None, settings: Iterable[str]) -> Given:
+    """The rules that a command gives to all models that it makes.
+
+    Args:
+        preset: takes the place of the default one.
+        settings: texts NAME=VALUE of numbers of behaviours.
+
+    Raises:
+        ModelError: an unknown preset, an unknown name, or a value out of range.
+    """
+    from mesa_mobility.crowd.presets.given import Given
+    from mesa_mobility.crowd.presets.naming import COMMAND_LINE
+    from mesa_mobility.crowd.presets.shipped import preset_of
+
+    own, numbers = split_settings(settings)
+    if own:
+        raise ModelError(
+            f"--set {own[0]}: expected a number of a behaviour, such as headway.time=0.6"
+        )
+    given = Given(None if preset is None else preset_of(preset), numbers, COMMAND_LINE)
+    given.check()
+    return given
 
 
 def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
@@ -118,9 +219,25 @@ def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
             key: value if isinstance(value, plain) else str(value) for key, value in given.items()
         },
         "maps": map_files(simulation),
+        **_rules_of(simulation),
         "mesa_mobility": __version__,
         "versions": {
             "python": platform.python_version(),
             **{name: version(name) for name in ("mesa", "numpy", "numba", "scipy", "shapely")},
         },
     }
+
+
+def _rules_of(simulation: Any) -> dict[str, Any]:
+    """The digest of a model's preset, and the numbers that the command line has set."""
+    from mesa_mobility import PedestrianModel
+    from mesa_mobility.crowd.presets.naming import COMMAND_LINE
+
+    if not isinstance(simulation, PedestrianModel):
+        return {}
+    changed = {
+        name: str(each.value)
+        for name, each in simulation.parameters().items()
+        if each.source == COMMAND_LINE
+    }
+    return {"preset_sha256": simulation.numbers.base.digest, "set": changed}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesa_mobility.commands.models.behaviors import use_behaviors
-from mesa_mobility.commands.models.making import create_model, origin_of
+from mesa_mobility.commands.models.making import create_model, origin_of, set_numbers
 from mesa_mobility.crowd import Explanation, PedestrianModel, Watch
 from mesa_mobility.crowd.model_files import find_model
 from mesa_mobility.errors import ModelError, ResultsError
@@ -125,10 +125,11 @@ def _make(summary: Mapping[str, Any], name: Path, map_file: Path | None) -> Pede
             f"{name / 'summary.json'}: lacks {', '.join(missing)}, expected a run of this version"
         )
     kind = find_model(str(summary["model"]))
+    numbers = [f"{key}={value}" for key, value in summary.get("set", {}).items()]
     model, given = create_model(
         kind,
         str(summary["model"]),
-        (),
+        numbers,
         map_file=map_file,
         **_parameters(kind, summary["parameters"]),
         preset=summary["preset"] if "preset" in parameters(kind) else None,
@@ -138,14 +139,21 @@ def _make(summary: Mapping[str, Any], name: Path, map_file: Path | None) -> Pede
     if not isinstance(model, PedestrianModel):
         raise ModelError(f"model {summary['model']}: expected a subclass of PedestrianModel")
     use_behaviors(model, summary.get("behaviors", ()))
-    here = origin_of(given, model)["maps"]
+    set_numbers(model, str(summary["model"]), numbers)
+    now = origin_of(given, model)
+    if now["preset_sha256"] != summary.get("preset_sha256", now["preset_sha256"]):
+        raise ResultsError(
+            f"{name}: the run used the preset {summary['preset']} with sha256 "
+            f"{str(summary['preset_sha256'])[:12]}..., here it is {now['preset_sha256'][:12]}..."
+        )
+    here = now["maps"]
     for kind_name, was in summary["maps"].items():
-        now = here.get(kind_name, {})
-        if now.get("sha256") != was["sha256"]:
+        there = here.get(kind_name, {})
+        if there.get("sha256") != was["sha256"]:
             raise ResultsError(
                 f"{name}: people of type {kind_name!r} used {was['file']} (sha256 "
-                f"{str(was['sha256'])[:12]}...), here it is {now.get('file')} "
-                f"({str(now.get('sha256'))[:12]}...); --map gives another"
+                f"{str(was['sha256'])[:12]}...), here it is {there.get('file')} "
+                f"({str(there.get('sha256'))[:12]}...); --map gives another"
             )
     return model
 

@@ -19,7 +19,8 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility import distributions
 from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.journeys.visit import Visit
-from mesa_mobility.crowd.presets import Preset
+from mesa_mobility.crowd.presets.preset import Preset
+from mesa_mobility.crowd.presets.provenance import Provenance
 from mesa_mobility.crowd.state.fields import KINDS
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import ModelError
@@ -37,6 +38,7 @@ _DATACLASSES: dict[str, Any] = {
         SpeedZone,
         Source,
         Preset,
+        Provenance,
         PedestrianType,
         Visit,
         *(

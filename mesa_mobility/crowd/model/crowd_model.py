@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
@@ -30,7 +31,9 @@ from mesa_mobility.crowd.people.pedestrian import Pedestrian
 from mesa_mobility.crowd.people.space import space_of
 from mesa_mobility.crowd.planning.explanation import Watch
 from mesa_mobility.crowd.population import Population as People
-from mesa_mobility.crowd.presets import Preset
+from mesa_mobility.crowd.presets.given import now
+from mesa_mobility.crowd.presets.preset import Preset
+from mesa_mobility.crowd.presets.sources import Sources as NumberSources
 from mesa_mobility.crowd.running.blocking import Blockers
 from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.running.stall import StallWatch, stall_reason
@@ -87,7 +90,7 @@ class CrowdModel(mesa.Model):
         self,
         floor_plan: FloorPlan,
         *,
-        preset: str | Preset = "default",
+        preset: str | os.PathLike[str] | Preset = "default",
         mobility_map: MobilityMap | str | Path | None = None,
         pedestrian_types: Sequence[PedestrianType] | None = None,
         population: Population | Mapping[str | PedestrianType, float] | str | None = None,
@@ -103,9 +106,12 @@ class CrowdModel(mesa.Model):
         self.events_at_first = scheduled_events(self)
         self.frames_per_step = frames_per_step
         check_record(record)
+        given = now()
+        base = given.base(preset)
+        changes = given.changes(base)
         self._scene = scene = read_scene(
             floor_plan,
-            preset=preset,
+            rules=base.with_parameters(changes),
             mobility_map=mobility_map,
             pedestrian_types=pedestrian_types,
             population=population,
@@ -116,11 +122,14 @@ class CrowdModel(mesa.Model):
         self.floor_plan, self.pedestrian_types = floor_plan, scene.types
         self._agents_step = pedestrian_class.step is not mesa.Agent.step
         self.crowd, self.journeys = scene.crowd, scene.journeys
-        given: Any = self.rules.make_terms() if behaviors is None else behaviors
-        self.terms: list[CostTerm] = given
+        terms: Any = self.rules.make_terms() if behaviors is None else behaviors
+        self.terms: list[CostTerm] = terms
         self.speed_rules: list[SpeedRule] = []
         self.tactics: list[Tactic] = self.rules.make_tactics()
         self.target_choice = target_choice or self.rules.make_target_choice()
+        own = [] if behaviors is not None else self.terms
+        own = [*own, *self.tactics, *([] if target_choice else [self.target_choice])]
+        self.numbers = NumberSources(base, self.rules, changes, given.source, own)
         self.frame, self.time = 0, 0.0
         self.start_recording(record)
         self.watch: Watch | None = None

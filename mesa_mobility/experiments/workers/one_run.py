@@ -12,6 +12,8 @@ from functools import lru_cache
 from os import getpid
 from typing import Any
 
+from mesa_mobility.crowd.presets.given import Given
+from mesa_mobility.crowd.presets.naming import EXPERIMENT, is_number_name
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.design.points import Point, point_key, run_name, seed_of_run
 from mesa_mobility.experiments.experiment import model_class
@@ -72,10 +74,12 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
     wall, cpu = time.perf_counter(), time.process_time()
     model = None
     try:
-        model = _made(setup, point, row["seed"])
-        row["inputs"] = json.dumps(inputs_of(model, _class(setup.model)[1], point), sort_keys=True)
-        row["warning"] = _warning(model)
-        _advance(model, setup, wall)
+        with _rules_of(point).followed():
+            model = _made(setup, point, row["seed"])
+            taken = _class(setup.model)[1]
+            row["inputs"] = json.dumps(inputs_of(model, taken, point), sort_keys=True)
+            row["warning"] = _warning(model)
+            _advance(model, setup, wall)
         row["status"] = _status(model)
         row |= _figures(model, set(row), occupancy=setup.occupancy)
     except TimedOut as error:
@@ -139,15 +143,25 @@ def _class(model: type | str) -> tuple[type, dict[str, Any]]:
 
 def _made(setup: Setup, point: Point, seed: int) -> Any:
     kind, taken = _class(setup.model)
-    keywords: dict[str, Any] = dict(point)
-    for name, value in point.items():
+    keywords: dict[str, Any] = {k: v for k, v in point.items() if not is_number_name(k)}
+    for name, value in keywords.items():
         # A text for a parameter that takes none stands for a value, as with --set.
         known = taken.get(name)
         if isinstance(value, str) and known is not None and known.kinds and str not in known.kinds:
             keywords[name] = known.convert(value)
     if setup.trajectories:
         keywords["record"] = True
-    return kind(**keywords, rng=seed)
+    model = kind(**keywords, rng=seed)
+    if _has_pedestrians(model):
+        # Those of behaviours that the model has beside its preset's.
+        model.set_parameters(_rules_of(point).values, EXPERIMENT)
+    return model
+
+
+def _rules_of(point: Point) -> Given:
+    """The numbers of behaviours at a point."""
+    values = {name: value for name, value in point.items() if is_number_name(name)}
+    return Given(None, values, EXPERIMENT)
 
 
 def _advance(model: Any, setup: Setup, began: float) -> None:

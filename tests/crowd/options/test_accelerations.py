@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.crowd.options.capability import Capability
-from mesa_mobility.crowd.presets import PRESETS
 from mesa_mobility.mobility.standing.accelerations import GENTLE, peak_accelerations
 from tests.fixtures.maps import STANDING, make_map, shipped_map, stand, straight, through
 

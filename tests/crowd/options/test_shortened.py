@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mesa_mobility import Capability
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.crowd.options.repertoire import repertoire
-from mesa_mobility.crowd.presets import preset_named
 from tests.fixtures.maps import (
     STANDING,
     WALKING,
@@ -196,13 +196,13 @@ def test_any_map(seed, shares):
 
 @pytest.mark.thorough
 def test_the_map_that_ships_with_the_shares_of_the_default_preset():
-    rules = preset_named("default")
+    rules = PRESETS["default"]
     known = repertoire((shipped_map(),), rules.durations, rules.shares)
     check(known.capabilities[0], rules.shares)
 
 
 def test_the_paper_has_none():
-    rules = preset_named("paper")
+    rules = PRESETS["paper"]
     capability = Capability(shipped_map(), rules.durations, rules.shares)
     assert (capability.parts.share == 1.0).all()
     assert len(capability.table.options) == (shipped_map().durations == 45).sum()
