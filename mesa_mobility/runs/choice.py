@@ -15,7 +15,7 @@ def workers_for(executor: Any, count: int | None) -> tuple[Workers, ExitStack]:
     """Workers as ``run_experiment`` is asked for them, and what is to be closed after them.
 
     Args:
-        executor: see ``run_experiment``.
+        executor: see ``run_experiment``; or workers that somebody has already, and closes.
         count: of workers; None for one a processor.
 
     Raises:
@@ -24,6 +24,8 @@ def workers_for(executor: Any, count: int | None) -> tuple[Workers, ExitStack]:
     if count is not None and (isinstance(count, bool) or not isinstance(count, int) or count < 1):
         raise ModelError(f"workers is {count!r}, expected 1 or more")
     closing = ExitStack()
+    if isinstance(executor, Serial | Futures):
+        return executor, closing
     workers: Workers
     if executor == "serial":
         workers = Serial()

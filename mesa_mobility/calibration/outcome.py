@@ -1,0 +1,135 @@
+"""What a calibration has found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from mesa_mobility.calibration.task import Task
+from mesa_mobility.crowd.presets.preset import Preset
+from mesa_mobility.crowd.presets.provenance import Provenance
+from mesa_mobility.experiments.intervals import Estimate
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TRAINED, NEW_SEEDS, NEW_DATA = "training", "new seeds", "held-out data"
+"""Data and seeds that the search has seen; training data with new seeds; data held out."""
+
+
+@dataclass(frozen=True)
+class Generation:
+    """One generation of the search.
+
+    Attributes:
+        numbers: the sets that were tried, values by name.
+        costs: of each, small is good.
+        failed: how many sets had a run that failed.
+        middle: of the distribution after it.
+    """
+
+    numbers: Sequence[dict[str, float]]
+    costs: Sequence[float]
+    failed: int
+    middle: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A distance with the numbers at the start and with those found.
+
+    Attributes:
+        part: "training" (data and seeds of the last generation), "new seeds" (training data, seeds
+            that the search has not had) or "held-out data" (the same seeds).
+        scenario: name of the scenario; empty for what the search makes small, over all of them.
+        distance: name of the distance.
+        start: mean over the seeds at the start, with its interval.
+        found: the same of the numbers found.
+        change: of the difference, found less start, seed by seed.
+        failed: runs of either that failed, which do not count.
+    """
+
+    part: str
+    scenario: str
+    distance: str
+    start: Estimate
+    found: Estimate
+    change: Estimate
+    failed: int
+
+    @property
+    def verdict(self) -> str:
+        """Whether the numbers found are better, worse, or neither beyond the scatter of seeds."""
+        low, high = self.change.low, self.change.high
+        if low is None or high is None:
+            return "one seed"
+        return "better" if high < 0.0 else "worse" if low > 0.0 else "no difference"
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """The outcome of a calibration.
+
+    Attributes:
+        task: what was asked for.
+        store: path or URL of its folder.
+        began: the day on which it began.
+        values: the numbers found, by name.
+        history: the generations of the search.
+        figures: distances at the start and in the end, on training and held-out data.
+    """
+
+    task: Task
+    store: str
+    began: str
+    values: dict[str, float]
+    history: tuple[Generation, ...]
+    figures: tuple[Figure, ...]
+
+    @cached_property
+    def preset(self) -> Preset:
+        """The preset at the start with the numbers found, and where they come from.
+
+        Numbers of behaviours that the preset does not name are left out.
+        """
+        known = self.task.preset.parameters()
+        changed = self.task.preset.with_parameters(
+            {name: value for name, value in self.values.items() if name in known}
+        )
+        figures = {
+            f"{each.part}: {each.distance}" + (f", {each.scenario}" if each.scenario else ""): (
+                each.found.value
+            )
+            for each in self.figures
+            if each.found.value is not None
+        }
+        provenance = Provenance(
+            date=self.began,
+            command="mesa_mobility.calibration.calibrate",
+            data=self.task.files,
+            figures=figures,
+        )
+        return replace(changed, name=f"{changed.name}, calibrated", provenance=provenance)
+
+    def frame(self) -> pd.DataFrame:
+        """The figures as a table, a row each."""
+        import pandas as pd
+
+        rows = [
+            {
+                "part": each.part,
+                "scenario": each.scenario,
+                "distance": each.distance,
+                "start": each.start.value,
+                "found": each.found.value,
+                "change": each.change.value,
+                "change_low": each.change.low,
+                "change_high": each.change.high,
+                "verdict": each.verdict,
+                "failed": each.failed,
+            }
+            for each in self.figures
+        ]
+        return pd.DataFrame(rows)
