@@ -39,6 +39,7 @@ from mesa_mobility.crowd.checkpoint.plain import NotPlain, Packer, Unpacker, set
 from mesa_mobility.crowd.hooks import Plugin
 from mesa_mobility.crowd.model.clock import scheduled_events, set_clock
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
+from mesa_mobility.crowd.presets.shipped import PRESETS
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.mapfile import shipped_map_path
@@ -247,6 +248,9 @@ def _pack_arguments(model: CrowdModel, packer: Packer) -> tuple[dict[str, Any], 
             raise ModelError(
                 f"{type(model).__name__}: made with *{parameter.name}, expected arguments by name"
             )
+    # Files change, and blocks of rules end.
+    if "preset" in signature.parameters and model.rules != PRESETS.get(model.preset):
+        given["preset"] = model.rules
     references: list[tuple[object, Any]] = []
     if any(_may_hold_a_map(value) for value in given.values()):
         references.append((MobilityMap.load(), ("shipped", SHIPPED)))

@@ -14,12 +14,14 @@ def compile_once(model: type | str) -> None:
     """Compile what a run needs, unless it is in the cache; other processes wait and then read.
 
     Args:
-        model: class or name; nothing is compiled for models without pedestrians.
+        model: class or name; nothing is compiled for models that neither are nor make models with
+            pedestrians.
     """
     from mesa_mobility.compiled.cache import folder
     from mesa_mobility.crowd import PedestrianModel
 
-    if not issubclass(model_class(model), PedestrianModel):
+    kind = model_class(model)
+    if not (issubclass(kind, PedestrianModel) or getattr(kind, "makes_models", False)):
         return
     place = folder()
     if place is None:  # before the first run, whose time may be limited
