@@ -11,6 +11,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mesa_mobility.calibration.calibrate import calibrate as calibrate
     from mesa_mobility.calibration.outcome import Calibrated as Calibrated
+    from mesa_mobility.calibration.outcome import Figure as Figure
+    from mesa_mobility.calibration.outcome import Generation as Generation
     from mesa_mobility.calibration.settings import Distance as Distance
     from mesa_mobility.calibration.settings import Free as Free
     from mesa_mobility.calibration.settings import HeldOut as HeldOut

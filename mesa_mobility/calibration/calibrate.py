@@ -92,10 +92,12 @@ def calibrate(
         runs = Runs(task, place, crew)
         history = _searched(task, optimiser, runs)
         figures = judged(task, runs, optimiser.middle, seeds_of(task, len(history) - 1))
-    found = Calibrated(task, place, began, optimiser.middle, tuple(history), figures)
+    found = Calibrated(
+        place, began, task.preset, task.files, optimiser.middle, tuple(history), figures
+    )
     if folder.local:
         write_preset(found.preset, folder.path(PRESET))
-        write_report(found, folder.path(REPORT))
+        write_report(found, task, folder.path(REPORT))
     return found
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from mesa_mobility.calibration.task import Task
 from mesa_mobility.crowd.presets.preset import Preset
 from mesa_mobility.crowd.presets.provenance import Provenance
 from mesa_mobility.experiments.intervals import Estimate
@@ -73,17 +72,19 @@ class Calibrated:
     """The outcome of a calibration.
 
     Attributes:
-        task: what was asked for.
         store: path or URL of its folder.
         began: the day on which it began.
+        base: the preset at the start.
+        data: sha256 of the files with measured data, by name.
         values: the numbers found, by name.
         history: the generations of the search.
         figures: distances at the start and in the end, on training and held-out data.
     """
 
-    task: Task
     store: str
     began: str
+    base: Preset
+    data: Mapping[str, str]
     values: dict[str, float]
     history: tuple[Generation, ...]
     figures: tuple[Figure, ...]
@@ -94,8 +95,8 @@ class Calibrated:
 
         Numbers of behaviours that the preset does not name are left out.
         """
-        known = self.task.preset.parameters()
-        changed = self.task.preset.with_parameters(
+        known = self.base.parameters()
+        changed = self.base.with_parameters(
             {name: value for name, value in self.values.items() if name in known}
         )
         figures = {
@@ -108,7 +109,7 @@ class Calibrated:
         provenance = Provenance(
             date=self.began,
             command="mesa_mobility.calibration.calibrate",
-            data=self.task.files,
+            data=self.data,
             figures=figures,
         )
         return replace(changed, name=f"{changed.name}, calibrated", provenance=provenance)

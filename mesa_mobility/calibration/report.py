@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from mesa_mobility.calibration.outcome import NEW_DATA, NEW_SEEDS, TRAINED, Calibrated
+from mesa_mobility.calibration.task import Task
 from mesa_mobility.reports.html import Page, picture
 from mesa_mobility.reports.versions import add_versions, machine, versions
 
@@ -15,17 +16,17 @@ _SAYS = {
 }
 
 
-def write_report(found: Calibrated, path: str | os.PathLike[str]) -> None:
+def write_report(found: Calibrated, task: Task, path: str | os.PathLike[str]) -> None:
     """Write a calibration as one HTML page, which needs no other file.
 
     Args:
         found: the outcome.
+        task: what was asked for.
         path: of the page.
 
     Raises:
         ResultsError: it cannot be written.
     """
-    task = found.task
     page = Page(f"Calibration of the preset {task.preset.name}")
     tried = sum(len(each.numbers) for each in found.history)
     failed = sum(each.failed for each in found.history)
