@@ -49,11 +49,7 @@ class Given:
         return preset_of(asked)
 
     def changes(self, preset: Preset) -> dict[str, Any]:
-        """The values for behaviours that a preset has; the others are for those of a model.
-
-        Raises:
-            ModelError: one of these behaviours has no such number, or takes no such value.
-        """
+        """The values for behaviours that a preset has; the others are for those of a model."""
         labels = {name.partition(".")[0] for name in preset.parameters()} if self.values else set()
         return {
             name: value for name, value in self.values.items() if name.partition(".")[0] in labels
