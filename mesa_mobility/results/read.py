@@ -14,11 +14,11 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.plugins.formats import READ
 from mesa_mobility.results.formats.output_format import OUTPUTS
 from mesa_mobility.results.reading.faults import faults_of, sorted_once
-from mesa_mobility.results.reading.headings import headings
 from mesa_mobility.results.reading.pedpy_files import READERS, read_with_pedpy
 from mesa_mobility.results.reading.rows import Reading, Rows
 from mesa_mobility.results.reading.units import UNITS, unit_of
 from mesa_mobility.results.tracks import Tracks
+from mesa_mobility.velocities import headings
 
 LARGEST = 10_000_000
 """Largest number of a person or frame: arrays have an entry for each."""
@@ -46,6 +46,7 @@ def read_columns(
         unit,
         unit_from,
         "argument" if found.frame_rate is None else "file",
+        "way" if rows.heading is None else "file",
         (*rows.faults, *faults_of(rows, rate)),
     )
     for line in reading.warnings():

@@ -62,6 +62,7 @@ class Reading:
         unit_from: how the unit is known: ``"file"``, ``"argument"``, or the spacing and the speeds
             by which it was guessed.
         frame_rate_from: how the frame rate is known: ``"file"`` or ``"argument"``.
+        headings_from: ``"file"``, or ``"way"`` if they are the direction of travel.
         faults: what is wrong with the file, in its order. Rows that cannot be read and rows that
             repeat a person and frame are left out; gaps and jumps stay as they are.
     """
@@ -70,6 +71,7 @@ class Reading:
     unit: str
     unit_from: str
     frame_rate_from: str
+    headings_from: str = "file"
     faults: tuple[Fault, ...] = ()
 
     def of_kind(self, kind: str) -> list[Fault]:

@@ -1,4 +1,4 @@
-"""Velocities and directions of tracks, from earlier frames alone."""
+"""Velocities and directions of measured tracks, from earlier frames alone."""
 
 from __future__ import annotations
 
@@ -18,25 +18,29 @@ def velocities(
     frame: NDArray[np.int64],
     places: FloatArray,
     frame_rate: float,
-    window: float = WINDOW_S,
+    *,
+    ahead: bool = False,
 ) -> tuple[FloatArray, FloatArray]:
-    """Mean velocity of everybody in the time before each row.
+    """Mean velocity of everybody in the 0.8 s before each row.
 
     Args:
         person: (n,) sorted.
         frame: (n,) rising for each person.
         places: (n, 2) metres.
         frame_rate: frames a second.
-        window: seconds, at most so long.
+        ahead: in the 0.8 s after each row instead.
 
     Returns:
         (n, 2) m/s, 0 in the first row of each person, and the (n,) seconds over which each was
-        taken, less than the window at the begin of a track.
+        taken, less than 0.8 at the begin of a track (``ahead``: the last row, and the end).
     """
+    if ahead:
+        found, seconds = velocities(-person[::-1], -frame[::-1], places[::-1], frame_rate)
+        return -found[::-1], seconds[::-1]
     key = (person.astype(np.int64) << 32) + frame
-    starts = np.flatnonzero(np.diff(person, prepend=-1))
+    starts = np.flatnonzero(np.diff(person, prepend=person[:1] - 1))
     own = np.repeat(starts, np.diff(starts, append=len(person)))
-    earlier = np.searchsorted(key, key - max(round(window * frame_rate), 1))
+    earlier = np.searchsorted(key, key - max(round(WINDOW_S * frame_rate), 1))
     earlier = np.maximum(earlier, own)
     seconds = (frame - frame[earlier]) / frame_rate
     way = places - places[earlier]
