@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 
 
 def relative_difference(measured: ArrayLike, simulated: ArrayLike) -> FloatArray:
-    """Euclidean relative difference, ERD = |E - m| / |E|: 0 for equal curves.
+    """Euclidean relative difference, ERD = ``|E - m| / |E|``: 0 for equal curves.
 
     Args:
         measured: (..., n).
@@ -33,7 +33,7 @@ def relative_difference(measured: ArrayLike, simulated: ArrayLike) -> FloatArray
 
 
 def projection_coefficient(measured: ArrayLike, simulated: ArrayLike) -> FloatArray:
-    """Euclidean projection coefficient, EPC = <E, m> / |m|^2: 1 for equal curves.
+    """Euclidean projection coefficient, EPC = ``<E, m> / |m|^2``: 1 for equal curves.
 
     It is the factor by which the simulated curve comes nearest to the measured one.
 
