@@ -146,7 +146,8 @@ class Dynamics(Saved):
             self._take_decisions()
         full_second = (now // FRAMES_A_SECOND + 1) * FRAMES_A_SECOND
         end = min(end, max(self._next, now + 1), full_second)
-        if model.recorder is not None or model.sources or self._plan_has_changed:
+        expecting = len(model.sources) > 0 or model.sources.expecting
+        if model.recorder is not None or expecting or self._plan_has_changed:
             end = now + 1
         model.frame = end
         people.departed.move(end, crowd)
@@ -228,8 +229,14 @@ class Dynamics(Saved):
         )
 
     def _let_in(self) -> None:
-        """Insert arrivals of the sources where there is room."""
-        model = self._model
+        """Insert arrivals of the sources, and measured people, where there is room."""
+        model, arrivals = self._model, self._model.sources.arrivals
+        for index in arrivals.due(model.frame):
+            new, kind = arrivals.newcomer(index), int(arrivals.records["type_index"][index])
+            place = model.population.first_free(arrivals.places(index), kind, new, model.frame)
+            if place is not None:
+                [person] = self.insert([place], new)
+                arrivals.let_in(index, person.row, place, model.frame)
         for inflow in model.sources:
             inflow.count(model.frame)
             while inflow.waiting:

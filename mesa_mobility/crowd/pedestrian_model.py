@@ -17,6 +17,7 @@ from mesa_mobility.crowd.model import adding
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.model.parameters import parameters, rules_used, set_parameters
 from mesa_mobility.crowd.model.questions import blocked_by, decided, explain, under_way
+from mesa_mobility.crowd.model.replaying import replay
 from mesa_mobility.crowd.model.reporters import add_agent_reporter, add_reporter
 from mesa_mobility.crowd.model.summary import summary
 from mesa_mobility.crowd.people.pedestrian import last_number, number_from
@@ -100,6 +101,7 @@ class PedestrianModel(CrowdModel):
     # Functions of a model are methods as they are.
     add_pedestrians = adding.add_pedestrians
     add_source = adding.add_source
+    replay = replay
     add_reporter = add_reporter
     add_agent_reporter = add_agent_reporter
     blocked_by = blocked_by

@@ -15,6 +15,11 @@ from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments.design.points import check_whole
 from mesa_mobility.experiments.intervals import Estimate, check_confidence, runs_for_quantile
 from mesa_mobility.experiments.observed import estimate
+from mesa_mobility.results.distances.functional import (
+    projection_coefficient,
+    relative_difference,
+    secant_cosine,
+)
 
 _FIGURE = re.compile(r"(?P<how>mean|p[1-9]\d?) (?P<column>\w+)")
 _GROWTH = 1.25
@@ -259,21 +264,13 @@ def functional_changes(means: NDArray[np.float64]) -> NDArray[np.float64]:
         means: (n, seconds) curves, each of which is compared with the one before.
     """
     before, after = means[:-1], means[1:]
-    size2 = np.sum(before**2, axis=1)
-    window = max(1, means.shape[1] // 20)
-    rise_b, rise_a = (
-        before[:, window:] - before[:, :-window],
-        after[:, window:] - after[:, :-window],
+    changes = np.column_stack(
+        [
+            relative_difference(before, after),
+            projection_coefficient(after, before),
+            secant_cosine(before, after),
+        ]
     )
-    slopes = np.sqrt(np.sum(rise_b**2, axis=1) * np.sum(rise_a**2, axis=1))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        changes = np.column_stack(
-            [
-                np.sqrt(np.sum((after - before) ** 2, axis=1) / size2),
-                np.sum(after * before, axis=1) / size2,
-                np.sum(rise_a * rise_b, axis=1) / slopes,
-            ]
-        )
     # Curves without anybody, or without any change, are equal if they differ in nothing.
     equal = np.all(before == after, axis=1)
     changes[equal] = [0.0, 1.0, 1.0]

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mesa_mobility.results.decisions import Decisions
+    from mesa_mobility.results.reading.rows import Reading
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
@@ -45,6 +46,7 @@ class Tracks:
     person_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     fields: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     decisions: Decisions | None = None
+    reading: Reading | None = None
 
     def __post_init__(self) -> None:
         columns = checked_columns({name: getattr(self, name) for name in COLUMNS}, self.fields)

@@ -46,6 +46,7 @@ class Trajectories(Tracks):
             people without one.
         fields: (n,) values of each field that the model declares for its people, by name.
         decisions: who has taken which option, if that was recorded; bodies are drawn from it.
+        reading: how the file was read from which they come, and what is wrong with it.
 
     Raises:
         ResultsError: columns of unequal length, values that are not finite, a person twice in
@@ -86,6 +87,39 @@ class Trajectories(Tracks):
             fields=arrays,
             decisions=Decisions.of(model) if getattr(model, "decisions", None) else None,
         )
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        unit: str | None = None,
+        frame_rate: float | None = None,
+    ) -> Self:
+        """Tracks from a file, measured or simulated.
+
+        Reads text of the Juelich data archive (``.txt``), JuPedSim's databases (``.sqlite``), our
+        own Parquet, formats of plug-ins, and through PedPy the archive's HDF5 (``.h5``) and files
+        of Vadere, Viswalk, Pathfinder and crowd:it. Headings are the direction of travel over the
+        last 0.8 s if the file has none; see ``mesa_mobility.velocities``.
+
+        Warnings of one line say that the unit was guessed, which rows cannot be read or repeat a
+        frame (they are left out), and where people are missing or jump (rows stay). ``reading``
+        keeps all of it.
+
+        Args:
+            path: the file.
+            unit: of its coordinates: ``"m"``, ``"cm"`` or ``"mm"``. By default the file's own if it
+                says so, otherwise that in which spacing and speeds are most like people's.
+            frame_rate: frames a second, if the file does not say so.
+
+        Raises:
+            ResultsError: no such file, of no known format, or damaged; no frame rate; a unit or
+                frame rate other than the file's; a unit in which people would be faster than any
+                sprint or their heads less than 0.1 m apart.
+        """
+        from mesa_mobility.results.read import read_columns
+
+        return cls(**read_columns(path, unit, frame_rate))
 
     def poses(
         self, person: int, frames: ArrayLike | None = None, *, bank: PoseBank | None = None

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, Source
+from mesa_mobility.results.measures.lanes import lane_order
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict, case
@@ -23,7 +24,6 @@ FloatArray = NDArray[np.float64]
 LENGTH, WIDTH = 32.0, 4.0
 BOX = box(12.0, 0.0, 20.0, WIDTH)
 """Measuring area of speed, density and lanes."""
-ROW_M = 0.4
 ENTRY_M = (0.6, 1.6)
 """Distance of newcomers from either end, metres, clear of people who are just leaving."""
 DENSITIES = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75)
@@ -105,24 +105,6 @@ def _in_box(run: Run, sign: FloatArray, shuffle: np.random.Generator) -> dict[st
         "lane_order": float(np.nanmean(order)) if len(start) else None,
         "lane_order_shuffled": float(np.nanmean(shuffled)) if len(start) else None,
     }
-
-
-def lane_order(across: FloatArray, direction: FloatArray) -> float:
-    """How well people of one direction keep to rows of their own (Rex and Loewen 2007).
-
-    Mean over people of ((a - b) / (a + b))^2, where a and b people of either direction are in the
-    same row, 0.4 m wide: 1 in perfect lanes.
-
-    Args:
-        across: (n,) metres from the middle of the corridor.
-        direction: (n,) +1 or -1.
-    """
-    if not len(across):
-        return float("nan")
-    _, row = np.unique(np.floor(across / ROW_M), return_inverse=True)
-    net = np.bincount(row, direction)
-    total = np.bincount(row)
-    return float(np.mean(((net / total) ** 2)[row]))
 
 
 def judge(runs: Runs) -> Verdict:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.insertion.arrivals import Arrivals
 from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_types
 from mesa_mobility.crowd.insertion.source import MOST_PEOPLE, Source
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
@@ -142,11 +143,15 @@ class Sources(Sequence[Inflow], Saved):
 
     Args:
         scene: the floor and what people can do on it.
+
+    Attributes:
+        arrivals: measured people who come at recorded times.
     """
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self._inflows: list[Inflow] = []
+        self.arrivals = Arrivals()
 
     @overload
     def __getitem__(self, index: int) -> Inflow: ...
@@ -162,14 +167,21 @@ class Sources(Sequence[Inflow], Saved):
 
     def members(self) -> Mapping[str, Kind]:
         """What the members of ``state`` are."""
-        return {"inflows": Several(Each(Object(Source), Members(Inflow.saved)))}
+        return {
+            "inflows": Several(Each(Object(Source), Members(Inflow.saved))),
+            "arrivals": Members(Arrivals.saved),
+        }
 
     def state(self) -> dict[str, Any]:
         """The sources, and who has come by each."""
-        return {"inflows": [(each.source, each.state()) for each in self._inflows]}
+        return {
+            "inflows": [(each.source, each.state()) for each in self._inflows],
+            "arrivals": self.arrivals.state(),
+        }
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given."""
+        self.arrivals.restore(state["arrivals"])
         del self._inflows[len(state["inflows"]) :]
         for number, (source, inflow) in enumerate(state["inflows"]):
             if number == len(self._inflows):
@@ -178,8 +190,9 @@ class Sources(Sequence[Inflow], Saved):
 
     @property
     def expecting(self) -> bool:
-        """Whether a source has more people to come."""
-        return not all(inflow.finished for inflow in self._inflows)
+        """Whether more people are to come."""
+        finished = all(inflow.finished for inflow in self._inflows)
+        return self.arrivals.expecting or not finished
 
     @property
     def endless(self) -> bool:

@@ -25,6 +25,8 @@ from mesa_mobility.populations import Population
 class Newcomers:
     """Newcomers, described as in ``PedestrianModel.add_pedestrians``.
 
+    Those with ``velocities``, (n, 2) m/s, come in moving, and need ``headings``.
+
     Raises:
         ModelError: exits that are one text, a route that is one stop, a loop without a route, or a
             group without a name.
@@ -40,6 +42,7 @@ class Newcomers:
     type_index: ArrayLike | None = None
     population: Population | None = None
     fields: Mapping[str, ArrayLike] = field(default_factory=dict)
+    velocities: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.exits, str):

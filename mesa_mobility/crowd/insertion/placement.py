@@ -45,7 +45,7 @@ def place_newcomers(
     count: int,
     present: NDArray[np.int64],
 ) -> NDArray[np.int64]:
-    """Put people on the floor, standing.
+    """Put people on the floor, standing or moving.
 
     Args:
         scene: the floor and what people can do on it.
@@ -112,7 +112,31 @@ def place_newcomers(
         raise
     for name, values in fields.items():
         scene.crowd.fields[name][rows] = values
+    if new.velocities is not None:
+        _set_moving(scene, rows, kinds, new, rng)
     return rows
+
+
+def _set_moving(
+    scene: Scene,
+    rows: NDArray[np.int64],
+    kinds: NDArray[np.int64],
+    new: Newcomers,
+    rng: np.random.Generator,
+) -> None:
+    """Let newcomers have just ended movements with their velocities, and begin the next."""
+    crowd, found = scene.crowd, scene.repertoire
+    velocities = np.asarray(new.velocities, dtype=np.float64)
+    headings = np.asarray(new.headings, dtype=np.float64)
+    c, s = np.cos(headings), np.sin(headings)
+    ahead = np.column_stack(
+        [velocities[:, 0] * c + velocities[:, 1] * s, velocities[:, 1] * c - velocities[:, 0] * s]
+    )
+    crowd.vx[rows], crowd.vy[rows] = velocities.T
+    for kind in distinct(kinds):
+        own = kinds == kind
+        clusters = found.capabilities[kind].clusters_at(ahead[own], rng)
+        crowd.cluster[rows[own]] = found.first_cluster[kind] + clusters
 
 
 def _check_headings(new: Newcomers, n: int) -> None:

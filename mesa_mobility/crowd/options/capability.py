@@ -7,16 +7,27 @@ The component through which a pedestrian consults its type's mobility map
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.option_groups import alike, group
 from mesa_mobility.crowd.options.shortened import with_shortened
-from mesa_mobility.crowd.options.table import Parts, option_table, padded_paths
+from mesa_mobility.crowd.options.table import (
+    FRAME_SECONDS,
+    SAMPLE_FRAMES,
+    Parts,
+    option_table,
+    padded_paths,
+)
 from mesa_mobility.errors import ModelError
 from mesa_mobility.mobility import MobilityMap
 from mesa_mobility.mobility.standing.accelerations import has_acceleration, peak_accelerations
+
+ALIKE = 0.05
+"""Difference of velocities at which two clusters fit a measured one equally well, m/s: tracks of
+heads are hardly more exact."""
 
 
 class Capability:
@@ -80,6 +91,44 @@ class Capability:
     def longest_reach(self) -> float:
         """Farthest that any option leads from its start, metres."""
         return float(self.table.farthest.max())
+
+    @cached_property
+    def first_velocities(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Velocities with which movements from each cluster begin, in the person's coordinates.
+
+        Returns:
+            (clusters, 2) m/s, mean over the unshortened options of their velocity in the first
+            0.1 s, and (clusters,) m/s, how far options are from it (root of the mean square).
+        """
+        whole = self.parts.share == 1.0
+        steps = self.table.path[:, :2, 1].astype(np.float64) / (SAMPLE_FRAMES * FRAME_SECONDS)
+        cluster = np.repeat(np.arange(self.n_clusters), np.diff(self.table.offsets))
+        counts = np.bincount(cluster[whole], minlength=self.n_clusters)
+        sums = [np.bincount(cluster[whole], steps[whole, axis], self.n_clusters) for axis in (0, 1)]
+        mean = np.column_stack(sums) / np.maximum(counts, 1)[:, None]
+        squares = ((steps - mean[cluster]) ** 2).sum(axis=1)
+        spread = np.bincount(cluster[whole], squares[whole], self.n_clusters)
+        return mean, np.sqrt(spread / np.maximum(counts, 1))
+
+    def clusters_at(
+        self, velocities: NDArray[np.float64], rng: np.random.Generator
+    ) -> NDArray[np.int64]:
+        """(n,) clusters from which movements begin with (n, 2) velocities, m/s.
+
+        Tracks do not show the phase of a person's gait. So one of the clusters is drawn that are at
+        most ``ALIKE`` worse than the best one.
+
+        Args:
+            velocities: in the coordinates of the person, who faces +x.
+            rng: draws among the clusters.
+        """
+        mean, spread = self.first_velocities
+        away = np.linalg.norm(velocities[:, None] - mean[None], axis=2)
+        off = np.hypot(away, spread[None])
+        fits = off <= off.min(axis=1, initial=np.inf)[:, None] + ALIKE
+        # The place of the drawn one among those that fit.
+        drawn = (rng.random(len(fits)) * fits.sum(axis=1)).astype(np.int64)
+        return np.argmax(fits.cumsum(axis=1) > drawn[:, None], axis=1)
 
     def options(self, cluster: int) -> range:
         """Rows in ``table`` of the options that a pose of this cluster has."""

@@ -10,6 +10,8 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.export import CHUNK, walked_on
 from mesa_mobility.results.formats.output_format import OutputFormat
+from mesa_mobility.results.reading.rows import Rows
+from mesa_mobility.results.reading.text import read_text
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
@@ -25,6 +27,10 @@ class Juelich(OutputFormat):
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_juelich_text``."""
         write_juelich_text(excerpt.tracks(), path)
+
+    def read(self, path: Path) -> Rows:
+        """See ``mesa_mobility.results.reading.text.read_text``."""
+        return read_text(path)
 
 
 def write_juelich_text(trajectories: Tracks, path: str | os.PathLike[str]) -> None:

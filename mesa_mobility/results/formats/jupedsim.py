@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sqlite3
 import zlib
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.export import CHUNK, walked_on
 from mesa_mobility.results.formats.output_format import OutputFormat
+from mesa_mobility.results.reading.rows import Rows
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
@@ -41,6 +43,31 @@ class JuPedSim(OutputFormat):
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_jupedsim_sqlite``."""
         write_jupedsim_sqlite(excerpt.tracks(), path, excerpt.plan.free)
+
+    def read(self, path: Path) -> Rows:
+        """See ``read_jupedsim_sqlite``."""
+        return read_jupedsim_sqlite(path)
+
+
+def read_jupedsim_sqlite(path: Path) -> Rows:
+    """Read a JuPedSim trajectory database: positions in metres and the directions people face.
+
+    Raises:
+        ResultsError: it cannot be read, or lacks tables, columns or the frame rate.
+    """
+    # An absent file would be created, and a file of another kind is no reason to write beside it.
+    try:
+        with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)) as database:
+            rows = database.execute(
+                "SELECT id, frame, pos_x, pos_y, ori_x, ori_y FROM trajectory_data"
+            ).fetchall()
+            rate = database.execute("SELECT value FROM metadata WHERE key = 'fps'").fetchone()
+        person, frame, x, y, ori_x, ori_y = np.array(rows, dtype=np.float64).reshape(-1, 6).T
+        frame_rate = None if rate is None else float(rate[0])
+    except (sqlite3.Error, ValueError, TypeError) as error:
+        raise ResultsError(f"{path}: not a readable JuPedSim database: {error}") from error
+    heading = np.arctan2(ori_y, ori_x)
+    return Rows(person, frame, x, y, heading, unit="m", frame_rate=frame_rate)
 
 
 def write_jupedsim_sqlite(

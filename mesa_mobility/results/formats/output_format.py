@@ -11,12 +11,15 @@ from mesa_mobility.plugins.registry import OUTPUT_FORMATS
 
 if TYPE_CHECKING:
     from mesa_mobility.results.excerpts import Excerpt
+    from mesa_mobility.results.reading.rows import Rows
+    from mesa_mobility.results.tracks import Tracks
 
 
 class OutputFormat(Format):
-    """A kind of file that a run is written to: a class with ``write``.
+    """A kind of file that a run is written to, or that tracks are read from.
 
-    Keyword-only parameters of ``write`` are the options of the format.
+    It is a class with ``write``, ``read`` or both. Keyword-only parameters of ``write`` are the
+    options of the format.
     """
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
@@ -28,6 +31,21 @@ class OutputFormat(Format):
 
         Raises:
             ResultsError: the file cannot be written, or the run lacks what it takes.
+        """
+        raise NotImplementedError
+
+    def read(self, path: Path) -> Rows | Tracks:
+        """Read the tracks of a file, for ``Trajectories.read``.
+
+        Args:
+            path: the file, which exists.
+
+        Returns:
+            Rows as the file has them, whose unit and headings are found afterwards; or tracks,
+            if the file says everything itself.
+
+        Raises:
+            ResultsError: the file cannot be read.
         """
         raise NotImplementedError
 

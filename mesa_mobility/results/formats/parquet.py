@@ -44,6 +44,10 @@ class Parquet(OutputFormat):
         """See ``write_parquet``."""
         write_parquet(excerpt.tracks(), path)
 
+    def read(self, path: Path) -> Tracks:
+        """See ``read_columns``."""
+        return Tracks(**read_columns(path))
+
 
 def write_parquet(trajectories: Tracks, path: str | os.PathLike[str]) -> None:
     """Write columns frame, person, x (m), y (m), heading (rad), person_data and fields, with zstd.
