@@ -15,6 +15,7 @@ from mesa_mobility.plugins.formats import READ
 from mesa_mobility.results.formats.output_format import OUTPUTS
 from mesa_mobility.results.reading.faults import faults_of, sorted_once
 from mesa_mobility.results.reading.pedpy_files import READERS, read_with_pedpy
+from mesa_mobility.results.reading.rates import usual_rate
 from mesa_mobility.results.reading.rows import Reading, Rows
 from mesa_mobility.results.reading.units import UNITS, unit_of
 from mesa_mobility.results.tracks import Tracks
@@ -22,6 +23,8 @@ from mesa_mobility.velocities import headings
 
 LARGEST = 10_000_000
 """Largest number of a person or frame: arrays have an entry for each."""
+NOMINAL_RATE = 20.0
+"""Frames a second at which the unit is guessed before the frame rate is: units differ by more."""
 
 
 def read_columns(
@@ -36,16 +39,16 @@ def read_columns(
     found = _found_in(source)
     if isinstance(found, Tracks):
         return _as_stored(source, found, unit, frame_rate)
-    rows, rate = _checked(source, found), _rate(source, found, frame_rate)
-    rows = sorted_once(rows)
-    name = str(path)
+    rows, name = sorted_once(_checked(source, found)), str(path)
+    rate, rate_from = _rate(source, rows, unit, frame_rate)
     unit, unit_from = unit_of(name, rows, unit, rate)
     rows = replace(rows, x=rows.x * UNITS[unit], y=rows.y * UNITS[unit])
     reading = Reading(
         name,
         unit,
         unit_from,
-        "argument" if found.frame_rate is None else "file",
+        rate,
+        rate_from,
         "way" if rows.heading is None else "file",
         (*rows.faults, *faults_of(rows, rate)),
     )
@@ -84,25 +87,30 @@ def _as_stored(
     if unit not in (None, "m"):
         raise ResultsError(f"{source}: it is in m, but unit={unit!r} was given")
     _agreed(source, tracks.frame_rate, frame_rate)
-    reading = Reading(str(source), "m", "file", "file")
+    reading = Reading(str(source), "m", "file", tracks.frame_rate, "file")
     stored = {name: getattr(tracks, name) for name in tracks.__dataclass_fields__}
     return {**stored, "reading": reading}
 
 
-def _rate(source: Path, rows: Rows, given: float | None) -> float:
-    """The frame rate.
+def _rate(source: Path, rows: Rows, unit: str | None, given: float | None) -> tuple[float, str]:
+    """The frame rate, and how it is known.
 
     Raises:
         ResultsError: there is none, it is not positive, or the file's is another.
     """
-    if rows.frame_rate is None:
-        if given is None:
-            raise ResultsError(f"{source}: no frame rate in it: give it, as in frame_rate=16")
-        return float(given)
-    if not 0.0 < rows.frame_rate < np.inf:
-        raise ResultsError(f"{source}: its frame rate is {rows.frame_rate}, expected above 0")
-    _agreed(source, rows.frame_rate, given)
-    return rows.frame_rate
+    if rows.frame_rate is not None:
+        if not 0.0 < rows.frame_rate < np.inf:
+            raise ResultsError(f"{source}: its frame rate is {rows.frame_rate}, expected above 0")
+        _agreed(source, rows.frame_rate, given)
+        return rows.frame_rate, "file"
+    if given is not None:
+        return float(given), "argument"
+    likely, _ = unit_of(str(source), rows, unit, NOMINAL_RATE)
+    guessed = usual_rate(rows, UNITS[likely])
+    if guessed is None:
+        raise ResultsError(f"{source}: no frame rate in it: give it, as in frame_rate=16")
+    rate, by_gait, pieces = guessed
+    return rate, f"steps in {pieces} pieces of tracks suggest {by_gait:.1f}"
 
 
 def _agreed(source: Path, rate: float, given: float | None) -> None:

@@ -102,18 +102,20 @@ class Trajectories(Tracks):
         of Vadere, Viswalk, Pathfinder and crowd:it. Headings are the direction of travel over the
         last 0.8 s if the file has none; see ``mesa_mobility.velocities``.
 
-        Warnings of one line say that the unit was guessed, which rows cannot be read or repeat a
-        frame (they are left out), and where people are missing or jump (rows stay). ``reading``
-        keeps all of it.
+        Warnings of one line say that unit or frame rate were guessed, which rows cannot be read or
+        repeat a frame (they are left out), and where people are missing or jump (rows stay).
+        ``reading`` keeps all of it.
 
         Args:
             path: the file.
             unit: of its coordinates: ``"m"``, ``"cm"`` or ``"mm"``. By default the file's own if it
                 says so, otherwise that in which spacing and speeds are most like people's.
-            frame_rate: frames a second, if the file does not say so.
+            frame_rate: frames a second, if the file does not say so. By default the usual rate,
+                such as 16 or 25, at which steps are as long as is usual for their frequency.
 
         Raises:
-            ResultsError: no such file, of no known format, or damaged; no frame rate; a unit or
+            ResultsError: no such file, of no known format, or damaged; no frame rate, and too few
+                walkers to guess it; a unit or
                 frame rate other than the file's; a unit in which people would be faster than any
                 sprint or their heads less than 0.1 m apart.
         """

@@ -101,9 +101,7 @@ def places_aside(
     return ends[order[: int(np.flatnonzero(order == 0)[0]) + 1][:TRIED]]
 
 
-def leaves_free(
-    places: NDArray[np.float64], core: float, ways: Sequence[Way]
-) -> NDArray[np.bool_]:
+def leaves_free(places: NDArray[np.float64], core: float, ways: Sequence[Way]) -> NDArray[np.bool_]:
     """(n,) whether somebody of this core radius leaves all ways free at places (n, 2)."""
     free = np.ones(len(places), np.bool_)
     for way in ways:

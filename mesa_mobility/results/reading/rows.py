@@ -7,6 +7,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+KNOWN = ("file", "argument")
+"""How a unit or frame rate is known that was not guessed."""
 BAD_ROW, DUPLICATE, GAP, JUMP, ALONE = "bad row", "duplicate row", "gap", "jump", "alone"
 
 
@@ -61,7 +63,9 @@ class Reading:
         unit: unit of the file's coordinates: ``"m"``, ``"cm"`` or ``"mm"``.
         unit_from: how the unit is known: ``"file"``, ``"argument"``, or the spacing and the speeds
             by which it was guessed.
-        frame_rate_from: how the frame rate is known: ``"file"`` or ``"argument"``.
+        frame_rate: frames a second.
+        frame_rate_from: how the frame rate is known: ``"file"``, ``"argument"``, or the steps by
+            which it was guessed.
         headings_from: ``"file"``, or ``"way"`` if they are the direction of travel.
         faults: what is wrong with the file, in its order. Rows that cannot be read and rows that
             repeat a person and frame are left out; gaps and jumps stay as they are.
@@ -70,6 +74,7 @@ class Reading:
     file: str
     unit: str
     unit_from: str
+    frame_rate: float
     frame_rate_from: str
     headings_from: str = "file"
     faults: tuple[Fault, ...] = ()
@@ -79,10 +84,16 @@ class Reading:
         return [each for each in self.faults if each.kind == kind]
 
     def warnings(self) -> list[str]:
-        """One line for a guessed unit, and one for each kind of fault, with its first instance."""
+        """One line each for a guessed unit, a guessed frame rate, and each kind of fault, with its
+        first instance."""
         said = []
-        if self.unit_from not in ("file", "argument"):
+        if self.unit_from not in KNOWN:
             said.append(f"{self.file}: taken to be in {self.unit}: {self.unit_from}")
+        if self.frame_rate_from not in KNOWN:
+            said.append(
+                f"{self.file}: taken to have {self.frame_rate:g} frames a second: "
+                f"{self.frame_rate_from}; give frame_rate if it is another"
+            )
         for kind in dict.fromkeys(each.kind for each in self.faults):
             first, *others = self.of_kind(kind)
             more = f" (and {len(others)} more)" if others else ""

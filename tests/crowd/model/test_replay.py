@@ -33,7 +33,9 @@ def tracks_of(walks, *, derived: bool = True, faults=()) -> Trajectories:
         for k in range(frames)
     ]
     frame, person, x, y, heading = (np.array(column) for column in zip(*rows, strict=True))
-    reading = Reading("run.txt", "m", "file", "file", "way" if derived else "file", tuple(faults))
+    reading = Reading(
+        "run.txt", "m", "file", RATE, "file", "way" if derived else "file", tuple(faults)
+    )
     return Trajectories(frame, person, x, y, heading, frame_rate=RATE, reading=reading)
 
 

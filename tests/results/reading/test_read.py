@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from mesa_mobility import Trajectories
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import write_juelich_text, write_jupedsim_sqlite
-from mesa_mobility.results.reading.rows import BAD_ROW, DUPLICATE, GAP, JUMP
+from mesa_mobility.results.reading.rates import gait_rates
+from mesa_mobility.results.reading.rows import BAD_ROW, DUPLICATE, GAP, JUMP, Rows
 
 HEADER = "# framerate: 16 fps\n# id frame x/cm y/cm z/cm\n"
 
@@ -252,3 +253,34 @@ def test_files_of_other_simulators_are_read_through_pedpy(file):
         assert tracks.x.max() == pytest.approx(3.9)
     with pytest.raises(ResultsError, match="PedPy cannot read it"):
         Trajectories.read(file("a,b\n1,2\n", "run.csv"))
+
+
+def swaying(rate: float, person: int, speed: float, seconds: float = 20.0):
+    """Rows of somebody whose step is 0.38 times their steps a second, and whose head sways."""
+    steps = np.sqrt(speed / 0.38)
+    frames = np.arange(round(seconds * rate))
+    x = speed * frames / rate
+    y = 1.2 * person + 0.03 * np.sin(np.pi * steps * frames / rate + person)
+    return [(person, f, a, b) for f, a, b in zip(frames.tolist(), x, y, strict=True)]
+
+
+@pytest.mark.parametrize("rate", [10.0, 16.0, 25.0, 50.0])
+def test_frame_rates_are_guessed_by_steps_and_said(file, rate):
+    rows = [row for p in range(12) for row in swaying(rate, p, 0.8 + 0.06 * p)]
+    with pytest.warns(UserWarning, match=f"taken to have {rate:g} frames a second: steps in"):
+        tracks = Trajectories.read(file(text(rows)), unit="m")
+    assert tracks.frame_rate == rate
+
+
+def test_rates_by_steps_are_near_the_true_one():
+    rows = np.array([row for p in range(12) for row in swaying(20.0, p, 0.8 + 0.06 * p)])
+    person, frame = rows[:, 0].astype(int), rows[:, 1].astype(int)
+    found = gait_rates(Rows(person, frame, *rows[:, 2:].T), 1.0)
+    assert np.median(found) == pytest.approx(20.0, rel=0.05)
+
+
+def test_a_rate_that_steps_do_not_show_is_not_guessed(file):
+    rng = np.random.default_rng(1)
+    rows = [(p, f, 0.05 * f, 1.2 * p + rng.normal(0, 0.03)) for p in range(12) for f in range(300)]
+    with pytest.raises(ResultsError, match="no frame rate in it: give it, as in frame_rate=16"):
+        Trajectories.read(file(text(rows)), unit="m")
