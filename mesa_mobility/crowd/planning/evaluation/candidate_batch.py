@@ -45,6 +45,27 @@ def make_candidates(
     options = (
         np.arange(offsets[-1], dtype=np.int64) - offsets[owner] + table.offsets[clusters][owner]
     )
+    return candidates_of(rows, options, offsets, table, state, grid, around, rules, moment)
+
+
+def candidates_of(
+    rows: NDArray[np.int64],
+    options: NDArray[np.int64],
+    offsets: NDArray[np.int64],
+    table: OptionTable,
+    state: Crowd,
+    grid: Grid,
+    around: Surroundings,
+    rules: Rules,
+    moment: Moment,
+) -> Candidates:
+    """Some options of the pedestrians in ``rows``, with their neighbours and walls.
+
+    Args:
+        options: (n,) rows of the table.
+        offsets: (len(rows) + 1,) options of pedestrian i are ``options[offsets[i]:offsets[i + 1]]``.
+    """
+    owner = np.repeat(np.arange(len(rows), dtype=np.int64), np.diff(offsets))
     x, y, heading = _lay_ends(rows, owner, options, table, state.records)
     places, neighbour_offsets, neighbour_places = _all_neighbours(
         rows, grid, state.records, rules.interaction_ranges

@@ -1,0 +1,1 @@
+"""Weights of cost terms from measured people."""

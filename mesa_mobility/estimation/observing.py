@@ -1,0 +1,318 @@
+"""From tracks to choices: what measured people could have done, and what they did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.errors import ResultsError
+from mesa_mobility.estimation.free_speeds import FreeSpeeds, nodes
+from mesa_mobility.estimation.measured import Measured, measured
+from mesa_mobility.estimation.observations import Batch, Coverage, Observations
+from mesa_mobility.estimation.poses import Poses
+from mesa_mobility.estimation.stage import Stage
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.results.tracks import Tracks
+
+NEAR = 0.12
+"""An option is near enough that ends within so many metres of where the person was, metres."""
+
+MOST_NEAR = 60
+"""Most options near an end that are looked at: the nearest."""
+
+LEAVING = 0.4
+"""Seconds up to the end of a choice over which the direction of walking is taken."""
+
+TACTICS = ("corner_spreading", "anticipation", "speed_adaptation")
+"""Tactics of a preset that need nothing of what people have decided before."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sampling:
+    """Which choices are looked at, and which of their options.
+
+    Attributes:
+        frames: durations of choices in frames of the simulation; those of the preset by which
+            choices are explained. They take turns.
+        interval: seconds between two instants at which everybody's choice is looked at.
+        most: most choices; more are thinned out at random.
+        alternatives: options drawn uniformly from those available, beside the observed one.
+        poses: clusters among whose options a choice is: head tracks do not show the pose.
+        speeds: values that stand for the distribution of free speeds of people whose own is
+            not known.
+        history: seconds of earlier frames of which a velocity is the mean.
+        seed: of all that is drawn.
+    """
+
+    frames: Sequence[int] = (24, 45)
+    interval: float = 0.5
+    most: int = 2500
+    alternatives: int = 120
+    poses: int = 4
+    speeds: int = 3
+    history: float = 0.8
+    seed: int = 1
+
+
+class _Situation(NamedTuple):
+    """A moment at which some people choose.
+
+    Attributes:
+        frame: of the tracks.
+        duration: of the choices, frames of the simulation.
+        people: (c,) indices of the people.
+    """
+
+    frame: float
+    duration: int
+    people: NDArray[np.int64]
+
+
+def observe(
+    plan: FloorPlan,
+    tracks: Tracks,
+    *,
+    name: str = "tracks",
+    fold: str | None = None,
+    between: tuple[float, float] | None = None,
+    tactics: Sequence[str] = TACTICS,
+    sampling: Sampling | None = None,
+    **model: Any,
+) -> Observations:
+    """The choices of measured people, as the engine would have put them.
+
+    At each instant people stand where they were, with the mean velocity of the last frames, and
+    walk on as fast for their neighbours. Everybody's exit is the one nearest to the end of their
+    track. A choice is between the options of some poses that walk as fast; it is observed by where
+    the person was when the option would have ended. Nothing of later frames is used but that end,
+    the exit, and free speeds at other times.
+
+    Args:
+        plan: where they walked, with exits.
+        tracks: two people or more, in metres.
+        name: of the run, for errors and tables, such as the file.
+        fold: the group of runs that are left out together; by default the run itself.
+        between: first and last frame of the tracks to look at; by default all.
+        tactics: those of the preset that shape what people want.
+        sampling: which choices and options.
+        model: arguments of ``PedestrianModel``, such as ``preset`` and ``mobility_map``.
+
+    Raises:
+        ResultsError: tracks that cannot be used, or no choice in them; the error names the person
+            and the frame.
+        ModelError: arguments that the model does not take.
+    """
+    chosen = sampling or Sampling()
+    of = measured(tracks, plan, name)
+    stage = Stage(plan, tuple(tactics), **model)
+    rng = np.random.default_rng(chosen.seed)
+    looks = _Looks(of, stage, chosen, rng)
+    situations = _situations(of, chosen, between, rng)
+    if not situations:
+        raise ResultsError(
+            f"{name}: no choice: nobody is seen for {chosen.history:g} s before and "
+            f"{max(chosen.frames) / FRAMES_A_SECOND:g} s after an instant"
+        )
+    batches = [batch for each in situations if (batch := looks.look(each)) is not None]
+    if not batches:
+        raise ResultsError(f"{name}: no choice with options that hit no wall")
+    return Observations.of(
+        stage.model, batches, of, name=name, fold=fold or name, coverage=looks.coverage
+    )
+
+
+def _situations(
+    of: Measured,
+    chosen: Sampling,
+    between: tuple[float, float] | None,
+    rng: np.random.Generator,
+) -> list[_Situation]:
+    """The moments and who chooses then: those seen long enough before and after."""
+    first, last = between or (of.first, of.last)
+    step = chosen.interval * of.rate
+    frames = np.round(np.arange(max(first, of.first), min(last, of.last) + 1e-9, step))
+    durations = [chosen.frames[at % len(chosen.frames)] for at in range(len(frames))]
+    found = []
+    for frame, duration in zip(frames.tolist(), durations, strict=True):
+        seen = [of.at(frame), of.at(frame - chosen.history * of.rate)]
+        seen.append(of.at(frame + duration / FRAMES_A_SECOND * of.rate))
+        people = np.flatnonzero(~np.isnan(np.sum(seen, axis=(0, 2))))
+        if len(people):
+            found.append(_Situation(frame, duration, people.astype(np.int64)))
+    total = sum(len(each.people) for each in found)
+    if total <= chosen.most:
+        return found
+    kept = np.sort(rng.choice(total, chosen.most, replace=False))
+    bounds = np.cumsum([0] + [len(each.people) for each in found])
+    thinned = []
+    for each, a, b in zip(found, bounds[:-1], bounds[1:], strict=True):
+        own = kept[(kept >= a) & (kept < b)] - a
+        if len(own):
+            thinned.append(each._replace(people=each.people[own]))
+    return thinned
+
+
+@dataclass(eq=False)
+class _Looks:
+    """Makes the batches of one run.
+
+    Attributes:
+        of: the tracks.
+        stage: the engine.
+        chosen: which options are looked at.
+        rng: of all that is drawn.
+    """
+
+    of: Measured
+    stage: Stage
+    chosen: Sampling
+    rng: np.random.Generator
+    coverage: Coverage = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.coverage = Coverage()
+        self._poses = Poses.of(self.stage.scene.repertoire.capabilities[0])
+        self._frames = self.stage.table.options.frames
+        self._free = FreeSpeeds(self.of, self.chosen.history)
+        self._exits = self.stage.destinations(self.of.ends())
+        kind = self.stage.scene.types[0]
+        self._nodes = (
+            nodes(kind.preferred_speed, self.chosen.speeds)
+            if hasattr(kind.preferred_speed, "quantile")
+            else np.array([float(kind.preferred_speed)])
+        )
+
+    def look(self, at: _Situation) -> Batch | None:
+        """The choices of one moment; None without any."""
+        seconds = at.duration / FRAMES_A_SECOND
+        places = self.of.at(at.frame)
+        there = np.flatnonzero(~np.isnan(places[:, 0]))
+        velocities = self.of.velocities(at.frame, self.chosen.history)[there]
+        own = self._free.own(at.frame, self.chosen.history, seconds)
+        speeds = np.where(np.isnan(own), self._nodes[len(self._nodes) // 2], own)[there]
+        self.stage.put(places[there], velocities, self._exits[there], speeds)
+        rows = np.searchsorted(there, at.people)
+        ends = self.of.at(at.frame + seconds * self.of.rate)[at.people]
+        moving = np.hypot(*velocities[rows].T)
+        drawn = [
+            self._draw(row, speed, at.duration, end)
+            for row, speed, end in zip(rows.tolist(), moving.tolist(), ends, strict=True)
+        ]
+        some = [k for k, each in enumerate(drawn) if len(each.options) > 1]
+        if not some:
+            return None
+        return self._batch(at, rows, [drawn[k] for k in some], some, own[at.people])
+
+    def _draw(self, row: int, speed: float, duration: int, end: NDArray[np.float64]) -> _Drawn:
+        """Options of somebody: those near the end, and some of all that are available."""
+        table, crowd = self.stage.table, self.stage.scene.crowd
+        clusters = self._poses.draw(speed, self.chosen.poses, self.rng)
+        pool = np.concatenate(
+            [np.arange(table.offsets[c], table.offsets[c + 1]) for c in clusters]
+        )
+        pool = pool[self._frames[pool] == duration]
+        c, s = np.cos(crowd.heading[row]), np.sin(crowd.heading[row])
+        dx, dy = end[0] - crowd.x[row], end[1] - crowd.y[row]
+        option = table.options[pool]
+        off = np.hypot(option.x - (c * dx + s * dy), option.y - (c * dy - s * dx))
+        by_distance = np.argsort(off, kind="stable")[:MOST_NEAR]
+        near = by_distance[off[by_distance] <= NEAR]
+        walled = self.stage.hits_wall(row, pool[near])
+        farthest = float(option.speed.max()) * duration / FRAMES_A_SECOND
+        self.coverage.count(len(near), bool(walled.all()), float(np.hypot(dx, dy)), farthest)
+        near = near[~walled]
+        others = self.rng.permutation(np.setdiff1d(np.arange(len(pool)), near))
+        # Half as many again, since some hit walls; all of them where that is not enough.
+        count, first = self.chosen.alternatives, others[: 3 * self.chosen.alternatives // 2]
+        free = first[~self.stage.hits_wall(row, pool[first])]
+        if len(free) < count:
+            rest = others[len(first) :]
+            free = np.concatenate([free, rest[~self.stage.hits_wall(row, pool[rest])]])
+            tried = len(others)
+        else:
+            tried = len(first)
+        share = len(free) / max(tried, 1)
+        free = free[:count]
+        available = max(share * len(others), len(free), 1e-9)
+        return _Drawn(
+            options=pool[np.concatenate([near, free])].astype(np.int64),
+            off=off[np.concatenate([near, free])],
+            near=len(near),
+            stands_for=available / max(len(free), 1),
+        )
+
+    def _batch(
+        self,
+        at: _Situation,
+        rows: NDArray[np.int64],
+        drawn: list[_Drawn],
+        some: list[int],
+        own: NDArray[np.float64],
+    ) -> Batch:
+        """The choices as cost terms get them: once for each value of an unknown free speed."""
+        known = ~np.isnan(own[some])
+        counts = np.where(known, 1, len(self._nodes))
+        choice = np.repeat(np.arange(len(some)), counts)
+        speeds = np.concatenate(
+            [[own[k]] if fine else self._nodes for k, fine in zip(some, known, strict=True)]
+        )
+        owners = rows[some][choice]
+        options = np.concatenate([drawn[k].options for k in choice])
+        offsets = np.cumsum([0] + [len(drawn[k].options) for k in choice])
+        wants = self._wants(owners, speeds)
+        candidates = self.stage.candidates(owners, options, offsets)
+        people, end = at.people[some], at.frame + at.duration / FRAMES_A_SECOND * self.of.rate
+        return Batch.of(
+            candidates,
+            wants,
+            choice=choice,
+            near=np.array([each.near for each in drawn]),
+            off=np.concatenate([drawn[k].off for k in choice]),
+            stands_for=np.array([each.stands_for for each in drawn]),
+            people=people,
+            frame=at.frame,
+            duration=at.duration,
+            ends=self.of.at(end)[people],
+            leaving=self.of.velocities(end, LEAVING)[people],
+        )
+
+    def _wants(
+        self, owners: NDArray[np.int64], speeds: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(segments, 2) targets in metres, and (segments,) speeds, m/s, that people of these
+        preferred speeds want after tactics."""
+        crowd = self.stage.scene.crowd
+        targets, wanted = np.empty((len(owners), 2)), np.empty(len(owners))
+        # Occurrences of one person in turn, since a person wants one thing at a time.
+        order = np.zeros(len(owners), dtype=np.int64)
+        for k in range(1, len(owners)):
+            order[k] = order[k - 1] + 1 if owners[k] == owners[k - 1] else 0
+        for turn in range(int(order.max()) + 1):
+            own = np.flatnonzero(order == turn)
+            self.stage.aim(owners[own], speeds[own])
+            targets[own] = np.column_stack([crowd.target_x[owners[own]], crowd.target_y[owners[own]]])
+            wanted[own] = np.where(
+                np.isfinite(crowd.route[owners[own]]), crowd.preferred[owners[own]], 0.0
+            )
+        return targets, wanted
+
+
+class _Drawn(NamedTuple):
+    """Options of a choice: first those near the end, then those drawn.
+
+    Attributes:
+        options: (n,) rows of the table.
+        off: (n,) metres from the observed end.
+        near: number of those near.
+        stands_for: available options for which each drawn one stands.
+    """
+
+    options: NDArray[np.int64]
+    off: NDArray[np.float64]
+    near: int
+    stands_for: float

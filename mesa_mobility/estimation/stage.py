@@ -1,0 +1,153 @@
+"""A model whose people stand where tracks put them, so that the engine sees what they saw."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.costs.candidates import Candidates, Moment
+from mesa_mobility.crowd.options.table import OptionTable
+from mesa_mobility.crowd.pedestrian_model import PedestrianModel
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import candidates_of
+from mesa_mobility.crowd.state.people_grid import grid_of_frame
+from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION
+from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
+from mesa_mobility.estimation.availability import hit_walls
+from mesa_mobility.estimation.poses import STANDS
+from mesa_mobility.floorplan import FloorPlan
+
+HISTORYLESS = frozenset({"visits", "speed_zones", "speed_rules", "waiting", "corner_spreading"})
+"""Tactics that need neither what people have decided before nor other people."""
+
+
+class Stage:
+    """The engine, with people put where they were.
+
+    Args:
+        plan: the floor plan.
+        arguments: those of ``PedestrianModel``, such as ``preset``.
+        tactics: names of the preset's tactics that shape what people want.
+
+    Attributes:
+        model: a model without agents; its crowd's first rows are the people who are there.
+    """
+
+    def __init__(self, plan: FloorPlan, tactics: tuple[str, ...], **arguments: Any) -> None:
+        self.model = PedestrianModel(plan, **arguments)
+        self.model.tactics = [each for each in self.model.tactics if each.name in tactics]
+        self.scene = self.model._scene
+        self._desired = DesiredMotion(self.scene.environment, self.scene.crowd)
+        self._plan = plan
+        self._walls = np.empty((len(plan.walls) + len(plan.exits), 5))
+        self._path = np.empty((3, self.table.path.shape[2]))
+        self.model.bind()
+
+    @property
+    def table(self) -> OptionTable:
+        """The options of all types."""
+        return self.scene.repertoire.table
+
+    def destinations(self, ends: NDArray[np.float64]) -> NDArray[np.int64]:
+        """(k,) numbers of the exits nearest to the (k, 2) places where tracks end, metres."""
+        exits = self._plan.exits
+        away = [
+            shapely.distance(shapely.LineString([each.a, each.b]), shapely.points(ends))
+            for each in exits
+        ]
+        numbers = np.array([self.scene.environment.destination((each.name,)) for each in exits])
+        nearest: NDArray[np.int64] = numbers[np.argmin(away, axis=0)]
+        return nearest
+
+    def put(
+        self,
+        places: NDArray[np.float64],
+        velocities: NDArray[np.float64],
+        destinations: NDArray[np.int64],
+        speeds: NDArray[np.float64],
+    ) -> None:
+        """Put people where they were, as the only ones.
+
+        Args:
+            places: (m, 2) metres.
+            velocities: (m, 2) of the movement that has just ended, m/s.
+            destinations: (m,) numbers of their exits.
+            speeds: (m,) preferred speeds, m/s.
+        """
+        crowd, m = self.scene.crowd, len(places)
+        if m > len(crowd.x):
+            crowd.grow(2 * m)
+        crowd.active[:] = False
+        rows = slice(0, m)
+        x, y = _on_floor(places, self._plan).T
+        crowd.x[rows], crowd.y[rows] = x, y
+        for name in ("from", "to"):
+            getattr(crowd, f"{name}_x")[rows] = x
+            getattr(crowd, f"{name}_y")[rows] = y
+        crowd.vx[rows], crowd.vy[rows] = velocities.T
+        crowd.box[rows] = np.column_stack([x, y, x, y])
+        crowd.core[rows] = self.scene.types[0].half_width
+        crowd.option[rows], crowd.gone[rows] = NO_OPTION, -1
+        crowd.start[rows], crowd.end[rows] = 0, 0
+        crowd.spacing[rows], crowd.knots[rows] = 1, 1
+        crowd.destination[rows], crowd.active[rows] = destinations, True
+        crowd.agenda["speed"][rows] = speeds
+        crowd.agenda["corner"][rows] = NO_CORNER
+        self.aim(np.arange(m, dtype=np.int64), speeds)
+        toward = np.arctan2(crowd.target_y[rows] - y, crowd.target_x[rows] - x)
+        walks = np.hypot(*velocities.T) > STANDS
+        heading = np.where(walks, np.arctan2(velocities[:, 1], velocities[:, 0]), toward)
+        crowd.heading[rows] = crowd.from_heading[rows] = crowd.to_heading[rows] = heading
+
+    def aim(self, rows: NDArray[np.int64], speeds: NDArray[np.float64]) -> None:
+        """Set what people want who prefer ``speeds`` (n,), m/s, when alone."""
+        crowd, model = self.scene.crowd, self.model
+        crowd.agenda["speed"][rows] = speeds
+        inside = np.flatnonzero(crowd.active).astype(np.int64)
+        wants = Wants(model.target_choice, model.tactics, model.rng)
+        self._desired.update(rows, inside, 0, wants)
+
+    def hits_wall(self, row: int, options: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """(n,) whether options, rows of the table, of the person in a row hit a wall."""
+        hit = np.empty(len(options), dtype=np.bool_)
+        crowd, around = self.scene.crowd, self.scene.environment.surroundings
+        hit_walls(
+            row, options, self.table, crowd.records, around, self._walls, self._path, hit
+        )
+        return hit
+
+    def candidates(
+        self, rows: NDArray[np.int64], options: NDArray[np.int64], offsets: NDArray[np.int64]
+    ) -> Candidates:
+        """Options, rows of the table, of the people in ``rows``, as cost terms get them.
+
+        A person may occur more than once.
+        """
+        scene, crowd = self.scene, self.scene.crowd
+        farthest = np.argmax(self.table.farthest)
+        crowd.cluster[rows] = farthest  # for walls: those within reach of any option
+        inside = np.flatnonzero(crowd.active).astype(np.int64)
+        return candidates_of(
+            rows,
+            options,
+            offsets,
+            self.table,
+            crowd,
+            grid_of_frame(inside, crowd.records),
+            scene.environment.surroundings,
+            scene.rules,
+            Moment(0, self.model.rng).aside(),
+        )
+
+
+def _on_floor(places: NDArray[np.float64], plan: FloorPlan) -> NDArray[np.float64]:
+    """(m, 2) the places, or the nearest on the floor for heads over walls, metres."""
+    off = ~plan.contains(places)
+    if not off.any():
+        return places
+    on = places.copy()
+    lines = shapely.shortest_line(plan.free, shapely.points(places[off]))
+    on[off] = shapely.get_coordinates(shapely.get_point(lines, 0))
+    return on
