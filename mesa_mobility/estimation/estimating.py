@@ -12,7 +12,7 @@ from scipy.stats import chi2, norm
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.estimation.errors import blocks_of, bootstrapped, clustered, information
-from mesa_mobility.estimation.fitting import fit
+from mesa_mobility.estimation.fitting import fit, without
 from mesa_mobility.estimation.identification import unidentified
 from mesa_mobility.estimation.measures import Measures, measure
 from mesa_mobility.estimation.observations import Observations
@@ -108,9 +108,7 @@ def estimate(
     naive = np.zeros(len(weights))
     naive[free] = np.diag(information(value, free))
     for k in np.flatnonzero(free) if tests else []:
-        without, start = free.copy(), weights.copy()
-        without[k], start[k] = False, 0.0
-        _, less = fit(sample, start, without)
+        less = without(sample, weights, value, free, int(k))
         ratios[k] = 2.0 * (value.each.sum() - less.each.sum())
         # Choices depend on each other, so that the ratio grows by as much as the variance
         # (Rotnitzky and Jewell, Biometrika 77 (1990) 485-497).

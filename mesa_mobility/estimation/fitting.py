@@ -10,7 +10,7 @@ from mesa_mobility.errors import ModelError
 from mesa_mobility.estimation.likelihood import Value
 from mesa_mobility.estimation.problem import Sample
 
-GRADIENT = 1e-5
+GRADIENT = 1e-4
 """Gradient of the mean log-likelihood at which a fit ends, of terms scaled to a spread of 1."""
 
 
@@ -79,3 +79,23 @@ def common_scale(sample: Sample, weights: NDArray[np.float64]) -> float:
     one = Sample(sample.rows, (sample.costs @ weights)[:, None], sample.choices)
     found, _ = fit(one, np.ones(1), np.ones(1, dtype=np.bool_))
     return float(found[0])
+
+
+def without(
+    sample: Sample, weights: NDArray[np.float64], value: Value, free: NDArray[np.bool_], term: int
+) -> Value:
+    """The likelihood without one of the free terms, the others estimated anew.
+
+    Args:
+        sample: the choices.
+        weights: (p,) of greatest likelihood with the term.
+        value: the likelihood there.
+        free: (p,) which are estimated.
+        term: the number of the term.
+    """
+    others, start = free.copy(), weights.copy()
+    others[term], start[term] = False, 0.0
+    # Where the others go as this one goes to 0, by the Hessian.
+    pull = value.hessian[others, term] * weights[term]
+    start[others] += np.linalg.lstsq(value.hessian[np.ix_(others, others)], pull, rcond=None)[0]
+    return fit(sample, start, others)[1]

@@ -195,13 +195,43 @@ def evaluate(rows: Rows, costs: NDArray[np.float64], weights: NDArray[np.float64
         costs: (rows, p) cost of each term, without weights.
         weights: (p,).
     """
-    n, p = len(rows.first), costs.shape[1]
-    each, scores, hessian = np.empty(n), np.zeros((n, p)), np.zeros((p, p))
-    bounds = np.append(rows.starts, len(costs)), np.append(rows.first, len(rows.starts))
-    total = costs @ -weights
-    _evaluate(*bounds, rows.weight, total, rows.fit, rows.counts, costs, (each, scores, hessian))
-    hessian = np.tril(hessian) + np.tril(hessian, -1).T
-    return Value(each, scores, hessian)
+    n, p, segments = len(rows.first), costs.shape[1], len(rows.starts)
+    found = _Found(
+        each=np.empty(n),
+        scores=np.zeros((n, p)),
+        factors=np.empty(len(costs)),
+        shares=np.empty(segments),
+        of_all=np.zeros((segments, p)),
+        of_fit=np.zeros((segments, p)),
+    )
+    starts, first = np.append(rows.starts, len(costs)), np.append(rows.first, segments)
+    _evaluate(starts, first, rows.weight, costs @ -weights, rows.fit, rows.counts, costs, found)
+    share, gradients = found.shares[:, None], found.of_all - found.of_fit
+    hessian = costs.T @ (found.factors[:, None] * costs)
+    for each in (found.of_all, gradients):
+        hessian += each.T @ (share * each)
+    hessian -= found.of_fit.T @ (share * found.of_fit) + found.scores.T @ found.scores
+    return Value(found.each, found.scores, hessian)
+
+
+class _Found(NamedTuple):
+    """What one pass over the rows gives.
+
+    Attributes:
+        each: as in ``Value``.
+        scores: as in ``Value``.
+        factors: (rows,) of the products of two attributes in the Hessian.
+        shares: (segments,) probability of each segment of a choice, given the observation.
+        of_all: (segments, p) mean attributes of all options.
+        of_fit: (segments, p) mean attributes of the options, given the observation.
+    """
+
+    each: NDArray[np.float64]
+    scores: NDArray[np.float64]
+    factors: NDArray[np.float64]
+    shares: NDArray[np.float64]
+    of_all: NDArray[np.float64]
+    of_fit: NDArray[np.float64]
 
 
 @kept(error_model="numpy")
@@ -213,50 +243,37 @@ def _evaluate(
     fit: NDArray[np.float64],
     counts: NDArray[np.float64],
     costs: NDArray[np.float64],
-    found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    found: _Found,
 ) -> None:
-    """Write the values of ``Value``, of the Hessian its lower triangle."""
-    each, scores, hessian = found
+    """Write the values of ``_Found``."""
+    each, scores, factors, shares, of_all, of_fit = found
     p = costs.shape[1]
-    most = np.max(np.diff(first))
-    logs, of_all, of_fit = np.empty(most), np.empty((most, p)), np.empty((most, p))
     for c in range(len(each)):
-        a, b = first[c], first[c + 1]
-        for s in range(a, b):
+        top = -np.inf
+        for s in range(first[c], first[c + 1]):
             all_sum = _log_sum(total, counts, starts[s], starts[s + 1])
             fit_sum = _log_sum(total, fit, starts[s], starts[s + 1])
-            logs[s - a] = weight[s] + fit_sum - all_sum
-        top = np.max(logs[: b - a])
-        summed = 0.0
-        for k in range(b - a):
-            summed += math.exp(logs[k] - top)
-        each[c] = top + math.log(summed)
-        for s in range(a, b):
-            share = math.exp(logs[s - a] - each[c])
-            all_sum = _log_sum(total, counts, starts[s], starts[s + 1])
-            fit_sum = _log_sum(total, fit, starts[s], starts[s + 1])
-            of_all[s - a], of_fit[s - a] = 0.0, 0.0
+            shares[s] = weight[s] + fit_sum - all_sum
+            top = max(top, shares[s])
             for r in range(starts[s], starts[s + 1]):
                 in_all = math.exp(total[r] + counts[r] - all_sum)
-                in_fit = math.exp(total[r] + fit[r] - fit_sum)
+                in_fit = math.exp(total[r] + fit[r] - fit_sum) if fit[r] > -np.inf else 0.0
+                factors[r] = in_fit - in_all
                 for i in range(p):
-                    of_all[s - a, i] += in_all * costs[r, i]
-                    of_fit[s - a, i] += in_fit * costs[r, i]
-                    factor = share * (in_fit - in_all) * costs[r, i]
-                    for j in range(i + 1):
-                        hessian[i, j] += factor * costs[r, j]
+                    of_all[s, i] += in_all * costs[r, i]
+                if in_fit > 0.0:
+                    for i in range(p):
+                        of_fit[s, i] += in_fit * costs[r, i]
+        summed = 0.0
+        for s in range(first[c], first[c + 1]):
+            summed += math.exp(shares[s] - top)
+        each[c] = top + math.log(summed)
+        for s in range(first[c], first[c + 1]):
+            shares[s] = math.exp(shares[s] - each[c])
+            for r in range(starts[s], starts[s + 1]):
+                factors[r] *= shares[s]
             for i in range(p):
-                gradient = of_all[s - a, i] - of_fit[s - a, i]
-                scores[c, i] += share * gradient
-                for j in range(i + 1):
-                    hessian[i, j] += share * (
-                        of_all[s - a, i] * of_all[s - a, j]
-                        - of_fit[s - a, i] * of_fit[s - a, j]
-                        + gradient * (of_all[s - a, j] - of_fit[s - a, j])
-                    )
-        for i in range(p):
-            for j in range(i + 1):
-                hessian[i, j] -= scores[c, i] * scores[c, j]
+                scores[c, i] += shares[s] * (of_all[s, i] - of_fit[s, i])
 
 
 @internal()
@@ -269,5 +286,5 @@ def _log_sum(
         top = max(top, total[r] + more[r])
     summed = 0.0
     for r in range(first, last):
-        summed += math.exp(total[r] + more[r] - top)
+        summed += math.exp(total[r] + more[r] - top) if more[r] > -np.inf else 0.0
     return top + math.log(summed)

@@ -13,6 +13,7 @@ from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.errors import ModelError
+from mesa_mobility.estimation.availability import FREE, PERSON, WALL
 from mesa_mobility.estimation.measured import Measured
 from mesa_mobility.plugins.output import numbers_given
 
@@ -25,19 +26,23 @@ class Coverage:
         near: choices with an option near enough.
         too_fast: those whose person went farther than any of their options leads.
         walled: those whose near options hit a wall.
+        blocked: those whose near options hit a wall or somebody ahead who walks on as before.
         between: those whose person was within reach, at a place where no option ends.
     """
 
     near: int = 0
     too_fast: int = 0
     walled: int = 0
+    blocked: int = 0
     between: int = 0
 
-    def count(self, near: int, walled: bool, went: float, farthest: float) -> None:
-        """Count a choice with ``near`` options near enough, all of them into walls or not."""
-        if near and not walled:
+    def count(self, hit: NDArray[np.int8], went: float, farthest: float) -> None:
+        """Count a choice whose options near the end hit what ``hit`` (near,) says."""
+        if (hit == FREE).any():
             self.near += 1
-        elif near:
+        elif (hit == PERSON).any():
+            self.blocked += 1
+        elif (hit == WALL).any():
             self.walled += 1
         elif went > farthest:
             self.too_fast += 1
@@ -47,7 +52,7 @@ class Coverage:
     @property
     def choices(self) -> int:
         """All of them."""
-        return self.near + self.too_fast + self.walled + self.between
+        return sum(vars(self).values())
 
     @property
     def share(self) -> float:
@@ -63,6 +68,7 @@ class Coverage:
             f"{self.choices} choices, {100 * self.share:.1f} % with an option near enough; of the "
             f"others {100 * self.too_fast / n:.1f} % went faster than any option, "
             f"{100 * self.walled / n:.1f} % where near options hit a wall, "
+            f"{100 * self.blocked / n:.1f} % where they hit somebody ahead, "
             f"{100 * self.between / n:.1f} % between options"
         )
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.estimation.availability import FREE
 from mesa_mobility.estimation.free_speeds import FreeSpeeds, nodes
 from mesa_mobility.estimation.measured import Measured, measured
 from mesa_mobility.estimation.observations import Batch, Coverage, Observations
@@ -120,7 +121,7 @@ def observe(
         )
     batches = [batch for each in situations if (batch := looks.look(each)) is not None]
     if not batches:
-        raise ResultsError(f"{name}: no choice with options that hit no wall")
+        raise ResultsError(f"{name}: no choice with options that hit nothing")
     return Observations.of(
         stage.model, batches, of, name=name, fold=fold or name, coverage=looks.coverage
     )
@@ -176,7 +177,8 @@ class _Looks:
 
     def __post_init__(self) -> None:
         self.coverage = Coverage()
-        self._poses = Poses.of(self.stage.scene.repertoire.capabilities[0])
+        known = self.stage.scene.repertoire.capabilities[0]
+        self._poses = Poses.of(self.stage.table, known.n_clusters)
         self._frames = self.stage.table.options.frames
         self._free = FreeSpeeds(self.of, self.chosen.history)
         self._exits = self.stage.destinations(self.of.ends())
@@ -195,7 +197,7 @@ class _Looks:
         velocities = self.of.velocities(at.frame, self.chosen.history)[there]
         own = self._free.own(at.frame, self.chosen.history, seconds)
         speeds = np.where(np.isnan(own), self._nodes[len(self._nodes) // 2], own)[there]
-        self.stage.put(places[there], velocities, self._exits[there], speeds)
+        self.stage.put(places[there], velocities, self._exits[there], speeds, at.duration)
         rows = np.searchsorted(there, at.people)
         ends = self.of.at(at.frame + seconds * self.of.rate)[at.people]
         moving = np.hypot(*velocities[rows].T)
@@ -203,7 +205,7 @@ class _Looks:
             self._draw(row, speed, at.duration, end)
             for row, speed, end in zip(rows.tolist(), moving.tolist(), ends, strict=True)
         ]
-        some = [k for k, each in enumerate(drawn) if len(each.options) > 1]
+        some = [k for k, each in enumerate(drawn) if len(each.options) > each.near]
         if not some:
             return None
         return self._batch(at, rows, [drawn[k] for k in some], some, own[at.people])
@@ -222,21 +224,19 @@ class _Looks:
         off = np.hypot(option.x - (c * dx + s * dy), option.y - (c * dy - s * dx))
         by_distance = np.argsort(off, kind="stable")[:MOST_NEAR]
         near = by_distance[off[by_distance] <= NEAR]
-        walled = self.stage.hits_wall(row, pool[near])
+        hit = self.stage.hits(row, pool[near])
         farthest = float(option.speed.max()) * duration / FRAMES_A_SECOND
-        self.coverage.count(len(near), bool(walled.all()), float(np.hypot(dx, dy)), farthest)
-        near = near[~walled]
+        self.coverage.count(hit, float(np.hypot(dx, dy)), farthest)
+        near = near[hit == FREE]
         others = self.rng.permutation(np.setdiff1d(np.arange(len(pool)), near))
-        # Half as many again, since some hit walls; all of them where that is not enough.
-        count, first = self.chosen.alternatives, others[: 3 * self.chosen.alternatives // 2]
-        free = first[~self.stage.hits_wall(row, pool[first])]
+        # Half as many again, since some hit something; all of them where that is not enough.
+        count, tried = self.chosen.alternatives, 3 * self.chosen.alternatives // 2
+        free = others[:tried][self.stage.hits(row, pool[others[:tried]]) == FREE]
         if len(free) < count:
-            rest = others[len(first) :]
-            free = np.concatenate([free, rest[~self.stage.hits_wall(row, pool[rest])]])
+            rest = others[tried:]
+            free = np.concatenate([free, rest[self.stage.hits(row, pool[rest]) == FREE]])
             tried = len(others)
-        else:
-            tried = len(first)
-        share = len(free) / max(tried, 1)
+        share = len(free) / max(min(tried, len(others)), 1)
         free = free[:count]
         available = max(share * len(others), len(free), 1e-9)
         return _Drawn(

@@ -9,13 +9,13 @@ import shapely
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
-from mesa_mobility.crowd.options.table import OptionTable
+from mesa_mobility.crowd.options.table import FRAME_SECONDS, SAMPLES, OptionTable
 from mesa_mobility.crowd.pedestrian_model import PedestrianModel
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import candidates_of
 from mesa_mobility.crowd.state.people_grid import grid_of_frame
-from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION
+from mesa_mobility.crowd.state.records import FALLBACK, NO_CORNER
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
-from mesa_mobility.estimation.availability import hit_walls
+from mesa_mobility.estimation.availability import what_is_hit
 from mesa_mobility.estimation.poses import STANDS
 from mesa_mobility.floorplan import FloorPlan
 
@@ -41,8 +41,7 @@ class Stage:
         self.scene = self.model._scene
         self._desired = DesiredMotion(self.scene.environment, self.scene.crowd)
         self._plan = plan
-        self._walls = np.empty((len(plan.walls) + len(plan.exits), 5))
-        self._path = np.empty((3, self.table.path.shape[2]))
+        self._walls = np.empty((len(plan.walls) + len(plan.exits) + 1, 3 * SAMPLES))
         self.model.bind()
 
     @property
@@ -67,14 +66,16 @@ class Stage:
         velocities: NDArray[np.float64],
         destinations: NDArray[np.int64],
         speeds: NDArray[np.float64],
+        frames: int,
     ) -> None:
-        """Put people where they were, as the only ones.
+        """Put people where they were, as the only ones, walking on as they did.
 
         Args:
             places: (m, 2) metres.
             velocities: (m, 2) of the movement that has just ended, m/s.
             destinations: (m,) numbers of their exits.
             speeds: (m,) preferred speeds, m/s.
+            frames: for how long others are taken to walk on.
         """
         crowd, m = self.scene.crowd, len(places)
         if m > len(crowd.x):
@@ -83,15 +84,16 @@ class Stage:
         rows = slice(0, m)
         x, y = _on_floor(places, self._plan).T
         crowd.x[rows], crowd.y[rows] = x, y
-        for name in ("from", "to"):
-            getattr(crowd, f"{name}_x")[rows] = x
-            getattr(crowd, f"{name}_y")[rows] = y
+        crowd.from_x[rows], crowd.from_y[rows] = x, y
+        on_x, on_y = np.array([x, y]) + velocities.T * frames * FRAME_SECONDS
+        crowd.to_x[rows], crowd.to_y[rows] = on_x, on_y
         crowd.vx[rows], crowd.vy[rows] = velocities.T
-        crowd.box[rows] = np.column_stack([x, y, x, y])
+        low, high = np.minimum([x, y], [on_x, on_y]), np.maximum([x, y], [on_x, on_y])
+        crowd.box[rows] = np.vstack([low, high]).T
         crowd.core[rows] = self.scene.types[0].half_width
-        crowd.option[rows], crowd.gone[rows] = NO_OPTION, -1
-        crowd.start[rows], crowd.end[rows] = 0, 0
-        crowd.spacing[rows], crowd.knots[rows] = 1, 1
+        crowd.option[rows], crowd.gone[rows] = FALLBACK, -1
+        crowd.start[rows], crowd.end[rows] = 0, frames
+        crowd.spacing[rows], crowd.knots[rows] = frames, 2
         crowd.destination[rows], crowd.active[rows] = destinations, True
         crowd.agenda["speed"][rows] = speeds
         crowd.agenda["corner"][rows] = NO_CORNER
@@ -109,12 +111,21 @@ class Stage:
         wants = Wants(model.target_choice, model.tactics, model.rng)
         self._desired.update(rows, inside, 0, wants)
 
-    def hits_wall(self, row: int, options: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """(n,) whether options, rows of the table, of the person in a row hit a wall."""
-        hit = np.empty(len(options), dtype=np.bool_)
+    def hits(self, row: int, options: NDArray[np.int64]) -> NDArray[np.int8]:
+        """(n,) what options, rows of the table, of the person in a row hit: ``FREE``, ``WALL``, or
+        ``PERSON``, one of those ahead if they walk on as before.
+
+        People behind keep their distance themselves.
+        """
+        hit = np.empty(len(options), dtype=np.int8)
         crowd, around = self.scene.crowd, self.scene.environment.surroundings
-        hit_walls(
-            row, options, self.table, crowd.records, around, self._walls, self._path, hit
+        hard, heading = self.scene.rules.hard_bodies, crowd.heading[row]
+        inside = np.flatnonzero(crowd.active)
+        dx, dy = crowd.x[inside] - crowd.x[row], crowd.y[inside] - crowd.y[row]
+        near = np.hypot(dx, dy) < self.scene.rules.search_radius
+        ahead = inside[near & (np.cos(heading) * dx + np.sin(heading) * dy > 0.0)]
+        what_is_hit(
+            row, options, ahead, hard, self.table, crowd.records, around, self._walls, hit
         )
         return hit
 
