@@ -11,6 +11,7 @@ import typer
 
 from mesa_mobility.commands import experiment
 from mesa_mobility.commands.dashboard import dashboard
+from mesa_mobility.commands.estimate import estimate
 from mesa_mobility.commands.explain import explain
 from mesa_mobility.commands.export import export
 from mesa_mobility.commands.maps.app import app as maps
@@ -38,6 +39,7 @@ app = typer.Typer(
 app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
+app.command("estimate")(estimate)
 app.command("dashboard")(dashboard)
 app.command("serve")(serve)
 app.command("export")(export)

@@ -10,7 +10,8 @@ from mesa_mobility.estimation.likelihood import Value
 
 def information(value: Value, free: NDArray[np.bool_]) -> NDArray[np.float64]:
     """(free, free) inverse of the observed information: what variances are without clusters."""
-    return np.linalg.pinv(-value.hessian[np.ix_(free, free)], hermitian=True)
+    inverse = np.linalg.pinv(-value.hessian[np.ix_(free, free)], hermitian=True)
+    return np.asarray(inverse, dtype=np.float64)
 
 
 def clustered(
@@ -55,9 +56,7 @@ def bootstrapped(
     return steps
 
 
-def _sums(
-    value: Value, free: NDArray[np.bool_], groups: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def _sums(value: Value, free: NDArray[np.bool_], groups: NDArray[np.int64]) -> NDArray[np.float64]:
     """(groups, free) sums of scores."""
     _, number = np.unique(groups, return_inverse=True)
     sums = np.zeros((int(number.max(initial=-1)) + 1, int(free.sum())))

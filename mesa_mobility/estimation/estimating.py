@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +10,12 @@ from scipy.stats import chi2, norm
 
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.errors import ModelError, ResultsError
+from mesa_mobility.estimation.choices.observations import Observations
 from mesa_mobility.estimation.errors import blocks_of, bootstrapped, clustered, information
+from mesa_mobility.estimation.estimates import Estimate
 from mesa_mobility.estimation.fitting import fit, without
 from mesa_mobility.estimation.identification import unidentified
-from mesa_mobility.estimation.measures import Measures, measure
-from mesa_mobility.estimation.observations import Observations
+from mesa_mobility.estimation.measures import measure
 from mesa_mobility.estimation.problem import Problem
 
 BLOCK = 5.0
@@ -26,47 +26,6 @@ REPEATS = 1000
 
 SEED = 1
 """Of the bootstrap."""
-
-
-@dataclass(frozen=True, eq=False)
-class Estimate:
-    """Weights that make observed choices most likely; p terms, of which some may be fixed.
-
-    Attributes:
-        terms: names of the terms.
-        weights: (p,) in units in which the sum of costs is a negative log-likelihood.
-        free: (p,) whether a weight was estimated.
-        errors: (p,) standard errors: the greater of the two below; 0 of fixed weights.
-        by_person: (p,) standard errors, clustered by person.
-        by_time: (p,) standard errors of a bootstrap of blocks of time within runs.
-        intervals: (p, 2) 95 % intervals.
-        likelihood_ratios: (p,) twice the log-likelihood that the choices lose without a term, the
-            others estimated anew; not a number of fixed terms.
-        p_values: (p,) that a term adds nothing, from the ratio adjusted for dependent choices.
-        assumed: (p,) share of a term's spread that rests on what head tracks do not show: facing,
-            and 5 cm of sway.
-        log_likelihood: of all matched choices, nats, with ends as densities in 1/m2.
-        measures: how well the choices are told.
-    """
-
-    terms: tuple[str, ...]
-    weights: NDArray[np.float64]
-    free: NDArray[np.bool_]
-    errors: NDArray[np.float64]
-    by_person: NDArray[np.float64]
-    by_time: NDArray[np.float64]
-    intervals: NDArray[np.float64]
-    likelihood_ratios: NDArray[np.float64]
-    p_values: NDArray[np.float64]
-    assumed: NDArray[np.float64]
-    log_likelihood: float
-    measures: Measures
-
-    def __getitem__(self, name: str) -> float:
-        """The weight of a term."""
-        if name not in self.terms:
-            raise ModelError(f"estimate: no term {name!r}, there are {', '.join(self.terms)}")
-        return float(self.weights[self.terms.index(name)])
 
 
 def estimate(

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.candidates import Candidates
-from mesa_mobility.estimation.likelihood import ERROR
 from mesa_mobility.estimation.problem import Problem
 
 TURNED = np.deg2rad(20.0)
 """How far bodies may face away from where they were assumed to, radians."""
+
+SWAY = 0.03
+"""How far heads may be from the middle of the body, metres in each direction."""
 
 ASSUMED = 0.25
 """Share of a term's spread from which on its weight reflects what was assumed."""
@@ -43,7 +45,7 @@ def unidentified(problem: Problem) -> NDArray[np.float64]:
 def _as_seen(candidates: Candidates, rng: np.random.Generator) -> Candidates:
     """The options if bodies faced elsewhere and heads swayed otherwise."""
     n, b = len(candidates), len(candidates.facings)
-    points = candidates.points + ERROR * rng.standard_normal((n, 2))
+    points = candidates.points + SWAY * rng.standard_normal((n, 2))
     displacements = np.hypot(*(points - candidates.positions[candidates.owner]).T)
     return replace(
         candidates,

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.errors import ModelError
+from mesa_mobility.estimation.choices.observations import Observations
 from mesa_mobility.estimation.estimating import free_terms
 from mesa_mobility.estimation.fitting import common_scale, fit
 from mesa_mobility.estimation.measures import Measures, measure
-from mesa_mobility.estimation.observations import Observations
 from mesa_mobility.estimation.problem import Problem
 
 

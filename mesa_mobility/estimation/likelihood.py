@@ -20,14 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal, kept
-from mesa_mobility.estimation.observations import Batch, Observations
-from mesa_mobility.estimation.poses import STANDS
+from mesa_mobility.estimation.choices.observations import Batch, Observations
+from mesa_mobility.estimation.choices.poses import STANDS
 
 UNSEEN = -np.inf
 
-ERROR = 0.05
-"""Standard deviation of where heads are from where the option ends, metres in each direction: heads
-sway by as much."""
+ALONG, ACROSS = 0.02, 0.03
+"""Standard deviations of how far heads are from where a movement leads, metres along and across the
+way on which people came: heads sway to the side by up to 5 cm when a movement begins and when it
+ends."""
 
 TURNED = np.deg2rad(25.0)
 """Standard deviation of the facing of people who walk from the direction in which they walk,
@@ -80,8 +81,7 @@ class Layout(NamedTuple):
         sizes: (segments,) rows of each segment.
         choice: (segments,) the choice.
         near: (rows,) whether an option ends near the observed end.
-        off: (rows,) how far from the observation: minus the logarithm of how well an option fits it,
-            but for a constant.
+        off: (rows,) minus the logarithm of the density of the observation if an option was taken.
         stands_for: (rows,) how many available options each stands for.
         matched: (choices,) whether an option is near enough.
     """
@@ -118,11 +118,14 @@ def layout_of(observations: Observations) -> Layout:
 def misfit(batch: Batch) -> NDArray[np.float64]:
     """(rows,) minus the logarithm of the density of what was observed if an option was taken.
 
-    Of the end, 1/m2, and, where people walk, of the direction in which they walked then, 1/rad: they
-    are taken to face where they walk, with a normal error of ``TURNED``, and more the slower they
-    are.
+    Of the end, 1/m2, and, where people walk, of the direction in which they walked then, 1/rad:
+    they are taken to face where they walk, with a normal error of ``TURNED``, and more the slower
+    they are.
     """
-    off = 0.5 * (batch.off / ERROR) ** 2 + np.log(2.0 * np.pi * ERROR * ERROR)
+    along, across = batch.off.T
+    off = 0.5 * ((along / ALONG) ** 2 + (across / ACROSS) ** 2) + np.log(
+        2.0 * np.pi * ALONG * ACROSS
+    )
     speeds = np.hypot(*batch.leaving.T)
     ways = np.arctan2(batch.leaving[:, 1], batch.leaving[:, 0])
     errors = np.hypot(TURNED, SWAY / np.maximum(speeds, 1e-9))
@@ -169,8 +172,8 @@ def standard(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """``fit`` and ``counts`` of the standard measure: the observed end is one option among those
     drawn uniformly, as likely as the options near it on average.
 
-    The average is weighted by a normal error of ``ERROR``. That of the nearest option alone would
-    depend on its facing, which is not observed.
+    The average is weighted by how well each fits. That of the nearest option alone would depend on
+    its facing, which is not observed.
     """
     near = np.where(layout.near, -layout.off, UNSEEN)
     starts = np.cumsum(layout.sizes) - layout.sizes
@@ -181,10 +184,8 @@ def standard(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def latent(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """``fit`` and ``counts`` of an end that is observed with a normal error of ``ERROR``; the fit is
-    a density, 1/m2."""
-    density = -layout.off
-    return np.where(layout.near, density, UNSEEN), np.log(layout.stands_for)
+    """``fit`` and ``counts`` of the likelihood of ends; the fit is a density."""
+    return np.where(layout.near, -layout.off, UNSEEN), np.log(layout.stands_for)
 
 
 def evaluate(rows: Rows, costs: NDArray[np.float64], weights: NDArray[np.float64]) -> Value:
@@ -277,9 +278,7 @@ def _evaluate(
 
 
 @internal()
-def _log_sum(
-    total: NDArray[np.float64], more: NDArray[np.float64], first: int, last: int
-) -> float:
+def _log_sum(total: NDArray[np.float64], more: NDArray[np.float64], first: int, last: int) -> float:
     """Logarithm of the sum of exponentials of both together, from row ``first`` to ``last``."""
     top = -np.inf
     for r in range(first, last):

@@ -76,9 +76,7 @@ def energy_scores(problem: Problem, weights: NDArray[np.float64]) -> NDArray[np.
         before += n
         for choice, end in enumerate(batch.ends):
             segments = np.flatnonzero(batch.choice == choice)
-            rows = [
-                np.arange(*batch.candidates.offsets[s : s + 2]) for s in segments
-            ]
+            rows = [np.arange(*batch.candidates.offsets[s : s + 2]) for s in segments]
             drawn = [each[~near[each]] for each in rows]
             share = np.mean([_shares(total[each]) for each in drawn], axis=0)
             at = points[drawn[0]]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.errors import ModelError
+from mesa_mobility.estimation.choices.observations import Observations
 from mesa_mobility.estimation.likelihood import (
     Layout,
     Rows,
@@ -22,7 +23,6 @@ from mesa_mobility.estimation.likelihood import (
     rows_of,
     standard,
 )
-from mesa_mobility.estimation.observations import Observations
 from mesa_mobility.plugins.registry import load_behavior
 
 ALIKE = 1.0 - 1e-6
@@ -118,9 +118,7 @@ class Problem:
             self.observations, tuple(self.terms[k] for k in kept), self.costs[:, list(kept)]
         )
 
-    def sample(
-        self, measure: str = "latent", chosen: NDArray[np.bool_] | None = None
-    ) -> Sample:
+    def sample(self, measure: str = "latent", chosen: NDArray[np.bool_] | None = None) -> Sample:
         """Matched choices, by one of two measures.
 
         Args:

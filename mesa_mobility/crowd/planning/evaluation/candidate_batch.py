@@ -63,7 +63,8 @@ def candidates_of(
 
     Args:
         options: (n,) rows of the table.
-        offsets: (len(rows) + 1,) options of pedestrian i are ``options[offsets[i]:offsets[i + 1]]``.
+        offsets: (len(rows) + 1,) options of pedestrian i are
+            ``options[offsets[i]:offsets[i + 1]]``.
     """
     owner = np.repeat(np.arange(len(rows), dtype=np.int64), np.diff(offsets))
     x, y, heading = _lay_ends(rows, owner, options, table, state.records)

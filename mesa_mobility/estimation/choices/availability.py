@@ -33,8 +33,8 @@ def what_is_hit(
 ) -> None:
     """Write what each option of the person in row i hits.
 
-    ``ahead`` are rows of people, who walk on as the crowd's records say; ``walls`` (all + 1, 16 x 3)
-    is workspace.
+    ``ahead`` are rows of people, who walk on as the crowd's records say; ``walls`` (all + 1, 48) is
+    workspace.
     """
     path = walls[len(walls) - 1].reshape(3, 16)
     farthest = 0.0

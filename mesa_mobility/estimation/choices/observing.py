@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.estimation.availability import FREE
-from mesa_mobility.estimation.free_speeds import FreeSpeeds, nodes
-from mesa_mobility.estimation.measured import Measured, measured
-from mesa_mobility.estimation.observations import Batch, Coverage, Observations
-from mesa_mobility.estimation.poses import Poses
-from mesa_mobility.estimation.stage import Stage
+from mesa_mobility.estimation.choices.availability import FREE
+from mesa_mobility.estimation.choices.free_speeds import FreeSpeeds, nodes
+from mesa_mobility.estimation.choices.measured import Measured, measured
+from mesa_mobility.estimation.choices.observations import Batch, Coverage, Observations
+from mesa_mobility.estimation.choices.poses import Poses
+from mesa_mobility.estimation.choices.stage import Stage
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.results.tracks import Tracks
 
@@ -182,12 +182,9 @@ class _Looks:
         self._frames = self.stage.table.options.frames
         self._free = FreeSpeeds(self.of, self.chosen.history)
         self._exits = self.stage.destinations(self.of.ends())
-        kind = self.stage.scene.types[0]
-        self._nodes = (
-            nodes(kind.preferred_speed, self.chosen.speeds)
-            if hasattr(kind.preferred_speed, "quantile")
-            else np.array([float(kind.preferred_speed)])
-        )
+        speed = self.stage.scene.types[0].preferred_speed
+        assert speed is not None
+        self._nodes = nodes(speed, self.chosen.speeds)
 
     def look(self, at: _Situation) -> Batch | None:
         """The choices of one moment; None without any."""
@@ -214,14 +211,13 @@ class _Looks:
         """Options of somebody: those near the end, and some of all that are available."""
         table, crowd = self.stage.table, self.stage.scene.crowd
         clusters = self._poses.draw(speed, self.chosen.poses, self.rng)
-        pool = np.concatenate(
-            [np.arange(table.offsets[c], table.offsets[c + 1]) for c in clusters]
-        )
+        pool = np.concatenate([np.arange(table.offsets[c], table.offsets[c + 1]) for c in clusters])
         pool = pool[self._frames[pool] == duration]
         c, s = np.cos(crowd.heading[row]), np.sin(crowd.heading[row])
         dx, dy = end[0] - crowd.x[row], end[1] - crowd.y[row]
         option = table.options[pool]
-        off = np.hypot(option.x - (c * dx + s * dy), option.y - (c * dy - s * dx))
+        apart = np.column_stack([option.x - (c * dx + s * dy), option.y - (c * dy - s * dx)])
+        off = np.hypot(*apart.T)
         by_distance = np.argsort(off, kind="stable")[:MOST_NEAR]
         near = by_distance[off[by_distance] <= NEAR]
         hit = self.stage.hits(row, pool[near])
@@ -241,7 +237,7 @@ class _Looks:
         available = max(share * len(others), len(free), 1e-9)
         return _Drawn(
             options=pool[np.concatenate([near, free])].astype(np.int64),
-            off=off[np.concatenate([near, free])],
+            off=apart[np.concatenate([near, free])],
             near=len(near),
             stands_for=available / max(len(free), 1),
         )
@@ -295,7 +291,9 @@ class _Looks:
         for turn in range(int(order.max()) + 1):
             own = np.flatnonzero(order == turn)
             self.stage.aim(owners[own], speeds[own])
-            targets[own] = np.column_stack([crowd.target_x[owners[own]], crowd.target_y[owners[own]]])
+            targets[own] = np.column_stack(
+                [crowd.target_x[owners[own]], crowd.target_y[owners[own]]]
+            )
             wanted[own] = np.where(
                 np.isfinite(crowd.route[owners[own]]), crowd.preferred[owners[own]], 0.0
             )
@@ -307,7 +305,7 @@ class _Drawn(NamedTuple):
 
     Attributes:
         options: (n,) rows of the table.
-        off: (n,) metres from the observed end.
+        off: (n, 2) metres from the observed end, along and across the heading.
         near: number of those near.
         stands_for: available options for which each drawn one stands.
     """

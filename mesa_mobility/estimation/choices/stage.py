@@ -15,12 +15,10 @@ from mesa_mobility.crowd.planning.evaluation.candidate_batch import candidates_o
 from mesa_mobility.crowd.state.people_grid import grid_of_frame
 from mesa_mobility.crowd.state.records import FALLBACK, NO_CORNER
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
-from mesa_mobility.estimation.availability import what_is_hit
-from mesa_mobility.estimation.poses import STANDS
+from mesa_mobility.errors import ModelError
+from mesa_mobility.estimation.choices.availability import what_is_hit
+from mesa_mobility.estimation.choices.poses import STANDS
 from mesa_mobility.floorplan import FloorPlan
-
-HISTORYLESS = frozenset({"visits", "speed_zones", "speed_rules", "waiting", "corner_spreading"})
-"""Tactics that need neither what people have decided before nor other people."""
 
 
 class Stage:
@@ -50,8 +48,14 @@ class Stage:
         return self.scene.repertoire.table
 
     def destinations(self, ends: NDArray[np.float64]) -> NDArray[np.int64]:
-        """(k,) numbers of the exits nearest to the (k, 2) places where tracks end, metres."""
+        """(k,) numbers of the exits nearest to the (k, 2) places where tracks end, metres.
+
+        Raises:
+            ModelError: the plan has none.
+        """
         exits = self._plan.exits
+        if not exits:
+            raise ModelError("observe: the floor plan has no exit, expected one where tracks end")
         away = [
             shapely.distance(shapely.LineString([each.a, each.b]), shapely.points(ends))
             for each in exits
@@ -124,9 +128,7 @@ class Stage:
         dx, dy = crowd.x[inside] - crowd.x[row], crowd.y[inside] - crowd.y[row]
         near = np.hypot(dx, dy) < self.scene.rules.search_radius
         ahead = inside[near & (np.cos(heading) * dx + np.sin(heading) * dy > 0.0)]
-        what_is_hit(
-            row, options, ahead, hard, self.table, crowd.records, around, self._walls, hit
-        )
+        what_is_hit(row, options, ahead, hard, self.table, crowd.records, around, self._walls, hit)
         return hit
 
     def candidates(

@@ -13,8 +13,8 @@ from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.errors import ModelError
-from mesa_mobility.estimation.availability import FREE, PERSON, WALL
-from mesa_mobility.estimation.measured import Measured
+from mesa_mobility.estimation.choices.availability import FREE, PERSON, WALL
+from mesa_mobility.estimation.choices.measured import Measured
 from mesa_mobility.plugins.output import numbers_given
 
 
@@ -60,7 +60,9 @@ class Coverage:
         return self.near / max(self.choices, 1)
 
     def __add__(self, other: Coverage) -> Coverage:
-        return Coverage(*(a + b for a, b in zip(vars(self).values(), vars(other).values(), strict=True)))
+        return Coverage(
+            *(a + b for a, b in zip(vars(self).values(), vars(other).values(), strict=True))
+        )
 
     def __str__(self) -> str:
         n = max(self.choices, 1)
@@ -84,7 +86,7 @@ class Batch:
         candidates: options, a pedestrian a segment.
         choice: (segments,) number of the choice in the batch.
         near: (rows,) whether an option ends near the observed end.
-        off: (rows,) metres from it.
+        off: (rows, 2) how far it ends from there, metres along and across the person's heading.
         stands_for: (rows,) how many available options each stands for.
         people: (c,) indices of the people.
         frame: of the tracks.

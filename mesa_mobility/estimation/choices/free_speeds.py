@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.distributions.base import Distribution
-from mesa_mobility.estimation.measured import Measured
+from mesa_mobility.estimation.choices.measured import Measured
 
 AHEAD, BESIDE = 3.0, 0.8
 """Somebody is free who has nobody within so many metres ahead of them, and beside their way."""
@@ -34,7 +34,7 @@ class FreeSpeeds:
         self._frames = np.arange(tracks.first, tracks.last + 1, step)
         self._speeds = np.full((len(tracks.people), len(self._frames)), np.nan)
         back = round(history * tracks.rate)
-        for column, frame in enumerate(self._frames):
+        for column, frame in enumerate(self._frames.tolist()):
             now, before = tracks.at(frame), tracks.at(frame - back)
             velocities = (now - before) / history
             free = _walk_freely(now, velocities)
@@ -66,6 +66,8 @@ def _walk_freely(places: NDArray[np.float64], velocities: NDArray[np.float64]) -
     return moving[~ahead.any(axis=1)]
 
 
-def nodes(distribution: Distribution, count: int) -> NDArray[np.float64]:
+def nodes(distribution: Distribution | float, count: int) -> NDArray[np.float64]:
     """(count,) speeds in m/s that stand for a distribution, each as likely as the others."""
+    if not isinstance(distribution, Distribution):
+        return np.array([distribution])
     return distribution.quantile((np.arange(count) + 0.5) / count)

@@ -1,0 +1,133 @@
+"""`mesa-mobility estimate`: weights of behaviours from measured tracks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mesa_mobility.commands.console import (
+    NoProgress,
+    answer_json,
+    answer_rows,
+    progress_bar,
+    say,
+    some_path,
+)
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.costs.terms import CostTerm
+    from mesa_mobility.estimation import Estimate, LeftOut
+
+
+def estimate(
+    tracks: Annotated[
+        list[Path], typer.Argument(metavar="TRACKS...", help="Files of measured tracks.")
+    ],
+    plan: Annotated[
+        Path,
+        typer.Option(help="The floor plan, with exits.", parser=some_path, metavar="FILE"),
+    ],
+    term: Annotated[
+        list[str] | None,
+        typer.Option(help="A cost term to try beside those of the preset; repeatable."),
+    ] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(help="A term of the preset to leave out; repeatable.")
+    ] = None,
+    fixed: Annotated[
+        list[str] | None, typer.Option(help="A term that keeps its weight; repeatable.")
+    ] = None,
+    preset: Annotated[str, typer.Option(help="Rules whose terms are estimated.")] = "default",
+    unit: Annotated[str | None, typer.Option(help="Unit of the tracks: m, cm or mm.")] = None,
+    frame_rate: Annotated[
+        float | None, typer.Option(help="Frames a second, if a file does not say so.")
+    ] = None,
+    choices: Annotated[int, typer.Option(min=1, help="Most choices of a file.")] = 2500,
+    seed: Annotated[int, typer.Option(min=0, help="Of all that is drawn.")] = 1,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object at the end.")] = False,
+    no_progress: NoProgress = False,
+) -> None:
+    """Estimate how much each behaviour counts in the choices of measured people.
+
+    With several files, weights from all others are also tried on each.
+    """
+    from mesa_mobility.estimation import Sampling, estimate, leave_out, observe
+    from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.results import Trajectories
+
+    terms = _terms(preset, term or [], without or [])
+    floor, sampling = FloorPlan.from_file(plan), Sampling(most=choices, seed=seed)
+    found = None
+    with progress_bar(shown=not no_progress) as report:
+        for done, file in enumerate(tracks):
+            report(f"observing {file.name}", done, len(tracks) + 1)
+            measured = Trajectories.read(file, unit, frame_rate)
+            own = observe(floor, measured, name=str(file), sampling=sampling, preset=preset)
+            say(f"{file}: {own.coverage}")
+            found = own if found is None else found + own
+        report("estimating", len(tracks), len(tracks) + 1)
+        assert found is not None
+        answer = estimate(terms, found, fixed=fixed or [])
+        others = leave_out(terms, found, fixed=fixed or []) if len(tracks) > 1 else []
+    _print(answer, others)
+    if as_json:
+        answer_json(_as_json(answer, others))
+
+
+def _terms(preset: str, more: list[str], without: list[str]) -> list[CostTerm]:
+    """Terms of a preset but for some, and others by name."""
+    from mesa_mobility.crowd.presets import preset_named
+    from mesa_mobility.errors import ModelError
+    from mesa_mobility.estimation.problem import as_terms
+
+    terms = preset_named(preset).make_terms()
+    names = [each.name for each in terms]
+    for name in without:
+        if name not in names:
+            raise ModelError(f"--without {name}: preset {preset!r} has {', '.join(names)}")
+    kept = [each for each in terms if each.name not in without]
+    return as_terms([*kept, *(name for name in more if name not in [k.name for k in kept])])
+
+
+def _print(answer: Estimate, others: list[LeftOut]) -> None:
+    from mesa_mobility.estimation.estimates import COLUMNS, cells
+
+    answer_rows(COLUMNS, cells(answer))
+    of = answer.measures
+    rows = [("all", f"{of.nats:.3f}", "", f"{of.energy:.3f}")]
+    for each in others:
+        told, given = each.measures, each.given
+        rows.append((each.fold, f"{told.nats:.3f}", f"{given.nats:.3f}", f"{told.energy:.3f}"))
+    columns = ("left out" if others else "choices", "nats", "of given weights", "energy score m")
+    answer_rows(columns, rows)
+
+
+def _as_json(answer: Estimate, others: list[LeftOut]) -> dict[str, Any]:
+    def number(value: float) -> float | None:
+        return None if value != value else float(value)
+
+    return {
+        "terms": {
+            name: {
+                "weight": number(answer.weights[k]),
+                "error": number(answer.errors[k]),
+                "interval": [number(each) for each in answer.intervals[k]],
+                "likelihood_ratio": number(answer.likelihood_ratios[k]),
+                "p": number(answer.p_values[k]),
+                "assumed": number(answer.assumed[k]),
+                "fixed": not bool(answer.free[k]),
+            }
+            for k, name in enumerate(answer.terms)
+        },
+        "measures": vars(answer.measures),
+        "left_out": {
+            each.fold: {
+                "weights": dict(zip(each.terms, each.weights.tolist(), strict=True)),
+                "measures": vars(each.measures),
+                "given": {**vars(each.given), "scale": each.scale},
+            }
+            for each in others
+        },
+    }
