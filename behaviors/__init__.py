@@ -22,6 +22,7 @@ from mesa_mobility.behaviors.routes.familiar_routes import FamiliarRoutes
 from mesa_mobility.behaviors.routes.hazards import Hazard, Hazards
 from mesa_mobility.behaviors.routes.signs import Sign, Signs
 from mesa_mobility.behaviors.sideways import Sideways
+from mesa_mobility.behaviors.speed_ahead import SpeedAhead
 from mesa_mobility.behaviors.steering.anticipation import Anticipation
 from mesa_mobility.behaviors.steering.corner_spreading import SpreadAtCorners
 from mesa_mobility.behaviors.steering.speed_adaptation import AdaptSpeed
@@ -34,6 +35,7 @@ from mesa_mobility.behaviors.velocity import (
     PreferredVelocity,
     VelocityChange,
 )
+from mesa_mobility.behaviors.wall_distance import WallDistance
 
 __all__ = [
     "AdaptSpeed",
@@ -68,10 +70,12 @@ __all__ = [
     "Sign",
     "Signs",
     "SocialInfluence",
+    "SpeedAhead",
     "SpreadAtCorners",
     "Stepping",
     "TargetDistance",
     "VelocityChange",
     "WalkTogether",
     "WalkingAbreast",
+    "WallDistance",
 ]

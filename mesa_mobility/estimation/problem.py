@@ -42,7 +42,8 @@ def as_terms(terms: Sequence[CostTerm | str]) -> list[CostTerm]:
     names = [each.name for each in found]
     twice = [name for name in names if names.count(name) > 1]
     if twice or not found:
-        raise ModelError(f"terms: got {twice[0] if twice else 'none'!r} , expected each name once")
+        got = f"{twice[0]!r} twice" if twice else "nothing"
+        raise ModelError(f"terms: got {got}, expected cost terms of different names")
     return found
 
 

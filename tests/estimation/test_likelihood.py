@@ -63,10 +63,7 @@ def test_derivatives_are_those_of_differences():
     downs = [evaluate(rows, costs, weights - step * e) for e in np.eye(3)]
     scores = np.array([(u.each - d.each) / (2 * step) for u, d in zip(ups, downs, strict=True)]).T
     hessian = np.array(
-        [
-            (u.scores.sum(0) - d.scores.sum(0)) / (2 * step)
-            for u, d in zip(ups, downs, strict=True)
-        ]
+        [(u.scores.sum(0) - d.scores.sum(0)) / (2 * step) for u, d in zip(ups, downs, strict=True)]
     )
     np.testing.assert_allclose(value.scores, scores, atol=1e-7)
     np.testing.assert_allclose(value.hessian, hessian, atol=1e-6)

@@ -81,11 +81,12 @@ class Measured:
         found[np.isnan(found[:, 0]) & ~np.isnan(now[:, 0])] = 0.0
         return found
 
-    def ends(self) -> NDArray[np.float64]:
-        """(k, 2) the last place of each, metres."""
+    def span(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(k, 2) the first and the last place of each, metres."""
         there = ~np.isnan(self.places[:, :, 0])
         last = self.places.shape[1] - 1 - np.argmax(there[:, ::-1], axis=1)
-        return self.places[np.arange(len(last)), last]
+        who = np.arange(len(last))
+        return self.places[who, np.argmax(there, axis=1)], self.places[who, last]
 
 
 def measured(tracks: Tracks, plan: FloorPlan, name: str = "tracks") -> Measured:

@@ -88,8 +88,8 @@ def observe(
     """The choices of measured people, as the engine would have put them.
 
     At each instant people stand where they were, with the mean velocity of the last frames, and
-    walk on as fast for their neighbours. Everybody's exit is the one nearest to the end of their
-    track. A choice is between the options of some poses that walk as fast; it is observed by where
+    walk on as fast for their neighbours. Everybody's exit is the one to which their track leads. A
+    choice is between the options of some poses that walk as fast; it is observed by where
     the person was when the option would have ended. Nothing of later frames is used but that end,
     the exit, and free speeds at other times.
 
@@ -181,7 +181,7 @@ class _Looks:
         self._poses = Poses.of(self.stage.table, known.n_clusters)
         self._frames = self.stage.table.options.frames
         self._free = FreeSpeeds(self.of, self.chosen.history)
-        self._exits = self.stage.destinations(self.of.ends())
+        self._exits = self.stage.destinations(*self.of.span())
         speed = self.stage.scene.types[0].preferred_speed
         assert speed is not None
         self._nodes = nodes(speed, self.chosen.speeds)
