@@ -150,7 +150,7 @@ class Observations:
         coverage: how many choices have an option near enough.
     """
 
-    worlds: tuple[World, ...]
+    worlds: tuple[Any, ...]
     batches: tuple[Batch, ...]
     world: NDArray[np.int64]
     names: tuple[str, ...]
