@@ -14,8 +14,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mesa_mobility.estimation.choices.observations import Coverage as Coverage
     from mesa_mobility.estimation.choices.observations import Observations as Observations
-    from mesa_mobility.estimation.choices.observing import Sampling as Sampling
     from mesa_mobility.estimation.choices.observing import observe as observe
+    from mesa_mobility.estimation.choices.sampling import Sampling as Sampling
     from mesa_mobility.estimation.estimating import Estimate as Estimate
     from mesa_mobility.estimation.estimating import estimate as estimate
     from mesa_mobility.estimation.leaving_out import LeftOut as LeftOut

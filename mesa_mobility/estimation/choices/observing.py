@@ -16,6 +16,7 @@ from mesa_mobility.estimation.choices.free_speeds import FreeSpeeds, nodes
 from mesa_mobility.estimation.choices.measured import Measured, measured
 from mesa_mobility.estimation.choices.observations import Batch, Coverage, Observations
 from mesa_mobility.estimation.choices.poses import Poses
+from mesa_mobility.estimation.choices.sampling import Sampling, Situation, situations
 from mesa_mobility.estimation.choices.stage import Stage
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.results.tracks import Tracks
@@ -31,47 +32,6 @@ LEAVING = 0.4
 
 TACTICS = ("corner_spreading", "anticipation", "speed_adaptation")
 """Tactics of a preset that need nothing of what people have decided before."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sampling:
-    """Which choices are looked at, and which of their options.
-
-    Attributes:
-        frames: durations of choices in frames of the simulation; those of the preset by which
-            choices are explained. They take turns.
-        interval: seconds between two instants at which everybody's choice is looked at.
-        most: most choices; more are thinned out at random.
-        alternatives: options drawn uniformly from those available, beside the observed one.
-        poses: clusters among whose options a choice is: head tracks do not show the pose.
-        speeds: values that stand for the distribution of free speeds of people whose own is
-            not known.
-        history: seconds of earlier frames of which a velocity is the mean.
-        seed: of all that is drawn.
-    """
-
-    frames: Sequence[int] = (24, 45)
-    interval: float = 0.5
-    most: int = 2500
-    alternatives: int = 120
-    poses: int = 4
-    speeds: int = 3
-    history: float = 0.8
-    seed: int = 1
-
-
-class _Situation(NamedTuple):
-    """A moment at which some people choose.
-
-    Attributes:
-        frame: of the tracks.
-        duration: of the choices, frames of the simulation.
-        people: (c,) indices of the people.
-    """
-
-    frame: float
-    duration: int
-    people: NDArray[np.int64]
 
 
 def observe(
@@ -113,49 +73,18 @@ def observe(
     stage = Stage(plan, tuple(tactics), **model)
     rng = np.random.default_rng(chosen.seed)
     looks = _Looks(of, stage, chosen, rng)
-    situations = _situations(of, chosen, between, rng)
-    if not situations:
+    moments = situations(of, chosen, between, rng)
+    if not moments:
         raise ResultsError(
             f"{name}: no choice: nobody is seen for {chosen.history:g} s before and "
             f"{max(chosen.frames) / FRAMES_A_SECOND:g} s after an instant"
         )
-    batches = [batch for each in situations if (batch := looks.look(each)) is not None]
+    batches = [batch for each in moments if (batch := looks.look(each)) is not None]
     if not batches:
         raise ResultsError(f"{name}: no choice with options that hit nothing")
     return Observations.of(
         stage.model, batches, of, name=name, fold=fold or name, coverage=looks.coverage
     )
-
-
-def _situations(
-    of: Measured,
-    chosen: Sampling,
-    between: tuple[float, float] | None,
-    rng: np.random.Generator,
-) -> list[_Situation]:
-    """The moments and who chooses then: those seen long enough before and after."""
-    first, last = between or (of.first, of.last)
-    step = chosen.interval * of.rate
-    frames = np.round(np.arange(max(first, of.first), min(last, of.last) + 1e-9, step))
-    durations = [chosen.frames[at % len(chosen.frames)] for at in range(len(frames))]
-    found = []
-    for frame, duration in zip(frames.tolist(), durations, strict=True):
-        seen = [of.at(frame), of.at(frame - chosen.history * of.rate)]
-        seen.append(of.at(frame + duration / FRAMES_A_SECOND * of.rate))
-        people = np.flatnonzero(~np.isnan(np.sum(seen, axis=(0, 2))))
-        if len(people):
-            found.append(_Situation(frame, duration, people.astype(np.int64)))
-    total = sum(len(each.people) for each in found)
-    if total <= chosen.most:
-        return found
-    kept = np.sort(rng.choice(total, chosen.most, replace=False))
-    bounds = np.cumsum([0] + [len(each.people) for each in found])
-    thinned = []
-    for each, a, b in zip(found, bounds[:-1], bounds[1:], strict=True):
-        own = kept[(kept >= a) & (kept < b)] - a
-        if len(own):
-            thinned.append(each._replace(people=each.people[own]))
-    return thinned
 
 
 @dataclass(eq=False)
@@ -186,7 +115,7 @@ class _Looks:
         assert speed is not None
         self._nodes = nodes(speed, self.chosen.speeds)
 
-    def look(self, at: _Situation) -> Batch | None:
+    def look(self, at: Situation) -> Batch | None:
         """The choices of one moment; None without any."""
         seconds = at.duration / FRAMES_A_SECOND
         places = self.of.at(at.frame)
@@ -244,7 +173,7 @@ class _Looks:
 
     def _batch(
         self,
-        at: _Situation,
+        at: Situation,
         rows: NDArray[np.int64],
         drawn: list[_Drawn],
         some: list[int],
