@@ -92,16 +92,18 @@ def _terms(preset: str, more: list[str], without: list[str]) -> list[CostTerm]:
 
 
 def _print(answer: Estimate, others: list[LeftOut]) -> None:
-    from mesa_mobility.estimation.estimates import COLUMNS, cells
-
-    answer_rows(COLUMNS, cells(answer))
-    of = answer.measures
-    rows = [("all", f"{of.nats:.3f}", "", f"{of.energy:.3f}")]
-    for each in others:
-        told, given = each.measures, each.given
-        rows.append((each.fold, f"{told.nats:.3f}", f"{given.nats:.3f}", f"{told.energy:.3f}"))
-    columns = ("left out" if others else "choices", "nats", "of given weights", "energy score m")
-    answer_rows(columns, rows)
+    print(answer)  # as wide as it is: a narrow terminal would break names
+    if others:
+        rows = [
+            (
+                each.fold,
+                f"{each.measures.nats:.3f}",
+                f"{each.given.nats:.3f}",
+                f"{each.measures.energy:.3f}",
+            )
+            for each in others
+        ]
+        answer_rows(("left out", "nats", "of given weights", "energy score m"), rows)
 
 
 def _as_json(answer: Estimate, others: list[LeftOut]) -> dict[str, Any]:
