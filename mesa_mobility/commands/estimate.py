@@ -39,7 +39,9 @@ def estimate(
     fixed: Annotated[
         list[str] | None, typer.Option(help="A term that keeps its weight; repeatable.")
     ] = None,
-    preset: Annotated[str, typer.Option(help="Rules whose terms are estimated.")] = "default",
+    preset: Annotated[
+        str, typer.Option(metavar="NAME|FILE", help="Preset whose terms are estimated.")
+    ] = "default",
     unit: Annotated[str | None, typer.Option(help="Unit of the tracks: m, cm or mm.")] = None,
     frame_rate: Annotated[
         float | None, typer.Option(help="Frames a second, if a file does not say so.")
@@ -78,11 +80,11 @@ def estimate(
 
 def _terms(preset: str, more: list[str], without: list[str]) -> list[CostTerm]:
     """Terms of a preset but for some, and others by name."""
-    from mesa_mobility.crowd.presets import preset_named
+    from mesa_mobility.crowd.presets.shipped import preset_of
     from mesa_mobility.errors import ModelError
     from mesa_mobility.estimation.problem import as_terms
 
-    terms = preset_named(preset).make_terms()
+    terms = preset_of(preset).make_terms()
     names = [each.name for each in terms]
     for name in without:
         if name not in names:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mesa_mobility import CostTerm, Exit, FloorPlan, PedestrianModel, Trajectories
-from mesa_mobility.crowd.presets import PRESETS
+from mesa_mobility.crowd import PRESETS
 from mesa_mobility.estimation import Sampling, estimate, observe
 
 WEIGHTS = {

@@ -122,5 +122,5 @@ def test_presets_that_are_refused(changed, text):
 
 
 def test_what_is_no_preset():
-    with pytest.raises(ModelError, match="preset: got 7, expected a name or a Preset"):
+    with pytest.raises(ModelError, match="preset: got 7, expected a name, a TOML file or a Preset"):
         model_of(corridor(), strider(), preset=7)
