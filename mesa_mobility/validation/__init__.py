@@ -17,7 +17,7 @@ from mesa_mobility.validation import (
     walking,
 )
 from mesa_mobility.validation.experiment import Experiment, judged
-from mesa_mobility.validation.scenes import jams, wide_necks
+from mesa_mobility.validation.scenes import corners, counter, jams, wide_necks
 
 EXPERIMENTS = {
     each.EXPERIMENT.name: each.EXPERIMENT
@@ -30,6 +30,8 @@ EXPERIMENTS = {
         bottleneck,
         jams,
         wide_necks,
+        corners,
+        counter,
         standing,
         fallback,
     )
