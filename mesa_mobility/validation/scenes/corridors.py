@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, Source
@@ -25,10 +26,27 @@ LENGTH, WIDTH = 24.0, 1.8
 BOX = box(12.0, 0.0, 22.0, WIDTH)
 """Where tracks count, metres: ten metres of corridor before its end."""
 ENTRY = box(0.6, CLEARANCE, 1.6, WIDTH - CLEARANCE)
+WALL, BEHIND = 0.1, (2.5, 1.0)
+"""Thickness of the wall beside an exit; of the free area behind it the length, and by how much it
+is wider to either side; metres."""
 LINE = ((17.0, 0.0), (17.0, WIDTH))
 SETTLE_S, MEASURE_S = 30.0, 60.0
 LONG_SETTLE_S = 60.0
 """Time until the queue before an exit has reached the whole measuring area, seconds."""
+
+
+def corridor_plan(exit_width: float) -> FloorPlan:
+    """The corridor; behind an exit that is narrower than it, a free area as in the experiment."""
+    low, high = (WIDTH - exit_width) / 2, (WIDTH + exit_width) / 2
+    floor = box(0.0, 0.0, LENGTH, WIDTH)
+    end = ((LENGTH, low), (LENGTH, high))
+    if exit_width < WIDTH:
+        (length, beside), behind = BEHIND, LENGTH + WALL
+        free = box(behind, -beside, behind + length, WIDTH + beside)
+        floor = shapely.union_all([floor, box(LENGTH, low, behind, high), free])
+        far = behind + length
+        end = ((far, -beside), (far, WIDTH + beside))
+    return FloorPlan(floor, exits=[Exit("end", *end)])
 
 
 def one_way(
@@ -48,13 +66,16 @@ def one_way(
         ``flow``, ``turns`` (radians), ``across`` (m), ``speed_changes`` (m/s) between steps of
         1.5 s, ``accelerations`` (m/s2) and ``jumps`` of speed over 0.1 s (m/s).
     """
-    low, high = (WIDTH - exit_width) / 2, (WIDTH + exit_width) / 2
-    plan = FloorPlan(
-        box(0.0, 0.0, LENGTH, WIDTH), exits=[Exit("end", (LENGTH, low), (LENGTH, high))]
-    )
+    plan = corridor_plan(exit_width)
     model = crowd_model(plan, seed)
     people = round(density * LENGTH * WIDTH)
-    places = plan.random_points(people, model.rng, spacing=SPACING, clearance=CLEARANCE)
+    places = plan.random_points(
+        people,
+        model.rng,
+        within=box(0.0, 0.0, LENGTH, WIDTH),
+        spacing=SPACING,
+        clearance=CLEARANCE,
+    )
     model.add_pedestrians(places, preferred_speeds=RECORDED.draw(people, model.rng))
     model.add_source(Source(area=ENTRY, rate=rate, preferred_speeds=RECORDED))
     while model.elapsed < settle + MEASURE_S:

@@ -3,6 +3,7 @@
 import pytest
 
 from mesa_mobility.validation.scenes import jams, wide_necks
+from mesa_mobility.validation.scenes.corridors import corridor_plan
 
 
 def unmet(verdict) -> list[str]:
@@ -84,3 +85,12 @@ def test_pictures_show_measured_and_simulated_flows(scene, runs):
     assert {"experiments", "mesa-mobility"} <= set(axes.get_legend_handles_labels()[1])
     ours = next(each for each in axes.lines if each.get_label() == "mesa-mobility")
     assert ours.get_ydata().tolist() == [each["flow"] for each in runs()]
+
+
+def test_there_is_floor_behind_a_narrow_exit_and_none_behind_an_open_end():
+    plan = corridor_plan(1.2)
+    # 24 m x 1.8 m, 0.1 m x 1.2 m and 2.5 m x 3.8 m.
+    assert plan.area == pytest.approx(43.2 + 0.12 + 9.5)
+    assert plan.exits[0].length == pytest.approx(3.8)
+    assert corridor_plan(1.8).area == pytest.approx(43.2)
+    assert corridor_plan(1.8).exits[0].length == pytest.approx(1.8)
