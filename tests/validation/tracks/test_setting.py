@@ -131,6 +131,7 @@ def test_a_flow_of_nobody_is_no_flow(read):
     assert not verdict.passed
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")
 def test_drawn_tracks_are_pieces_of_half_a_second(read):
     pieces = thinned(read(people=1).of_people([0]))
     np.testing.assert_allclose(pieces[0], [0.2, 0.8, 0.7, 0.8, 1.0])
