@@ -20,6 +20,8 @@ from mesa_mobility.validation.tracks.windows import (
 
 LEAD_S = 6.0
 """Time of the replay before anything is measured, seconds: people settle."""
+LEAN_M, LEAST_ON = 0.5, 0.9
+"""How far beyond the floor heads may be, metres, and the least share of rows that must be on it."""
 SHORTEST_S = 3.0
 """Least time to measure, seconds: two steps."""
 
@@ -117,8 +119,9 @@ def setting_of(
         speeds: of simulated people.
 
     Raises:
-        ResultsError: one person alone, tracks off the floor, a window without people or of less
-            than 3 s, an area off the floor, a line that fewer than six people cross.
+        ResultsError: one person alone, more than a tenth of the rows off the floor, a window
+            without people or of less than 3 s, an area off the floor, a line that fewer than six
+            people cross.
     """
     assert tracks.reading is not None
     file = tracks.reading.file
@@ -177,9 +180,9 @@ def setting_of(
 
 
 def _check_floor(tracks: Trajectories, plan: FloorPlan, plan_file: str) -> None:
-    """Raise ResultsError if most of the tracks are off the floor."""
-    on = shapely.contains_xy(plan.free.buffer(0.5), tracks.x, tracks.y)
-    if on.mean() < 0.5:
+    """Raise ResultsError if too many rows are off the floor: the plan is another."""
+    on = shapely.contains_xy(shapely.buffer(plan.free, LEAN_M), tracks.x, tracks.y)
+    if on.mean() < LEAST_ON:
         row = int(np.argmin(on))
         assert tracks.reading is not None
         raise ResultsError(

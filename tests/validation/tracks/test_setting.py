@@ -65,6 +65,8 @@ def test_what_is_given_stays(read):
         ({"people": 1}, {}, "run.txt: person 0 is alone"),
         ({"people": 5}, {}, "run.txt: fewer than six people cross the line"),
         ({"x": 40.0}, {}, r"run.txt: person 0, frame 0: at \(40.20, 0.80\) m, off the floor"),
+        # 12 m of 20 m are on the floor.
+        ({"x": 8.0}, {}, r"person 0, frame 12\d: at .*, off the floor of plan, as 8\d\d of 2340"),
         ({}, {"line": ((30.0, 0.0), (30.0, 4.0))}, "fewer than six people cross the line"),
         ({}, {"first": 150, "last": 120}, "expected rising frames between 0 and 304"),
         ({}, {"start": 140, "first": 120}, "expected rising frames between 0 and 304"),
