@@ -27,7 +27,7 @@ from mesa_mobility.plugins.registry import load_model
 from mesa_mobility.results import Trajectories
 from mesa_mobility.validation.bottleneck import plan as bottleneck_plan
 from mesa_mobility.validation.corridor import RECORDED
-from mesa_mobility.validation.motion import ENTRY, LENGTH, SETTLE_S, WIDTH
+from mesa_mobility.validation.scenes.corridors import ENTRY, LENGTH, SETTLE_S, WIDTH
 from mesa_mobility.verification.runs import CLEARANCE, SPACING, crowd_model
 
 FloatArray = NDArray[np.float64]

@@ -6,8 +6,10 @@ Slow imports are made where they are used, so that help and errors come at once.
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 
 from mesa_mobility.commands import experiment
 from mesa_mobility.commands.dashboard import dashboard
@@ -22,6 +24,7 @@ from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
 from mesa_mobility.commands.validate import validate
+from mesa_mobility.commands.validate_tracks import validate_tracks
 from mesa_mobility.commands.verify import verify
 from mesa_mobility.errors import MobilityError
 
@@ -29,8 +32,19 @@ from mesa_mobility.errors import MobilityError
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 """Raised for wrong usage of the command line."""
 
+
+class _Commands(TyperGroup):
+    """Commands of one word, and of two of which the first is a command of its own."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command that arguments name, and the other arguments."""
+        two = " ".join(args[:2])
+        return super().resolve_command(ctx, [two, *args[2:]] if two in self.commands else args)
+
+
 app = typer.Typer(
     name="mesa-mobility",
+    cls=_Commands,
     help="Pedestrian crowds driven by recorded human movement.",
     no_args_is_help=True,
     add_completion=False,
@@ -40,6 +54,7 @@ app.command("run")(run)
 app.command("verify")(verify)
 app.command("validate")(validate)
 app.command("estimate")(estimate)
+app.command("validate tracks")(validate_tracks)
 app.command("dashboard")(dashboard)
 app.command("serve")(serve)
 app.command("export")(export)

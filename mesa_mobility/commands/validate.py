@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -26,8 +27,18 @@ from mesa_mobility.commands.verify import (
 from mesa_mobility.runs.processes import available_processors
 
 if TYPE_CHECKING:
+    from mesa_mobility.crowd.presets.given import Given
     from mesa_mobility.validation import Experiment
     from mesa_mobility.verification import Verdict
+
+OutFolder = Annotated[
+    Path | None,
+    typer.Option(
+        help="Folder for a picture of each and validation.json.",
+        parser=some_path,
+        metavar="PATH",
+    ),
+]
 
 
 def validate(
@@ -39,14 +50,7 @@ def validate(
     preset: Rules = None,
     numbers: Numbers = None,
     as_json: AsJson = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Folder for a picture of each and validation.json.",
-            parser=some_path,
-            metavar="PATH",
-        ),
-    ] = None,
+    out: OutFolder = None,
     report_file: ReportFile = None,
     no_progress: NoProgress = False,
 ) -> None:
@@ -54,19 +58,43 @@ def validate(
 
     Ends with status 1 if a figure is not as measured.
     """
+    from mesa_mobility.validation import chosen
+
+    given = Asked(seeds, jobs, as_json, out, report_file, no_progress)
+    run_experiments(chosen(names or []), rules_given(preset, numbers or []), given)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How experiments are run and what is written; the options of the command."""
+
+    seeds: int
+    jobs: int | None
+    as_json: bool
+    out: Path | None
+    report_file: Path | None
+    no_progress: bool
+
+
+def run_experiments(experiments: list[Experiment], rules: Given, asked: Asked) -> None:
+    """Run and judge experiments, and write and print what was asked for.
+
+    Raises:
+        typer.Exit: a figure is not as measured.
+        ResultsError: a file cannot be written.
+    """
     from mesa_mobility.results import check_writable
-    from mesa_mobility.validation import chosen, judged
+    from mesa_mobility.validation import judged
     from mesa_mobility.verification import run_cases
 
-    experiments = chosen(names or [])
-    rules = rules_given(preset, numbers or [])
+    out, report_file = asked.out, asked.report_file
     if out is not None:
         check_writable(out, _files(experiments))
     check_report(report_file)
-    runs = range(1, seeds + 1)
+    runs = range(1, asked.seeds + 1)
     cases = [each for experiment in experiments for each in experiment.cases]
-    with progress_bar(shown=not no_progress) as report:
-        results = run_cases(cases, runs, jobs or available_processors(), report, rules=rules)
+    with progress_bar(shown=not asked.no_progress) as report:
+        results = run_cases(cases, runs, asked.jobs or available_processors(), report, rules=rules)
     verdicts = {
         experiment.name: judged(
             experiment, [[results[each, seed] for each in experiment.cases] for seed in runs]
@@ -80,10 +108,10 @@ def validate(
     if report_file is not None:
         from mesa_mobility.validation.report import write_report
 
-        write_report(experiments, verdicts, seeds, report_file, rules)
+        write_report(experiments, verdicts, asked.seeds, report_file, rules)
         say(f"written to {report_file}")
     _print_table(experiments, verdicts)
-    if as_json:
+    if asked.as_json:
         answer_json(answer)
     if not all(verdict.passed for verdict in verdicts.values()):
         raise typer.Exit(FAILED)

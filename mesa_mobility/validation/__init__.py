@@ -17,6 +17,7 @@ from mesa_mobility.validation import (
     walking,
 )
 from mesa_mobility.validation.experiment import Experiment, judged
+from mesa_mobility.validation.scenes import corners, counter, jams, wide_necks
 
 EXPERIMENTS = {
     each.EXPERIMENT.name: each.EXPERIMENT
@@ -27,6 +28,10 @@ EXPERIMENTS = {
         corridor,
         bidirectional,
         bottleneck,
+        jams,
+        wide_necks,
+        corners,
+        counter,
         standing,
         fallback,
     )

@@ -36,12 +36,17 @@ FRONT = box(-1.0, -1.5, 1.0, -0.5)
 DENSITY_IN_FRONT = (3.5, 6.0)
 
 
-def plan(width: float) -> FloorPlan:
-    """A holding area 8 m wide and 10 m deep, a neck 1 m long, a free area behind."""
-    half, side = width / 2, ROOM_WIDTH / 2
+def plan(width: float, room: tuple[float, float] = (ROOM_WIDTH, ROOM_DEPTH)) -> FloorPlan:
+    """A holding area, a neck 1 m long, a free area behind.
+
+    Args:
+        width: of the neck, metres.
+        room: width and depth of the holding area, metres.
+    """
+    half, side = width / 2, room[0] / 2
     floor = Polygon(
         [
-            (-side, -ROOM_DEPTH), (side, -ROOM_DEPTH), (side, 0), (half, 0), (half, NECK),
+            (-side, -room[1]), (side, -room[1]), (side, 0), (half, 0), (half, NECK),
             (side, NECK), (side, NECK + 5), (-side, NECK + 5), (-side, NECK), (-half, NECK),
             (-half, 0), (-side, 0),
         ]
@@ -88,13 +93,14 @@ def bottleneck(seed: int, *, width: float, people: int = PEOPLE, **rules: Any) -
         **run.figures(),
         "passed": len(times),
         "flow_per_s": steady_flow(times, people),
-        "density_in_front": _in_front(run, times[first], times[last])
+        "density_in_front": density_in_front(run, times[first], times[last])
         if len(times) > last
         else None,
     }
 
 
-def _in_front(run: Run, start: float, end: float) -> float | None:
+def density_in_front(run: Run, start: float, end: float) -> float | None:
+    """Median, from one time to another (s), of the mean individual density in ``FRONT``, 1/m2."""
     tracks = run.trajectories
     offsets, means = tracks.frame_offsets, []
     for time in np.arange(start, end, 0.5):

@@ -6,21 +6,53 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
-from mesa_mobility.verification import Verdict
+from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification.checks import Check, within
 from mesa_mobility.verification.judging import single_file_bins, single_file_share
 from mesa_mobility.verification.references import published
-from mesa_mobility.verification.scenarios.tracks.single_file import CASES
+from mesa_mobility.verification.scenarios.tracks.single_file import CASES, single_file
+
+DENSE = (54, 60, 66, 72)
+"""People on the oval of 26.85 m: 2.0 to 2.7 a metre."""
+DENSE_FROM, DENSEST = 1.9, 2.9
+"""Bins that must be there, persons/m."""
+NEAR_MEAN_TO = 2.5
+"""Up to here the speed must be near the mean, persons/m; above, between least and greatest."""
+NEAR = 0.5, 1.5
 
 
 def judge(runs: Runs) -> Verdict:
-    """Three quarters of the bins lie within the measured range."""
-    bins = single_file_bins([figures for row in runs for figures in row])
-    check, figures = single_file_share(bins)
-    table = {name: values.tolist() for name, values in bins.items()}
-    return Verdict((check,), {**figures, "bins": table})
+    """Three quarters of the bins lie within the measured range; dense ones are there, and each is
+    near the measured mean."""
+    sparse, dense = (
+        single_file_bins([figures for row in runs for figures in part(row)])
+        for part in (lambda row: row[: len(CASES)], lambda row: row)
+    )
+    check, figures = single_file_share(sparse)
+    table = {name: values.tolist() for name, values in dense.items()}
+    return Verdict((check, *_dense(dense)), {**figures, "bins": table})
+
+
+def _dense(bins: dict[str, NDArray[np.float64]]) -> list[Check]:
+    """A check of the median speed in each dense bin of the reference."""
+    checks = []
+    reference = published("1D single file")
+    for density, least, mean, greatest in zip(
+        *(reference[name] for name in ("density", "v_min", "v_mean", "v_max")), strict=True
+    ):
+        if not DENSE_FROM - 1e-6 <= density <= DENSEST + 1e-6:
+            continue
+        found = bins["p50"][np.abs(bins["density"] - density) < 0.05]
+        low, high = least, greatest
+        if density <= NEAR_MEAN_TO + 1e-6:
+            low, high = (each * mean for each in NEAR)
+        value = float(found[0]) if len(found) else None
+        checks.append(within(f"dense: v at {density:.1f}/m", value, float(low), float(high)))
+    return checks
 
 
 def draw(figures: dict[str, Any]) -> Figure:
@@ -43,7 +75,7 @@ EXPERIMENT = Experiment(
     name="single_file",
     what="speed against density of people one behind the other",
     source="single file of BaSiGo and caserne (fd_juelich_published.csv)",
-    cases=CASES,
+    cases=(*CASES, *(case(single_file, effort=4.0, people=people) for people in DENSE)),
     judge=judge,
     draw=draw,
 )

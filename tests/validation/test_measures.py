@@ -58,23 +58,24 @@ def moving(**changes) -> list[dict]:
     """A run of each case of the motion experiment in which people move as the recorded ones."""
     rng = np.random.default_rng(1)
 
-    def walked(turn_deg, across, change, lag=0.0) -> dict:
+    def walked(turn_deg, across, change, lag=0.0, fastest=0.5, **condition) -> dict:
         pairs = rng.multivariate_normal([0, 0], [[1, lag], [lag, 1]], 4000)
         return {
             "turns": np.radians(rng.normal(0, turn_deg, 4000)),
             "across": rng.normal(0, across, 4000),
             "speed_changes": rng.normal(0, change, 4000),
             "successive": pairs,
-            # Of a uniform distribution the percentiles are known: p50 0.2, p99 0.396.
-            "accelerations": np.linspace(0, 0.4, 1001),
+            # Of a uniform distribution the percentiles are known: p50 0.25, p99 0.495.
+            "accelerations": np.linspace(0, fastest, 1001),
             "jumps": np.linspace(0, 0.3, 1001),
+            **condition,
         }
 
     runs = {
-        "alone": walked(4.4, 0.126, 0.06, lag=-0.33),
-        "corridor": walked(4.5, 0.092, 0.084),
-        "exit": walked(9.7, 0.074, 0.093),
-        "both ways": walked(5.0, 0.1, 0.1),
+        "alone": walked(4.4, 0.126, 0.06, lag=-0.33, speed=1.6),
+        "corridor": walked(4.5, 0.092, 0.084, density=1.2, speed=1.1, flow=2.3),
+        "exit": walked(9.7, 0.074, 0.093, fastest=0.6, density=2.2, speed=0.6, flow=2.4),
+        "both ways": walked(5.0, 0.1, 0.1, density=1.1, speed=1.2),
         "door 0.5": {"back": np.array([0.0] * 97 + [0.5] * 3)},
         "door 0.9": {"back": np.zeros(100)},
         "doorway": {"angles": np.full(1000, 0.1)},
@@ -96,8 +97,19 @@ def test_people_who_move_as_recorded_pass():
 @pytest.mark.parametrize(
     ("changes", "wrong"),
     [
-        # 1.3 times 4.506 degrees are 5.86.
-        ({"corridor": {"turns": np.radians([-6.0, 6.0])}}, "corridor: sd of direction change deg"),
+        # 1.4 times 4.506 degrees are 6.31, 0.7 times 3.15.
+        ({"corridor": {"turns": np.radians([-6.4, 6.4])}}, "corridor: sd of direction change deg"),
+        ({"corridor": {"turns": np.radians([-3.1, 3.1])}}, "corridor: sd of direction change deg"),
+        # 0.7 times 0.624 are 0.437.
+        ({"corridor": {"accelerations": np.full(9, 0.2)}}, "corridor: acceleration m/s2, p99"),
+        # Measured: 2.06 persons/m2 at 0.66 m/s, which are 2.45 persons/s in 1.8 m.
+        ({"exit": {"density": 1.1}}, "condition of before an exit of 1.2 m: density 1/m2"),
+        ({"exit": {"density": 5.4}}, "condition of before an exit of 1.2 m: density 1/m2"),
+        ({"exit": {"speed": 1.34}}, "condition of before an exit of 1.2 m: speed m/s"),
+        ({"exit": {"flow": None}}, "condition of before an exit of 1.2 m: flow 1/s"),
+        ({"corridor": {"flow": 2.05}}, "condition of corridor: flow 1/s"),
+        ({"both_ways": {"density": 0.7}}, "condition of both ways: density 1/m2"),
+        ({"alone": {"speed": 1.3}}, "condition of alone: speed m/s"),
         ({"alone": {"turns": np.radians([-3.0, 3.0])}}, "alone: sd of direction change deg"),
         (
             {"exit": {"jumps": np.full(9, 0.42)}},

@@ -28,8 +28,13 @@ SHORTEST_S = 0.2
 class MeasuredTracks(Protocol):
     """What a model uses of ``Trajectories``."""
 
-    frame_rate: float
-    reading: Any
+    @property
+    def frame_rate(self) -> float:
+        """Frames a second."""
+
+    @property
+    def reading(self) -> Any:
+        """How the file was read, or None."""
 
     @property
     def frame(self) -> NDArray[np.int32]:

@@ -68,6 +68,8 @@ class Distance:
         distance: of each seed from the measured runs.
         curve: the curve of each seed, or None for samples.
         measured_curve: of the measured runs together.
+        sample: (k,) values of all seeds together, or None for curves.
+        measured_sample: (k,) values of the measured runs together.
     """
 
     name: str
@@ -78,6 +80,8 @@ class Distance:
     distance: Envelope
     curve: Envelope | None = None
     measured_curve: FloatArray | None = None
+    sample: FloatArray | None = None
+    measured_sample: FloatArray | None = None
 
     @property
     def ratio(self) -> float:
@@ -216,5 +220,5 @@ def _distance(
         Envelope.of(np.array([figure.distance(each, pooled) for each in ours])),
     )
     if not figure.curve:
-        return found
+        return replace(found, sample=figure.pooled(ours), measured_sample=pooled)
     return replace(found, curve=Envelope.of(figure.table(ours)), measured_curve=pooled)

@@ -16,9 +16,11 @@ from mesa_mobility.results.distances.functional import (
     secant_cosine,
 )
 from mesa_mobility.results.distances.samples import (
+    densities,
     distance_headways,
     dwell_times,
     lane_orders,
+    speeds,
 )
 from mesa_mobility.results.distances.seen import Seen
 from mesa_mobility.results.measures.motion import (
@@ -175,6 +177,8 @@ SD, P99, MEDIAN, MEAN = (
 FIGURES = (
     Figure("n_t", "persons", FLOW, n_t, ("last", _last), curve=True),
     Figure("time_headway", "s", FLOW, lambda run: np.diff(run.passing_times), MEAN),
+    Figure("speed", "m/s", ("area",), lambda run: speeds(run.tracks, run.view), MEAN),
+    Figure("density", "1/m2", MOTION, lambda run: densities(run.moments, run.view), MEAN),
     Figure("speed_density", "m/s", FIELD, speed_by_density, MEAN, curve=True),
     Figure("density_profile", "1/m2", FIELD, lambda run: run.profiles[0], MEAN, curve=True),
     Figure("speed_profile", "m/s", FIELD, lambda run: run.profiles[1], MEAN, curve=True),

@@ -18,8 +18,32 @@ FloatArray = NDArray[np.float64]
 LANE_M = 0.35
 """How far to the side somebody may be to count as ahead, metres."""
 EVERY_S = 1.0
+WINDOW_S = 1.5
+"""Seconds over which speeds are taken, about a gait cycle."""
 LEAST_WAY = 0.5
 """Way along the direction that shows which way a person walks, metres."""
+
+
+def speeds(tracks: Tracks, view: View) -> FloatArray:
+    """(k,) m/s over 1.5 s, once a second, of everybody who is in the area in the middle of it."""
+    half = max(round(WINDOW_S * tracks.frame_rate / 2), 1)
+    start, end = tracks.steps(2 * half)
+    # Rows of a person are in the order of frames, so none is missing in between.
+    at = np.empty(len(tracks.by_person), dtype=np.int64)
+    at[tracks.by_person] = np.arange(len(at))
+    middle = tracks.by_person[at[start] + half]
+    every = max(round(EVERY_S * tracks.frame_rate), 1)
+    counted = (tracks.frame[middle] - tracks.frame[0]) % every == 0
+    counted &= shapely.contains_xy(view.area, tracks.x[middle], tracks.y[middle])
+    start, end = start[counted], end[counted]
+    gone = np.hypot(tracks.x[end] - tracks.x[start], tracks.y[end] - tracks.y[start])
+    return gone * tracks.frame_rate / (2 * half)
+
+
+def densities(moments: Sequence[Moment], view: View) -> FloatArray:
+    """(k,) persons/m2 in the area, once a second."""
+    assert view.area is not None
+    return np.array([np.count_nonzero(each.inside) for each in moments]) / view.area.area
 
 
 def dwell_times(tracks: Tracks, view: View) -> FloatArray:
@@ -83,6 +107,20 @@ def lane_orders(moments: Sequence[Moment]) -> FloatArray:
     return np.array(found)
 
 
+def ways(tracks: Tracks, direction: tuple[float, float]) -> FloatArray:
+    """(m,) by number of the person: +1 for those who get ahead along the direction, -1 for those
+    who go the other way, 0 for those who hardly move."""
+    ex, ey = np.asarray(direction) / np.hypot(*direction)
+    along = tracks.x * ex + tracks.y * ey
+    rows = tracks.by_person
+    first = _ends(tracks.person[rows])
+    last = np.append(first[1:], len(rows)) - 1
+    gone = along[rows[last]] - along[rows[first]]
+    sign = np.zeros(int(tracks.person.max(initial=-1)) + 1)
+    sign[tracks.person[rows[first]]] = np.where(np.abs(gone) >= LEAST_WAY, np.sign(gone), 0.0)
+    return sign
+
+
 def moments(tracks: Tracks, view: View) -> list[Moment]:
     """Where people are once a second."""
     assert view.direction is not None
@@ -90,13 +128,7 @@ def moments(tracks: Tracks, view: View) -> list[Moment]:
     along = tracks.x * ex + tracks.y * ey
     across = tracks.y * ex - tracks.x * ey
     inside = shapely.contains_xy(view.area, tracks.x, tracks.y)
-    rows = tracks.by_person
-    first = _ends(tracks.person[rows])
-    last = np.append(first[1:], len(rows)) - 1
-    gone = along[rows[last]] - along[rows[first]]
-    sign = np.zeros(int(tracks.person.max()) + 1)
-    sign[tracks.person[rows[first]]] = np.where(np.abs(gone) >= LEAST_WAY, np.sign(gone), 0.0)
-    way = sign[tracks.person]
+    way = ways(tracks, view.direction)[tracks.person]
     every = max(round(EVERY_S * tracks.frame_rate), 1)
     offsets = tracks.frame_offsets
     start = int(tracks.frame[0])

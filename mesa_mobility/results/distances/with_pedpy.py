@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mesa_mobility.results.distances.samples import EVERY_S, WINDOW_S, ways
 from mesa_mobility.results.distances.view import View
 from mesa_mobility.results.formats.export import to_pedpy
 from mesa_mobility.results.tracks import Tracks
@@ -18,10 +19,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-WINDOW_S = 1.5
-"""Seconds over which speeds are taken, about a gait cycle."""
-EVERY_S = 1.0
-"""Seconds between frames in which densities are measured."""
 CELL_M = 0.5
 """Side of a cell of profiles, metres."""
 
@@ -37,7 +34,8 @@ def passing_times(tracks: Tracks, view: View) -> FloatArray:
 
 def speeds_and_densities(tracks: Tracks, view: View) -> pd.DataFrame:
     """Once a second everybody in the area: ``x``, ``y`` (m), ``speed`` along the direction over
-    1.5 s (m/s) and ``density``, of their Voronoi cell (persons/m2)."""
+    1.5 s (m/s), or against it for people who go the other way, and ``density``, of their Voronoi
+    cell (persons/m2)."""
     pedpy, data = _pedpy(tracks)
     assert view.direction is not None
     half = max(round(WINDOW_S * tracks.frame_rate / 2), 1)
@@ -54,6 +52,8 @@ def speeds_and_densities(tracks: Tracks, view: View) -> pd.DataFrame:
     )
     found = rows.merge(speed, on=["id", "frame"]).merge(cells, on=["id", "frame"])
     found = found[shapely.contains_xy(view.area, found["x"], found["y"])]
+    against = ways(tracks, view.direction)[found["id"].to_numpy()] < 0.0
+    found["speed"] = found["speed"].where(~against, -found["speed"])
     return found[["id", "frame", "x", "y", "speed", "density"]]
 
 

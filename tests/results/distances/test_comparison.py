@@ -55,7 +55,7 @@ def test_equal_crowds_are_at_no_distance():
     walkers = [(1 + 1.3 * k, 0.5 + (0.7 * k) % 3, 0.9 + 0.05 * k) for k in range(12)]
     found = compare([crowd(walkers)] * 2, crowd(walkers), VIEW)
     assert not found.left_out
-    assert len(found.distances) == 16
+    assert len(found.distances) == 18
     for each in found.distances.values():
         # Some curves and samples are empty in so small a crowd, as bins of 20 people are.
         assert np.isnan(each.distance.middle) or each.distance.middle == pytest.approx(0.0), each
@@ -75,6 +75,22 @@ def test_half_as_fast_takes_twice_as_long():
     # N-t: 1 2 2 2 ... and 1 1 2 2 ...: one of ten seconds differs, by one person.
     assert found["n_t"].distance.middle == pytest.approx(np.sqrt(1 / 10))
     assert np.isnan(found["erd"].ratio)
+
+
+def test_speeds_and_densities_of_people_who_walk_either_way():
+    # In 10 m x 4 m for all 10 s: two ahead at 0.8 m/s, one back at 0.5 m/s, one outside of it.
+    walkers = [(5.5, 1.0, 0.8), (6.0, 2.0, 0.8), (14.0, 3.0, -0.5), (1.0, 3.5, 0.2)]
+    names = ["speed", "density", "speed_profile"]
+    found = compare(crowd(walkers), crowd(walkers), VIEW, figures=names)
+    # Once a second from 1 s to 9 s: in the first and last 0.75 s no speed is known.
+    speeds = found["speed"].measured_sample
+    np.testing.assert_allclose(np.sort(speeds), [0.5] * 9 + [0.8] * 18)
+    np.testing.assert_array_equal(found["speed"].sample, speeds)
+    assert found["speed"].measured == pytest.approx(0.7)
+    assert found["density"].measured == pytest.approx(3 / 40)
+    assert found["density"].curve is None
+    # Nobody walks backwards.
+    assert np.nanmin(found["speed_profile"].measured_curve) >= 0.5 - 1e-9
 
 
 def test_dwell_times_are_of_people_who_came_and_left():

@@ -1,0 +1,1 @@
+"""Scenes of crowds of which measured density, speed and flow are known."""
