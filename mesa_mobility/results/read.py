@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from mesa_mobility.bodies.velocities import headings
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.plugins.formats import READ
 from mesa_mobility.results.formats.output_format import OUTPUTS
@@ -19,7 +20,6 @@ from mesa_mobility.results.reading.rates import usual_rate
 from mesa_mobility.results.reading.rows import Reading, Rows
 from mesa_mobility.results.reading.units import UNITS, unit_of
 from mesa_mobility.results.tracks import Tracks
-from mesa_mobility.velocities import headings
 
 LARGEST = 10_000_000
 """Largest number of a person or frame: arrays have an entry for each."""

@@ -100,7 +100,7 @@ class Trajectories(Tracks):
         Reads text of the Juelich data archive (``.txt``), JuPedSim's databases (``.sqlite``), our
         own Parquet, formats of plug-ins, and through PedPy the archive's HDF5 (``.h5``) and files
         of Vadere, Viswalk, Pathfinder and crowd:it. Headings are the direction of travel over the
-        last 0.8 s if the file has none; see ``mesa_mobility.velocities``.
+        last 0.8 s if the file has none; see ``mesa_mobility.bodies.velocities``.
 
         Warnings of one line say that unit or frame rate were guessed, which rows cannot be read or
         repeat a frame (they are left out), and where people are missing or jump (rows stay).

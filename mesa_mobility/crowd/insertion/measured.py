@@ -11,10 +11,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from mesa_mobility.bodies.velocities import LEAST_WAY, WINDOW_S, velocities
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.human_limits import FASTEST_SPRINT
-from mesa_mobility.velocities import LEAST_WAY, WINDOW_S, velocities
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

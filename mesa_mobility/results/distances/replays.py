@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.bodies.velocities import velocities
 from mesa_mobility.results.tracks import Tracks
-from mesa_mobility.velocities import velocities
 
 FloatArray = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesa_mobility.velocities import headings, velocities
+from mesa_mobility.bodies.velocities import headings, velocities
 
 RATE = 10.0
 
