@@ -47,18 +47,26 @@ def _figures(
     task: Task, part: str, scenarios: Sequence[str], start: _BySeed, found: _BySeed
 ) -> Iterator[Figure]:
     yield _figure(
-        part, "", OBJECTIVE,
-        *(_values([None if each is None else total(task, each, scenarios) for each in by_seed])
-          for by_seed in (start, found)),
-    )  # fmt: skip
+        part,
+        "",
+        OBJECTIVE,
+        *(
+            _values([None if each is None else total(task, each, scenarios) for each in by_seed])
+            for by_seed in (start, found)
+        ),
+    )
     for name in scenarios:
         for distance in task.scenarios[name].distances:
             key = name, distance.name
             yield _figure(
-                part, name, distance.name,
-                *(_values([None if each is None else each[key] for each in by_seed])
-                  for by_seed in (start, found)),
-            )  # fmt: skip
+                part,
+                name,
+                distance.name,
+                *(
+                    _values([None if each is None else each[key] for each in by_seed])
+                    for by_seed in (start, found)
+                ),
+            )
 
 
 def _figure(

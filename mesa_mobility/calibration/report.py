@@ -36,28 +36,54 @@ def write_report(found: Calibrated, task: Task, path: str | os.PathLike[str]) ->
         f"out. Began on {found.began}."
     )
     page.table(
-        "Numbers", ["number", "from", "to", "at the start", "found"],
-        [[each.name, *(f"{end:.4g}" for end in each.bounds), f"{each.start:.4g}",
-          f"{found.values[each.name]:.4g}"] for each in task.free],
+        "Numbers",
+        ["number", "from", "to", "at the start", "found"],
+        [
+            [
+                each.name,
+                *(f"{end:.4g}" for end in each.bounds),
+                f"{each.start:.4g}",
+                f"{found.values[each.name]:.4g}",
+            ]
+            for each in task.free
+        ],
         "A number found at an end of its range may be better beyond.",
-    )  # fmt: skip
+    )
     for part, heading in _SAYS.items():
         rows = [each for each in found.figures if each.part == part]
         if rows:
             page.table(
                 heading,
                 ["scenario", "distance", "at the start", "found", "change", "verdict", "failed"],
-                [[each.scenario or "all", each.distance, str(each.start), str(each.found),
-                  str(each.change), each.verdict, each.failed] for each in rows],
+                [
+                    [
+                        each.scenario or "all",
+                        each.distance,
+                        str(each.start),
+                        str(each.found),
+                        str(each.change),
+                        each.verdict,
+                        each.failed,
+                    ]
+                    for each in rows
+                ],
                 "Means over the seeds, with intervals of 95 %. The change is taken seed by seed.",
-            )  # fmt: skip
+            )
     page.picture("Search", _drawn(found), "The best and the middle cost in each generation.")
     page.table(
-        "Scenarios", ["scenario", "simulates", "measured", "distances", "held out"],
-        [[name, each.simulates, each.measures if len(each.measures) < 200 else "in the store",
-          ", ".join(f"{of.name} x {of.weight:g}" for of in each.distances),
-          "yes" if each.held_out else "no"] for name, each in task.scenarios.items()],
-    )  # fmt: skip
+        "Scenarios",
+        ["scenario", "simulates", "measured", "distances", "held out"],
+        [
+            [
+                name,
+                each.simulates,
+                each.measures if len(each.measures) < 200 else "in the store",
+                ", ".join(f"{of.name} x {of.weight:g}" for of in each.distances),
+                "yes" if each.held_out else "no",
+            ]
+            for name, each in task.scenarios.items()
+        ],
+    )
     add_versions(
         page,
         {**versions(), "preset at the start": task.preset.inputs_text},
@@ -75,8 +101,12 @@ def _drawn(found: Calibrated) -> bytes:
     axes = drawn.subplots()
     across = np.arange(1, len(found.history) + 1)
     axes.plot(across, [min(each.costs) for each in found.history], label="best", color="#2166ac")
-    axes.plot(across, [float(np.median(each.costs)) for each in found.history], label="middle",
-              color="#999999")  # fmt: skip
+    axes.plot(
+        across,
+        [float(np.median(each.costs)) for each in found.history],
+        label="middle",
+        color="#999999",
+    )
     axes.set(xlabel="generation", ylabel="cost")
     axes.grid(alpha=0.3)
     axes.legend()

@@ -88,18 +88,28 @@ class Task:
                 for name, each in self.scenarios.items()
             },
             "free": [
-                {"name": each.name, "bounds": list(each.bounds), "start": each.start,
-                 "log": each.log}
+                {
+                    "name": each.name,
+                    "bounds": list(each.bounds),
+                    "start": each.start,
+                    "log": each.log,
+                }
                 for each in self.free
             ],
-            "seeds": {"each": self.seeds.each, "held_out": self.seeds.held_out,
-                      "first": self.seeds.first},
-            "search": {"candidates": self.search.candidates, "spread": float(self.search.spread),
-                       "max_seconds": self.search.max_seconds,
-                       "time_limit": self.search.time_limit},
+            "seeds": {
+                "each": self.seeds.each,
+                "held_out": self.seeds.held_out,
+                "first": self.seeds.first,
+            },
+            "search": {
+                "candidates": self.search.candidates,
+                "spread": float(self.search.spread),
+                "max_seconds": self.search.max_seconds,
+                "time_limit": self.search.time_limit,
+            },
             "preset": self.preset.digest,
             "files": dict(self.files),
-        }  # fmt: skip
+        }
 
 
 def task_of(

@@ -24,8 +24,11 @@ def validate_tracks(
     ],
     plan: Annotated[
         Path,
-        typer.Option(help="Floor plan, with the exits by which people leave.", metavar="FILE",
-                     parser=some_path),
+        typer.Option(
+            help="Floor plan, with the exits by which people leave.",
+            metavar="FILE",
+            parser=some_path,
+        ),
     ],
     frame_rate: Annotated[
         float | None, typer.Option(metavar="N", help="Frames a second, if the file does not tell.")
@@ -35,38 +38,50 @@ def validate_tracks(
     ] = None,
     start: Annotated[
         int | None,
-        typer.Option(min=0, metavar="FRAME",
-                     help="Frame at which the replay begins (6 s before --from)."),
+        typer.Option(
+            min=0, metavar="FRAME", help="Frame at which the replay begins (6 s before --from)."
+        ),
     ] = None,
     first: Annotated[
         int | None,
-        typer.Option("--from", min=0, metavar="FRAME",
-                     help="First frame to measure (a sixth of the people have crossed the line)."),
+        typer.Option(
+            "--from",
+            min=0,
+            metavar="FRAME",
+            help="First frame to measure (a sixth of the people have crossed the line).",
+        ),
     ] = None,
     last: Annotated[
         int | None,
-        typer.Option("--to", min=0, metavar="FRAME",
-                     help="Last frame to measure (five sixths have crossed it)."),
+        typer.Option(
+            "--to",
+            min=0,
+            metavar="FRAME",
+            help="Last frame to measure (five sixths have crossed it).",
+        ),
     ] = None,
     area: Annotated[
         str | None,
-        typer.Option(metavar="X,Y,X,Y|WKT",
-                     help="Where people are measured: two corners, or a polygon (the floor, "
-                     "without a tenth of all places at either end)."),
+        typer.Option(
+            metavar="X,Y,X,Y|WKT",
+            help="Where people are measured: two corners, or a polygon (the floor, "
+            "without a tenth of all places at either end).",
+        ),
     ] = None,
     line: Annotated[
         str | None,
-        typer.Option(metavar="X,Y,X,Y",
-                     help="Both ends of a line to cross (the narrowest cut of the floor)."),
+        typer.Option(
+            metavar="X,Y,X,Y", help="Both ends of a line to cross (the narrowest cut of the floor)."
+        ),
     ] = None,
     speeds: Annotated[
         str | None,
-        typer.Option(help="Free speeds of simulated people, as normal(1.55, 0.18); without it "
-                     "those of their type."),
+        typer.Option(
+            help="Free speeds of simulated people, as normal(1.55, 0.18); without it "
+            "those of their type."
+        ),
     ] = None,
-    seeds: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Replays, seeds 1 to N.")
-    ] = 3,
+    seeds: Annotated[int, typer.Option(min=1, metavar="N", help="Replays, seeds 1 to N.")] = 3,
     jobs: Jobs = None,
     preset: Rules = None,
     numbers: Numbers = None,
@@ -74,7 +89,7 @@ def validate_tracks(
     out: OutFolder = None,
     report_file: ReportFile = None,
     no_progress: NoProgress = False,
-) -> None:  # fmt: skip
+) -> None:
     """Replay measured people, and compare both crowds in the same windows.
 
     Ends with status 1 if a figure is not as measured.
@@ -91,9 +106,16 @@ def validate_tracks(
     floor = FloorPlan.from_file(plan)
     tracks = Trajectories.read(file, unit=unit, frame_rate=frame_rate)
     setting = setting_of(
-        tracks, floor, str(plan), start=start, first=first, last=last, area=chosen_area,
-        line=chosen_line, speeds=speeds,
-    )  # fmt: skip
+        tracks,
+        floor,
+        str(plan),
+        start=start,
+        first=first,
+        last=last,
+        area=chosen_area,
+        line=chosen_line,
+        speeds=speeds,
+    )
     say(f"{file}: {setting}")
     # Whatever cannot be replayed is found here, once, and not in every run.
     with rules.followed():

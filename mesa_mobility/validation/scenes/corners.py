@@ -161,18 +161,24 @@ def judge(runs: Runs) -> Verdict:
 def draw(figures: dict[str, Any]) -> Figure:
     """Detours of lone people, and the speed of either half of the crowd."""
     figure, axes = drawing.panels(2)
-    axes[0].hist(figures["detours"], bins=np.arange(0.95, 1.6, 0.02).tolist(),
-                 color=drawing.OURS.colour)  # fmt: skip
+    axes[0].hist(
+        figures["detours"], bins=np.arange(0.95, 1.6, 0.02).tolist(), color=drawing.OURS.colour
+    )
     axes[0].axvline(MOST_DETOUR, color=drawing.OTHER.colour, label="bound of 95 %")
     axes[0].set(xlabel="way round the corner over the shortest one", ylabel="lone people")
-    axes[1].bar(["inner half", "outer half"], drawing.numbers(figures["speeds"]),
-                color=drawing.OURS.colour, width=0.5)  # fmt: skip
+    axes[1].bar(
+        ["inner half", "outer half"],
+        drawing.numbers(figures["speeds"]),
+        color=drawing.OURS.colour,
+        width=0.5,
+    )
     theirs = published(REFERENCE)
     slowest, fastest = (
         float(np.interp(DENSITY, theirs["density"], theirs[name])) for name in ("v_min", "v_max")
     )
-    axes[1].axhspan(slowest, fastest, color=drawing.MEASURED.colour, alpha=0.2,
-                    label=drawing.MEASURED.label)  # fmt: skip
+    axes[1].axhspan(
+        slowest, fastest, color=drawing.MEASURED.colour, alpha=0.2, label=drawing.MEASURED.label
+    )
     axes[1].set_ylabel("speed before the corner (m/s)")
     drawing.finish(axes)
     return figure

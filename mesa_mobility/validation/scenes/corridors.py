@@ -92,9 +92,13 @@ def before_exit(width: float) -> Case:
     crowds pass an opening as wide as the corridor, if the queue before the exit leaves them room.
     """
     return case(
-        one_way, effort=8.0, density=2.06, rate=bottleneck_fit(WIDTH), exit_width=width,
+        one_way,
+        effort=8.0,
+        density=2.06,
+        rate=bottleneck_fit(WIDTH),
+        exit_width=width,
         settle=LONG_SETTLE_S,
-    )  # fmt: skip
+    )
 
 
 def both_ways(seed: int, *, density: float) -> Figures:

@@ -96,8 +96,9 @@ def judge(runs: Runs) -> Verdict:
 def draw(figures: dict[str, Any]) -> Figure:
     """How broad those who wait stand over how long."""
     figure, axes = drawing.panels(1)
-    axes[0].hist(figures["breadths"], bins=np.linspace(0, 1, 41).tolist(),
-                 color=drawing.OURS.colour)  # fmt: skip
+    axes[0].hist(
+        figures["breadths"], bins=np.linspace(0, 1, 41).tolist(), color=drawing.OURS.colour
+    )
     axes[0].axvline(MOST_BROAD, color=drawing.OTHER.colour, label="bound of 90 %")
     axes[0].set(xlabel="breadth over length of people who wait", ylabel="seconds")
     drawing.finish(axes)

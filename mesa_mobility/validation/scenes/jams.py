@@ -56,10 +56,15 @@ def draw(figures: dict[str, Any]) -> Figure:
     axes[0].plot(figures["width"], drawing.numbers(figures["flow"]), **drawing.OURS.line)
     axes[0].set(xlabel="width of the exit (m)", ylabel="flow (1/s)")
     density = np.linspace(0.5, 5.0, 46)
-    drawing.band(axes[1], density, *corridor_band(density),
-                 drawing.Look(drawing.MEASURED.colour, "experiments, corridors", ""))  # fmt: skip
-    axes[1].plot(drawing.numbers(figures["density"]), drawing.numbers(figures["speed"]),
-                 **drawing.OURS.dots)  # fmt: skip
+    drawing.band(
+        axes[1],
+        density,
+        *corridor_band(density),
+        drawing.Look(drawing.MEASURED.colour, "experiments, corridors", ""),
+    )
+    axes[1].plot(
+        drawing.numbers(figures["density"]), drawing.numbers(figures["speed"]), **drawing.OURS.dots
+    )
     axes[1].axvline(JAMMED, color=drawing.OTHER.colour, linewidth=0.8, label="a jam from here on")
     axes[1].set(xlabel="density before the exit (1/m\u00b2)", ylabel="speed (m/s)")
     drawing.finish(axes)

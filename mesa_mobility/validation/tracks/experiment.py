@@ -34,9 +34,15 @@ JUDGED = {
 }
 """Figures that must be as measured, and what tables call them."""
 SHOWN = (
-    *JUDGED, "time_headway", "n_t", "speed_density", "distance_headway", "dwell_time",
-    "lane_order", "speed_jump",
-)  # fmt: skip
+    *JUDGED,
+    "time_headway",
+    "n_t",
+    "speed_density",
+    "distance_headway",
+    "dwell_time",
+    "lane_order",
+    "speed_jump",
+)
 
 
 def experiment(setting: Setting, plan: FloorPlan, tracks: Trajectories) -> Experiment:

@@ -124,6 +124,10 @@ def _curve(axes: Axes, x: NDArray[Any], curve: dict[str, list[float]]) -> None:
     n = len(curve["measured"])
     axes.plot(x[:n], curve["measured"][: len(x)], **{**drawing.MEASURED.line, "label": "measured"})
     drawing.band(
-        axes, x, curve["low"], curve["middle"], curve["high"],
+        axes,
+        x,
+        curve["low"],
+        curve["middle"],
+        curve["high"],
         drawing.Look(drawing.OURS.colour, "simulated, all seeds", ""),
-    )  # fmt: skip
+    )
