@@ -56,7 +56,7 @@ def headings(
 
     The direction is that of the displacement over the last 0.8 s. A person who stands keeps the
     direction in which they came; before a person has walked, it is the direction in which they
-    will. Whoever never walks has 0.
+    will. A person who never walks has 0.
 
     Args:
         person: (n,) sorted.

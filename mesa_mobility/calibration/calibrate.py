@@ -41,9 +41,9 @@ def calibrate(
     """Find numbers of behaviours for which simulated crowds are near to measured ones.
 
     CMA-ES asks for sets of numbers. Each is run on all scenarios whose data are not held out, with
-    seeds that are new in each generation. What is made small is the mean over the scenarios of the
-    weighted sum of their distances. In the end, the numbers at the start and those found are run
-    with seeds that the search has not had, on all data, those held out included.
+    seeds that are new in each generation. The search makes the mean over the scenarios of the
+    weighted sum of their distances small. In the end, the numbers at the start and those found are
+    run with seeds that the search has not had, on all data, those held out included.
 
     All runs are kept. The same call goes on where an interrupted one stopped, or further with more
     evaluations, to the same result as without an interruption, whatever the executor.

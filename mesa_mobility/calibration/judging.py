@@ -13,7 +13,7 @@ from mesa_mobility.calibration.task import Task
 from mesa_mobility.experiments.intervals import mean_interval
 
 OBJECTIVE = "objective"
-"""What the search makes small; the name of a figure."""
+"""The name of the figure that the search makes small."""
 
 _BySeed = Sequence[dict[tuple[str, str], float] | None]
 

@@ -119,7 +119,7 @@ class Runs:
 
 
 def total(task: Task, found: Mapping[tuple[str, str], float], scenarios: Sequence[str]) -> float:
-    """What a search makes small: the mean over scenarios of the weighted sum of distances."""
+    """The objective of a search: the mean over scenarios of the weighted sum of distances."""
     sums = [
         sum(of.weight * found[name, of.name] for of in task.scenarios[name].distances)
         for name in scenarios

@@ -41,10 +41,9 @@ def make_candidates(
     clusters = state.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]
     offsets = np.concatenate([[0], np.cumsum(counts)])
-    owner = np.repeat(np.arange(len(rows), dtype=np.int64), counts)
-    options = (
-        np.arange(offsets[-1], dtype=np.int64) - offsets[owner] + table.offsets[clusters][owner]
-    )
+    # Options of a cluster follow one another in the table.
+    options = np.arange(offsets[-1], dtype=np.int64)
+    options += np.repeat(table.offsets[clusters] - offsets[:-1], counts)
     return candidates_of(rows, options, offsets, table, state, grid, around, rules, moment)
 
 
