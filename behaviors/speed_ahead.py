@@ -33,8 +33,8 @@ class SpeedAhead(CompiledTerm):
     option and of the neighbour along the way to the target, d is how far ahead the neighbour is
     now, g the gap up to which they count in full and r the range over which that falls. s is 1
     straight ahead and 0 at ``width`` to the side. People who take over the speed of those ahead
-    keep the gap as it is, so that small changes do not grow on their way back through a queue (Treiber
-    and Kesting, Traffic Flow Dynamics, chapter 15).
+    keep the gap as it is, so that small changes do not grow on their way back through a queue
+    (Treiber and Kesting, Traffic Flow Dynamics, chapter 15).
 
     Args:
         weight: factor in the sum.
