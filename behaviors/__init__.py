@@ -25,6 +25,7 @@ from mesa_mobility.behaviors.sideways import Sideways
 from mesa_mobility.behaviors.speed_ahead import SpeedAhead
 from mesa_mobility.behaviors.steering.anticipation import Anticipation
 from mesa_mobility.behaviors.steering.corner_spreading import SpreadAtCorners
+from mesa_mobility.behaviors.steering.course_choice import ChooseCourse
 from mesa_mobility.behaviors.steering.speed_adaptation import AdaptSpeed
 from mesa_mobility.behaviors.steering.speed_compensation import CompensateSpeed
 from mesa_mobility.behaviors.stepping import Stepping
@@ -43,6 +44,7 @@ __all__ = [
     "Attraction",
     "Attractions",
     "BlockedWays",
+    "ChooseCourse",
     "Choosing",
     "CompensateSpeed",
     "CongestionRouting",

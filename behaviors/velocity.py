@@ -98,6 +98,11 @@ class PreferredVelocity(CompiledTerm):
     bound = _preferred_velocity_bound
 
 
+@njit(error_model="numpy")
+def _huber(change: float, soft: float) -> float:
+    return change * change * (0.5 / soft) if change < soft else change - 0.5 * soft
+
+
 @option_kernel
 def _velocity_change(option: Option, me: Me, p: "VelocityChange") -> float:
     vx = (option.x - me.x) / option.duration - me.vx
@@ -106,7 +111,7 @@ def _velocity_change(option: Option, me: Me, p: "VelocityChange") -> float:
     walking = min(math.sqrt(own2) * (1.0 / p.walking), 1.0)
     across = vx * me.vy - vy * me.vx
     turning2 = p.across * across * across / own2 if own2 > 0.0 else 0.0
-    return walking * math.sqrt(vx * vx + vy * vy + turning2)
+    return walking * _huber(math.sqrt(vx * vx + vy * vy + turning2), p.softness)
 
 
 @option_kernel
@@ -121,22 +126,26 @@ def _velocity_change_bound(options: Options, me: Me, p: "VelocityChange") -> flo
     spread = options.radius / options.duration
     # The norm grows by no more than the factor of turning a metre a second.
     least = math.sqrt(change2 + turning2) - math.sqrt(1.0 + p.across) * spread
-    return walking * max(least, math.sqrt(change2) - spread, 0.0)
+    return walking * _huber(max(least, math.sqrt(change2) - spread, 0.0), p.softness)
 
 
 class VelocityChange(CompiledTerm):
     """Prefers to walk on as before.
 
-    ``|v - u| min(|u| / w, 1)``: v is the mean velocity of the option, u that of the movement that
-    has just ended, m/s, and w is ``walking``.  In the norm, the part of the difference across u
-    counts ``turning`` times as much as that along it, which keeps people in a crowd on their way.
+    ``h(|v - u|) min(|u| / w, 1)``: v is the mean velocity of the option, u that of the movement
+    that has just ended, m/s, and w is ``walking``.  In the norm, the part of the difference across
+    u counts ``turning`` times as much as that along it, which keeps people in a crowd on their way.
     Changes take effort.  Somebody who stands or creeps sets off at little cost: with the full
     difference, people who had stopped in a crowd stayed back, and waves of standing people lasted.
+    h is Huber's loss: e^2 / (2 s) of a difference e up to s, ``softness``, and e - s / 2 beyond.
+    With it people approach the velocity that they prefer by small changes.  Without, each change
+    costs more than it gains once the weight is high, and whoever has been slowed down stays slow.
 
     Args:
         weight: factor in the sum.
         walking: speed from which on the difference counts in full, m/s.
         turning: how much more the difference across the way counts than that along it.
+        softness: s, m/s; 0 for the difference itself.
 
     Raises:
         ModelError: a number out of range.
@@ -152,10 +161,12 @@ class VelocityChange(CompiledTerm):
         weight: float | None = None,
         walking: Annotated[float, Range(0.0, unit="m/s", above=True)] = 0.6,
         turning: Annotated[float, Range(1.0)] = 1.5,
+        softness: Annotated[float, Range(0.0, unit="m/s")] = 0.0,
     ) -> None:
         super().__init__(weight)
         self.walking = walking
         self.turning = turning
+        self.softness = softness
 
     @property
     def across(self) -> float:

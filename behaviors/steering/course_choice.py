@@ -1,0 +1,250 @@
+"""Choice of course: people who are held up go where they get on.
+
+The shortest way round a corner or through a door from the side touches the wall.  If everybody took
+it, a crowd would queue for a single place, and most of the door or corridor would stay empty.  So
+people who would catch up with slower people compare courses: straight to their target, and turned
+by up to 45 degrees to either side.  On each they get as far as those ahead let them who walk the
+same way, or stand.  The cost of a course is the change of velocity that it takes, and what it loses
+of the way to the target.  Somebody who is alone goes straight.
+
+Those who come towards one do not count: they are a matter of anticipation.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility import Deciding, Desired, FloorPlan, Range, Tactic
+from mesa_mobility.steering import (
+    CrowdState,
+    CrowdView,
+    Grid,
+    Sight,
+    cells_within,
+    compiled,
+    inner,
+    nobody,
+    sight_on,
+    unwalled,
+)
+
+REACH = 3.0
+"""Metres within which people ahead count."""
+
+AHEAD = 3.0
+"""Seconds for which courses are compared, or as long as the way to the target takes."""
+
+CLOSE = 0.4
+"""Metres between the middles of two people, one behind the other, who stand."""
+
+GAINS = 0.4
+"""How much faster than now people expect to be soon, m/s."""
+
+ONCOMING = 0.1
+"""Speed against one's way from which on somebody comes towards one, m/s."""
+
+STEPS, WIDEST = 6, 0.8
+"""Number of courses to each side, and the angle of the last, radians."""
+
+WALKS = 0.3
+"""Speed from which on a course wanders, m/s."""
+
+_FIELDS = 4
+
+
+class CourseSettings(NamedTuple):
+    """Numbers of the comparison, as of ``ChooseCourse``."""
+
+    haste: float
+    width: float
+
+
+def choose_courses(
+    rows: NDArray[np.int64],
+    inside: CrowdView,
+    plan: FloorPlan,
+    points: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    settings: CourseSettings,
+) -> NDArray[np.float64]:
+    """Targets (n, 2) in metres of deciding people, on the course that each takes.
+
+    Args:
+        rows: (n,) the pedestrians.
+        inside: everybody inside.
+        plan: the floor plan: people behind walls do not count, and no course leads into one.
+        points: (n, 2) their targets, metres.
+        speeds: (n,) their preferred speeds, m/s.
+        settings: of the comparison.
+    """
+    points = points.copy()
+    ahead = np.empty((_FIELDS, len(inside.grid.people)))
+    sight = sight_on(plan, 0.0)
+    _choose_courses(rows, inside.grid, sight, inside.crowd.records, points, speeds, settings, ahead)
+    return points
+
+
+@compiled()
+def _choose_courses(
+    rows: NDArray[np.int64],
+    grid: Grid,
+    sight: Sight,
+    state: CrowdState,
+    points: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    settings: CourseSettings,
+    ahead: NDArray[np.float64],
+) -> None:
+    """Change ``points`` as of ``choose_courses``; ``ahead`` has room for everybody."""
+    for k in range(len(rows)):
+        i = rows[k]
+        x, y = state[i].x, state[i].y
+        dx, dy = points[k, 0] - x, points[k, 1] - y
+        away = math.sqrt(dx * dx + dy * dy)
+        if away == 0.0 or speeds[k] == 0.0:
+            continue
+        ex, ey = dx / away, dy / away
+        now = math.sqrt(state[i].vx * state[i].vx + state[i].vy * state[i].vy)
+        speed = min(speeds[k], now + GAINS)
+        far = min(speed * AHEAD, away)
+        count = _people_ahead(x, y, ex, ey, grid, state, ahead)
+        if _gets_on(ex, ey, far, speed, settings.width, ahead, count) >= far:
+            continue
+        count = _in_view(x, y, sight, ahead, count)
+        best, bx, by = np.inf, ex, ey
+        for step in range(2 * STEPS + 1):
+            # Straight on, then to the right and the left in turns, ever wider.
+            number = (step + 1) // 2
+            turn = WIDEST / (STEPS * STEPS) * number * number
+            c, s = math.cos(turn), -math.sin(turn) if step % 2 == 1 else math.sin(turn)
+            ux, uy = c * ex - s * ey, s * ex + c * ey
+            cost = speed * math.sqrt(2.0 - 2.0 * c)
+            if cost < best:
+                on = c * _gets_on(ux, uy, far, speed, settings.width, ahead, count)
+                cost += settings.haste * speed * (1.0 - on / far)
+            if cost < best and (step == 0 or unwalled(sight, x, y, x + far * ux, y + far * uy)):
+                best, bx, by = cost, ux, uy
+        points[k, 0], points[k, 1] = x + away * bx, y + away * by
+
+
+@inner()
+def _people_ahead(
+    x: float,
+    y: float,
+    ex: float,
+    ey: float,
+    grid: Grid,
+    state: CrowdState,
+    ahead: NDArray[np.float64],
+) -> int:
+    """Write place, from (x, y) on, and velocity of those ahead who do not come towards one; returns
+    their number."""
+    first, last, low, high = cells_within(grid, x, y, REACH)
+    count = 0
+    for row in range(low, high + 1):
+        for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
+            dx, dy = grid.x[a] - x, grid.y[a] - y
+            if dx * ex + dy * ey <= 0.0 or dx * dx + dy * dy > REACH * REACH:
+                continue
+            vx, vy = state[grid.people[a]].vx, state[grid.people[a]].vy
+            if vx * ex + vy * ey >= -ONCOMING:
+                ahead[0, count], ahead[1, count] = dx, dy
+                ahead[2, count], ahead[3, count] = vx, vy
+                count += 1
+    return count
+
+
+@inner()
+def _in_view(x: float, y: float, sight: Sight, ahead: NDArray[np.float64], count: int) -> int:
+    """Move those whom no wall hides to the front; returns their number."""
+    seen = 0
+    for k in range(count):
+        if unwalled(sight, x, y, x + ahead[0, k], y + ahead[1, k]):
+            for field in range(_FIELDS):
+                ahead[field, seen] = ahead[field, k]
+            seen += 1
+    return seen
+
+
+@inner()
+def _gets_on(
+    ux: float,
+    uy: float,
+    far: float,
+    speed: float,
+    width: float,
+    ahead: NDArray[np.float64],
+    count: int,
+) -> float:
+    """Metres that somebody gets along (ux, uy) in the time in which they would walk ``far``.
+
+    They follow whoever they catch up with.  Somebody half of ``width`` to the side or less counts
+    in full, somebody at ``width`` not at all.
+    """
+    on = far
+    for k in range(count):
+        dx, dy = ahead[0, k], ahead[1, k]
+        along = dx * ux + dy * uy
+        counts = min(2.0 - 2.0 * abs(dx * uy - dy * ux) / width, 1.0)
+        if along > 0.0 and counts > 0.0:
+            theirs = max(ahead[2, k] * ux + ahead[3, k] * uy, 0.0) * far / speed
+            lost = far - max(along - CLOSE, 0.0) - theirs
+            on = min(on, far - counts * max(lost, 0.0))
+    return on
+
+
+class ChooseCourse(Tactic):
+    """People who are held up go where they get on.
+
+    Nobody keeps a course exactly, either: that of whoever walks is off by a normally distributed
+    angle, drawn anew for each movement.
+
+    Args:
+        haste: what a metre a second that a course loses of the way to the target costs, beside a
+            metre a second of its change of velocity.  At 0 everybody goes straight.
+        width: metres to the side at which somebody does not hold one up.
+        wander: standard deviation of the angle by which courses are off, radians.
+
+    Raises:
+        ModelError: a number out of range.
+    """
+
+    name = "course_choice"
+
+    def __init__(
+        self,
+        haste: Annotated[float, Range(0.0)] = 8.0,
+        width: Annotated[float, Range(0.0, unit="m", above=True)] = 0.4,
+        wander: Annotated[float, Range(0.0, 1.5, "rad")] = 0.07,
+    ) -> None:
+        self.haste = haste
+        self.width = width
+        self.wander = wander
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Turn the points of those who get on faster on another course, and let all wander."""
+        if desired.newcomers:
+            return
+        rows, inside, points = deciding.pedestrians, deciding.inside, desired.points
+        if self.haste > 0.0:
+            settings = CourseSettings(self.haste, self.width)
+            plan = deciding.site.plan
+            points = choose_courses(rows, inside, plan, points, desired.speeds, settings)
+        if self.wander > 0.0:
+            off = self.wander * deciding.rng.standard_normal(len(rows))
+            crowd = inside.crowd
+            off[np.hypot(crowd.vx[rows], crowd.vy[rows]) < WALKS] = 0.0
+            dx, dy = (points - deciding.positions).T
+            c, s = np.cos(off), np.sin(off)
+            points = deciding.positions + np.column_stack([c * dx - s * dy, s * dx + c * dy])
+        desired.points = points
+
+    def compile_ahead(self) -> None:
+        """Compile the comparison of courses."""
+        (inside, plan), nowhere = nobody(), np.empty((0, 2))
+        settings = CourseSettings(1.0, 1.0)
+        choose_courses(inside.pedestrians, inside, plan, nowhere, np.empty(0), settings)
