@@ -71,7 +71,8 @@ def run_experiments(
         )
         for experiment in experiments
     }
-    answer = {each.name: _as_json(each, verdicts[each.name]) for each in experiments}
+    named = {"preset": rules.preset_name}
+    answer = {each.name: _as_json(each, verdicts[each.name]) | named for each in experiments}
     if out is not None:
         _write(out, experiments, verdicts, answer)
         say(f"written to {out}")

@@ -64,7 +64,8 @@ def verify(
         )
     )
     if options.as_json:
-        answer_json({name: _as_json(entries[name], outcomes[name]) for name in outcomes})
+        named = {"preset": rules.preset_name}
+        answer_json({name: _as_json(entries[name], outcomes[name]) | named for name in outcomes})
     if failing:
         raise typer.Exit(FAILED)
 
