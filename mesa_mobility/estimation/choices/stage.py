@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, SAMPLES, OptionTable
 from mesa_mobility.crowd.pedestrian_model import PedestrianModel
-from mesa_mobility.crowd.planning.evaluation.candidate_batch import candidates_of
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, candidates_of
 from mesa_mobility.crowd.state.people_grid import grid_of_frame
 from mesa_mobility.crowd.state.records import FALLBACK, NO_CORNER
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
@@ -129,10 +129,7 @@ class Stage:
         farthest = np.argmax(self.table.farthest)
         crowd.cluster[rows] = farthest  # for walls: those within reach of any option
         inside = np.flatnonzero(crowd.active).astype(np.int64)
-        return candidates_of(
-            rows,
-            options,
-            offsets,
+        outlook = Outlook(
             self.table,
             crowd,
             grid_of_frame(inside, crowd.records),
@@ -140,6 +137,7 @@ class Stage:
             scene.rules,
             Moment(0, self.model.rng).aside(),
         )
+        return candidates_of(rows, options, offsets, outlook)
 
 
 def _on_floor(places: NDArray[np.float64], plan: FloorPlan) -> NDArray[np.float64]:
