@@ -32,7 +32,6 @@ WALL = 0.2
 OFFICES = 6
 PEOPLE_PER_OFFICE = 10
 
-AISLE = 1.5
 BLOCKS = ((1.5, 8.5), (10.0, 18.0), (19.5, 26.5))
 """Seat blocks, from x to x; aisles run between them and along the walls."""
 

@@ -12,6 +12,9 @@ import typer
 from typer.core import TyperGroup
 
 from mesa_mobility.commands import experiment
+from mesa_mobility.commands.checks.tracks import validate_tracks
+from mesa_mobility.commands.checks.validate import validate
+from mesa_mobility.commands.checks.verify import verify
 from mesa_mobility.commands.dashboard import dashboard
 from mesa_mobility.commands.estimate import estimate
 from mesa_mobility.commands.explain import explain
@@ -23,9 +26,6 @@ from mesa_mobility.commands.preset import preset
 from mesa_mobility.commands.replay import replay
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
-from mesa_mobility.commands.validate import validate
-from mesa_mobility.commands.validate_tracks import validate_tracks
-from mesa_mobility.commands.verify import verify
 from mesa_mobility.errors import MobilityError
 
 # Some versions of Typer contain a copy of Click, whose UsageError is a base class here.

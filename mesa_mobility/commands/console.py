@@ -36,6 +36,7 @@ FormatSettings = Annotated[
         help="An option of the file's format; repeatable. `mesa-mobility formats NAME` lists them.",
     ),
 ]
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
 NoProgress = Annotated[bool, typer.Option("--no-progress", help="No progress on standard error.")]
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from mesa_mobility.commands.console import (
+    AsJson,
     NoProgress,
     answer_json,
     answer_rows,
@@ -15,12 +17,54 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.grouping import grouped
+from mesa_mobility.commands.reading import TracksOptions
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.costs.terms import CostTerm
     from mesa_mobility.estimation import Estimate, LeftOut
 
 
+@dataclass(frozen=True)
+class Terms:
+    """Cost terms whose weights are estimated."""
+
+    preset: Annotated[
+        str, typer.Option(metavar="NAME|FILE", help="Preset whose terms are estimated.")
+    ] = "default"
+    term: Annotated[
+        list[str] | None,
+        typer.Option(help="A cost term to try beside those of the preset; repeatable."),
+    ] = None
+    without: Annotated[
+        list[str] | None, typer.Option(help="A term of the preset to leave out; repeatable.")
+    ] = None
+    fixed: Annotated[
+        list[str] | None, typer.Option(help="A term that keeps its weight; repeatable.")
+    ] = None
+
+    def made(self) -> list[CostTerm]:
+        """The terms.
+
+        Raises:
+            ModelError: an unknown preset or term.
+        """
+        from mesa_mobility.crowd.presets.shipped import preset_of
+        from mesa_mobility.errors import ModelError
+        from mesa_mobility.estimation.problem import as_terms
+
+        without = self.without or []
+        terms = preset_of(self.preset).make_terms()
+        names = [each.name for each in terms]
+        for name in without:
+            if name not in names:
+                raise ModelError(f"--without {name}: preset {self.preset!r} has {', '.join(names)}")
+        kept = [each for each in terms if each.name not in without]
+        more = [name for name in self.term or [] if name not in [each.name for each in kept]]
+        return as_terms([*kept, *more])
+
+
+@grouped
 def estimate(
     tracks: Annotated[
         list[Path], typer.Argument(metavar="TRACKS...", help="Files of measured tracks.")
@@ -29,26 +73,12 @@ def estimate(
         Path,
         typer.Option(help="The floor plan, with exits.", parser=some_path, metavar="FILE"),
     ],
-    term: Annotated[
-        list[str] | None,
-        typer.Option(help="A cost term to try beside those of the preset; repeatable."),
-    ] = None,
-    without: Annotated[
-        list[str] | None, typer.Option(help="A term of the preset to leave out; repeatable.")
-    ] = None,
-    fixed: Annotated[
-        list[str] | None, typer.Option(help="A term that keeps its weight; repeatable.")
-    ] = None,
-    preset: Annotated[
-        str, typer.Option(metavar="NAME|FILE", help="Preset whose terms are estimated.")
-    ] = "default",
-    unit: Annotated[str | None, typer.Option(help="Unit of the tracks: m, cm or mm.")] = None,
-    frame_rate: Annotated[
-        float | None, typer.Option(help="Frames a second, if a file does not say so.")
-    ] = None,
+    tried: Terms,
+    reading: TracksOptions,
+    *,
     choices: Annotated[int, typer.Option(min=1, help="Most choices of a file.")] = 2500,
     seed: Annotated[int, typer.Option(min=0, help="Of all that is drawn.")] = 1,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object at the end.")] = False,
+    as_json: AsJson = False,
     no_progress: NoProgress = False,
 ) -> None:
     """Estimate how much each behaviour counts in the choices of measured people.
@@ -57,40 +87,25 @@ def estimate(
     """
     from mesa_mobility.estimation import Sampling, estimate, leave_out, observe
     from mesa_mobility.floorplan import FloorPlan
-    from mesa_mobility.results import Trajectories
 
-    terms = _terms(preset, term or [], without or [])
+    terms, fixed = tried.made(), tried.fixed or []
     floor, sampling = FloorPlan.from_file(plan), Sampling(most=choices, seed=seed)
     found = None
     with progress_bar(shown=not no_progress) as report:
         for done, file in enumerate(tracks):
             report(f"observing {file.name}", done, len(tracks) + 1)
-            measured = Trajectories.read(file, unit, frame_rate)
-            own = observe(floor, measured, name=str(file), sampling=sampling, preset=preset)
+            own = observe(
+                floor, reading.read(file), name=str(file), sampling=sampling, preset=tried.preset
+            )
             say(f"{file}: {own.coverage}")
             found = own if found is None else found + own
         report("estimating", len(tracks), len(tracks) + 1)
         assert found is not None
-        answer = estimate(terms, found, fixed=fixed or [])
-        others = leave_out(terms, found, fixed=fixed or []) if len(tracks) > 1 else []
+        answer = estimate(terms, found, fixed=fixed)
+        others = leave_out(terms, found, fixed=fixed) if len(tracks) > 1 else []
     _print(answer, others)
     if as_json:
         answer_json(_as_json(answer, others))
-
-
-def _terms(preset: str, more: list[str], without: list[str]) -> list[CostTerm]:
-    """Terms of a preset but for some, and others by name."""
-    from mesa_mobility.crowd.presets.shipped import preset_of
-    from mesa_mobility.errors import ModelError
-    from mesa_mobility.estimation.problem import as_terms
-
-    terms = preset_of(preset).make_terms()
-    names = [each.name for each in terms]
-    for name in without:
-        if name not in names:
-            raise ModelError(f"--without {name}: preset {preset!r} has {', '.join(names)}")
-    kept = [each for each in terms if each.name not in without]
-    return as_terms([*kept, *(name for name in more if name not in [k.name for k in kept])])
 
 
 def _print(answer: Estimate, others: list[LeftOut]) -> None:

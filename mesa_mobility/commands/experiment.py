@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mesa_mobility.commands.console import (
+    AsJson,
     NoProgress,
     answer_json,
     answer_table,
@@ -27,7 +28,6 @@ FAILED = 1
 
 app = typer.Typer(help="Many runs, kept in a store that can be gone on with.", no_args_is_help=True)
 StoreAt = Annotated[str, typer.Argument(metavar="STORE", help="Folder or URL of the store.")]
-AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
 
 
 @app.command("run")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,30 +15,60 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.grouping import grouped
+
+if TYPE_CHECKING:
+    from mesa_mobility.bodies import PoseBank
+    from mesa_mobility.results import Selection
 
 RunDir = Annotated[Path, typer.Argument(metavar="RUN_DIR", help="Folder that `run --out` wrote.")]
-Output = Annotated[
-    Path, typer.Option("-o", "--output", help="What to write.", parser=some_path, metavar="PATH")
-]
-People = Annotated[
-    str | None, typer.Option(metavar="1,5,7", help="Numbers of the people shown (everybody).")
-]
-Start = Annotated[float, typer.Option("--from", help="Seconds from which on.")]
-End = Annotated[float | None, typer.Option("--to", help="Seconds until when (the end).")]
-
-Poses = Annotated[
-    Path | None,
-    typer.Option(
-        help="Poses of the run's map (.poses.npz) where they do not ship.",
-        parser=some_path,
-        metavar="PATH",
-    ),
-]
 
 
+@dataclass(frozen=True)
+class Shown:
+    """Which part of a run is shown, and with whose bodies."""
+
+    people: Annotated[
+        str | None,
+        typer.Option(metavar="1,5,7", help="Numbers of the people shown (everybody)."),
+    ] = None
+    start: Annotated[float, typer.Option("--from", help="Seconds from which on.")] = 0.0
+    end: Annotated[float | None, typer.Option("--to", help="Seconds until when (the end).")] = None
+    poses: Annotated[
+        Path | None,
+        typer.Option(
+            help="Poses of the run's map (.poses.npz) where they do not ship.",
+            parser=some_path,
+            metavar="PATH",
+        ),
+    ] = None
+
+    def selection(self) -> Selection:
+        """People and times.
+
+        Raises:
+            typer.BadParameter: numbers of people that are none.
+        """
+        from mesa_mobility.results import Selection
+
+        return Selection(_numbers(self.people), self.start, self.end)
+
+    def bank(self) -> PoseBank | None:
+        """The poses given, if any."""
+        from mesa_mobility.bodies import PoseBank
+
+        return None if self.poses is None else PoseBank.load(self.poses)
+
+
+@grouped
 def export(
     run: RunDir,
-    output: Output,
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", help="What to write.", parser=some_path, metavar="PATH"),
+    ],
+    shown: Shown,
+    *,
     kind: Annotated[
         str | None,
         typer.Option(
@@ -46,10 +77,6 @@ def export(
             help="By default what the end of PATH says; `mesa-mobility formats` lists formats.",
         ),
     ] = None,
-    people: People = None,
-    start: Start = 0.0,
-    end: End = None,
-    poses: Poses = None,
     settings: FormatSettings = None,
     speed: Annotated[
         float | None, typer.Option(help="Of a film: how many times as fast as it was.")
@@ -63,16 +90,15 @@ def export(
 
     `animate` and `render` are other names of this command.
     """
-    from mesa_mobility.bodies import PoseBank
     from mesa_mobility.plugins.formats import WRITE
-    from mesa_mobility.results import Excerpt, Selection
+    from mesa_mobility.results import Excerpt
     from mesa_mobility.results.formats.output_format import OUTPUTS
     from mesa_mobility.results.run import read_run
 
     chosen = OUTPUTS.of(output, WRITE) if kind is None else OUTPUTS.named(kind)
     given = {"speed": speed, "at": at}
     options = OUTPUTS.chosen_options(chosen, WRITE, given, settings or ())
-    selection = Selection(numbers(people), start, end)
+    selection = shown.selection()
     found = read_run(run)
     with progress_bar(shown=not no_progress) as report:
         excerpt = Excerpt(
@@ -80,7 +106,7 @@ def export(
             found.plan,
             selection,
             found.summary,
-            None if poses is None else PoseBank.load(poses),
+            shown.bank(),
             lambda done, of: report("writing", done, of),
         )
         count = len(excerpt.people)
@@ -89,7 +115,7 @@ def export(
     say(f"{count} people written to {output}{size}")
 
 
-def numbers(text: str | None) -> tuple[int, ...] | None:
+def _numbers(text: str | None) -> tuple[int, ...] | None:
     """Numbers of people as an option gives them."""
     if text is None:
         return None

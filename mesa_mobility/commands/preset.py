@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from mesa_mobility.commands.console import answer_json, answer_rows, say, some_path
+from mesa_mobility.commands.console import AsJson, answer_json, answer_rows, say, some_path
 from mesa_mobility.commands.models.making import Numbers, split_settings
 from mesa_mobility.errors import ModelError
 
@@ -27,9 +27,7 @@ def preset(
             metavar="FILE",
         ),
     ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="One JSON object as the last line of output.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """List the numbers of a preset, with the names by which --set takes them."""
     from dataclasses import replace

@@ -9,11 +9,15 @@ from typing import Annotated
 import typer
 
 from mesa_mobility.commands.console import NoProgress, progress_bar, say, some_path
-from mesa_mobility.commands.export import End, People, Poses, RunDir, Start, numbers
+from mesa_mobility.commands.export import RunDir, Shown
+from mesa_mobility.commands.grouping import grouped
 
 
+@grouped
 def replay(
     run: RunDir,
+    shown: Shown,
+    *,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -24,26 +28,19 @@ def replay(
             metavar="PATH",
         ),
     ] = None,
-    people: People = None,
-    start: Start = 0.0,
-    end: End = None,
-    poses: Poses = None,
     no_open: Annotated[
         bool, typer.Option("--no-open", help="Write the page and open no browser.")
     ] = False,
     no_progress: NoProgress = False,
 ) -> None:
     """Watch a run in three dimensions: a page with a time slider that needs no network."""
-    from mesa_mobility.animation import Selection
     from mesa_mobility.animation.page import write_page
-    from mesa_mobility.bodies import PoseBank
     from mesa_mobility.results.excerpts import title_of
     from mesa_mobility.results.run import read_run
 
     page = output or run / "replay.html"
     found = read_run(run)
-    selection = Selection(numbers(people), start, end)
-    bank = None if poses is None else PoseBank.load(poses)
+    selection = shown.selection()
     count = len(selection.people_of(found.trajectories))
     with progress_bar(shown=not no_progress) as report:
         write_page(
@@ -51,7 +48,7 @@ def replay(
             found.plan,
             page,
             selection,
-            bank=bank,
+            bank=shown.bank(),
             title=title_of(found.summary, found.trajectories),
             progress=lambda done: report("bodies", done, count),
         )

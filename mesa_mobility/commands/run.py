@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-import secrets
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,6 +13,7 @@ import typer
 
 from mesa_mobility._startup import nothing_collected
 from mesa_mobility.commands.console import (
+    AsJson,
     NoProgress,
     answer_json,
     answer_table,
@@ -20,18 +21,8 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
-from mesa_mobility.commands.models.behaviors import use_behaviors
-from mesa_mobility.commands.models.making import (
-    Behaviors,
-    MapFile,
-    ModelName,
-    PresetName,
-    Seed,
-    Settings,
-    create_model,
-    origin_of,
-    set_numbers,
-)
+from mesa_mobility.commands.grouping import grouped
+from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model, origin_of
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
@@ -41,23 +32,21 @@ NAMED = 10
 """People named in the last line at most."""
 
 
+@grouped
 def run(
     model: ModelName,
+    options: ModelOptions,
+    *,
     seconds: Annotated[
         float | None,
         typer.Option(help="Simulated time at most; without it until everybody is out."),
     ] = None,
-    seed: Seed = None,
-    settings: Settings = None,
-    behaviors: Behaviors = None,
-    preset: PresetName = None,
     population: Annotated[
         str | None,
         typer.Option(
             help="Types of people: mixed, care_home, or such as 'able_bodied: 0.9, child: 0.1'."
         ),
     ] = None,
-    map_file: MapFile = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -73,9 +62,7 @@ def run(
             help="Also write who has taken which option: export and replay show bodies by it.",
         ),
     ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="One JSON object as the last line of output.")
-    ] = False,
+    as_json: AsJson = False,
     no_progress: NoProgress = False,
 ) -> None:
     """Run a model and report its figures.
@@ -86,7 +73,9 @@ def run(
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
-    seed = secrets.randbelow(2**31) if seed is None else seed
+    options = options.with_seed()
+    if population is not None:
+        options = replace(options, settings=[*(options.settings or []), f"population={population}"])
     with progress_bar(shown=not no_progress) as report, nothing_collected():
         report("loading")
         from mesa_mobility.crowd.model_files import find_model
@@ -94,20 +83,9 @@ def run(
 
         report("preparing" if is_compiled() else "compiling, once after installation")
         with compiling_ahead():
-            settings = list(settings or [])
-            if population is not None:
-                settings.append(f"population={population}")
             simulation, given = create_model(
-                find_model(model),
-                model,
-                settings,
-                preset=preset,
-                map_file=map_file,
-                rng=seed,
-                record=record or True,
+                find_model(model), model, options, record=record or True
             )
-            use_behaviors(simulation, behaviors or [])
-            set_numbers(simulation, model, settings)
 
     import pandas as pd
 
@@ -134,11 +112,11 @@ def run(
             summary = {
                 **simulation.summary(),
                 "model": model,
-                "preset": preset or getattr(simulation, "preset", "default"),
-                "seed": seed,
+                "preset": options.preset or getattr(simulation, "preset", "default"),
+                "seed": options.seed,
                 "by_type": table.reset_index().to_dict("records"),
                 **origin_of(given, simulation),
-                "behaviors": behaviors or [],
+                "behaviors": options.behaviors or [],
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
                 "overlaps": safety.overlaps,

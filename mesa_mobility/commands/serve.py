@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 from importlib.util import find_spec
 from typing import Annotated
 
@@ -10,28 +9,17 @@ import typer
 
 from mesa_mobility._startup import nothing_collected
 from mesa_mobility.commands.console import say
-from mesa_mobility.commands.models.behaviors import use_behaviors
-from mesa_mobility.commands.models.making import (
-    Behaviors,
-    MapFile,
-    ModelName,
-    PresetName,
-    Seed,
-    Settings,
-    create_model,
-    set_numbers,
-)
+from mesa_mobility.commands.grouping import grouped
+from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.interrupts import INTERRUPTED
 
 
+@grouped
 def serve(
     model: ModelName,
-    seed: Seed = None,
-    settings: Settings = None,
-    behaviors: Behaviors = None,
-    preset: PresetName = None,
-    map_file: MapFile = None,
+    options: ModelOptions,
+    *,
     rate: Annotated[int, typer.Option(help="Frames a second; a divisor of 30.")] = 30,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[
@@ -64,25 +52,16 @@ def serve(
     token = own_token()
     access = Access(host, token, origins_of(origins or []))
     listening = listen(host, port)
-    seed = secrets.randbelow(2**31) if seed is None else seed
+    options = options.with_seed()
     with nothing_collected():
         from mesa_mobility.crowd import PedestrianModel
         from mesa_mobility.crowd.model_files import find_model
         from mesa_mobility.crowd.precompile import compiling_ahead
 
         with compiling_ahead():
-            simulation, _ = create_model(
-                find_model(model),
-                model,
-                settings or [],
-                map_file=map_file,
-                preset=preset,
-                rng=seed,
-            )
+            simulation, _ = create_model(find_model(model), model, options)
             if not isinstance(simulation, PedestrianModel):
                 raise ModelError(f"model {model}: expected a subclass of PedestrianModel")
-            use_behaviors(simulation, behaviors or [])
-            set_numbers(simulation, model, settings or [])
             run = Run(simulation, rate)
 
     def ready() -> None:
@@ -91,7 +70,7 @@ def serve(
                 f"warning: {host} is reached from the network: all who have the address below can "
                 "command the model, and nothing is encrypted"
             )
-        say(f"{model}, seed {seed}: connect to the address below (Ctrl-C ends)")
+        say(f"{model}, seed {options.seed}: connect to the address below (Ctrl-C ends)")
         where = address_of(host, listening.getsockname()[1])
         print(f"ws://{where}/?token={token}", flush=True)
 

@@ -19,7 +19,7 @@ from mesa_mobility.crowd.journeys.waiting import Waits
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
 from mesa_mobility.crowd.planning.decision_order import decision_order, due
-from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, make_candidates
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch, judge, weigh
 from mesa_mobility.crowd.planning.replanning import stop_where_blocked
 from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
@@ -167,9 +167,12 @@ class Dynamics(Saved):
         Raises:
             ModelError: one of them is not inside.
         """
+        return make_candidates(rows, self._outlook(rows))
+
+    def _outlook(self, rows: NDArray[np.int64]) -> Outlook:
+        """What the people in ``rows`` would see if they decided now."""
         scene = self._scene
-        return make_candidates(
-            rows,
+        return Outlook(
             scene.repertoire.table,
             scene.crowd,
             self._grid(rows),
@@ -186,24 +189,8 @@ class Dynamics(Saved):
         """The decision of the person in ``row`` if it decided now, before all others."""
         scene, model = self._scene, self._model
         self.bind()
-        weighed = weigh(
-            row,
-            self._moment.aside(),
-            scene.repertoire,
-            scene.crowd,
-            self._grid(np.array([row])),
-            scene.environment.surroundings,
-            scene.rules,
-            model.terms,
-            [each.name for each in scene.types],
-        )
-        judged = judge(
-            weighed,
-            scene.repertoire.table,
-            scene.crowd,
-            scene.environment.surroundings,
-            scene.rules,
-        )
+        outlook, names = self._outlook(np.array([row])), [each.name for each in scene.types]
+        judged = judge(weigh(row, outlook, scene.repertoire, model.terms, names), outlook)
         return replace(judged, blocked_by=int(self.wishes(np.array([row])).blockers[0]))
 
     def wishes(

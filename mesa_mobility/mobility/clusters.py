@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
 from mesa_mobility.errors import MapError
-from mesa_mobility.mobility.graph import MotionGraph
+from mesa_mobility.mobility.graph import MotionGraph, squared_distances
 
 STANDING = 0
 """Number of the standing cluster."""
@@ -148,15 +148,11 @@ def nearest_centre(
 
 @kept(parallel=True)
 def _nearest(features: NDArray[np.float32], columns: NDArray[np.float32]) -> NDArray[np.int32]:
-    dims, k = columns.shape
+    k = columns.shape[1]
     nearest = np.empty(len(features), np.int32)
     for i in prange(len(features)):
-        d2 = np.zeros(k, np.float32)
-        for d in range(dims):
-            x = features[i, d]
-            for c in range(k):
-                delta = columns[d, c] - x
-                d2[c] += delta * delta
+        d2 = np.empty(k, np.float32)
+        squared_distances(features[i], columns, 0, k, d2)
         nearest[i] = np.argmin(d2)
     return nearest
 
@@ -164,20 +160,14 @@ def _nearest(features: NDArray[np.float32], columns: NDArray[np.float32]) -> NDA
 @kept(parallel=True)
 def _potentials(columns: NDArray[np.float32], alpha: np.float32) -> NDArray[np.float64]:
     """Sum over all poses of exp(-alpha d^2); terms below exp(-16), 1e-7, are left out."""
-    dims, n = columns.shape
+    n = columns.shape[1]
     potential = np.empty(n)
     for i in prange(n):
         d2 = np.empty(512, np.float32)
         total = 0.0
         for start in range(0, n, 512):
             width = min(512, n - start)
-            for q in range(width):
-                d2[q] = 0.0
-            for d in range(dims):
-                x = columns[d, i]
-                for q in range(width):
-                    delta = columns[d, start + q] - x
-                    d2[q] += delta * delta
+            squared_distances(columns[:, i], columns, start, width, d2)
             for q in range(width):
                 exponent = alpha * d2[q]
                 if exponent < 16.0:
@@ -190,17 +180,13 @@ def _potentials(columns: NDArray[np.float32], alpha: np.float32) -> NDArray[np.f
 def _subtract(
     columns: NDArray[np.float32], centre: int, beta: np.float32, potential: NDArray[np.float64]
 ) -> None:
-    dims, n = columns.shape
+    n = columns.shape[1]
     peak = potential[centre]
     for block in prange((n + 511) // 512):
-        d2 = np.zeros(512, np.float32)
+        d2 = np.empty(512, np.float32)
         start = block * 512
         width = min(512, n - start)
-        for d in range(dims):
-            x = columns[d, centre]
-            for q in range(width):
-                delta = columns[d, start + q] - x
-                d2[q] += delta * delta
+        squared_distances(columns[:, centre], columns, start, width, d2)
         for q in range(width):
             exponent = beta * d2[q]
             if exponent < 16.0:

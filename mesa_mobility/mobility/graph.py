@@ -16,7 +16,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.compiled.decorators import internal, kept
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.poses import PoseTable
 
@@ -183,6 +183,25 @@ def _strong_labels(
     return connected_components(matrix, directed=True, connection="strong")[1]
 
 
+@internal()
+def squared_distances(
+    pose: NDArray[np.float32],
+    columns: NDArray[np.float32],
+    start: int,
+    width: int,
+    d2: NDArray[np.float32],
+) -> None:
+    """Write the squared distances of a pose (dims,) to poses in columns, ``width`` from ``start``
+    on, to the first places of ``d2``."""
+    for q in range(width):
+        d2[q] = 0.0
+    for d in range(len(pose)):
+        x = pose[d]
+        for q in range(width):
+            delta = columns[d, start + q] - x
+            d2[q] += delta * delta
+
+
 @kept(parallel=True)
 def _best_matches(
     columns: NDArray[np.float32],
@@ -199,7 +218,7 @@ def _best_matches(
     vectorised pass over transposed columns, is quicker than a k-d tree, and its
     result does not depend on the number of threads.
     """
-    dims, n = columns.shape
+    n = columns.shape[1]
     match = np.full((n, most), -1, np.int32)
     distance = np.full((n, most), np.inf, np.float32)
     for i in prange(n):
@@ -208,13 +227,7 @@ def _best_matches(
             stop = first[k + 1] - 1  # the last frame of a clip has no successor to lead to
             for start in range(first[k], stop, stretch):
                 width = min(stretch, stop - start)
-                for q in range(width):
-                    d2[q] = 0.0
-                for d in range(dims):
-                    x = columns[d, i]
-                    for q in range(width):
-                        delta = columns[d, start + q] - x
-                        d2[q] += delta * delta
+                squared_distances(columns[:, i], columns, start, width, d2)
                 best, best_d2 = -1, threshold2
                 for q in range(width):
                     j = start + q

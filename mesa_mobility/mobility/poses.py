@@ -57,8 +57,6 @@ POSE_JOINTS = (
 )
 """Joints of a stored pose, in order."""
 
-N_FEATURES = 36
-
 
 @dataclass(frozen=True)
 class PoseTable:

@@ -93,8 +93,8 @@ def _in_box(run: Run, sign: FloatArray, shuffle: np.random.Generator) -> dict[st
     direction = sign[tracks.person[start]]
     gone = (tracks.x[end] - tracks.x[start]) * direction
     order, shuffled = [], []
-    for each in np.split(np.arange(len(start))[np.argsort(frame, kind="stable")],
-                         np.flatnonzero(np.diff(np.sort(frame))) + 1):  # fmt: skip
+    by_frame = np.argsort(frame, kind="stable")
+    for each in np.split(by_frame, np.flatnonzero(np.diff(frame[by_frame])) + 1):
         across = tracks.y[start[each]] - WIDTH / 2
         order.append(lane_order(across, direction[each]))
         shuffled.append(lane_order(across, shuffle.permutation(direction[each])))
@@ -164,11 +164,15 @@ def draw(figures: dict[str, Any]) -> Figure:
     axes[0].plot(figures["measured density"], figures["mean speed"], **drawing.OURS.dots)
     axes[0].set_ylabel("mean speed (m/s)")
     axes[1].axhspan(0.76, 0.94, color=drawing.MEASURED.colour, alpha=0.3, label="experiments")
-    axes[1].axhspan(0.22, 0.48, color=drawing.OTHER.colour, alpha=0.15,
-                    label="experiments, shuffled")  # fmt: skip
+    axes[1].axhspan(
+        0.22, 0.48, color=drawing.OTHER.colour, alpha=0.15, label="experiments, shuffled"
+    )
     axes[1].plot(figures["measured density"], figures["lane order"], **drawing.OURS.dots)
-    axes[1].plot(figures["measured density"], figures["lane order shuffled"],
-                 **{**drawing.OTHER.dots, "label": "mesa-mobility, shuffled"})  # fmt: skip
+    axes[1].plot(
+        figures["measured density"],
+        figures["lane order shuffled"],
+        **{**drawing.OTHER.dots, "label": "mesa-mobility, shuffled"},
+    )
     axes[1].set_ylabel("lane order")
     axes[1].set_ylim(0, 1)
     for each in axes:

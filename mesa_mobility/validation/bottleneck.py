@@ -124,9 +124,14 @@ def judge(runs: Runs) -> Verdict:
         fit = bottleneck_fit(width)
         gates = width in JUDGED
         checks.append(
-            within(f"flow at {width:g} m", rate, fit - BOTTLENECK_TOLERANCE,
-                   fit + BOTTLENECK_TOLERANCE, gates=gates)
-        )  # fmt: skip
+            within(
+                f"flow at {width:g} m",
+                rate,
+                fit - BOTTLENECK_TOLERANCE,
+                fit + BOTTLENECK_TOLERANCE,
+                gates=gates,
+            )
+        )
         checks.append(
             within(f"density in front at {width:g} m", density, *DENSITY_IN_FRONT, gates=gates)
         )
@@ -181,8 +186,13 @@ def draw(figures: dict[str, Any]) -> Figure:
     )
     axes[0].plot(widths, drawing.numbers(figures["flow"]), **drawing.OURS.line)
     axes[0].set_ylabel("flow (1/s)")
-    axes[1].axhspan(*DENSITY_IN_FRONT, color=drawing.MEASURED.colour, alpha=0.2, linewidth=0,
-                    label="experiments")  # fmt: skip
+    axes[1].axhspan(
+        *DENSITY_IN_FRONT,
+        color=drawing.MEASURED.colour,
+        alpha=0.2,
+        linewidth=0,
+        label="experiments",
+    )
     axes[1].plot(widths, drawing.numbers(figures["density in front"]), **drawing.OURS.line)
     axes[1].set_ylabel("density in front (1/m²)")
     for each in axes:

@@ -96,8 +96,11 @@ def _runs(
 
 
 def _hall() -> FloorPlan:
-    ends = {"east": ((SIZE, 0.0), (SIZE, SIZE)), "west": ((0.0, 0.0), (0.0, SIZE)),
-            "north": ((0.0, SIZE), (SIZE, SIZE))}  # fmt: skip
+    ends = {
+        "east": ((SIZE, 0.0), (SIZE, SIZE)),
+        "west": ((0.0, 0.0), (0.0, SIZE)),
+        "north": ((0.0, SIZE), (SIZE, SIZE)),
+    }
     exits = [Exit(name, *line) for name, line in ends.items()]
     return FloorPlan(box(0.0, 0.0, SIZE, SIZE), exits=exits)
 

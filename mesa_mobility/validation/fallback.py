@@ -39,8 +39,15 @@ def draw(figures: dict[str, Any]) -> Figure:
     figure, (axes,) = drawing.panels(1)
     place = np.arange(len(figures["scenario"]))
     axes.bar(place, 100 * np.array(figures["share"]), color=drawing.OURS.colour, width=0.6)
-    axes.plot(place, 100 * np.array(figures["bound"]), color=drawing.OTHER.colour, marker="_",
-              markersize=16, linestyle="none", label="bound")  # fmt: skip
+    axes.plot(
+        place,
+        100 * np.array(figures["bound"]),
+        color=drawing.OTHER.colour,
+        marker="_",
+        markersize=16,
+        linestyle="none",
+        label="bound",
+    )
     axes.set_xticks(place, figures["scenario"], rotation=45, ha="right", fontsize=7)
     axes.set_ylabel("fallback, % of pedestrian-time")
     drawing.finish([axes])

@@ -89,8 +89,9 @@ def judge(runs: Runs) -> Verdict:
         checks += conditions(name, of, CONDITIONS[name])
     theirs = published(OPPOSED)
     speed = float(np.interp(OPPOSED_DENSITY, theirs["density"], theirs["v_mean"]))
-    checks += conditions("both ways", opposed, {"density": OPPOSED_DENSITY, "speed": speed},
-                         density=(0.75, 1.25))  # fmt: skip
+    checks += conditions(
+        "both ways", opposed, {"density": OPPOSED_DENSITY, "speed": speed}, density=(0.75, 1.25)
+    )
     for name, measured, of in rows:
         own = {each: _joined(of, each) for each in ("turns", "across", "speed_changes")}
         spread = {
@@ -118,11 +119,18 @@ def judge(runs: Runs) -> Verdict:
         figures[f"{name}: accelerations"] = _percentiles(_joined(of, "accelerations"))
         figures[f"{name}: jumps"] = _percentiles(_joined(of, "jumps"))
         checks.append(
-            at_most(f"{name}: jump of speed over 0.1 s, p99 m/s", figures[f"{name}: jumps"][-1],
-                    ALLOWED * JOINT_JUMP)
-        )  # fmt: skip
-    checks += _against("both ways: acceleration m/s2", _joined(opposed, "accelerations"),
-                       reference[BOTH_WAYS], "accel")  # fmt: skip
+            at_most(
+                f"{name}: jump of speed over 0.1 s, p99 m/s",
+                figures[f"{name}: jumps"][-1],
+                ALLOWED * JOINT_JUMP,
+            )
+        )
+    checks += _against(
+        "both ways: acceleration m/s2",
+        _joined(opposed, "accelerations"),
+        reference[BOTH_WAYS],
+        "accel",
+    )
     for name, of in (("0.5", door_05), ("0.9", door_09)):
         share = float(np.mean(_joined(of, "back") > 0.3))
         checks.append(at_most(f"door of {name} m: share who walk back 0.3 m", share, 0.06))
@@ -168,11 +176,22 @@ def draw(figures: dict[str, Any]) -> Figure:
         CROWDS.items(), (drawing.OURS.colour, drawing.OTHER.colour), strict=True
     ):
         turns = np.array(figures[f"{name}: turns"])
-        axes[0].hist(turns, bins=edges.tolist(), density=True, histtype="step", color=colour,
-                     label=f"{name}, sd {turns.std():.1f}")  # fmt: skip
+        axes[0].hist(
+            turns,
+            bins=edges.tolist(),
+            density=True,
+            histtype="step",
+            color=colour,
+            label=f"{name}, sd {turns.std():.1f}",
+        )
         sd = float(reference[measured]["heading_change_sd_deg"])
-        axes[0].plot(edges, np.exp(-((edges / sd) ** 2) / 2) / (sd * np.sqrt(2 * np.pi)),
-                     color=colour, linestyle=":", label=f"experiment, sd {sd:.1f}")  # fmt: skip
+        axes[0].plot(
+            edges,
+            np.exp(-((edges / sd) ** 2) / 2) / (sd * np.sqrt(2 * np.pi)),
+            color=colour,
+            linestyle=":",
+            label=f"experiment, sd {sd:.1f}",
+        )
         for panel, column, key in (
             (axes[1], "accel", "accelerations"),
             (axes[2], "speed_jump_0p1s", "jumps"),

@@ -38,21 +38,29 @@ def write_report(
         "is judged is as measured; no overlaps of bodies and no steps through walls are allowed."
     )
     page.table(
-        "Summary", ["comparison", "what", "verdict"],
-        [[each.name, each.what, "pass" if well else "FAIL"]
-         for each, well in zip(experiments, passed, strict=True)],
-    )  # fmt: skip
+        "Summary",
+        ["comparison", "what", "verdict"],
+        [
+            [each.name, each.what, "pass" if well else "FAIL"]
+            for each, well in zip(experiments, passed, strict=True)
+        ],
+    )
     for each in experiments:
         verdict = verdicts[each.name]
         page.table(
             f"{each.name}: {each.what}",
             ["figure", "simulated", "criterion", "verdict"],
-            [[check.figure, value_text(check.value), check.wanted, word_of(check)]
-             for check in verdict.checks]
-            + [[name, value_text(figure), None, "reported"]
-               for name, figure in verdict.figures.items() if isinstance(figure, int | float)],
+            [
+                [check.figure, value_text(check.value), check.wanted, word_of(check)]
+                for check in verdict.checks
+            ]
+            + [
+                [name, value_text(figure), None, "reported"]
+                for name, figure in verdict.figures.items()
+                if isinstance(figure, int | float)
+            ],
             f"Source: {each.source}.",
-        )  # fmt: skip
+        )
         if verdict.figures:
             page.picture(
                 "", picture(each.draw(verdict.figures)), f"Measured and simulated: {each.what}"

@@ -60,9 +60,13 @@ def draw(figures: dict[str, Any]) -> Figure:
     figure, axes = drawing.panels(1)
     reference = published("1D single file")
     drawing.band(
-        axes[0], reference["density"], reference["v_min"], reference["v_mean"],
-        reference["v_max"], drawing.MEASURED,
-    )  # fmt: skip
+        axes[0],
+        reference["density"],
+        reference["v_min"],
+        reference["v_mean"],
+        reference["v_max"],
+        drawing.MEASURED,
+    )
     bins = {name: np.array(values) for name, values in figures["bins"].items()}
     drawing.band(axes[0], bins["density"], bins["p10"], bins["p50"], bins["p90"], drawing.OURS)
     axes[0].set_xlabel("density (1/m)")

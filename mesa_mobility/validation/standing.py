@@ -121,13 +121,22 @@ def judge(runs: Runs) -> Verdict:
     checks = (
         exactly("through the closed door", sum(each["crossed_closed"] for each in closed), 0),
         at_most("closed door: greatest pelvis speed m/s", worst(closed, "speed_max"), MOST_SPEED),
-        at_most("closed door: greatest turn in 1.5 s deg", worst(closed, "turn_max"),
-                MOST_TURN_DEG),
-        at_most("jam: greatest pelvis speed of standing people m/s", worst(jam, "speed_max"),
-                MOST_SPEED, gates=False),
-        at_most("jam: greatest turn of standing people deg", worst(jam, "turn_max"),
-                MOST_TURN_DEG, gates=False),
-    )  # fmt: skip
+        at_most(
+            "closed door: greatest turn in 1.5 s deg", worst(closed, "turn_max"), MOST_TURN_DEG
+        ),
+        at_most(
+            "jam: greatest pelvis speed of standing people m/s",
+            worst(jam, "speed_max"),
+            MOST_SPEED,
+            gates=False,
+        ),
+        at_most(
+            "jam: greatest turn of standing people deg",
+            worst(jam, "turn_max"),
+            MOST_TURN_DEG,
+            gates=False,
+        ),
+    )
     figures = {
         f"{where}: {name}": float(np.median([each[name] for each in of]))
         for where, of in (("closed door", closed), ("jam", jam))

@@ -87,8 +87,12 @@ def draw(figures: dict[str, Any]) -> Figure:
     axes[0].plot(ends, ends, color="black", linewidth=0.8)
     for row in table("free_speed"):
         axes[0].axhline(float(row["mean"]), color=drawing.MEASURED.colour, linewidth=0.8)
-        axes[0].annotate(row["source"].split("(")[0].strip(), (ends[0], float(row["mean"])),
-                         fontsize=6, va="bottom")  # fmt: skip
+        axes[0].annotate(
+            row["source"].split("(")[0].strip(),
+            (ends[0], float(row["mean"])),
+            fontsize=6,
+            va="bottom",
+        )
     axes[0].set_xlabel("preferred speed (m/s)")
     axes[0].set_ylabel("speed walked over 20 m (m/s)")
     turns = np.array(figures["turns"])

@@ -127,18 +127,27 @@ def jams(runs: Sequence[Figures]) -> Verdict:
     return Verdict(
         (
             *judging.everybody_out(runs),
-            more_than("peak at the neck less that in the corridor per m2",
-                      plain["neck"] - plain["corridor"], 0.0),
-            more_than("slow stretch: peak at the neck less that beyond its foot per m2",
-                      slow["neck"] - slow["corridor"], 0.0),
-            more_than("5 s peak at its foot with the slow stretch less without per m2",
-                      slow["foot_5_s"] - plain["foot_5_s"], 0.0),
+            more_than(
+                "peak at the neck less that in the corridor per m2",
+                plain["neck"] - plain["corridor"],
+                0.0,
+            ),
+            more_than(
+                "slow stretch: peak at the neck less that beyond its foot per m2",
+                slow["neck"] - slow["corridor"],
+                0.0,
+            ),
+            more_than(
+                "5 s peak at its foot with the slow stretch less without per m2",
+                slow["foot_5_s"] - plain["foot_5_s"],
+                0.0,
+            ),
         ),
         {
             **{f"{name} per m2": plain[name] for name in ("neck", "corridor", "foot")},
             **{f"slow stretch: {name} per m2": slow[name] for name in ("neck", "corridor", "foot")},
         },
-    )  # fmt: skip
+    )
 
 
 TESTS = {

@@ -48,9 +48,10 @@ def write_report(
         "are counted on the recorded tracks, and a single one fails the test."
     )
     page.table(
-        "Summary", ["test", "what", "verdict"],
+        "Summary",
+        ["test", "what", "verdict"],
         [[name, entries[name].what, WORDS[outcome.verdict]] for name, outcome in outcomes.items()],
-    )  # fmt: skip
+    )
     for name, outcome in outcomes.items():
         _test(page, entries[name], outcome)
     computed_with(page, seeds=max(len(outcome.seeds) for outcome in outcomes.values()), rules=rules)

@@ -107,13 +107,13 @@ def speeds_by_age(seeds: Sequence[Sequence[Figures]]) -> Verdict:
     return Verdict(
         (
             exactly("walkers who did not arrive", int((~arrived).sum()), 0),
-            at_most("greatest error of a speed m/s",
-                    float(np.nanmax(np.abs(walked - assigned))), 0.03),
+            at_most(
+                "greatest error of a speed m/s", float(np.nanmax(np.abs(walked - assigned))), 0.03
+            ),
             at_least("KS p", p_value, judging.KS_LEVEL),
-            within("mean deviation from the curve sigma", float(np.nanmean(deviation)),
-                   -1.0, 1.0),
+            within("mean deviation from the curve sigma", float(np.nanmean(deviation)), -1.0, 1.0),
         )
-    )  # fmt: skip
+    )
 
 
 def two_exits(runs: Sequence[Figures]) -> Verdict:
@@ -138,10 +138,16 @@ def jam_before_first(runs: Sequence[Figures]) -> Verdict:
     return Verdict(
         (
             *judging.everybody_out(runs),
-            at_least("flow of the neck less that of the exit per s",
-                     run["flow_per_s"][0] - run["flow_per_s"][1], 0.0),
-            more_than("peak in front of the neck less that of the exit",
-                      run["peak"][0] - run["peak"][1], 0.0),
+            at_least(
+                "flow of the neck less that of the exit per s",
+                run["flow_per_s"][0] - run["flow_per_s"][1],
+                0.0,
+            ),
+            more_than(
+                "peak in front of the neck less that of the exit",
+                run["peak"][0] - run["peak"][1],
+                0.0,
+            ),
         ),
         {
             "flow of the neck per s": run["flow_per_s"][0],
@@ -149,7 +155,7 @@ def jam_before_first(runs: Sequence[Figures]) -> Verdict:
             "peak density in front of the neck per m2": run["peak"][0] / 6.0,
             "peak density in front of the exit per m2": run["peak"][1] / 6.0,
         },
-    )  # fmt: skip
+    )
 
 
 def goal_behind(seeds: Sequence[Sequence[Figures]]) -> Verdict:
@@ -193,11 +199,12 @@ def queues(runs: Sequence[Figures]) -> Verdict:
             exactly("through the first opening", run["through"][0], 150),
             exactly("through the second opening", run["through"][1], 150),
             more_than("peak of box 1 less that of box 2", run["peak"][0] - run["peak"][1], 0.0),
-            more_than("top 10 of box 1 less those of box 2",
-                      run["top_10"][0] - run["top_10"][1], 0.0),
+            more_than(
+                "top 10 of box 1 less those of box 2", run["top_10"][0] - run["top_10"][1], 0.0
+            ),
         ),
         {"peak box 1": run["peak"][0], "peak box 2": run["peak"][1]},
-    )  # fmt: skip
+    )
 
 
 def wider_neck(runs: Sequence[Figures]) -> Verdict:

@@ -55,9 +55,14 @@ class Run:
         safety = check_safety(self.trajectories, self.walls, self.model.floor_plan.free)
         summary = self.model.summary()
         kept = (
-            "pedestrians", "simulated_s", "egress_s", "left_inside", "stalled",
-            "fallback_time_share", "fallback_decision_share",
-        )  # fmt: skip
+            "pedestrians",
+            "simulated_s",
+            "egress_s",
+            "left_inside",
+            "stalled",
+            "fallback_time_share",
+            "fallback_decision_share",
+        )
         return {
             **{name: summary[name] for name in kept},
             "person_s": float(self.model.crowd.active_frames.sum()) / self.model.frame_rate,

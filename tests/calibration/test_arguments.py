@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mesa_mobility.calibration import Distance, Free, HeldOut, Search, Seeds, calibrate
 from mesa_mobility.calibration.names import called, measured, measured_of, name_of
 from mesa_mobility.errors import MobilityError, ModelError
-from tests.fixtures import calibrations as fixture
+from tests.fixtures.experiments import calibrations as fixture
 
 pytest.importorskip("cmaes", reason="needs the extra calibration")
 

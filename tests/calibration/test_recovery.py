@@ -10,7 +10,7 @@ from mesa_mobility.calibration import Distance, Free, HeldOut, Search, Seeds, ca
 from mesa_mobility.crowd import PRESETS, read_preset
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.experiments import open_store
-from tests.fixtures import calibrations as fixture
+from tests.fixtures.experiments import calibrations as fixture
 
 pytest.importorskip("cmaes", reason="needs the extra calibration")
 
@@ -217,7 +217,7 @@ def test_data_of_files_are_read_by_functions_and_have_digests(tmp_path, monkeypa
 @pytest.mark.thorough
 def test_models_are_run_and_their_trajectories_compared(tmp_path):
     found = calibrate(
-        {"walkers": fixture.Walkers, "doorway": "tests.fixtures.calibrations:Walkers"},
+        {"walkers": fixture.Walkers, "doorway": "tests.fixtures.experiments.calibrations:Walkers"},
         {"walkers": 4.0, "doorway": HeldOut(4.0)},
         free=[Free("keep_distance.distance", 0.5, 3.0, start=1.5), Free("headway.time", 0.2, 3.0)],
         distances=[fixture.mean_time],

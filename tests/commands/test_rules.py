@@ -106,6 +106,7 @@ def test_numbers_change_what_verification_measures(command, mine, tmp_path):
     )  # fmt: skip
     assert plain.status == 0
     answers = [json.loads(each.out.splitlines()[-1]) for each in (plain, slow)]
+    assert [each["rimea-01"]["preset"] for each in answers] == ["default", "mine"]
     # Nobody wants to go anywhere.
     assert answers[0]["rimea-01"]["passed"]
     assert not answers[1]["rimea-01"]["passed"]

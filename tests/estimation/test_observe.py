@@ -10,7 +10,7 @@ from mesa_mobility import CostTerm, FloorPlan, Gate
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.estimation import Sampling, estimate, leave_out, observe, profile
 from mesa_mobility.estimation.choices.free_speeds import FreeSpeeds
-from mesa_mobility.estimation.choices.measured import measured
+from mesa_mobility.estimation.choices.places import places_of
 from mesa_mobility.estimation.problem import Problem
 from tests.estimation.tracks import RATE, corridor, rows_of, tracks_of, walking
 
@@ -122,7 +122,7 @@ def test_the_same_seed_gives_the_same_choices_and_another_does_not(steady):
 
 
 def test_free_speeds_are_taken_from_other_frames_of_those_with_nobody_ahead():
-    tracks = measured(walking(people=2, seconds=12.0), corridor())  # side by side, 1.1 m apart
+    tracks = places_of(walking(people=2, seconds=12.0), corridor())  # side by side, 1.1 m apart
     speeds = FreeSpeeds(tracks, 0.8)
 
     np.testing.assert_allclose(speeds.own(60, 0.8, 0.8), [1.2, 1.1], atol=1e-9)
@@ -133,7 +133,7 @@ def test_free_speeds_are_taken_from_other_frames_of_those_with_nobody_ahead():
 def test_somebody_behind_another_has_no_free_speed():
     rows = rows_of(walking(people=2, seconds=10.0))
     rows[rows[:, 1] == 1, 2:] = rows[rows[:, 1] == 0, 2:] + [1.0, 0.0]
-    speeds = FreeSpeeds(measured(tracks_of(rows), corridor()), 0.8)
+    speeds = FreeSpeeds(places_of(tracks_of(rows), corridor()), 0.8)
 
     own = speeds.own(50, 0.8, 0.8)
     assert np.isnan(own[0])

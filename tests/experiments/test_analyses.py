@@ -22,7 +22,7 @@ from mesa_mobility.experiments import (
 # Hundreds of runs and resamplings.
 pytestmark = pytest.mark.slow
 
-MODELS = "tests.fixtures.experiment_models:"
+MODELS = "tests.fixtures.experiments.models:"
 CUBE = {"x1": (-math.pi, math.pi), "x2": (-math.pi, math.pi), "x3": (-math.pi, math.pi)}
 
 

@@ -23,7 +23,7 @@ __all__ = ["command"]
 
 ROOT = Path(__file__).parents[2]
 FILE = """
-model = "tests.fixtures.experiment_models:Quick"
+model = "tests.fixtures.experiments.models:Quick"
 seed = 5
 replications = 10
 [fixed]

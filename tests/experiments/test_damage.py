@@ -13,7 +13,7 @@ from mesa_mobility.experiments.storing.shards import Folder
 from mesa_mobility.experiments.workers.batches import Journal
 from tests.fixtures.damage.mutating import mutate
 
-MODELS = "tests.fixtures.experiment_models:"
+MODELS = "tests.fixtures.experiments.models:"
 
 
 def run(path, **keywords):

@@ -13,7 +13,7 @@ import pytest
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments import open_store, run_experiment
-from tests.fixtures.quick_experiments import quick
+from tests.fixtures.experiments.quick import quick
 
 ROOT = Path(__file__).parents[2]
 
@@ -27,7 +27,7 @@ import sys
 from mesa_mobility.experiments import Experiment, run_experiment
 if __name__ == "__main__":
     experiment = Experiment(
-        "tests.fixtures.experiment_models:Quick", json.loads(sys.argv[3]), seed=5,
+        "tests.fixtures.experiments.models:Quick", json.loads(sys.argv[3]), seed=5,
         replications=10, fixed=json.loads(sys.argv[4]),
     )
     run_experiment(experiment, sys.argv[1], executor=sys.argv[2], workers=2)

@@ -3,7 +3,7 @@
 import pytest
 
 from mesa_mobility.experiments import Grid, run_experiment
-from tests.fixtures.quick_experiments import quick
+from tests.fixtures.experiments.quick import quick
 
 # Many processes, which take minutes and count on a machine that is not loaded.
 pytestmark = pytest.mark.slow

@@ -14,9 +14,9 @@ from mesa_mobility.mobility import shipped_map_path
 from mesa_mobility.plugins.parameters import parameters
 from mesa_mobility.populations import Population
 from mesa_mobility.reports.inputs import inputs_of
-from tests.fixtures.experiment_models import Peopled
+from tests.fixtures.experiments.models import Peopled
 
-MODEL = "tests.fixtures.experiment_models:Peopled"
+MODEL = "tests.fixtures.experiments.models:Peopled"
 PLAN = "walkable floor POLYGON ((0 0, {0} 0, {0} 4, 0 4, 0 0))\nexit door LINESTRING (0 1, 0 3)\n"
 
 

@@ -25,7 +25,7 @@ from mesa_mobility.experiments import (
 from mesa_mobility.experiments.convergence import assess
 from mesa_mobility.experiments.observed import estimate, is_time, observed
 
-MODEL = "tests.fixtures.experiment_models:Partly"
+MODEL = "tests.fixtures.experiments.models:Partly"
 INF, NAN = math.inf, math.nan
 
 
@@ -195,7 +195,10 @@ def test_indices_need_a_mean_of_every_point(tmp_path):
 
 def test_failed_runs_are_left_out_with_a_warning(tmp_path):
     experiment = Experiment(
-        "tests.fixtures.experiment_models:Quick", {"end": ["well", "raise"]}, replications=3, seed=1
+        "tests.fixtures.experiments.models:Quick",
+        {"end": ["well", "raise"]},
+        replications=3,
+        seed=1,
     )
     store = run_experiment(experiment, tmp_path / "s", executor="serial")
     with (

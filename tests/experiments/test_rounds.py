@@ -19,9 +19,9 @@ from mesa_mobility.experiments.design.points import point_key, run_name
 from mesa_mobility.experiments.driver import _Driver
 from mesa_mobility.experiments.workers import batches, one_run
 from mesa_mobility.experiments.workers.batches import Batch, Finished, Journal
-from tests.fixtures.quick_experiments import quick
+from tests.fixtures.experiments.quick import quick
 
-MODELS = "tests.fixtures.experiment_models:"
+MODELS = "tests.fixtures.experiments.models:"
 
 
 class Enough(Exception):

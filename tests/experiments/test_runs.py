@@ -8,8 +8,8 @@ import pytest
 from mesa_mobility.errors import ModelError
 from mesa_mobility.experiments import Experiment, open_store, run_experiment
 from mesa_mobility.experiments.design.points import point_key, seed_of_run
-from tests.fixtures.experiment_models import Quick
-from tests.fixtures.quick_experiments import quick
+from tests.fixtures.experiments.models import Quick
+from tests.fixtures.experiments.quick import quick
 
 
 @pytest.fixture(scope="module")

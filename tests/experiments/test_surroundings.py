@@ -15,7 +15,7 @@ from mesa_mobility.experiments.storing.shards import Folder, joined, table_of
 from mesa_mobility.experiments.workers import batches, compiling
 from mesa_mobility.files.atomic import replacing
 
-MODELS = "tests.fixtures.experiment_models:"
+MODELS = "tests.fixtures.experiments.models:"
 SESSION = {"began": "", "executor": "serial", "machine": "", "versions": {}, "inputs": {}}
 
 

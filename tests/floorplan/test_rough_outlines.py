@@ -15,7 +15,7 @@ from mesa_mobility.floorplan import Router
 from mesa_mobility.floorplan.floor.outline import GRID, simplified
 from mesa_mobility.floorplan.walls.narrow_gaps import closed_gaps
 from mesa_mobility.floorplan.walls.smooth_floor import smooth_floor
-from tests.fixtures.rough_outlines import rough_plan, walk_out
+from tests.fixtures.plans.rough_outlines import rough_plan, walk_out
 
 
 def _jittered(n: int, seed: int = 0, jitter: float = 0.001) -> Polygon:

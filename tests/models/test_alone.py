@@ -5,7 +5,7 @@ import pytest
 from shapely import box, union_all
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
-from tests.fixtures.narrow_plans import narrow_plan
+from tests.fixtures.plans.narrow_plans import narrow_plan
 
 
 def overdue(plan, start, seed, way):

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.commands.console import Report, answer_json, answer_table, say
 
 if TYPE_CHECKING:
     from mesa_mobility.capture import LoadedClips
     from mesa_mobility.mobility import MobilityMap
-
-AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
 
 
 def say_clips(loaded: LoadedClips) -> None:

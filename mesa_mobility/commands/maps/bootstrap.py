@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mesa_mobility.commands.console import (
+    AsJson,
     NoProgress,
     answer_json,
     answer_table,
@@ -17,7 +18,7 @@ from mesa_mobility.commands.console import (
     some_path,
     stoppable_progress,
 )
-from mesa_mobility.commands.maps.answers import AsJson, examine_map, say_clips
+from mesa_mobility.commands.maps.answers import examine_map, say_clips
 from mesa_mobility.errors import MapError
 from mesa_mobility.interrupts import putting_in_place
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import shlex
 import time
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import NoProgress, say, some_path, stoppable_progress
+from mesa_mobility.commands.console import AsJson, NoProgress, say, some_path, stoppable_progress
+from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.maps.answers import (
-    AsJson,
     answer,
     described,
     examine_map,
@@ -44,6 +44,83 @@ MOST_LEFT_OUT = 12
 left out at once: one build more."""
 
 
+@dataclass(frozen=True)
+class Wanted:
+    """The map that is wanted."""
+
+    type_name: Annotated[
+        str | None,
+        typer.Option("--type", metavar="NAME", help="Pedestrian type: rows to take (able_bodied)."),
+    ] = None
+    clusters: Annotated[
+        int | None, typer.Option(min=2, help="How many clusters of poses (one for 150).")
+    ] = None
+    mirrored: Annotated[
+        bool | None,
+        typer.Option(
+            "--mirror/--no-mirror",
+            help="Add each clip's mirror image, or not; by default if the gait is symmetric.",
+        ),
+    ] = None
+    other_side: Annotated[
+        bool,
+        typer.Option("--other-side", help="Mirror images alone: a limp on the other leg."),
+    ] = False
+    derived: Annotated[
+        str | None,
+        typer.Option(
+            "--derive",
+            metavar="NAME",
+            help="A type of whom nobody is recorded. From recordings of others: child, "
+            "older_adult, frail_older_adult, cane, crutches or walking_frame; from none: "
+            "wheelchair_manual, wheelchair_powered or wheelchair_assisted.",
+        ),
+    ] = None
+    name: Annotated[
+        str | None,
+        typer.Option("--name", help="Name of the type in the map (as --type or --derive)."),
+    ] = None
+    kept: Annotated[
+        Options,
+        typer.Option(
+            "--options",
+            help="Store every option, or the recorded ones alone, each of which stands for a "
+            "distribution of edited ones: the same options from a smaller file.",
+        ),
+    ] = Options.STORED
+
+    def check(self) -> None:
+        """Refuse options that contradict each other.
+
+        Raises:
+            typer.BadParameter: they do.
+        """
+        if self.other_side and self.mirrored:
+            raise typer.BadParameter("--other-side takes mirror images alone: leave --mirror out")
+        if self.derived is not None and self.type_name is not None:
+            raise typer.BadParameter(
+                "--derive takes recordings of the type that it needs: no --type"
+            )
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is derived, and nothing else is said of it."""
+        return self == Wanted(derived=self.derived)
+
+    def command(self, source: str, recorded: str, name: str) -> str:
+        """The command that builds it, with files but no folders: the same recordings give the same
+        map wherever they lie."""
+        words = ["mesa-mobility", "map", "build", source, "-o", f"{name}.npz"]
+        words += ["--type", recorded] if self.derived is None else ["--derive", self.derived]
+        words += [] if name == (self.derived or recorded) else ["--name", name]
+        words += [] if self.clusters is None else ["--clusters", str(self.clusters)]
+        words += [] if self.mirrored is None else ["--mirror" if self.mirrored else "--no-mirror"]
+        words += ["--other-side"] if self.other_side else []
+        words += [] if self.kept == Options.STORED else ["--options", self.kept.value]
+        return shlex.join(words)
+
+
+@grouped
 def build(
     source: Annotated[
         Path | None,
@@ -59,46 +136,7 @@ def build(
             "-o", "--output", help="Map file to write (.npz).", parser=some_path, metavar="PATH"
         ),
     ],
-    type_name: Annotated[
-        str | None,
-        typer.Option("--type", metavar="NAME", help="Pedestrian type: rows to take (able_bodied)."),
-    ] = None,
-    clusters: Annotated[
-        int | None, typer.Option(min=2, help="How many clusters of poses (one for 150).")
-    ] = None,
-    mirrored: Annotated[
-        bool | None,
-        typer.Option(
-            "--mirror/--no-mirror",
-            help="Add each clip's mirror image, or not; by default if the gait is symmetric.",
-        ),
-    ] = None,
-    other_side: Annotated[
-        bool,
-        typer.Option("--other-side", help="Mirror images alone: a limp on the other leg."),
-    ] = False,
-    derived: Annotated[
-        str | None,
-        typer.Option(
-            "--derive",
-            metavar="NAME",
-            help="A type of whom nobody is recorded. From recordings of others: child, "
-            "older_adult, frail_older_adult, cane, crutches or walking_frame; from none: "
-            "wheelchair_manual, wheelchair_powered or wheelchair_assisted.",
-        ),
-    ] = None,
-    name: Annotated[
-        str | None,
-        typer.Option("--name", help="Name of the type in the map (as --type or --derive)."),
-    ] = None,
-    kept: Annotated[
-        Options,
-        typer.Option(
-            "--options",
-            help="Store every option, or the recorded ones alone, each of which stands for a "
-            "distribution of edited ones: the same options from a smaller file.",
-        ),
-    ] = Options.STORED,
+    wanted: Wanted,
     poses: Annotated[
         bool,
         typer.Option("--poses", help="Also write the full-body poses behind the options."),
@@ -111,10 +149,7 @@ def build(
     from mesa_mobility.mobility import WHEELCHAIRS, map_of_families
     from mesa_mobility.results import check_writable
 
-    if other_side and mirrored:
-        raise typer.BadParameter("--other-side takes mirror images alone: leave --mirror out")
-    if derived is not None and type_name is not None:
-        raise typer.BadParameter("--derive takes recordings of the type that it needs: no --type")
+    wanted.check()
     if output.is_dir():
         raise MapError(f"{output}: is a folder, expected a file to write")
     check_writable(output.parent)
@@ -122,14 +157,9 @@ def build(
     families: OptionFamilies | None
     info: dict[str, Any] = {}
     bank = None
+    derived = wanted.derived
     if derived is not None and derived in WHEELCHAIRS:
-        choices = (source, clusters, mirrored, name)
-        if (
-            other_side
-            or poses
-            or kept != Options.STORED
-            or any(each is not None for each in choices)
-        ):
+        if source is not None or poses or not wanted.is_plain:
             raise typer.BadParameter(f"{derived}: takes no recordings, and nothing but --output")
         words = ["mesa-mobility", "map", "build", "--derive", derived, "-o", f"{derived}.npz"]
         families = None
@@ -137,17 +167,7 @@ def build(
     elif source is None:
         raise typer.BadParameter("MANIFEST_OR_DIR: expected recordings; only wheelchairs need none")
     else:
-        families, recordings, info = _from_recordings(
-            source,
-            type_name,
-            clusters,
-            mirrored=mirrored,
-            other_side=other_side,
-            derived=derived,
-            name=name,
-            kept=kept,
-            shown=not no_progress,
-        )
+        families, recordings, info = _from_recordings(source, wanted, shown=not no_progress)
         built = map_of_families(families)
         if poses:
             from mesa_mobility.bodies import build_bank
@@ -158,7 +178,7 @@ def build(
         left_out = info.get(ONE_AT_A_TIME, info.get(SOME_AT_ONCE))
         built, examination = examine_map(built, report, left_out)
     with putting_in_place():
-        if families is None or kept == Options.STORED:
+        if families is None or wanted.kept == Options.STORED:
             built.save(output)
         else:
             replace(families, metadata=built.metadata).save(output)
@@ -176,16 +196,7 @@ def build(
 
 
 def _from_recordings(
-    source: Path,
-    type_name: str | None,
-    clusters: int | None,
-    *,
-    mirrored: bool | None,
-    other_side: bool,
-    derived: str | None,
-    name: str | None,
-    kept: Options,
-    shown: bool,
+    source: Path, wanted: Wanted, *, shown: bool
 ) -> tuple[OptionFamilies, Sequence[Recording], dict[str, Any]]:
     """The recorded options of a map, the recordings as used, and what to say of them."""
     from mesa_mobility.capture import find_clips
@@ -196,14 +207,14 @@ def _from_recordings(
     )
     from mesa_mobility.mobility.preparing.summary import summary_of
 
-    plan = None if derived is None else derived_type(derived)
-    recorded = type_name or (plan.source if plan else "able_bodied")
+    plan = None if wanted.derived is None else derived_type(wanted.derived)
+    recorded = wanted.type_name or (plan.source if plan else "able_bodied")
     with stoppable_progress(shown=shown) as report:
         prepared = prepare_recordings(
             find_clips(source),
             recorded,
-            mirrored=mirrored,
-            other_side=other_side,
+            mirrored=wanted.mirrored,
+            other_side=wanted.other_side,
             progress=lambda done, total: report("reading recordings", done, total),
         )
         say_clips(prepared.clips)
@@ -216,20 +227,12 @@ def _from_recordings(
         metadata: dict[str, Any] = {}
         if plan is not None:
             recordings, metadata = plan.derive(recordings, plan.time_factor(recordings))
-        name = name or derived or recorded
-        words = ["mesa-mobility", "map", "build", source.name, "-o", f"{name}.npz"]
-        words += ["--type", recorded] if derived is None else ["--derive", derived]
-        words += [] if name == (derived or recorded) else ["--name", name]
-        words += [] if clusters is None else ["--clusters", str(clusters)]
-        words += [] if mirrored is None else ["--mirror" if mirrored else "--no-mirror"]
-        words += ["--other-side"] if other_side else []
-        words += [] if kept == Options.STORED else ["--options", kept.value]
-        # Files without folders: the same recordings give the same map wherever they lie.
-        command = shlex.join(words)
+        name = wanted.name or wanted.derived or recorded
+        command = wanted.command(source.name, recorded, name)
         families = build_families(
             recordings,
             type_name=name,
-            clusters=clusters,
+            clusters=wanted.clusters,
             metadata={"command": command, "preparation": prepared.choices, **metadata},
             progress=report,
         )
@@ -239,7 +242,7 @@ def _from_recordings(
             "skipped": [list(each) for each in prepared.clips.skipped],
             "split": [list(each) for each in prepared.clips.split],
         }
-        left_out = _left_out(prepared, recordings, clusters, report)
+        left_out = _left_out(prepared, recordings, wanted.clusters, report)
     if left_out is not None:
         info[ONE_AT_A_TIME if "clips" in left_out else SOME_AT_ONCE] = left_out
     return families, recordings, info

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mesa_mobility.commands.console import NoProgress, stoppable_progress
+from mesa_mobility.commands.console import AsJson, NoProgress, stoppable_progress
 from mesa_mobility.commands.maps.answers import (
-    AsJson,
     answer,
     described,
     examine_map,

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import platform
+import secrets
 from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from mesa_mobility.commands.console import some_path
+from mesa_mobility.commands.models.behaviors import use_behaviors
 from mesa_mobility.errors import ModelError
-
-if TYPE_CHECKING:
-    from mesa_mobility.crowd.presets.given import Given
 
 MODEL_HELP = "Name of a model; `mesa-mobility models` lists them. Or FILE.py, or FILE.py:NAME."
 ModelName = Annotated[str, typer.Argument(metavar="MODEL", help=MODEL_HELP)]
@@ -24,10 +24,6 @@ PresetName = Annotated[
         metavar="NAME|FILE",
         help="default, paper or a TOML file; without it the model's own.",
     ),
-]
-Seed = Annotated[
-    int | None,
-    typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
 ]
 Settings = Annotated[
     list[str] | None,
@@ -46,69 +42,75 @@ Numbers = Annotated[
         "`mesa-mobility preset` lists them.",
     ),
 ]
-Rules = Annotated[
-    str | None,
-    typer.Option(
-        "--preset", metavar="NAME|FILE", help="paper or a TOML file, instead of the default preset."
-    ),
-]
-Behaviors = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--behavior",
-        metavar="NAME[=WEIGHT]",
-        help="An installed behaviour to use besides the model's own; repeatable. "
-        "`mesa-mobility behaviors NAME` lists its settings.",
-    ),
-]
-MapFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--map",
-        help="Mobility map instead of the shipped one.",
-        parser=some_path,
-        metavar="PATH",
-    ),
-]
+
+
+@dataclass(frozen=True)
+class ModelOptions:
+    """Options of commands that make a model."""
+
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
+    ] = None
+    settings: Settings = None
+    behaviors: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--behavior",
+            metavar="NAME[=WEIGHT]",
+            help="An installed behaviour to use besides the model's own; repeatable. "
+            "`mesa-mobility behaviors NAME` lists its settings.",
+        ),
+    ] = None
+    preset: PresetName = None
+    map_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--map",
+            help="Mobility map instead of the shipped one.",
+            parser=some_path,
+            metavar="PATH",
+        ),
+    ] = None
+
+    def with_seed(self) -> ModelOptions:
+        """The same, with a seed: one is drawn where none was given."""
+        return replace(self, seed=secrets.randbelow(2**31)) if self.seed is None else self
 
 
 def create_model(
     kind: type,
     name: str,
-    settings: Iterable[str],
+    options: ModelOptions,
     *,
-    map_file: Path | None,
-    preset: str | None = None,
     record: bool | str = False,
     **keywords: Any,
 ) -> tuple[Any, dict[str, Any]]:
-    """The model, and its own parameters with the values that they have.
+    """The model with its behaviours and numbers, and its own parameters with their values.
 
     Args:
         kind: its class.
         name: what the user calls it.
-        settings: texts NAME=VALUE. Those with a dot in the name are numbers of behaviours;
-            ``set_numbers`` makes sure that all of them are there, once behaviours were added.
-        map_file: a mobility map, or None for the model's own.
-        preset: rules by which people move, or None for the model's own.
+        options: of the command. Settings with a dot in the name are numbers of behaviours.
         record: what the model records; a `PedestrianModel` does so even where its constructor does
             not take ``record``.
         keywords: further arguments of the constructor.
 
     Raises:
-        ModelError: a parameter that the constructor does not take, or a value that it refuses.
+        ModelError: a parameter that the constructor does not take, an unknown behaviour or number,
+            or a value that is refused.
     """
     from mesa_mobility import PedestrianModel
     from mesa_mobility.crowd.presets.given import Given
     from mesa_mobility.crowd.presets.naming import COMMAND_LINE
     from mesa_mobility.plugins.parameters import NOT_SETTABLE, OWN_OPTION, chosen, parameters
 
-    own, numbers = split_settings(settings)
-    keywords = {**chosen(kind, name, own), **keywords}
-    if map_file is not None:
-        keywords["mobility_map"] = str(map_file)
-    if preset is not None:
-        keywords["preset"] = preset
+    own, numbers = split_settings(options.settings or [])
+    keywords = {**chosen(kind, name, own), **keywords, "rng": options.seed}
+    if options.map_file is not None:
+        keywords["mobility_map"] = str(options.map_file)
+    if options.preset is not None:
+        keywords["preset"] = options.preset
     taken = parameters(kind)
     # A model of one's own need not mention it.
     recorded_later = record and "record" not in taken and issubclass(kind, PedestrianModel)
@@ -134,6 +136,14 @@ def create_model(
         raise ModelError(f"{OWN_OPTION[parameter]}:{rest}") from error
     if recorded_later:
         model.start_recording(record)
+    use_behaviors(model, options.behaviors or [])
+    # Only now are all behaviours there that the numbers may be of.
+    if numbers:
+        if not isinstance(model, PedestrianModel):
+            raise ModelError(
+                f"model {name}: has no behaviours, expected no --set {next(iter(numbers))}"
+            )
+        model.set_parameters(numbers, COMMAND_LINE)
     return model, given
 
 
@@ -156,54 +166,6 @@ def split_settings(settings: Iterable[str]) -> tuple[list[str], dict[str, str]]:
             raise ModelError(f"--set {setting}: {name} is set twice")
         numbers[name] = value
     return own, numbers
-
-
-def set_numbers(model: Any, name: str, settings: Iterable[str]) -> None:
-    """Set numbers of the behaviours that a model has by now.
-
-    Args:
-        model: the model.
-        name: what the user calls it.
-        settings: texts NAME=VALUE; those without a dot in the name are none of behaviours.
-
-    Raises:
-        ModelError: an unknown name, a value out of range, or a model without behaviours.
-    """
-    from mesa_mobility import PedestrianModel
-    from mesa_mobility.crowd.presets.naming import COMMAND_LINE
-
-    _, numbers = split_settings(settings)
-    if not numbers:
-        return
-    if not isinstance(model, PedestrianModel):
-        raise ModelError(
-            f"model {name}: has no behaviours, expected no --set {next(iter(numbers))}"
-        )
-    model.set_parameters(numbers, COMMAND_LINE)
-
-
-def rules_given(preset: str | None, settings: Iterable[str]) -> Given:
-    """The rules that a command gives to all models that it makes.
-
-    Args:
-        preset: takes the place of the default one.
-        settings: texts NAME=VALUE of numbers of behaviours.
-
-    Raises:
-        ModelError: an unknown preset, an unknown name, or a value out of range.
-    """
-    from mesa_mobility.crowd.presets.given import Given
-    from mesa_mobility.crowd.presets.naming import COMMAND_LINE
-    from mesa_mobility.crowd.presets.shipped import preset_of
-
-    own, numbers = split_settings(settings)
-    if own:
-        raise ModelError(
-            f"--set {own[0]}: expected a number of a behaviour, such as headway.time=0.6"
-        )
-    given = Given(None if preset is None else preset_of(preset), numbers, COMMAND_LINE)
-    given.check()
-    return given
 
 
 def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:

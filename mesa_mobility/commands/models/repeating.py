@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesa_mobility.commands.models.behaviors import use_behaviors
-from mesa_mobility.commands.models.making import create_model, origin_of, set_numbers
+from mesa_mobility.commands.models.making import ModelOptions, create_model, origin_of
 from mesa_mobility.crowd import Explanation, PedestrianModel, Watch
 from mesa_mobility.crowd.model_files import find_model
 from mesa_mobility.errors import ModelError, ResultsError
@@ -125,21 +124,22 @@ def _make(summary: Mapping[str, Any], name: Path, map_file: Path | None) -> Pede
             f"{name / 'summary.json'}: lacks {', '.join(missing)}, expected a run of this version"
         )
     kind = find_model(str(summary["model"]))
-    numbers = [f"{key}={value}" for key, value in summary.get("set", {}).items()]
+    options = ModelOptions(
+        seed=summary["seed"],
+        settings=[f"{key}={value}" for key, value in summary.get("set", {}).items()],
+        behaviors=summary.get("behaviors"),
+        preset=summary["preset"] if "preset" in parameters(kind) else None,
+        map_file=map_file,
+    )
     model, given = create_model(
         kind,
         str(summary["model"]),
-        numbers,
-        map_file=map_file,
-        **_parameters(kind, summary["parameters"]),
-        preset=summary["preset"] if "preset" in parameters(kind) else None,
-        rng=summary["seed"],
+        options,
         record="decisions",
+        **_parameters(kind, summary["parameters"]),
     )
     if not isinstance(model, PedestrianModel):
         raise ModelError(f"model {summary['model']}: expected a subclass of PedestrianModel")
-    use_behaviors(model, summary.get("behaviors", ()))
-    set_numbers(model, str(summary["model"]), numbers)
     now = origin_of(given, model)
     if now["preset_sha256"] != summary.get("preset_sha256", now["preset_sha256"]):
         raise ResultsError(

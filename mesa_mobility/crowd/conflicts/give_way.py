@@ -185,9 +185,10 @@ class GiveWay(Tactic):
         if len(who) == 0:
             return
         wishes, crowd = self._wishes(deciding, desired, who), deciding.inside.crowd
+        firsts = self._ways_of_firsts(deciding.pedestrians[who], deciding)
         for k, row in enumerate(deciding.pedestrians[who].tolist()):
             path = wishes.paths[k, :, : wishes.pieces[k] + 1].T
-            for other in self._ways(row, deciding):
+            for other in self._ways(row, firsts, deciding):
                 off, along = distances_to_way(path, other.points)
                 if ((off < other.body.core + crowd.core[row]) & (along > 0.0)).any():
                     until = deciding.elapsed + GOES_ON
@@ -197,7 +198,8 @@ class GiveWay(Tactic):
         """Set points and speeds of those who make way, and ask those who are in the way of that."""
         rows, crowd, notes = deciding.pedestrians[who], deciding.inside.crowd, self._notes
         points, speeds = desired.points.copy(), desired.speeds.copy()
-        places = [self._places(row, deciding) for row in rows.tolist()]
+        firsts = self._ways_of_firsts(rows, deciding)
+        places = [self._places(row, firsts, deciding) for row in rows.tolist()]
         best = np.array(
             [
                 each[0] if len(each) else here
@@ -223,7 +225,7 @@ class GiveWay(Tactic):
             best[k], blockers[k] = others[at], tried.blockers[at]
         notes["x"][rows], notes["y"][rows] = best.T
         for row, place in zip(rows.tolist(), best, strict=True):
-            free = leaves_free(place[None], crowd.core[row], self._ways(row, deciding))
+            free = leaves_free(place[None], crowd.core[row], self._ways(row, firsts, deciding))
             notes["aside"][row] = free[0]
         points[who] = np.where(arrived[:, None], deciding.positions[who], best)
         speeds[who] = np.where(arrived, 0.0, own)
@@ -237,10 +239,12 @@ class GiveWay(Tactic):
         pass_on(rows[moving], blockers[moving], deciding.elapsed, crowd.records, notes)
         notes["first"][rows[back]] = NOBODY
 
-    def _places(self, row: int, deciding: Deciding) -> NDArray[np.float64]:
+    def _places(
+        self, row: int, firsts: Mapping[int, Way], deciding: Deciding
+    ) -> NDArray[np.float64]:
         """(k, 2) where somebody may make way to, metres, the best place first."""
         crowd, inside = deciding.inside.crowd, deciding.inside.pedestrians
-        me, ways = _body(row, deciding), self._ways(row, deciding)
+        me, ways = _body(row, deciding), self._ways(row, firsts, deciding)
         concerned = [row, self._notes["first"][row], self._notes["asked_by"][row]]
         reach = AROUND + me.core + crowd.core[inside].max()
         near = inside[
@@ -262,12 +266,18 @@ class GiveWay(Tactic):
             return places_to_set_out(deciding.site.plan, me, aims, taken, cores)
         return places_aside(deciding.site.plan, me, ways, taken, cores)
 
-    def _ways(self, row: int, deciding: Deciding) -> list[Way]:
+    def _ways_of_firsts(self, rows: NDArray[np.int64], deciding: Deciding) -> dict[int, Way]:
+        """The ways of the people for whom others make way, by row."""
+        firsts = self._notes["first"][rows]
+        others = np.unique(firsts[firsts != rows]).tolist()
+        return {each: Way(_body(each, deciding), _way(each, deciding)) for each in others}
+
+    def _ways(self, row: int, firsts: Mapping[int, Way], deciding: Deciding) -> list[Way]:
         """The ways that somebody leaves free: of the first, and of who has asked them."""
         first, by = int(self._notes["first"][row]), int(self._notes["asked_by"][row])
         if first == row:
             return []
-        ways = [Way(_body(first, deciding), _way(first, deciding))]
+        ways = [firsts[first]]
         if self._notes["first"][by] == first and deciding.inside.crowd.active[by]:
             body = _body(by, deciding)
             to = np.array([self._notes["x"][by], self._notes["y"][by]])

@@ -5,117 +5,56 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from mesa_mobility.bodies.velocities import LEAST_WAY, WINDOW_S, velocities
+from mesa_mobility.crowd.insertion.tracks import (
+    FloatArray,
+    IntArray,
+    MeasuredTracks,
+    TrackRows,
+)
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.human_limits import FASTEST_SPRINT
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-NEAR_FLOOR = 0.5
-"""Farthest from the free floor at which somebody counts as on it, metres: heads lean over walls."""
 SHORTEST_S = 0.2
 """Least time of earlier frames that shows a velocity, seconds; before it, later frames do."""
 
 
-class MeasuredTracks(Protocol):
-    """What a model uses of ``Trajectories``."""
-
-    @property
-    def frame_rate(self) -> float:
-        """Frames a second."""
-
-    @property
-    def reading(self) -> Any:
-        """How the file was read, or None."""
-
-    @property
-    def frame(self) -> NDArray[np.int32]:
-        """(n,) frame of each row."""
-
-    @property
-    def person(self) -> NDArray[np.int32]:
-        """(n,) person of each row."""
-
-    @property
-    def x(self) -> FloatArray:
-        """(n,) metres."""
-
-    @property
-    def y(self) -> FloatArray:
-        """(n,) metres."""
-
-    @property
-    def heading(self) -> FloatArray:
-        """(n,) radians."""
-
-    @property
-    def by_person(self) -> IntArray:
-        """(n,) the rows ordered by (person, frame)."""
-
-
 @dataclass(frozen=True, eq=False)
-class Measured:
+class Measured(TrackRows):
     """Rows of tracks by (person, frame), with what is known of each at that time.
 
     Attributes:
-        name: the file.
-        rate: frames a second.
-        person: (n,) numbers.
-        frame: (n,) frames.
-        places: (n, 2) metres.
         headings: (n,) radians.
         velocity: (n, 2) m/s, of the last 0.8 s; of the next in the first 0.2 s of a track.
         aimless: (n,) whether no direction is known yet: the person has not walked.
-        off: (n,) metres from the floor.
         jumps: persons and frames after which the file has a jump.
     """
 
-    name: str
-    rate: float
-    person: IntArray
-    frame: IntArray
-    places: FloatArray
     headings: FloatArray
     velocity: FloatArray
     aimless: NDArray[np.bool_]
-    off: FloatArray
     jumps: list[tuple[int, int]]
-
-    def where(self, row: int) -> str:
-        """The file, person and frame of a row, for a message."""
-        return f"{self.name}: person {self.person[row]}, frame {self.frame[row]}"
 
 
 def measured(tracks: MeasuredTracks, plan: FloorPlan) -> Measured:
     """Tracks as a model on this plan takes people from them."""
-    order, reading = tracks.by_person, tracks.reading
-    person, frame = tracks.person[order].astype(np.int64), tracks.frame[order].astype(np.int64)
-    places = np.column_stack([tracks.x[order], tracks.y[order]])
-    velocity, seconds = velocities(person, frame, places, tracks.frame_rate)
+    reading = tracks.reading
+    rows = TrackRows.of(tracks, plan, "tracks" if reading is None else reading.file)
+    person, frame, places, rate = rows.person, rows.frame, rows.places, rows.rate
+    velocity, seconds = velocities(person, frame, places, rate)
     early = seconds < SHORTEST_S
-    velocity[early] = velocities(person, frame, places, tracks.frame_rate, ahead=True)[0][early]
-    off = np.zeros(len(places))
-    outside = ~plan.contains(places)
-    off[outside] = shapely.distance(plan.free, shapely.points(places[outside]))
+    velocity[early] = velocities(person, frame, places, rate, ahead=True)[0][early]
     derived = reading is not None and reading.headings_from == "way"
     return Measured(
-        name="tracks" if reading is None else reading.file,
-        rate=tracks.frame_rate,
-        person=person,
-        frame=frame,
-        places=places,
-        headings=np.array(tracks.heading[order]),
+        **vars(rows),
+        headings=np.array(tracks.heading[tracks.by_person]),
         velocity=velocity,
         aimless=derived & ~early & (_way_so_far(person, places) < LEAST_WAY),
-        off=off,
         jumps=[]
         if reading is None
         else [(each.person, each.frame) for each in reading.of_kind("jump")],
@@ -141,7 +80,7 @@ def first_rows(track: Measured, start: int) -> IntArray:
         ModelError: there is nobody.
     """
     from_now = track.frame >= start
-    near = from_now & (track.off <= NEAR_FLOOR)
+    near = from_now & track.on_floor
     if not from_now.any():
         raise ModelError(f"{track.name}: from frame {start} on there is nobody")
     rows = np.flatnonzero(near)
@@ -207,19 +146,14 @@ def ways_out(
     Args:
         track: the tracks.
         rows: (n,) a row of each person.
-        exits: names for everybody, or by number of the person; the exit nearest to the end of the
-            track for all others.
+        exits: names for everybody, or by number of the person; the exit to which the track leads
+            for all others.
         plan: the floor plan.
 
     Raises:
         ModelError: the plan has no exit.
     """
-    if not len(plan.exits):
-        raise ModelError("replay: the floor plan has no exit, expected one at least")
-    ends = np.searchsorted(track.person, track.person[rows], side="right") - 1
-    places = shapely.points(track.places[ends])
-    nearest = np.argmin([shapely.distance(places, each.line) for each in plan.exits], axis=0)
-    own: list[list[str]] = [[plan.exits[k].name] for k in nearest]
+    own = [[plan.exits[k].name] for k in track.exits(track.person[rows], plan)]
     if exits is not None:
         given = exits if isinstance(exits, Mapping) else dict.fromkeys(track.person[rows], exits)
         own = [

@@ -14,7 +14,6 @@ from scipy.spatial import cKDTree
 from mesa_mobility.crowd.insertion.arrivals import ARRIVAL, Arrivals
 from mesa_mobility.crowd.insertion.measured import (
     Measured,
-    MeasuredTracks,
     check_velocities,
     first_rows,
     measured,
@@ -22,6 +21,7 @@ from mesa_mobility.crowd.insertion.measured import (
 )
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.insertion.relaxing import relaxed
+from mesa_mobility.crowd.insertion.tracks import MeasuredTracks
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
@@ -109,7 +109,8 @@ def replay(
         tracks: ``Trajectories``, in the coordinates of the floor plan.
         from_frame: frame of the tracks at which the model starts; their first by default.
         exits: names of the exits by which everybody may leave, or by number of the person; by
-            default the exit that is nearest to the end of their track.
+            default the exit at which their track ends or, if it ends elsewhere, the one to which
+            it has come nearer by most.
         preferred_speeds: m/s, one number, a distribution or (m,) by number of the person; by
             default drawn from the type.
         type_index: index of everybody's type; by default types are drawn from ``population``.

@@ -16,17 +16,14 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
-from mesa_mobility.crowd.costs.candidates import Candidates, Moment
+from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
-from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, make_candidates
 from mesa_mobility.crowd.planning.feasibility import Obstacles, Trial, path_gone_or_blocked
-from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.state.paths import to_world
-from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
-from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.crowd.state.wishes import NOBODY
 
 FREE, WALL, PERSON = 0, 1, 2
@@ -102,25 +99,20 @@ class Watch:
 
 def weigh(
     row: int,
-    moment: Moment,
+    outlook: Outlook,
     known: Repertoire,
-    crowd: Crowd,
-    grid: Grid,
-    around: Surroundings,
-    rules: Rules,
     terms: Sequence[CostTerm],
     types: Sequence[str],
 ) -> Explanation:
     """Costs of the options of the pedestrian in ``row``, before collision tests."""
-    candidates = make_candidates(
-        np.array([row], dtype=np.int64), known.table, crowd, grid, around, rules, moment
-    )
+    crowd = outlook.crowd
+    candidates = make_candidates(np.array([row], dtype=np.int64), outlook)
     n, kind = len(candidates), crowd.type_index[row]
     terms = [term for term in terms if term.is_for(types[kind])]
     costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
     return Explanation(
         pedestrian=row,
-        frame=moment.frame,
+        frame=outlook.moment.frame,
         taken=False,
         cluster=int(crowd.cluster[row]) - int(known.first_cluster[crowd.type_index[row]]),
         candidates=candidates,
@@ -136,14 +128,9 @@ def weigh(
     )
 
 
-def judge(
-    weighed: Explanation,
-    table: OptionTable,
-    crowd: Crowd,
-    around: Surroundings,
-    rules: Rules,
-) -> Explanation:
+def judge(weighed: Explanation, outlook: Outlook) -> Explanation:
     """The same with verdicts, against walls and everybody's committed movement."""
+    table, crowd, _, around, rules, _ = outlook
     row = weighed.pedestrian
     options = weighed.candidates.options + rules.first_option[crowd.type_index[row]]
     near = weighed.candidates.neighbours

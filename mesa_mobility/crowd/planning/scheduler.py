@@ -20,13 +20,13 @@ from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.planning.alone import wishes_of
 from mesa_mobility.crowd.planning.decision import decide
-from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, make_candidates
 from mesa_mobility.crowd.planning.evaluation.sample_checks import SampleChecks, check_terms
 from mesa_mobility.crowd.planning.evaluation.term_table import NO_EXTRA, CompiledTerms, extra_costs
-from mesa_mobility.crowd.planning.explanation import Watch, judge, weigh
+from mesa_mobility.crowd.planning.explanation import Explanation, Watch, judge, weigh
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import FrameContext, Rules, Workspace, make_workspace
-from mesa_mobility.crowd.state.people_grid import Grid, build_grid, grid_of_frame
+from mesa_mobility.crowd.state.people_grid import build_grid, grid_of_frame
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.crowd.state.wishes import Wishes
@@ -95,15 +95,12 @@ class DecisionScheduler:
         compiled, others = self._compiled(terms, crowd)
         extra, extra_offsets = NO_EXTRA
         grid = grid_of_frame(rows, crowd.records)
+        outlook = Outlook(table, crowd, grid, around, self._rules, moment)
         if others:
-            extra, extra_offsets = extra_costs(
-                others, order, table, crowd, grid, around, self._rules, moment, self._types
-            )
+            extra, extra_offsets = extra_costs(others, order, outlook, self._types)
         checked = self._checks.due(terms) if len(order) else []
         if checked:
-            first = make_candidates(
-                order[:1], table, crowd, grid, around, self._rules, moment.aside()
-            )
+            first = make_candidates(order[:1], outlook.aside())
             check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
         state = crowd.records
         scene = FrameContext(
@@ -123,25 +120,16 @@ class DecisionScheduler:
 
             failed = min(in_threads(work_off, works))
             if failed < len(people):
-                known = self._repertoire, crowd, grid, around, self._rules, terms, self._types
-                raise ModelError(_not_a_number(int(people[failed]), moment, *known))
+                row = int(people[failed])
+                weighed = weigh(row, outlook.aside(), self._repertoire, terms, self._types)
+                raise ModelError(_not_a_number(weighed))
 
         if watch is None or watch.pedestrian not in order:
             part(0, len(order))
             return
         # Costs use the crowd before any decision, collision tests the paths committed so far. So
         # deciding in two parts gives the same result.
-        weighed = weigh(
-            watch.pedestrian,
-            moment.aside(),
-            self._repertoire,
-            crowd,
-            grid,
-            around,
-            self._rules,
-            terms,
-            self._types,
-        )
+        weighed = weigh(watch.pedestrian, outlook.aside(), self._repertoire, terms, self._types)
         at = int(np.flatnonzero(order == watch.pedestrian)[0])
         if at > 0:
             part(0, at)
@@ -149,7 +137,7 @@ class DecisionScheduler:
         target = np.column_stack([crowd.target_x[row], crowd.target_y[row]])
         speed = crowd.preferred[row]
         wish = self.wishes(row, target, speed, moment, rows, crowd, around, terms)
-        judged = judge(weighed, table, crowd, around, self._rules)
+        judged = judge(weighed, outlook)
         watch.decision = replace(judged, blocked_by=int(wish.blockers[0]))
         part(at, len(order))
         watch.commits(crowd, self._rules.first_option)
@@ -231,28 +219,17 @@ class DecisionScheduler:
         return works[:threads]
 
 
-def _not_a_number(
-    row: int,
-    moment: Moment,
-    known: Repertoire,
-    crowd: Crowd,
-    grid: Grid,
-    around: Surroundings,
-    rules: Rules,
-    terms: Sequence[CostTerm],
-    types: Sequence[str],
-) -> str:
-    """What is wrong where the cost of an option of the pedestrian in ``row`` is not a number."""
-    weighed = weigh(row, moment.aside(), known, crowd, grid, around, rules, terms, types)
-    for term, costs in zip(terms, weighed.costs, strict=True):
+def _not_a_number(weighed: Explanation) -> str:
+    """What is wrong where the cost of an option is not a number."""
+    row = weighed.pedestrian
+    for name, costs in zip(weighed.terms, weighed.costs, strict=True):
         wrong = np.flatnonzero(~np.isfinite(costs))
         if len(wrong):
             return (
                 f"cost of option {wrong[0]} of {len(costs)} of pedestrian {row}: not a number but "
-                f"{costs[wrong[0]]}, expected finite numbers from the behaviour {term.name!r}"
+                f"{costs[wrong[0]]}, expected finite numbers from the behaviour {name!r}"
             )
-    names = ", ".join(term.name for term in terms)
     return (
         f"cost of an option of pedestrian {row}: not a number, expected finite numbers from each "
-        f"of the behaviours {names}"
+        f"of the behaviours {', '.join(weighed.terms)}"
     )

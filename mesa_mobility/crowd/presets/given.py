@@ -33,10 +33,14 @@ class Given:
         """Raise ModelError unless the preset has all these numbers, and takes the values."""
         self.base(DEFAULT).with_parameters(self.values)
 
+    @property
+    def preset_name(self) -> str:
+        """The name of the preset of models that ask for no other."""
+        return self.base(DEFAULT).name
+
     def used(self) -> dict[str, str]:
         """The preset with its digest, and the numbers given, as inputs of a run."""
-        preset = self.base(DEFAULT)
-        found = {"preset": preset.inputs_text}
+        found = {"preset": self.base(DEFAULT).inputs_text}
         if self.values:
             numbers = "; ".join(f"{name} = {value}" for name, value in self.values.items())
             found["changed numbers"] = f"{numbers} ({self.source})"

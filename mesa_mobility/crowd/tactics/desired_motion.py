@@ -14,7 +14,6 @@ from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import FARTHEST, Crowd, CrowdState
 from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
-from mesa_mobility.crowd.tactics.settling import settle
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice, query_targets
@@ -94,7 +93,7 @@ class DesiredMotion:
                 given.check(tactic)
             if outside or desired.points is not points or desired.speeds is not speeds:
                 _check(tactic, desired, n)
-        settle(rows, desired.points, desired.speeds, crowd.records)
+        _settle(rows, desired.points, desired.speeds, crowd.records)
         return targets
 
 
@@ -135,3 +134,17 @@ def _look_up(
         i = rows[k]
         positions[k, 0], positions[k, 1] = state[i].x, state[i].y
         destinations[k], speeds[k] = state[i].destination, agenda[i]["speed"]
+
+
+@entry_point()
+def _settle(
+    rows: NDArray[np.int64],
+    points: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    state: CrowdState,
+) -> None:
+    """Write targets (n, 2), metres, and preferred speeds (n,), m/s, of those in ``rows``."""
+    for k in range(len(rows)):
+        i = rows[k]
+        state[i].target_x, state[i].target_y = points[k, 0], points[k, 1]
+        state[i].preferred = speeds[k]

@@ -6,7 +6,7 @@ of it only while the field has no focus (``field.vue``).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import solara
@@ -16,7 +16,7 @@ from mesa_mobility.plugins.annotations import Range
 
 @solara.component_vue("field.vue")
 def _Field(
-    kind: str,
+    control: dict[str, Any],
     label: str,
     text: str,
     event_done: Callable[[str], None],
@@ -24,8 +24,6 @@ def _Field(
     error: str = "",
     says: str = "",
     quiet: bool = False,
-    items: Sequence[str] = (),
-    limits: dict[str, Any] | None = None,
 ) -> None: ...
 
 
@@ -51,13 +49,12 @@ def Choice(
         quiet: whether the description is shown under the pointer alone.
     """
     _Field(
-        kind="list",
+        control={"kind": "list", "items": values},
         label=label,
         text=value,
         event_done=change,
         help=description,
         error=error,
-        items=values,
         quiet=quiet,
     )
 
@@ -87,11 +84,11 @@ def TextField(
         limits: adds a slider over these numbers; the field takes others, too.
         whole: whether the slider gives whole numbers.
     """
-    of_slider = None
+    slider = None
     if limits is not None:
-        of_slider = {"low": limits.low, "high": limits.high, "whole": whole}
+        slider = {"low": limits.low, "high": limits.high, "whole": whole}
     _Field(
-        kind="text",
+        control={"kind": "text", "limits": slider},
         label=label,
         text=text,
         event_done=change,
@@ -99,7 +96,6 @@ def TextField(
         error=error,
         says=says or label,
         quiet=quiet,
-        limits=of_slider,
     )
 
 
@@ -114,7 +110,7 @@ def Switch(
 ) -> None:
     """A box to tick; arguments as those of `Choice`."""
     _Field(
-        kind="switch",
+        control={"kind": "switch"},
         label=label,
         text=str(on),
         event_done=lambda text: change(text == "True"),

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.distributions.base import Distribution
-from mesa_mobility.estimation.choices.measured import Measured
+from mesa_mobility.estimation.choices.places import Places
 
 AHEAD, BESIDE = 3.0, 0.8
 """Somebody is free who has nobody within so many metres ahead of them, and beside their way."""
@@ -27,7 +27,7 @@ class FreeSpeeds:
         every: seconds between the instants looked at.
     """
 
-    def __init__(self, tracks: Measured, history: float, every: float = 0.2) -> None:
+    def __init__(self, tracks: Places, history: float, every: float = 0.2) -> None:
         step = max(round(every * tracks.rate), 1)
         self._every = step / tracks.rate
         self._rate = tracks.rate

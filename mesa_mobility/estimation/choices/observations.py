@@ -14,7 +14,7 @@ from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.errors import ModelError
 from mesa_mobility.estimation.choices.availability import FREE, PERSON, WALL
-from mesa_mobility.estimation.choices.measured import Measured
+from mesa_mobility.estimation.choices.places import Places
 from mesa_mobility.plugins.output import numbers_given
 
 
@@ -165,7 +165,7 @@ class Observations:
         cls,
         world: World,
         batches: Sequence[Batch],
-        tracks: Measured,
+        tracks: Places,
         *,
         name: str,
         fold: str,

@@ -13,8 +13,8 @@ from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.estimation.choices.availability import FREE
 from mesa_mobility.estimation.choices.free_speeds import FreeSpeeds, nodes
-from mesa_mobility.estimation.choices.measured import Measured, measured
 from mesa_mobility.estimation.choices.observations import Batch, Coverage, Observations
+from mesa_mobility.estimation.choices.places import Places, places_of
 from mesa_mobility.estimation.choices.poses import Poses
 from mesa_mobility.estimation.choices.sampling import Sampling, Situation, situations
 from mesa_mobility.estimation.choices.stage import Stage
@@ -69,7 +69,7 @@ def observe(
         ModelError: arguments that the model does not take.
     """
     chosen = sampling or Sampling()
-    of = measured(tracks, plan, name)
+    of = places_of(tracks, plan, name)
     stage = Stage(plan, tuple(tactics), **model)
     rng = np.random.default_rng(chosen.seed)
     looks = _Looks(of, stage, chosen, rng)
@@ -98,7 +98,7 @@ class _Looks:
         rng: of all that is drawn.
     """
 
-    of: Measured
+    of: Places
     stage: Stage
     chosen: Sampling
     rng: np.random.Generator
@@ -110,7 +110,7 @@ class _Looks:
         self._poses = Poses.of(self.stage.table, known.n_clusters)
         self._frames = self.stage.table.options.frames
         self._free = FreeSpeeds(self.of, self.chosen.history)
-        self._exits = self.stage.destinations(*self.of.span())
+        self._exits = self.stage.destinations(self.of.exits)
         speed = self.stage.scene.types[0].preferred_speed
         assert speed is not None
         self._nodes = nodes(speed, self.chosen.speeds)

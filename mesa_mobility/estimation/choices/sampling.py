@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
-from mesa_mobility.estimation.choices.measured import Measured
+from mesa_mobility.estimation.choices.places import Places
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +55,7 @@ class Situation(NamedTuple):
 
 
 def situations(
-    of: Measured,
+    of: Places,
     chosen: Sampling,
     between: tuple[float, float] | None,
     rng: np.random.Generator,

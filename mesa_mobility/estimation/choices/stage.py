@@ -11,17 +11,13 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, SAMPLES, OptionTable
 from mesa_mobility.crowd.pedestrian_model import PedestrianModel
-from mesa_mobility.crowd.planning.evaluation.candidate_batch import candidates_of
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, candidates_of
 from mesa_mobility.crowd.state.people_grid import grid_of_frame
-from mesa_mobility.crowd.state.records import FALLBACK, FARTHEST, NO_CORNER
+from mesa_mobility.crowd.state.records import FALLBACK, NO_CORNER
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
-from mesa_mobility.errors import ModelError
 from mesa_mobility.estimation.choices.availability import what_is_hit
 from mesa_mobility.estimation.choices.poses import STANDS
 from mesa_mobility.floorplan import FloorPlan
-
-AT_EXIT = 1.0
-"""A track ends at an exit if it ends within so many metres of it."""
 
 
 class Stage:
@@ -50,27 +46,10 @@ class Stage:
         """The options of all types."""
         return self.scene.repertoire.table
 
-    def destinations(
-        self, starts: NDArray[np.float64], ends: NDArray[np.float64]
-    ) -> NDArray[np.int64]:
-        """(k,) numbers of the exits to which people went whose tracks lead from (k, 2) ``starts``
-        to ``ends``, metres.
-
-        It is the exit at which a track ends, or the one to which it has come nearer by most.
-
-        Raises:
-            ModelError: the plan has none.
-        """
-        exits = self._plan.exits
-        if not exits:
-            raise ModelError("observe: the floor plan has no exit, expected one where tracks end")
-        lines = [shapely.LineString([each.a, each.b]) for each in exits]
-        from_end = np.array([shapely.distance(line, shapely.points(ends)) for line in lines])
-        from_start = np.array([shapely.distance(line, shapely.points(starts)) for line in lines])
-        there = np.where(from_end <= AT_EXIT, from_end - FARTHEST, from_end - from_start)
-        numbers = np.array([self.scene.environment.destination((each.name,)) for each in exits])
-        found: NDArray[np.int64] = numbers[np.argmin(there, axis=0)]
-        return found
+    def destinations(self, exits: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(k,) the engine's numbers of exits with (k,) indices in the plan's ``exits``."""
+        numbers = [self.scene.environment.destination((each.name,)) for each in self._plan.exits]
+        return np.array(numbers, dtype=np.int64)[exits]
 
     def put(
         self,
@@ -150,10 +129,7 @@ class Stage:
         farthest = np.argmax(self.table.farthest)
         crowd.cluster[rows] = farthest  # for walls: those within reach of any option
         inside = np.flatnonzero(crowd.active).astype(np.int64)
-        return candidates_of(
-            rows,
-            options,
-            offsets,
+        outlook = Outlook(
             self.table,
             crowd,
             grid_of_frame(inside, crowd.records),
@@ -161,6 +137,7 @@ class Stage:
             scene.rules,
             Moment(0, self.model.rng).aside(),
         )
+        return candidates_of(rows, options, offsets, outlook)
 
 
 def _on_floor(places: NDArray[np.float64], plan: FloorPlan) -> NDArray[np.float64]:

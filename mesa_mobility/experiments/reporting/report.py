@@ -75,9 +75,12 @@ def write_report(store: Store, path: str | os.PathLike[str] | None = None) -> Pa
     page.table(
         "Runs",
         ["what", "runs"],
-        [["asked for", _count(status["asked"])], ["missing", _count(status["missing"])],
-         *[[name.replace("_", " "), status[name]] for name in STATUSES]],
-    )  # fmt: skip
+        [
+            ["asked for", _count(status["asked"])],
+            ["missing", _count(status["missing"])],
+            *[[name.replace("_", " "), status[name]] for name in STATUSES],
+        ],
+    )
     _design(page, store, frame)
     for figure in shown:
         page.picture(figure, picture_of(frame, figure, list(experiment.design.column_types())))
@@ -104,10 +107,13 @@ def _figures_of(frame: pd.DataFrame, parameters: set[str]) -> list[str]:
 
 def _design(page: Page, store: Store, frame: pd.DataFrame) -> None:
     experiment = store.experiment()
-    rows: list[list[Any]] = [["model", experiment.model], ["design", experiment.design.kind],
-                             ["points", len(experiment.design)],
-                             ["replications", experiment.replications],
-                             ["seed", experiment.seed]]  # fmt: skip
+    rows: list[list[Any]] = [
+        ["model", experiment.model],
+        ["design", experiment.design.kind],
+        ["points", len(experiment.design)],
+        ["replications", experiment.replications],
+        ["seed", experiment.seed],
+    ]
     for name, value in experiment.fixed.items():
         rows.append([name, value])
     for name in experiment.design.column_types():
@@ -137,10 +143,12 @@ def _estimates(page: Page, store: Store, frame: pd.DataFrame, shown: list[str]) 
             row += [str(estimate(f"{how} {figure}", values)) for how in _ESTIMATED]
         rows.append(row)
     page.table(
-        "Results by point", columns, rows,
+        "Results by point",
+        columns,
+        rows,
         "Means have intervals of Student's t. Percentiles have intervals between two of the runs, "
         "which need about 72 runs for the 95th percentile; where there are fewer, none is given.",
-    )  # fmt: skip
+    )
     for figure in shown:
         if text := _lacking(frame, figure):
             page.text(text)
@@ -195,9 +203,13 @@ def _convergence(page: Page, store: Store) -> None:
         else:
             end = "maximum of runs" if known.runs >= precision.most else "not finished"
         rows.append(
-            [*[value_text(value) for value in point.values()], known.runs, end,
-             *[_reached(name, known) for name in known.met]]
-        )  # fmt: skip
+            [
+                *[value_text(value) for value in point.values()],
+                known.runs,
+                end,
+                *[_reached(name, known) for name in known.met],
+            ]
+        )
     met = [*precision.figures, *(["occupancy"] if precision.occupancy else [])]
     page.table(
         "Convergence",
@@ -263,10 +275,13 @@ def _repeat(page: Page, definition: dict[str, Any]) -> None:
         page, session["versions"], session["inputs"], session["machine"], "Of the last session."
     )
     page.table(
-        "Sessions", ["began", "executor", "mesa-mobility"],
-        [[each["began"], each["executor"], each["versions"].get("mesa-mobility", "-")]
-         for each in definition["sessions"]],
-    )  # fmt: skip
+        "Sessions",
+        ["began", "executor", "mesa-mobility"],
+        [
+            [each["began"], each["executor"], each["versions"].get("mesa-mobility", "-")]
+            for each in definition["sessions"]
+        ],
+    )
     page.json("The experiment, to be run again from a .json file", definition["experiment"])
 
 

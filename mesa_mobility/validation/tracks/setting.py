@@ -9,6 +9,7 @@ import shapely
 from shapely import Polygon
 
 from mesa_mobility import FloorPlan, Trajectories
+from mesa_mobility.crowd.insertion.tracks import NEAR_FLOOR
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.distances import View
 from mesa_mobility.validation.tracks.windows import (
@@ -20,8 +21,8 @@ from mesa_mobility.validation.tracks.windows import (
 
 LEAD_S = 6.0
 """Time of the replay before anything is measured, seconds: people settle."""
-LEAN_M, LEAST_ON = 0.5, 0.9
-"""How far beyond the floor heads may be, metres, and the least share of rows that must be on it."""
+LEAST_ON = 0.9
+"""Least share of rows that must be on the floor, heads over walls included."""
 SHORTEST_S = 3.0
 """Least time to measure, seconds: two steps."""
 
@@ -181,7 +182,7 @@ def setting_of(
 
 def _check_floor(tracks: Trajectories, plan: FloorPlan, plan_file: str) -> None:
     """Raise ResultsError if too many rows are off the floor: the plan is another."""
-    on = shapely.contains_xy(shapely.buffer(plan.free, LEAN_M), tracks.x, tracks.y)
+    on = shapely.contains_xy(shapely.buffer(plan.free, NEAR_FLOOR), tracks.x, tracks.y)
     if on.mean() < LEAST_ON:
         row = int(np.argmin(on))
         assert tracks.reading is not None

@@ -132,9 +132,10 @@ def _thing(rng: np.random.Generator, length: float, height: float) -> Polygon:
     kind = int(rng.integers(3))
     if kind == 0:
         return shapely.Point(x, y).buffer(float(rng.uniform(0.15, 0.6)), quad_segs=3)
-    size = (rng.uniform(0.5, 2.0), rng.uniform(0.4, 1.0)) if kind == 1 else (
-        rng.uniform(1.0, 3.0), 0.1,
-    )  # fmt: skip
+    if kind == 1:
+        size = rng.uniform(0.5, 2.0), rng.uniform(0.4, 1.0)
+    else:
+        size = rng.uniform(1.0, 3.0), 0.1
     piece = box(x - size[0] / 2, y - size[1] / 2, x + size[0] / 2, y + size[1] / 2)
     return affinity.rotate(piece, float(rng.uniform(0, 180)))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,45 +19,55 @@ from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
-def pairs_of(
-    rows: NDArray[np.int64], table: OptionTable, state: Crowd, grid: Grid, rules: Rules
-) -> NDArray[np.int64]:
+class Outlook(NamedTuple):
+    """What people see who decide.
+
+    Attributes:
+        table: options of all pedestrian types.
+        crowd: the crowd; targets must be set.
+        grid: people by place.
+        around: walls and exits.
+        rules: the model's constants.
+        moment: now.
+    """
+
+    table: OptionTable
+    crowd: Crowd
+    grid: Grid
+    around: Surroundings
+    rules: Rules
+    moment: Moment
+
+    def aside(self) -> Outlook:
+        """The same, for questions that leave the model's generator as it is."""
+        return self._replace(moment=self.moment.aside())
+
+
+def pairs_of(rows: NDArray[np.int64], outlook: Outlook) -> NDArray[np.int64]:
     """(len(rows),) options of each pedestrian times its neighbours: the size of its pair arrays."""
-    clusters = state.cluster[rows]
+    table, crowd, grid, _, rules, _ = outlook
+    clusters = crowd.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]
-    _, offsets, _ = _all_neighbours(rows, grid, state.records, rules.interaction_ranges)
+    _, offsets, _ = _all_neighbours(rows, grid, crowd.records, rules.interaction_ranges)
     return counts * np.maximum(np.diff(offsets), 1)
 
 
-def make_candidates(
-    rows: NDArray[np.int64],
-    table: OptionTable,
-    state: Crowd,
-    grid: Grid,
-    around: Surroundings,
-    rules: Rules,
-    moment: Moment,
-) -> Candidates:
+def make_candidates(rows: NDArray[np.int64], outlook: Outlook) -> Candidates:
     """The options, neighbours and walls of the pedestrians in ``rows``."""
-    clusters = state.cluster[rows]
+    table, clusters = outlook.table, outlook.crowd.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]
     offsets = np.concatenate([[0], np.cumsum(counts)])
     # Options of a cluster follow one another in the table.
     options = np.arange(offsets[-1], dtype=np.int64)
     options += np.repeat(table.offsets[clusters] - offsets[:-1], counts)
-    return candidates_of(rows, options, offsets, table, state, grid, around, rules, moment)
+    return candidates_of(rows, options, offsets, outlook)
 
 
 def candidates_of(
     rows: NDArray[np.int64],
     options: NDArray[np.int64],
     offsets: NDArray[np.int64],
-    table: OptionTable,
-    state: Crowd,
-    grid: Grid,
-    around: Surroundings,
-    rules: Rules,
-    moment: Moment,
+    outlook: Outlook,
 ) -> Candidates:
     """Some options of the pedestrians in ``rows``, with their neighbours and walls.
 
@@ -65,13 +76,14 @@ def candidates_of(
         offsets: (len(rows) + 1,) options of pedestrian i are
             ``options[offsets[i]:offsets[i + 1]]``.
     """
+    table, crowd, grid, around, rules, moment = outlook
     owner = np.repeat(np.arange(len(rows), dtype=np.int64), np.diff(offsets))
-    x, y, heading = _lay_ends(rows, owner, options, table, state.records)
+    x, y, heading = _lay_ends(rows, owner, options, table, crowd.records)
     places, neighbour_offsets, neighbour_places = _all_neighbours(
-        rows, grid, state.records, rules.interaction_ranges
+        rows, grid, crowd.records, rules.interaction_ranges
     )
     neighbours = grid.people[neighbour_places]
-    wall_offsets, walls = _all_walls(rows, table, around, state.records)
+    wall_offsets, walls = _all_walls(rows, table, around, crowd.records)
     durations = table.options.frames[options] * FRAME_SECONDS
     speeds = table.options.speed[options].astype(np.float64)
     return Candidates(
@@ -80,27 +92,27 @@ def candidates_of(
         displacements=speeds * durations,
         durations=durations,
         speeds=speeds,
-        options=options - rules.first_option[state.type_index[rows]][owner],
+        options=options - rules.first_option[crowd.type_index[rows]][owner],
         owner=owner,
         offsets=offsets,
         grid=grid,
         places=places,
-        facings=state.heading[rows],
-        targets=np.column_stack([state.target_x[rows], state.target_y[rows]]),
-        preferred_speeds=np.where(np.isfinite(state.route[rows]), state.preferred[rows], 0.0),
-        cores=state.core[rows],
-        types=state.type_index[rows].astype(np.int64),
+        facings=crowd.heading[rows],
+        targets=np.column_stack([crowd.target_x[rows], crowd.target_y[rows]]),
+        preferred_speeds=np.where(np.isfinite(crowd.route[rows]), crowd.preferred[rows], 0.0),
+        cores=crowd.core[rows],
+        types=crowd.type_index[rows].astype(np.int64),
         neighbour_offsets=neighbour_offsets,
         neighbour_places=neighbour_places,
         wall_offsets=wall_offsets,
         walls=walls,
-        groups=state.agenda["group"][rows].astype(np.int64),
-        neighbour_facings=state.heading[neighbours],
-        neighbour_cores=state.core[neighbours],
-        neighbour_types=state.type_index[neighbours].astype(np.int64),
-        neighbour_groups=state.agenda["group"][neighbours].astype(np.int64),
-        fields={name: values[rows] for name, values in state.fields.items()},
-        neighbour_fields={name: values[neighbours] for name, values in state.fields.items()},
+        groups=crowd.agenda["group"][rows].astype(np.int64),
+        neighbour_facings=crowd.heading[neighbours],
+        neighbour_cores=crowd.core[neighbours],
+        neighbour_types=crowd.type_index[neighbours].astype(np.int64),
+        neighbour_groups=crowd.agenda["group"][neighbours].astype(np.int64),
+        fields={name: values[rows] for name, values in crowd.fields.items()},
+        neighbour_fields={name: values[neighbours] for name, values in crowd.fields.items()},
         time=moment.frame * FRAME_SECONDS,
         rng=moment.rng,
     )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.costs.candidates import Candidates, Moment
+from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.compiled_terms import CompiledTerm, checked_numbers
 from mesa_mobility.crowd.costs.kernels import (
     BoundKernel,
@@ -20,12 +20,12 @@ from mesa_mobility.crowd.costs.kernels import (
 )
 from mesa_mobility.crowd.costs.layout import FIELDS, KernelTable, Terms
 from mesa_mobility.crowd.costs.terms import CostTerm
-from mesa_mobility.crowd.options.table import OptionTable
-from mesa_mobility.crowd.planning.evaluation.candidate_batch import make_candidates, pairs_of
-from mesa_mobility.crowd.planning.workspace import Rules
-from mesa_mobility.crowd.state.people_grid import Grid
+from mesa_mobility.crowd.planning.evaluation.candidate_batch import (
+    Outlook,
+    make_candidates,
+    pairs_of,
+)
 from mesa_mobility.crowd.state.records import Crowd
-from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_given
 
@@ -202,12 +202,7 @@ def _rows(rows: Sequence[NDArray[Any]], kind: type) -> NDArray[Any]:
 def extra_costs(
     terms: Sequence[CostTerm],
     rows: NDArray[np.int64],
-    table: OptionTable,
-    state: Crowd,
-    grid: Grid,
-    around: Surroundings,
-    rules: Rules,
-    moment: Moment,
+    outlook: Outlook,
     types: Sequence[str],
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Weighted sum of terms in NumPy over all options of the pedestrians in ``rows``.
@@ -221,9 +216,9 @@ def extra_costs(
     """
     parts = []
     counts = []
-    batch = np.cumsum(pairs_of(rows, table, state, grid, rules)) // BATCH_PAIRS
+    batch = np.cumsum(pairs_of(rows, outlook)) // BATCH_PAIRS
     for part in np.split(rows, np.flatnonzero(np.diff(batch)) + 1):
-        candidates = make_candidates(part, table, state, grid, around, rules, moment)
+        candidates = make_candidates(part, outlook)
         total = np.zeros(len(candidates))
         for term in terms:
             if term.for_types is None:
@@ -231,7 +226,7 @@ def extra_costs(
                 continue
             having = (term.weights(types) != 0.0)[candidates.types]
             if having.any():
-                own = make_candidates(part[having], table, state, grid, around, rules, moment)
+                own = make_candidates(part[having], outlook)
                 total[having[candidates.owner]] += _weighted(term, own, types)
         parts.append(total)
         counts.append(np.diff(candidates.offsets))

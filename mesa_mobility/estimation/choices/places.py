@@ -1,20 +1,17 @@
-"""Measured tracks as choices need them: checked, and laid out by person and frame."""
+"""Where measured people were, frame by frame: tracks checked, as choices need them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.insertion.tracks import NEAR_FLOOR, TrackRows
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.human_limits import FASTEST_SPRINT
 from mesa_mobility.results.tracks import Tracks
-
-LEANS = 0.3
-"""Metres beyond walls that heads may be."""
 
 WALKS = (0.02, 4.0)
 """Median speeds that a crowd of pedestrians may have, m/s; others are those of other units."""
@@ -27,13 +24,14 @@ LEAST_HISTORY = 0.2
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
-    """Measured people on a floor plan.
+class Places:
+    """Where measured people were on a floor plan.
 
     Attributes:
         people: (k,) their numbers in the tracks.
         first: the first frame.
         rate: frames a second.
+        exits: (k,) index in the plan's ``exits`` of the exit to which each one's track leads.
         places: (k, frames, 2) where each was in each frame, metres; not a number before they came,
             after they left and in gaps.
     """
@@ -41,6 +39,7 @@ class Measured:
     people: NDArray[np.int64]
     first: int
     rate: float
+    exits: NDArray[np.int64]
     places: NDArray[np.float64]
 
     @property
@@ -81,16 +80,9 @@ class Measured:
         found[np.isnan(found[:, 0]) & ~np.isnan(now[:, 0])] = 0.0
         return found
 
-    def span(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """(k, 2) the first and the last place of each, metres."""
-        there = ~np.isnan(self.places[:, :, 0])
-        last = self.places.shape[1] - 1 - np.argmax(there[:, ::-1], axis=1)
-        who = np.arange(len(last))
-        return self.places[who, np.argmax(there, axis=1)], self.places[who, last]
 
-
-def measured(tracks: Tracks, plan: FloorPlan, name: str = "tracks") -> Measured:
-    """Tracks of people on a plan, checked.
+def places_of(tracks: Tracks, plan: FloorPlan, name: str = "tracks") -> Places:
+    """The places of people on a plan, checked.
 
     What a track has off the floor before its person came in or after they left does not count.
 
@@ -103,72 +95,55 @@ def measured(tracks: Tracks, plan: FloorPlan, name: str = "tracks") -> Measured:
         ResultsError: nobody or a single person, another unit, jumps, or people off the floor; the
             error names the person and the frame.
     """
-    people, number = np.unique(tracks.person, return_inverse=True)
+    people = np.unique(tracks.person).astype(np.int64)
     if len(people) < 2:
         raise ResultsError(f"{name}: {_one(tracks, people)}, expected two people or more")
-    order = tracks.by_person
-    person, frame = tracks.person[order], tracks.frame[order]
-    x, y = tracks.x[order], tracks.y[order]
-    same = (np.diff(person) == 0) & (np.diff(frame) > 0)
-    passed = np.diff(frame)[same] / tracks.frame_rate
-    speeds = np.hypot(np.diff(x)[same], np.diff(y)[same]) / passed
-    starts = np.flatnonzero(same)
-    _check_units(name, x, y, speeds, plan)
+    rows = TrackRows.of(tracks, plan, name)
+    same = (np.diff(rows.person) == 0) & (np.diff(rows.frame) > 0)
+    steps = np.hypot(*np.diff(rows.places, axis=0)[same].T)
+    speeds = steps / (np.diff(rows.frame)[same] / rows.rate)
+    _check_units(rows, speeds, plan)
     if (speeds > FASTEST_SPRINT).any():
-        at = starts[np.argmax(speeds > FASTEST_SPRINT)]
-        step = np.hypot(x[at + 1] - x[at], y[at + 1] - y[at])
+        step = int(np.argmax(speeds > FASTEST_SPRINT))
+        at = np.flatnonzero(same)[step]
         raise ResultsError(
-            f"{name}: person {person[at]} jumps by {step:.2f} m from frame {frame[at]} to frame "
-            f"{frame[at + 1]}, expected steps of {FASTEST_SPRINT:g} m/s at most"
+            f"{name}: person {rows.person[at]} jumps by {steps[step]:.2f} m from frame "
+            f"{rows.frame[at]} to frame {rows.frame[at + 1]}, expected steps of "
+            f"{FASTEST_SPRINT:g} m/s at most"
         )
-    first, last = int(frame.min()), int(frame.max())
+    _check_on_floor(rows)
+    kept, number = rows.on_floor, np.searchsorted(people, rows.person)
+    first, last = int(rows.frame.min()), int(rows.frame.max())
     places = np.full((len(people), last - first + 1, 2), np.nan)
-    kept = _on_the_floor(name, person, frame, np.column_stack([x, y]), plan)
-    places[number[order][kept], frame[kept] - first] = np.column_stack([x, y])[kept]
-    return Measured(people.astype(np.int64), first, float(tracks.frame_rate), places)
+    places[number[kept], rows.frame[kept] - first] = rows.places[kept]
+    return Places(people, first, rows.rate, rows.exits(people, plan), places)
 
 
-def _one(tracks: Tracks, people: NDArray[np.int32]) -> str:
+def _one(tracks: Tracks, people: NDArray[np.int64]) -> str:
     if len(people) == 0:
         return "nobody"
     frames = f"frames {tracks.frame.min()} to {tracks.frame.max()}"
     return f"only person {people[0]} ({frames})"
 
 
-def _check_units(
-    name: str,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    speeds: NDArray[np.float64],
-    plan: FloorPlan,
-) -> None:
+def _check_units(rows: TrackRows, speeds: NDArray[np.float64], plan: FloorPlan) -> None:
     """Refuse coordinates that are not metres."""
     median = float(np.median(speeds)) if len(speeds) else 1.0
     x0, y0, x1, y1 = plan.free.bounds
-    size = max(np.ptp(x), np.ptp(y), 1e-9)
+    size = max(*np.ptp(rows.places, axis=0), 1e-9)
     smaller = max(x1 - x0, y1 - y0) / size > OTHER_SIZE and median < WALKS[0]
     if median > WALKS[1] or smaller:
         raise ResultsError(
-            f"{name}: people move at {median:.3g} m/s in the median, over {size:.3g} m of a plan "
-            f"of {max(x1 - x0, y1 - y0):.3g} m, expected coordinates in metres"
+            f"{rows.name}: people move at {median:.3g} m/s in the median, over {size:.3g} m of a "
+            f"plan of {max(x1 - x0, y1 - y0):.3g} m, expected coordinates in metres"
         )
 
 
-def _on_the_floor(
-    name: str,
-    person: NDArray[np.int32],
-    frame: NDArray[np.int32],
-    points: NDArray[np.float64],
-    plan: FloorPlan,
-) -> NDArray[np.bool_]:
-    """(n,) which rows, by person and frame, lie on the floor, heads over walls included."""
-    shapely.prepare(plan.free)
-    off = ~plan.contains(points)
-    off[off] = shapely.distance(plan.free, shapely.points(points[off])) > LEANS
-    if not off.any():
-        return ~off
-    starts = np.flatnonzero(np.diff(person, prepend=-1))
-    for first, last in zip(starts, [*starts[1:], len(person)], strict=True):
+def _check_on_floor(rows: TrackRows) -> None:
+    """Refuse people who are off the floor between two places on it, or always."""
+    off = ~rows.on_floor
+    starts = np.flatnonzero(np.diff(rows.person, prepend=-1))
+    for first, last in zip(starts, [*starts[1:], len(off)], strict=True):
         own = off[first:last]
         if not own.any():
             continue
@@ -176,9 +151,8 @@ def _on_the_floor(
         between = own[on[0] : on[-1]] if len(on) else own
         if between.any():
             at = first + (on[0] if len(on) else 0) + int(np.argmax(between))
-            where = f"({points[at, 0]:.2f}, {points[at, 1]:.2f})"
+            where = f"({rows.places[at, 0]:.2f}, {rows.places[at, 1]:.2f})"
             raise ResultsError(
-                f"{name}: person {person[at]} is at {where} in frame {frame[at]}, off the floor of "
-                f"the plan, expected places within {LEANS:g} m of it"
+                f"{rows.name}: person {rows.person[at]} is at {where} in frame {rows.frame[at]}, "
+                f"off the floor of the plan, expected places within {NEAR_FLOOR:g} m of it"
             )
-    return ~off

@@ -76,6 +76,7 @@ def test_a_crowd_is_replayed_and_compared(command, files, tmp_path):
     answer = json.loads(outcome.out.splitlines()[-1])["run"]
     assert outcome.status == (0 if answer["passed"] else 1)
     assert answer["passed"] == (not answer["failed"])
+    assert answer["preset"] == "default"
     found = answer["measured"]
     # Everybody walks at 1 m/s, one after the other, a second apart.
     assert found["speed: measured m/s"] == pytest.approx(1.0)

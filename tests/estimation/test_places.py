@@ -1,4 +1,4 @@
-"""Measured tracks: laid out, and refused with the person and the frame."""
+"""Places of measured people: laid out, and refused with the person and the frame."""
 
 import re
 
@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mesa_mobility.errors import ResultsError
-from mesa_mobility.estimation.choices.measured import Measured, measured
+from mesa_mobility.estimation.choices.places import Places, places_of
 from tests.estimation.tracks import corridor, rows_of, tracks_of, walking
 
 
 def refused(rows: np.ndarray) -> str:
     with pytest.raises(ResultsError) as caught:
-        measured(tracks_of(rows), corridor(), "run.txt")
+        places_of(tracks_of(rows), corridor(), "run.txt")
     text = str(caught.value)
     assert "\n" not in text
     assert text.startswith("run.txt: ")
@@ -22,7 +22,7 @@ def refused(rows: np.ndarray) -> str:
 
 
 def test_places_between_frames_lie_between():
-    found = measured(walking(), corridor())
+    found = places_of(walking(), corridor())
 
     np.testing.assert_allclose(found.at(10.5)[0], [1.0 + 1.2 * 1.05, 0.8])
     assert np.isnan(found.at(60.0)).all()
@@ -33,7 +33,7 @@ def test_velocities_are_means_of_earlier_frames():
     rows = rows_of(walking())
     later = rows[:, 0] > 20
     rows[later, 2] += 0.3  # everybody is elsewhere afterwards
-    found = measured(tracks_of(rows), corridor())
+    found = places_of(tracks_of(rows), corridor())
 
     velocities = found.velocities(20, 0.8)
 
@@ -45,7 +45,7 @@ def test_somebody_who_has_just_come_has_the_velocity_since():
     rows = rows_of(walking())
     rows = rows[(rows[:, 1] != 0) | (rows[:, 0] >= 17)]
     rows = rows[(rows[:, 1] != 1) | (rows[:, 0] >= 20)]
-    found = measured(tracks_of(rows), corridor())
+    found = places_of(tracks_of(rows), corridor())
 
     velocities = found.velocities(20, 0.8)
 
@@ -90,29 +90,30 @@ def test_a_track_off_the_floor_is_named_by_person_and_frame():
 
 def test_a_detour_off_the_floor_is_refused_and_heads_over_a_wall_are_not():
     rows = rows_of(walking())
+    rows[rows[:, 1] == 0, 3] = 0.3
     own = (rows[:, 1] == 0) & (rows[:, 0] == 30)
-    rows[own, 3] = -0.25
-    assert measured(tracks_of(rows), corridor()).at(30)[0, 1] == -0.25
-    rows[own, 3] = -0.35
-    assert "person 0 is at (4.60, -0.35) in frame 30" in refused(rows)
+    rows[own, 3] = -0.45
+    assert places_of(tracks_of(rows), corridor()).at(30)[0, 1] == -0.45
+    rows[own, 3] = -0.55
+    assert "person 0 is at (4.60, -0.55) in frame 30" in refused(rows)
 
 
 def test_what_is_off_the_floor_before_and_after_is_left_out():
     rows = rows_of(walking(seconds=20.0))
     rows[:, 2] -= 4.0
-    found = measured(tracks_of(rows), corridor())
+    found = places_of(tracks_of(rows), corridor())
 
     first = np.flatnonzero(~np.isnan(found.places[0, :, 0]))
-    assert found.places[0, first[0], 0] == pytest.approx(-0.24)
-    assert found.places[0, first[-1], 0] == pytest.approx(20.28)
+    assert found.places[0, first[0], 0] == pytest.approx(-0.48)
+    assert found.places[0, first[-1], 0] == pytest.approx(20.4)
 
 
 @given(st.integers(0, 40), st.floats(-3.0, 3.0), st.floats(0.4, 1.6))
 def test_velocities_do_not_depend_on_where_the_axes_begin(frame, shift, seconds):
     rng = np.random.default_rng(frame)
     places = np.cumsum(rng.normal(size=(3, 41, 2)), axis=1)
-    here = Measured(np.arange(3), 0, 10.0, places)
-    there = Measured(np.arange(3), 7, 10.0, places + shift)
+    here = Places(np.arange(3), 0, 10.0, np.zeros(3, int), places)
+    there = Places(np.arange(3), 7, 10.0, np.zeros(3, int), places + shift)
 
     np.testing.assert_allclose(
         here.velocities(frame, seconds), there.velocities(frame + 7, seconds), atol=1e-9

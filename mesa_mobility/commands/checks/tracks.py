@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mesa_mobility.commands.console import NoProgress, say, some_path
-from mesa_mobility.commands.models.making import Numbers, Rules, rules_given
-from mesa_mobility.commands.validate import Asked, OutFolder, run_experiments
-from mesa_mobility.commands.verify import AsJson, Jobs, ReportFile
+from mesa_mobility.commands.checks.options import CheckOptions
+from mesa_mobility.commands.checks.validate import OutFolder, run_experiments
+from mesa_mobility.commands.console import say, some_path
+from mesa_mobility.commands.grouping import grouped
+from mesa_mobility.commands.reading import TracksOptions
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -18,6 +20,58 @@ if TYPE_CHECKING:
     from mesa_mobility.validation.tracks.setting import Line
 
 
+@dataclass(frozen=True)
+class Replays(CheckOptions):
+    """How replays are run, and what is written of them."""
+
+    seeds: Annotated[int, typer.Option(min=1, metavar="N", help="Replays, seeds 1 to N.")] = 3
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Where and when both crowds are measured."""
+
+    start: Annotated[
+        int | None,
+        typer.Option(
+            min=0, metavar="FRAME", help="Frame at which the replay begins (6 s before --from)."
+        ),
+    ] = None
+    first: Annotated[
+        int | None,
+        typer.Option(
+            "--from",
+            min=0,
+            metavar="FRAME",
+            help="First frame to measure (a sixth of the people have crossed the line).",
+        ),
+    ] = None
+    last: Annotated[
+        int | None,
+        typer.Option(
+            "--to",
+            min=0,
+            metavar="FRAME",
+            help="Last frame to measure (five sixths have crossed it).",
+        ),
+    ] = None
+    area: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y,X,Y|WKT",
+            help="Where people are measured: two corners, or a polygon (the floor, "
+            "without a tenth of all places at either end).",
+        ),
+    ] = None
+    line: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y,X,Y", help="Both ends of a line to cross (the narrowest cut of the floor)."
+        ),
+    ] = None
+
+
+@grouped
 def validate_tracks(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Measured tracks, such as text of an archive.")
@@ -30,50 +84,8 @@ def validate_tracks(
             parser=some_path,
         ),
     ],
-    frame_rate: Annotated[
-        float | None, typer.Option(metavar="N", help="Frames a second, if the file does not tell.")
-    ] = None,
-    unit: Annotated[
-        str | None, typer.Option(help="m, cm or mm, if the file does not tell.")
-    ] = None,
-    start: Annotated[
-        int | None,
-        typer.Option(
-            min=0, metavar="FRAME", help="Frame at which the replay begins (6 s before --from)."
-        ),
-    ] = None,
-    first: Annotated[
-        int | None,
-        typer.Option(
-            "--from",
-            min=0,
-            metavar="FRAME",
-            help="First frame to measure (a sixth of the people have crossed the line).",
-        ),
-    ] = None,
-    last: Annotated[
-        int | None,
-        typer.Option(
-            "--to",
-            min=0,
-            metavar="FRAME",
-            help="Last frame to measure (five sixths have crossed it).",
-        ),
-    ] = None,
-    area: Annotated[
-        str | None,
-        typer.Option(
-            metavar="X,Y,X,Y|WKT",
-            help="Where people are measured: two corners, or a polygon (the floor, "
-            "without a tenth of all places at either end).",
-        ),
-    ] = None,
-    line: Annotated[
-        str | None,
-        typer.Option(
-            metavar="X,Y,X,Y", help="Both ends of a line to cross (the narrowest cut of the floor)."
-        ),
-    ] = None,
+    reading: TracksOptions,
+    windows: Windows,
     speeds: Annotated[
         str | None,
         typer.Option(
@@ -81,47 +93,41 @@ def validate_tracks(
             "those of their type."
         ),
     ] = None,
-    seeds: Annotated[int, typer.Option(min=1, metavar="N", help="Replays, seeds 1 to N.")] = 3,
-    jobs: Jobs = None,
-    preset: Rules = None,
-    numbers: Numbers = None,
-    as_json: AsJson = False,
+    *,
+    options: Replays,
     out: OutFolder = None,
-    report_file: ReportFile = None,
-    no_progress: NoProgress = False,
 ) -> None:
     """Replay measured people, and compare both crowds in the same windows.
 
     Ends with status 1 if a figure is not as measured.
     """
-    rules = rules_given(preset, numbers or [])
-    chosen_area = None if area is None else _area(area)
-    chosen_line = None if line is None else _line(line)
-    from mesa_mobility import FloorPlan, Trajectories
+    rules = options.rules()
+    area = None if windows.area is None else _area(windows.area)
+    line = None if windows.line is None else _line(windows.line)
+    from mesa_mobility import FloorPlan
     from mesa_mobility.distributions import parse
     from mesa_mobility.validation.tracks import experiment, setting_of
     from mesa_mobility.verification.runs import crowd_model
 
     free_speeds = None if speeds is None else parse(speeds)
     floor = FloorPlan.from_file(plan)
-    tracks = Trajectories.read(file, unit=unit, frame_rate=frame_rate)
+    tracks = reading.read(file)
     setting = setting_of(
         tracks,
         floor,
         str(plan),
-        start=start,
-        first=first,
-        last=last,
-        area=chosen_area,
-        line=chosen_line,
+        start=windows.start,
+        first=windows.first,
+        last=windows.last,
+        area=area,
+        line=line,
         speeds=speeds,
     )
     say(f"{file}: {setting}")
     # Whatever cannot be replayed is found here, once, and not in every run.
     with rules.followed():
         crowd_model(floor, 1).replay(tracks, setting.start, preferred_speeds=free_speeds)
-    given = Asked(seeds, jobs, as_json, out, report_file, no_progress)
-    run_experiments([experiment(setting, floor, tracks)], rules, given)
+    run_experiments([experiment(setting, floor, tracks)], rules, options, out)
 
 
 def _area(text: str) -> Polygon:

@@ -2,29 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import (
-    NoProgress,
-    answer_json,
-    progress_bar,
-    say,
-    some_path,
-)
-from mesa_mobility.commands.models.making import Numbers, Rules, rules_given
-from mesa_mobility.commands.verify import (
-    FAILED,
-    AsJson,
-    Jobs,
-    ReportFile,
-    Seeds,
-    check_report,
-)
-from mesa_mobility.runs.processes import available_processors
+from mesa_mobility.commands.checks.options import FAILED, CheckOptions
+from mesa_mobility.commands.console import answer_json, progress_bar, say, some_path
+from mesa_mobility.commands.grouping import grouped
 
 if TYPE_CHECKING:
     from mesa_mobility.crowd.presets.given import Given
@@ -41,18 +26,14 @@ OutFolder = Annotated[
 ]
 
 
+@grouped
 def validate(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="[NAME]...", help="Experiments; all without.")
     ] = None,
-    seeds: Seeds = 1,
-    jobs: Jobs = None,
-    preset: Rules = None,
-    numbers: Numbers = None,
-    as_json: AsJson = False,
+    *,
+    options: CheckOptions,
     out: OutFolder = None,
-    report_file: ReportFile = None,
-    no_progress: NoProgress = False,
 ) -> None:
     """Compare crowds with measured ones: speeds, flows, densities, lanes, standing.
 
@@ -60,23 +41,12 @@ def validate(
     """
     from mesa_mobility.validation import chosen
 
-    given = Asked(seeds, jobs, as_json, out, report_file, no_progress)
-    run_experiments(chosen(names or []), rules_given(preset, numbers or []), given)
+    run_experiments(chosen(names or []), options.rules(), options, out)
 
 
-@dataclass(frozen=True)
-class Asked:
-    """How experiments are run and what is written; the options of the command."""
-
-    seeds: int
-    jobs: int | None
-    as_json: bool
-    out: Path | None
-    report_file: Path | None
-    no_progress: bool
-
-
-def run_experiments(experiments: list[Experiment], rules: Given, asked: Asked) -> None:
+def run_experiments(
+    experiments: list[Experiment], rules: Given, options: CheckOptions, out: Path | None
+) -> None:
     """Run and judge experiments, and write and print what was asked for.
 
     Raises:
@@ -87,31 +57,32 @@ def run_experiments(experiments: list[Experiment], rules: Given, asked: Asked) -
     from mesa_mobility.validation import judged
     from mesa_mobility.verification import run_cases
 
-    out, report_file = asked.out, asked.report_file
+    report_file = options.report_file
     if out is not None:
         check_writable(out, _files(experiments))
-    check_report(report_file)
-    runs = range(1, asked.seeds + 1)
+    options.check_report()
     cases = [each for experiment in experiments for each in experiment.cases]
-    with progress_bar(shown=not asked.no_progress) as report:
-        results = run_cases(cases, runs, asked.jobs or available_processors(), report, rules=rules)
+    with progress_bar(shown=not options.no_progress) as report:
+        results = run_cases(cases, options.runs, options.processes, report, rules=rules)
     verdicts = {
         experiment.name: judged(
-            experiment, [[results[each, seed] for each in experiment.cases] for seed in runs]
+            experiment,
+            [[results[each, seed] for each in experiment.cases] for seed in options.runs],
         )
         for experiment in experiments
     }
-    answer = {each.name: _as_json(each, verdicts[each.name]) for each in experiments}
+    named = {"preset": rules.preset_name}
+    answer = {each.name: _as_json(each, verdicts[each.name]) | named for each in experiments}
     if out is not None:
         _write(out, experiments, verdicts, answer)
         say(f"written to {out}")
     if report_file is not None:
         from mesa_mobility.validation.report import write_report
 
-        write_report(experiments, verdicts, asked.seeds, report_file, rules)
+        write_report(experiments, verdicts, options.seeds, report_file, rules)
         say(f"written to {report_file}")
     _print_table(experiments, verdicts)
-    if asked.as_json:
+    if options.as_json:
         answer_json(answer)
     if not all(verdict.passed for verdict in verdicts.values()):
         raise typer.Exit(FAILED)

@@ -2,53 +2,25 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mesa_mobility.commands.console import (
-    NoProgress,
-    answer_json,
-    progress_bar,
-    say,
-    some_path,
-)
-from mesa_mobility.commands.models.making import Numbers, Rules, rules_given
-from mesa_mobility.runs.processes import available_processors
+from mesa_mobility.commands.checks.options import FAILED, CheckOptions
+from mesa_mobility.commands.console import answer_json, progress_bar, say
+from mesa_mobility.commands.grouping import grouped
 
 if TYPE_CHECKING:
     from mesa_mobility.verification import Entry, Outcome
 
-FAILED = 1
 
-Seeds = Annotated[int, typer.Option(min=1, metavar="N", help="Runs of each test, seeds 1 to N.")]
-Jobs = Annotated[
-    int | None, typer.Option(min=1, help="Processes side by side (one for each processor).")
-]
-ReportFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--report",
-        help="One HTML page with criteria, sources, figures, pictures, verdicts and versions.",
-        parser=some_path,
-        metavar="FILE",
-    ),
-]
-AsJson = Annotated[bool, typer.Option("--json", help="One JSON object as the last line of output.")]
-
-
+@grouped
 def verify(
     ids: Annotated[
         list[str] | None, typer.Argument(metavar="[ID]...", help="Tests to run; all without.")
     ] = None,
-    seeds: Seeds = 1,
-    jobs: Jobs = None,
-    preset: Rules = None,
-    numbers: Numbers = None,
-    as_json: AsJson = False,
-    report_file: ReportFile = None,
-    no_progress: NoProgress = False,
+    *,
+    options: CheckOptions,
 ) -> None:
     """Run the verification tests of RiMEA, IMO, NIST and ISO for a level floor.
 
@@ -56,25 +28,25 @@ def verify(
     """
     from mesa_mobility.verification import catalogue, suite, verify
 
-    check_report(report_file)
+    options.check_report()
     tests = suite(ids or [])
-    rules = rules_given(preset, numbers or [])
+    rules = options.rules()
     entries = catalogue()
-    with progress_bar(shown=not no_progress) as report:
+    with progress_bar(shown=not options.no_progress) as report:
         outcomes = verify(
             tests,
-            range(1, seeds + 1),
-            jobs or available_processors(),
+            options.runs,
+            options.processes,
             caps=[name for name, entry in entries.items() if entry.cap],
             progress=report,
-            drawn=report_file is not None,
+            drawn=options.report_file is not None,
             rules=rules,
         )
-    if report_file is not None:
+    if options.report_file is not None:
         from mesa_mobility.verification.report import write_report
 
-        write_report(entries, outcomes, report_file, rules)
-        say(f"written to {report_file}")
+        write_report(entries, outcomes, options.report_file, rules)
+        say(f"written to {options.report_file}")
     _print_table(entries, outcomes)
     failing = [name for name, outcome in outcomes.items() if outcome.verdict == "fail"]
     capped = [name for name, outcome in outcomes.items() if outcome.verdict == "cap"]
@@ -91,22 +63,11 @@ def verify(
             else ""
         )
     )
-    if as_json:
-        answer_json({name: _as_json(entries[name], outcomes[name]) for name in outcomes})
+    if options.as_json:
+        named = {"preset": rules.preset_name}
+        answer_json({name: _as_json(entries[name], outcomes[name]) | named for name in outcomes})
     if failing:
         raise typer.Exit(FAILED)
-
-
-def check_report(file: Path | None) -> None:
-    """Make sure that a report can be written, before anything is run for it.
-
-    Raises:
-        ResultsError: it cannot.
-    """
-    from mesa_mobility.results import check_writable
-
-    if file is not None:
-        check_writable(file.parent, [file.name])
 
 
 def _as_json(entry: Entry, outcome: Outcome) -> dict[str, Any]:

@@ -14,6 +14,7 @@ def test_json_names_what_was_measured_and_wanted(command):
         assert each["passed"] is True
         assert each["verdict"] == "pass"
         assert each["seeds"] == [1]
+        assert each["preset"] == "default"
         assert each["safety"]["overlaps"] == each["safety"]["wall_crossings"] == 0
     walk = answer["rimea-01"]
     assert "RiMEA" in walk["source"]

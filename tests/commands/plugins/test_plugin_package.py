@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-FOLDER = Path(__file__).parents[2] / "examples" / "plugin_package"
+FOLDER = Path(__file__).parents[3] / "examples" / "plugin_package"
 
 
 @pytest.fixture

@@ -1,0 +1,90 @@
+"""Options that the commands `verify`, `validate` and `validate tracks` share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mesa_mobility.commands.console import AsJson, NoProgress, some_path
+from mesa_mobility.commands.models.making import Numbers, split_settings
+from mesa_mobility.errors import ModelError
+from mesa_mobility.runs.processes import available_processors
+
+if TYPE_CHECKING:
+    from mesa_mobility.crowd.presets.given import Given
+
+FAILED = 1
+
+
+@dataclass(frozen=True)
+class CheckOptions:
+    """How tests are run, and what is written of them."""
+
+    seeds: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Runs of each test, seeds 1 to N.")
+    ] = 1
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Processes side by side (one for each processor).")
+    ] = None
+    preset: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME|FILE", help="paper or a TOML file, instead of the default preset."
+        ),
+    ] = None
+    numbers: Numbers = None
+    as_json: AsJson = False
+    report_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--report",
+            help="One HTML page with criteria, sources, figures, pictures, verdicts and versions.",
+            parser=some_path,
+            metavar="FILE",
+        ),
+    ] = None
+    no_progress: NoProgress = False
+
+    @property
+    def runs(self) -> range:
+        """The seeds of the runs."""
+        return range(1, self.seeds + 1)
+
+    @property
+    def processes(self) -> int:
+        """How many there are side by side."""
+        return self.jobs or available_processors()
+
+    def rules(self) -> Given:
+        """The rules for all models that are made.
+
+        Raises:
+            ModelError: an unknown preset, an unknown number, or a value out of range.
+        """
+        from mesa_mobility.crowd.presets.given import Given
+        from mesa_mobility.crowd.presets.naming import COMMAND_LINE
+        from mesa_mobility.crowd.presets.shipped import preset_of
+
+        own, numbers = split_settings(self.numbers or [])
+        if own:
+            raise ModelError(
+                f"--set {own[0]}: expected a number of a behaviour, such as headway.time=0.6"
+            )
+        preset = None if self.preset is None else preset_of(self.preset)
+        given = Given(preset, numbers, COMMAND_LINE)
+        given.check()
+        return given
+
+    def check_report(self) -> None:
+        """Make sure that the report can be written, before anything is run for it.
+
+        Raises:
+            ResultsError: it cannot.
+        """
+        from mesa_mobility.results import check_writable
+
+        if self.report_file is not None:
+            check_writable(self.report_file.parent, [self.report_file.name])

@@ -1,0 +1,32 @@
+"""Options of commands that read measured tracks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from mesa_mobility.results import Trajectories
+
+
+@dataclass(frozen=True)
+class TracksOptions:
+    """What a file of measured tracks does not tell."""
+
+    unit: Annotated[str | None, typer.Option(help="m, cm or mm, if a file does not tell.")] = None
+    frame_rate: Annotated[
+        float | None, typer.Option(metavar="N", help="Frames a second, if a file does not tell.")
+    ] = None
+
+    def read(self, file: Path) -> Trajectories:
+        """The tracks of a file.
+
+        Raises:
+            ResultsError: a file that is no such file, or says other than the options.
+        """
+        from mesa_mobility.results import Trajectories
+
+        return Trajectories.read(file, self.unit, self.frame_rate)
