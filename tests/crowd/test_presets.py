@@ -7,6 +7,7 @@ from mesa_mobility.behaviors import (
     PreferredVelocity,
     TargetDistance,
 )
+from mesa_mobility.models import Doorway
 
 from mesa_mobility import PedestrianModel
 from mesa_mobility.crowd import PRESETS
@@ -21,8 +22,19 @@ def weights(model):
     return {type(term): term.weight for term in model.terms}
 
 
-def test_there_are_two():
-    assert set(PRESETS) == {"default", "paper"}
+def test_there_are_three():
+    assert set(PRESETS) == {"default", "measured", "paper"}
+
+
+def test_the_measured_one_says_where_it_comes_from_and_empties_a_room():
+    rules = PRESETS["measured"]
+    assert len(rules.terms) == 8
+    assert len(rules.provenance.data) == 5
+    # 60 people and two doors in a row, at 0.5 to 3 persons/s.
+    model = Doorway(pedestrians=60, preset="measured", rng=1)
+    model.run(max_seconds=120.0)
+    assert model.inside == 0
+    assert 20.0 < model.elapsed < 120.0
 
 
 def test_the_papers_terms_and_its_options_of_45_frames():
@@ -57,7 +69,7 @@ def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_short
 
 
 def test_the_same_constants_in_both():
-    for preset in PRESETS:
+    for preset in ("paper", "default"):
         (term,) = (t for t in model_of(corridor(), strider(), preset=preset).terms
                    if isinstance(t, Interference))  # fmt: skip
         assert (term.a, term.b) == (10.5, 0.09)

@@ -32,7 +32,8 @@ class CheckOptions:
     preset: Annotated[
         str | None,
         typer.Option(
-            metavar="NAME|FILE", help="paper or a TOML file, instead of the default preset."
+            metavar="NAME|FILE",
+            help="measured, paper or a TOML file, instead of the default preset.",
         ),
     ] = None
     numbers: Numbers = None

@@ -92,7 +92,11 @@ def test_no_course_leads_into_a_wall_and_people_behind_one_do_not_count():
     assert look((1.0 + 0j, 0j), plan=across) == 0.0
 
 
-PLACES = st.tuples(st.floats(-3.5, 3.5), st.floats(-2.0, 2.0), st.floats(-1.5, 1.5))
+# Millimetres, and not on the edge of what is near: adding AT would move them over it.
+METRES = st.integers(-3500, 3500).map(lambda millimetres: millimetres / 1000.0)
+PLACES = st.tuples(METRES, METRES, st.floats(-1.5, 1.5)).filter(
+    lambda person: abs(math.hypot(person[0], person[1]) - 3.0) > 1e-6
+)
 
 
 @given(st.lists(PLACES, max_size=12), st.floats(0.0, 1.6), st.floats(0.2, 1.8))
