@@ -18,6 +18,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from mesa_mobility.behaviors.steering.people_ahead import (
+    AHEAD_FIELDS,
+    MOTION_FIELDS,
+    ROOM,
+    SHARE,
+    any_too_near,
+    find_ahead,
+    note_motion,
+    seen,
+)
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Desired, FloorPlan, Tactic
@@ -26,35 +36,14 @@ from mesa_mobility.steering import (
     CrowdState,
     Grid,
     Sight,
-    cells_within,
     compiled,
     inner,
     nobody,
     sight_on,
-    unwalled,
 )
-
-ROOM = 0.65
-"""Metres between the middles of two people who pass each other freely."""
-
-SHARE = 0.6
-"""Share of the present distance that the room asked for is at most: nobody can demand room of
-people who are near already."""
 
 HORIZON = 4.0
 """Seconds within which a closest approach counts, or as long as the way to the target takes."""
-
-REACH = 9.0
-"""Metres within which people count."""
-
-SLOWEST, RAMP = 0.9, 0.5
-"""Relative speed from which on people count, and by how much more they count in full, m/s."""
-
-HALFWAY = 4.0
-"""Present distance at which somebody counts half, metres."""
-
-WEIGHT = 3.0
-"""Change of velocity that people accept so as not to walk into another person, m/s."""
 
 LEFT = 0.1
 """What turning left costs more, m/s: of two people who might as well pass on either side, both keep
@@ -72,13 +61,30 @@ WALKS = 0.3
 GAINS = 0.4
 """How much faster than now people expect to be soon, m/s."""
 
-QUEUES = 0.5
-"""Speed below which somebody who is on the way is held up, m/s."""
+_COURSES = 2 * (2 * STEPS + 1)
 
-SAME_WAY = 0.5
-"""Cosine of the angle between the ways of two people up to which they go the same way."""
+_COURSE_FIELDS = 7
 
-_FIELDS = 5
+
+def _course_table() -> NDArray[np.float64]:
+    """(``_COURSE_FIELDS``, courses) share of the speed, cosine and sine of the turn, and what the
+    side costs, m/s, of each course; the other rows are workspace.
+
+    At each share, straight on comes first, then turns to the right and the left, ever wider.
+    """
+    courses = np.zeros((_COURSE_FIELDS, _COURSES))
+    for n in range(_COURSES):
+        number = (n % (2 * STEPS + 1) + 1) // 2
+        turn = WIDEST / (STEPS * STEPS) * number * number
+        left = n % (2 * STEPS + 1) % 2 == 0
+        share = 1.0 if n <= 2 * STEPS else SLOWER
+        angle = turn if left else -turn
+        side = LEFT if angle > 0.0 else 0.0
+        courses[:4, n] = share, math.cos(angle), math.sin(angle), side
+    return courses
+
+
+_COURSE_TABLE = _course_table()
 
 
 def turn_aside(
@@ -103,16 +109,19 @@ def turn_aside(
         speeds: (n,) their preferred speeds, m/s.
     """
     points, speeds = points.copy(), speeds.copy()
+    n = len(grid.people)
+    motion = np.empty((MOTION_FIELDS, n))
+    note_motion(grid, frame, crowd.records, crowd.agenda, motion)
     _turn_aside(
         rows,
-        frame,
         grid,
         sight_on(plan, 0.0),
         crowd.records,
-        crowd.agenda,
+        motion,
         points,
         speeds,
-        np.empty((_FIELDS, len(grid.people))),
+        np.empty(n + 1, dtype=np.int64),
+        (np.empty((AHEAD_FIELDS, n)), _COURSE_TABLE.copy()),
     )
     return points, speeds
 
@@ -120,151 +129,109 @@ def turn_aside(
 @compiled()
 def _turn_aside(
     rows: NDArray[np.int64],
-    frame: int,
     grid: Grid,
     sight: Sight,
     state: CrowdState,
-    agenda: NDArray[np.void],
+    motion: NDArray[np.float64],
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
-    others: NDArray[np.float64],
+    found: NDArray[np.int64],
+    work: tuple[NDArray[np.float64], NDArray[np.float64]],
 ) -> None:
-    """Change ``points`` and ``speeds`` as of ``turn_aside``; ``others`` has room for everybody."""
+    """Change ``points`` and ``speeds`` as of ``turn_aside``.
+
+    ``found`` and the first array of ``work`` have room for everybody; the second is of
+    ``_course_table``.
+    """
+    ahead, courses = work
     for k in range(len(rows)):
         i = rows[k]
         now = math.sqrt(state[i].vx * state[i].vx + state[i].vy * state[i].vy)
-        dx, dy = points[k, 0] - state[i].x, points[k, 1] - state[i].y
+        place = (state[i].x, state[i].y)
+        dx, dy = points[k, 0] - place[0], points[k, 1] - place[1]
         away = math.sqrt(dx * dx + dy * dy)
         if now < WALKS or away == 0.0 or speeds[k] == 0.0:
             continue
         ex, ey = dx / away, dy / away
         speed = min(speeds[k], now + GAINS)
-        count = _in_the_way(i, ex, ey, speed, frame, grid, state, agenda, others)
+        count = find_ahead(place, (ex, ey), speed, grid, motion, found, ahead)
         horizon = min(HORIZON, away / speed)
-        if _too_near(speed * ex, speed * ey, horizon, others, count, np.inf) == 0.0:
+        if not any_too_near(speed * ex, speed * ey, horizon, ahead, count):
             continue
-        count = _in_view(i, sight, state, others, count)
-        angle, share = _best_course(ex, ey, speed, horizon, others, count)
-        c, s = math.cos(angle), math.sin(angle)
-        points[k, 0] = state[i].x + away * (c * ex - s * ey)
-        points[k, 1] = state[i].y + away * (s * ex + c * ey)
+        _set_courses(ex, ey, speed, courses)
+        for other in range(count):
+            if _matters(ahead, other, courses) and seen(place, sight, ahead, other):
+                _add_cost(ahead, other, horizon, courses)
+        best = _cheapest(speed * ex, speed * ey, courses)
+        share, c, s = courses[0, best], courses[1, best], courses[2, best]
+        points[k, 0] = place[0] + away * (c * ex - s * ey)
+        points[k, 1] = place[1] + away * (s * ex + c * ey)
         speeds[k] *= share
 
 
 @inner()
-def _in_the_way(
-    i: int,
-    ex: float,
-    ey: float,
-    speed: float,
-    frame: int,
-    grid: Grid,
-    state: CrowdState,
-    agenda: NDArray[np.void],
-    others: NDArray[np.float64],
-) -> int:
-    """Write place from pedestrian i on, velocity and weight of those ahead who count for somebody
-    who walks towards (ex, ey) at ``speed``; returns their number."""
-    px, py = state[i].x, state[i].y
-    full = 1.0 / ((SLOWEST + RAMP) * (SLOWEST + RAMP) - SLOWEST * SLOWEST)
-    first, last, low, high = cells_within(grid, px, py, REACH)
-    count = 0
-    for row in range(low, high + 1):
-        for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
-            x, y = grid.x[a] - px, grid.y[a] - py
-            away2 = x * x + y * y
-            if x * ex + y * ey <= 0.0 or away2 > REACH * REACH:
-                continue
-            j = grid.people[a]
-            vx, vy = state[j].vx, state[j].vy
-            wx, wy = vx - speed * ex, vy - speed * ey
-            excess = wx * wx + wy * wy - SLOWEST * SLOWEST
-            if excess <= 0.0 or _goes_along(j, ex, ey, frame, state, agenda):
-                continue
-            others[0, count], others[1, count] = x, y
-            others[2, count], others[3, count] = vx, vy
-            weight = WEIGHT * min(excess * full, 1.0)
-            others[4, count] = weight * HALFWAY / (HALFWAY + math.sqrt(away2))
-            count += 1
-    return count
+def _set_courses(ex: float, ey: float, speed: float, courses: NDArray[np.float64]) -> None:
+    """Write the velocities of courses round (ex, ey) at ``speed``, and that no people cost any."""
+    share, cosine, sine = courses[0], courses[1], courses[2]
+    ux, uy, people = courses[4], courses[5], courses[6]
+    for n in range(_COURSES):
+        ux[n] = share[n] * speed * (cosine[n] * ex - sine[n] * ey)
+        uy[n] = share[n] * speed * (sine[n] * ex + cosine[n] * ey)
+        people[n] = 0.0
 
 
 @inner()
-def _goes_along(
-    j: int, ex: float, ey: float, frame: int, state: CrowdState, agenda: NDArray[np.void]
-) -> bool:
-    """Whether j is held up in a queue or goes the way (ex, ey); not if they stay there."""
-    dx, dy = state[j].target_x - state[j].x, state[j].target_y - state[j].y
-    if (dx == 0.0 and dy == 0.0) or agenda[j]["waits_until"] > frame:
-        return False
-    if state[j].vx * state[j].vx + state[j].vy * state[j].vy < QUEUES * QUEUES:
-        return True
-    return bool(dx * ex + dy * ey > SAME_WAY * math.sqrt(dx * dx + dy * dy))
+def _matters(ahead: NDArray[np.float64], k: int, courses: NDArray[np.float64]) -> bool:
+    """Whether the k-th of those ahead might come too near on any course.
 
-
-@inner()
-def _in_view(
-    i: int, sight: Sight, state: CrowdState, others: NDArray[np.float64], count: int
-) -> int:
-    """Move those whom no wall hides from i to the front; returns their number."""
-    px, py = state[i].x, state[i].y
-    seen = 0
-    for k in range(count):
-        if unwalled(sight, px, py, px + others[0, k], py + others[1, k]):
-            for row in range(_FIELDS):
-                others[row, seen] = others[row, k]
-            seen += 1
-    return seen
-
-
-@inner()
-def _best_course(
-    ex: float, ey: float, speed: float, horizon: float, others: NDArray[np.float64], count: int
-) -> tuple[float, float]:
-    """Angle in radians from (ex, ey), and share of the speed, of the cheapest course."""
-    best, best_angle, best_share = np.inf, 0.0, 1.0
-    for share in (1.0, SLOWER):
-        for step in range(2 * STEPS + 1):
-            # Straight on, then to the right and the left in turns, ever wider.
-            number = (step + 1) // 2
-            turn = WIDEST / (STEPS * STEPS) * number * number
-            angle = -turn if step % 2 == 1 else turn
-            c, s = math.cos(angle), math.sin(angle)
-            ux, uy = share * speed * (c * ex - s * ey), share * speed * (s * ex + c * ey)
-            dx, dy = ux - speed * ex, uy - speed * ey
-            cost = math.sqrt(dx * dx + dy * dy) + (LEFT if angle > 0.0 else 0.0)
-            if cost < best:
-                cost += _too_near(ux, uy, horizon, others, count, best - cost)
-            if cost < best:
-                best, best_angle, best_share = cost, angle, share
-    return best_angle, best_share
-
-
-@inner()
-def _too_near(
-    ux: float, uy: float, horizon: float, others: NDArray[np.float64], count: int, enough: float
-) -> float:
-    """How much too near to others somebody comes who walks at (ux, uy); it may stop at ``enough``.
-
-    Each counts 1 - (d / l)^2 times its weight, as far as their closest approach d is less than l,
-    ``ROOM`` or ``SHARE`` of the present distance.
+    The closest approach d of two lines has d^2 = |x|^2 - (x w)^2 / w^2, which needs no division to
+    be compared. Rounding errors are far less than a billionth.
     """
-    total = 0.0
-    for k in range(count):
-        x, y = others[0, k], others[1, k]
-        wx, wy = others[2, k] - ux, others[3, k] - uy
+    x, y, vx, vy = ahead[0, k], ahead[1, k], ahead[2, k], ahead[3, k]
+    ux, uy = courses[4], courses[5]
+    away2 = x * x + y * y
+    beyond = away2 - min(ROOM * ROOM, SHARE * SHARE * away2)
+    near = 0
+    for n in range(_COURSES):
+        wx, wy = vx - ux[n], vy - uy[n]
         towards = -(x * wx + y * wy)
-        if towards <= 0.0:
-            continue
+        closes_in = beyond * (wx * wx + wy * wy) < (1.0 + 1e-9) * towards * towards
+        near += int((towards > 0.0) & closes_in)
+    return near > 0
+
+
+@inner()
+def _add_cost(
+    ahead: NDArray[np.float64], k: int, horizon: float, courses: NDArray[np.float64]
+) -> None:
+    """Add what the k-th of those ahead costs on each course.
+
+    It is 1 - (d / l)^2 times how much they count, as far as their closest approach d is less than
+    l, ``ROOM`` or ``SHARE`` of the present distance.
+    """
+    x, y, vx, vy, counts = ahead[0, k], ahead[1, k], ahead[2, k], ahead[3, k], ahead[4, k]
+    ux, uy, people = courses[4], courses[5], courses[6]
+    room2 = min(ROOM * ROOM, SHARE * SHARE * (x * x + y * y))
+    for n in range(_COURSES):
+        wx, wy = vx - ux[n], vy - uy[n]
+        towards = -(x * wx + y * wy)
         time = min(towards / (wx * wx + wy * wy), horizon)
         dx, dy = x + wx * time, y + wy * time
-        room2 = min(ROOM * ROOM, SHARE * SHARE * (x * x + y * y))
         near = 1.0 - (dx * dx + dy * dy) / room2
-        if near > 0.0:
-            total += near * others[4, k]
-            if total >= enough:
-                return total
-    return total
+        people[n] += near * counts if (towards > 0.0) & (near > 0.0) else 0.0
+
+
+@inner()
+def _cheapest(wanted_x: float, wanted_y: float, courses: NDArray[np.float64]) -> int:
+    """Index of the cheapest course of somebody who wants this velocity; the first of equal ones."""
+    side, ux, uy, people = courses[3], courses[4], courses[5], courses[6]
+    least, best = np.inf, 0
+    for n in range(_COURSES):
+        dx, dy = ux[n] - wanted_x, uy[n] - wanted_y
+        cost = math.sqrt(dx * dx + dy * dy) + side[n] + people[n]
+        if cost < least:
+            least, best = cost, n
+    return best
 
 
 class Anticipation(Tactic):

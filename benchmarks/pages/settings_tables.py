@@ -3,9 +3,9 @@
 python benchmarks/pages/settings_tables.py [--out FOLDER]
 
 The tables are cost_terms.md, default_numbers.md and shipped_map.md beside this file. In them
-{{default.headway}} is a weight, {{headway.time}} a setting of a term, {{anticipation.ROOM}} a
-constant of a tactic's module, {{preset.durations}} a member of the preset `default`, and
-{{map.options}} a figure of the map.
+{{default.headway}} is a weight, {{headway.time}} a setting of a term, {{anticipation.HORIZON}} a
+constant of the module of a tactic, or of `people_ahead`, {{preset.durations}} a member of the
+preset `default`, and {{map.options}} a figure of the map.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from blocks import give
+from mesa_mobility.behaviors.steering import people_ahead
 
 from mesa_mobility import MobilityMap
 from mesa_mobility.crowd import PRESETS
@@ -39,7 +40,7 @@ def names() -> dict[str, Mapping[str, Any]]:
         found[tactic.name] = vars(sys.modules[type(tactic).__module__])
     for term in preset.make_terms():
         found[term.name] = term.settings()
-    return found | {"map": map_figures()}
+    return found | {"people_ahead": vars(people_ahead), "map": map_figures()}
 
 
 def map_figures() -> dict[str, Any]:

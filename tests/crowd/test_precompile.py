@@ -1,7 +1,7 @@
 """Precompilation covers the functions that runs need."""
 
 import pytest
-from mesa_mobility.behaviors.steering import anticipation, speed_adaptation
+from mesa_mobility.behaviors.steering import anticipation, people_ahead, speed_adaptation
 from mesa_mobility.models import Doorway
 
 from mesa_mobility.crowd import precompile
@@ -19,6 +19,7 @@ FUNCTIONS = [
     departed.walk_on,
     departed.move_on,
     departed.merge,
+    people_ahead.note_motion,
     anticipation._turn_aside,
     speed_adaptation._adapt_speeds,
     hindrance.find_hindered,

@@ -141,7 +141,9 @@ def _bars(
 @internal()
 def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
     """Whether no wall lies across the segment pq, except one that p stands on."""
-    walls, solid, table = sight.walls, sight.solid, sight.table
+    table = sight.table
+    if len(sight.walls) <= FEW_WALLS:
+        return _unwalled_by_boxes(sight, px, py, qx, qy)
     first_row, last_row = rows_crossed(table, py, qy)
     share = per_metre_up(py, qy)
     for row in range(first_row, last_row + 1):
@@ -149,15 +151,42 @@ def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
         for column in range(first, last + 1):
             at = row * table.nx + column
             for j in range(table.offsets[at], table.offsets[at + 1]):
-                wall = table.indices[j]
-                ax, ay, bx, by = walls[wall]
-                if (
-                    wall < solid
-                    and segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by) == 0.0
-                    and point_segment_distance2(px, py, ax, ay, bx, by) > TOUCH * TOUCH
-                ):
+                if _lies_across(sight, table.indices[j], px, py, qx, qy):
                     return False
     return True
+
+
+@internal()
+def _unwalled_by_boxes(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
+    """`unwalled` by the boxes around the walls."""
+    reach = TOUCH + _ROUNDING
+    blocks = len(sight.boxed)
+    outer = len(sight.boxes) - blocks
+    for row in range(max(outer, 1)):
+        near = (1 << blocks) - 1
+        if outer > 0:
+            near = near_line(sight.boxes, row, px, py, qx, qy, reach)
+        while near != 0:
+            block = LANES * row + lowest_bit(near)
+            near &= near - 1
+            walls = near_line(sight.boxes, outer + block, px, py, qx, qy, reach)
+            while walls != 0:
+                wall = sight.boxed[block, lowest_bit(walls)]
+                walls &= walls - 1
+                if _lies_across(sight, wall, px, py, qx, qy):
+                    return False
+    return True
+
+
+@internal()
+def _lies_across(sight: Sight, wall: int, px: float, py: float, qx: float, qy: float) -> bool:
+    """Whether a wall lies across the segment pq, and p does not stand on it."""
+    ax, ay, bx, by = sight.walls[wall]
+    return bool(
+        wall < sight.solid
+        and segment_segment_distance2(px, py, qx, qy, ax, ay, bx, by) == 0.0
+        and point_segment_distance2(px, py, ax, ay, bx, by) > TOUCH * TOUCH
+    )
 
 
 @internal()

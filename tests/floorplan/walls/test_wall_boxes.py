@@ -1,8 +1,11 @@
 import numpy as np
 import pytest
 import shapely
+from numba import njit
 
 from mesa_mobility.floorplan import lines_of_sight
+from mesa_mobility.floorplan.walls.line_of_sight import unwalled
+from mesa_mobility.floorplan.walls.sight import sight_of
 from mesa_mobility.floorplan.walls.wall_boxes import FEW, boxes_around
 
 
@@ -46,3 +49,35 @@ def test_views_among_many_walls_are_those_of_shapely(count: int, clearance: floa
     seen = (away > 0) & (away >= clearance)
     assert 40 < seen.sum() < 390
     assert lines_of_sight(walls, p, q, clearance).tolist() == seen.tolist()
+
+
+@njit
+def _unwalled(sight, p, q):
+    found = np.empty(len(p), np.bool_)
+    for i in range(len(p)):
+        found[i] = unwalled(sight, p[i, 0], p[i, 1], q[i, 0], q[i, 1])
+    return found
+
+
+@pytest.mark.parametrize("count", [0, 3, 30, 512, 513])
+def test_walls_that_lie_across_are_those_of_shapely(count: int) -> None:
+    rng = np.random.default_rng(count)
+    middles, along = rng.uniform(0, 40, (count, 2)), rng.normal(0, 0.5, (count, 2))
+    walls = np.column_stack([middles - along, middles + along])
+    p = rng.uniform(-2, 42, (400, 2))
+    q = p + rng.normal(0, 8, (400, 2))
+    own = min(count, 30)
+    p[:own] = walls[:own, :2]  # who stands at the end of a wall looks past it
+    lines = shapely.linestrings(np.stack([p, q], axis=1))[:, None]
+    across = shapely.intersects(lines, shapely.linestrings(walls.reshape(-1, 2, 2)))
+    across[np.arange(own), np.arange(own)] = False
+    found = _unwalled(sight_of(walls, (), 0.0), p, q)
+    assert found.tolist() == (~across.any(axis=1)).tolist()
+    assert count < 30 or 40 < found.sum() < 390
+
+
+def test_curtains_hide_nobody() -> None:
+    p, q = np.array([[0.0, 0.0]]), np.array([[4.0, 0.0]])
+    line = [(2.0, -1.0, 2.0, 1.0)]
+    assert not _unwalled(sight_of(line, (), 0.0), p, q)[0]
+    assert _unwalled(sight_of((), line, 0.0), p, q)[0]

@@ -1,0 +1,189 @@
+"""People ahead of somebody who walks, and whom of them they would come too near.
+
+All numbers of the people in a grid are kept in the grid's order, so that those near each other are
+read in sequence, several at once.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.steering import (
+    CrowdState,
+    Grid,
+    Sight,
+    cells_within,
+    compiled,
+    inner,
+    unwalled,
+)
+
+ROOM = 0.65
+"""Metres between the middles of two people who pass each other freely."""
+
+SHARE = 0.6
+"""Share of the present distance that the room asked for is at most: nobody can demand room of
+people who are near already."""
+
+REACH = 9.0
+"""Metres within which people count."""
+
+SLOWEST, RAMP = 0.9, 0.5
+"""Relative speed from which on people count, and by how much more they count in full, m/s."""
+
+HALFWAY = 4.0
+"""Present distance at which somebody counts half, metres."""
+
+WEIGHT = 3.0
+"""Change of velocity that people accept so as not to walk into another person, m/s."""
+
+QUEUES = 0.5
+"""Speed below which somebody who is on the way is held up, m/s."""
+
+SAME_WAY = 0.5
+"""Cosine of the angle between the ways of two people up to which they go the same way."""
+
+VX, VY, WAY_X, WAY_Y, LIMIT, MARKED = range(6)
+MOTION_FIELDS = 6
+"""Rows of the table of motion: velocity, m/s; the way to the target, metres; how far that may lead
+along the way of another for whom somebody still counts, metres; and workspace."""
+
+AHEAD_FIELDS = 6
+"""Rows of the table of people ahead: place from the walker, metres; velocity, m/s; how much they
+count, m/s; and workspace."""
+
+
+@compiled()
+def note_motion(
+    grid: Grid,
+    frame: int,
+    state: CrowdState,
+    agenda: NDArray[np.void],
+    motion: NDArray[np.float64],
+) -> None:
+    """Write the (``MOTION_FIELDS``, n) motion of the n people in a grid, in its order.
+
+    Those who stay where they are always count, and those who are held up in a queue never do.
+    """
+    for a in range(len(grid.people)):
+        j = grid.people[a]
+        vx, vy = state[j].vx, state[j].vy
+        dx, dy = state[j].target_x - state[j].x, state[j].target_y - state[j].y
+        limit = SAME_WAY * math.sqrt(dx * dx + dy * dy)
+        if (dx == 0.0 and dy == 0.0) or agenda[j]["waits_until"] > frame:
+            limit = np.inf
+        elif vx * vx + vy * vy < QUEUES * QUEUES:
+            limit = -np.inf
+        motion[VX, a], motion[VY, a] = vx, vy
+        motion[WAY_X, a], motion[WAY_Y, a], motion[LIMIT, a] = dx, dy, limit
+
+
+@inner()
+def find_ahead(
+    place: tuple[float, float],
+    way: tuple[float, float],
+    speed: float,
+    grid: Grid,
+    motion: NDArray[np.float64],
+    found: NDArray[np.int64],
+    ahead: NDArray[np.float64],
+) -> int:
+    """Write those who count for somebody at ``place`` who walks along ``way``, a unit vector.
+
+    Those who go the same way and those held up in a queue do not count; see ``note_motion``.
+
+    Args:
+        place: metres.
+        way: the unit vector.
+        speed: of the walker, m/s.
+        grid: everybody inside.
+        motion: of the people in the grid.
+        found: workspace with room for all of them and one more.
+        ahead: (``AHEAD_FIELDS``, room for everybody), is written.
+
+    Returns:
+        Their number.
+    """
+    (px, py), (ex, ey) = place, way
+    ux, uy = speed * ex, speed * ey
+    first, last, low, high = cells_within(grid, px, py, REACH)
+    count = 0
+    for row in range(low, high + 1):
+        start = grid.offsets[row * grid.nx + first]
+        end = grid.offsets[row * grid.nx + last + 1]
+        count = _ahead_in_run(start, end, (px, py, ex, ey, ux, uy), grid, motion, found, count)
+    full = 1.0 / ((SLOWEST + RAMP) * (SLOWEST + RAMP) - SLOWEST * SLOWEST)
+    for k in range(count):
+        a = found[k]
+        x, y = grid.x[a] - px, grid.y[a] - py
+        vx, vy = motion[VX, a], motion[VY, a]
+        wx, wy = vx - ux, vy - uy
+        excess = wx * wx + wy * wy - SLOWEST * SLOWEST
+        weight = WEIGHT * min(excess * full, 1.0)
+        ahead[0, k], ahead[1, k], ahead[2, k], ahead[3, k] = x, y, vx, vy
+        ahead[4, k] = weight * HALFWAY / (HALFWAY + math.sqrt(x * x + y * y))
+    return count
+
+
+@inner()
+def _ahead_in_run(
+    start: int,
+    end: int,
+    walker: tuple[float, float, float, float, float, float],
+    grid: Grid,
+    motion: NDArray[np.float64],
+    found: NDArray[np.int64],
+    count: int,
+) -> int:
+    """Add those of the people ``start`` to ``end`` of the grid who count to ``found``.
+
+    Returns how many there are by then.
+    """
+    px, py, ex, ey, ux, uy = walker
+    x, y = grid.x[start:end], grid.y[start:end]
+    vx, vy = motion[VX, start:end], motion[VY, start:end]
+    way_x, way_y = motion[WAY_X, start:end], motion[WAY_Y, start:end]
+    limit = motion[LIMIT, start:end]
+    marks = motion[MARKED, start:end]
+    for k in range(end - start):
+        dx, dy = x[k] - px, y[k] - py
+        wx, wy = vx[k] - ux, vy[k] - uy
+        counts = dx * ex + dy * ey > 0.0
+        counts &= dx * dx + dy * dy <= REACH * REACH
+        counts &= wx * wx + wy * wy > SLOWEST * SLOWEST
+        counts &= way_x[k] * ex + way_y[k] * ey <= limit[k]
+        marks[k] = 1.0 if counts else 0.0
+    for k in range(end - start):
+        found[count] = start + k
+        count += int(marks[k])
+    return count
+
+
+@inner()
+def any_too_near(
+    ux: float, uy: float, horizon: float, ahead: NDArray[np.float64], count: int
+) -> bool:
+    """Whether somebody who walks at (ux, uy) comes too near to any of those ahead; see
+    ``anticipation``."""
+    x, y, vx, vy, near = ahead[0], ahead[1], ahead[2], ahead[3], ahead[5]
+    for k in range(count):
+        wx, wy = vx[k] - ux, vy[k] - uy
+        towards = -(x[k] * wx + y[k] * wy)
+        time = min(towards / (wx * wx + wy * wy), horizon)
+        dx, dy = x[k] + wx * time, y[k] + wy * time
+        room2 = min(ROOM * ROOM, SHARE * SHARE * (x[k] * x[k] + y[k] * y[k]))
+        near[k] = 1.0 if (towards > 0.0) & (dx * dx + dy * dy < room2) else 0.0
+    number = 0.0
+    for k in range(count):
+        number += near[k]
+    return number > 0.0
+
+
+@inner()
+def seen(place: tuple[float, float], sight: Sight, ahead: NDArray[np.float64], k: int) -> bool:
+    """Whether no wall hides the k-th of those ahead from ``place``."""
+    px, py = place
+    return bool(unwalled(sight, px, py, px + ahead[0, k], py + ahead[1, k]))
