@@ -8,9 +8,9 @@ from typing import TypeGuard
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether this is a real number: neither a truth value nor text, and not NaN.
+    """Whether a value is a real number, and not a truth value, text or NaN.
 
-    NumPy's numbers count, and infinite ones; whole numbers too large for a float do not.
+    NumPy's numbers and infinite numbers count.  Whole numbers too large for a float do not.
     """
     if isinstance(value, bool) or not isinstance(value, Real):
         return False

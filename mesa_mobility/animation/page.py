@@ -74,24 +74,25 @@ def write_page(
     bank: PoseBank | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> None:
-    """Write a page with a run, its player and all that it needs.
+    """Write a page that plays a run in three dimensions, and needs no other file.
 
-    People are figures whose limbs move where the run has its decisions and the poses of their map
-    are known, with the aids that they hold. Those in wheelchairs sit. Others are drawn without
-    limbs.
+    People have moving limbs if the run holds its decisions and the poses of their map are known.
+    They then hold their aids, such as canes. People in wheelchairs sit. All others are drawn
+    without limbs.
 
     Args:
         trajectories: the run.
         plan: floor and walls.
         path: the page (.html).
-        selection: whom and when; everybody all the time by default.
-        title: shown on it.
-        bank: poses of a map whose poses do not ship.
+        selection: people and times to show; by default everybody, all the time.
+        title: the page's title.
+        bank: poses of a map whose poses do not ship with the package.
         progress: called with the number of people done.
 
     Raises:
-        ResultsError: the file cannot be written, nobody to show, or not 30 frames a second.
-        MapError: the bank is of none of the run's maps.
+        ResultsError: the file cannot be written, the selection is empty, or the run does not have
+            30 frames a second.
+        MapError: ``bank`` belongs to none of the run's maps.
     """
     page = page_text(trajectories, plan, selection, title=title, bank=bank, progress=progress)
     with replacing(path, ResultsError) as target:

@@ -66,7 +66,10 @@ def load(builder: Any, start: Start, at: Any, width: int) -> Any:
 
 
 def load_three(builder: Any, start: Start, at: Any, row: Any, width: int) -> tuple[Any, Any, Any]:
-    """Load ``width`` elements, starting at ``at``, of three rows ``row`` elements apart."""
+    """Load three vectors, each of ``width`` elements, from three rows of an array.
+
+    The first vector starts at element ``at``.  The rows are ``row`` elements apart.
+    """
     second, third = builder.add(at, row), builder.add(at, builder.add(row, row))
     return (
         load(builder, start, at, width),

@@ -54,10 +54,10 @@ def examine(
 
 
 def examined(map_: MobilityMap, left_out: Mapping[str, Any] | None = None) -> MobilityMap:
-    """A copy of a map whose metadata say which tests it has failed.
+    """Examine a map, and return a copy whose metadata say which tests the map has failed.
 
     Args:
-        map_: the map.
+        map_: the map, which is not changed.
         left_out: as for ``examine``.
 
     Raises:

@@ -112,9 +112,11 @@ class Precision:
         return self.least if count < self.least else min(math.ceil(count * _GROWTH), self.most)
 
     def last_look(self, count: int) -> int:
-        """The last number of replications, of those looked at, that ``count`` of them reach.
+        """The greatest number of replications, up to ``count``, at which precision is assessed.
 
-        A look at any other number would make the result depend on where runs were interrupted.
+        Precision is assessed only at the numbers that ``next_count`` gives.  At any other number,
+        the result would depend on where runs were interrupted.  A ``count`` below ``least`` is
+        returned as it is.
         """
         if count < self.least:
             return count

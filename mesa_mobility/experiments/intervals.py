@@ -42,7 +42,7 @@ class Estimate:
 
     @property
     def hopeless(self) -> bool:
-        """Whether the estimate is not given, and will not be with more runs."""
+        """Whether there is no estimate, and more runs will not give one."""
         return self.value is None and (self.beyond is None or self.low == math.inf)
 
     def __str__(self) -> str:

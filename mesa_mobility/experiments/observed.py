@@ -50,7 +50,7 @@ def observed(runs: pd.DataFrame, column: str) -> NDArray[np.float64]:
 
 
 def warn_of_failed(store: object, statuses: Sequence[str]) -> None:
-    """Warn of runs of a store that have failed, whose figures an analysis does without."""
+    """Warn if runs of a store have failed: an analysis leaves these runs out."""
     if failed := statuses.count(FAILED):
         said = f"{store}: {failed} of {len(statuses)} runs have failed, and are left out"
         warnings.warn(said, RuntimeWarning, stacklevel=4)

@@ -73,7 +73,7 @@ class Store:
         """The content of ``experiment.json``.
 
         Raises:
-            ResultsError: there is none, or it is damaged.
+            ResultsError: the file is missing, damaged, or of another format version.
         """
         try:
             values = json.loads(self.folder.read_bytes(DEFINITION))

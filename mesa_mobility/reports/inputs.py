@@ -29,11 +29,11 @@ def map_files(model: Any) -> dict[str, dict[str, str | None]]:
 
 
 def given_files(taken: Mapping[str, Parameter], values: Mapping[str, Any]) -> dict[str, Path]:
-    """The files among a model's parameters, by the name of the parameter.
+    """Paths of the files that a model's parameters name, by the name of the parameter.
 
     Args:
         taken: the model's parameters.
-        values: those given; the others are as by default.
+        values: the values given, by parameter; other parameters have their defaults.
     """
     found = {}
     for name, parameter in taken.items():

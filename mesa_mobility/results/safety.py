@@ -61,7 +61,7 @@ class SafetyReport:
 
     @property
     def passed(self) -> bool:
-        """True without a single overlap, wall crossing or, if counted, place off the floor."""
+        """Whether there is no overlap, no wall crossing and, if counted, nobody off the floor."""
         return self.overlaps == 0 and self.wall_crossings == 0 and not self.off_floor
 
 

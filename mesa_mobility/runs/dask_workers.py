@@ -84,16 +84,17 @@ class DaskWorkers(Futures):
 
 
 def dask_workers(executor: Any, count: int | None, closing: ExitStack) -> DaskWorkers:
-    """Workers on Dask.
+    """Connect to the workers of a Dask cluster, or start such a cluster on this machine.
 
     Args:
-        executor: a ``Client``, the address of a scheduler, a cluster, or "dask" for a cluster on
-            this machine.
-        count: workers of a cluster on this machine.
-        closing: gets what is to be closed afterwards.
+        executor: a ``Client``, the address of a scheduler, a cluster, or "dask" for a new cluster
+            on this machine.
+        count: number of workers of a new cluster; by default one for each available processor.
+        closing: stack that closes the clients and clusters opened here when it is closed itself.
 
     Raises:
-        ModelError: Dask is not installed, nobody answers at the address, or it is none of these.
+        ModelError: Dask is not installed, no scheduler or worker answers at the address, or
+            ``executor`` is of another kind.
     """
     try:
         from distributed import Client, LocalCluster

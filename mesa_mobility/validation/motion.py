@@ -168,7 +168,7 @@ def _joined(runs: Sequence[Figures], name: str) -> FloatArray:
 
 
 def draw(figures: dict[str, Any]) -> Figure:
-    """Changes of direction, accelerations and jumps of speed, beside the measured ones."""
+    """Plot changes of direction, accelerations and jumps of speed beside measured ones."""
     figure, axes = drawing.panels(3)
     reference = {row["set"]: row for row in table("motion_in_crowds")}
     edges = np.arange(-60.0, 61.0, 2.0)

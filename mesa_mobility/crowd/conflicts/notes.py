@@ -219,8 +219,11 @@ def _next(i: int, notes: NDArray[np.void]) -> int:
 def stop_making_way(
     rows: NDArray[np.int64], elapsed: float, state: CrowdState, notes: NDArray[np.void]
 ) -> None:
-    """Let those in ``rows`` go on who have made way for long enough, or for people who are gone or
-    make way themselves."""
+    """Let people stop making way when they no longer need to.
+
+    Each person in ``rows`` stops if they have made way for long enough, or if the person they make
+    way for has left or makes way for somebody else. Who is in their way is forgotten as well.
+    """
     for i in rows:
         notes[i]["blocker"] = NOBODY
         first = notes[i]["first"]

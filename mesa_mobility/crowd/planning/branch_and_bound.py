@@ -58,7 +58,10 @@ def turns_less(o: int, than: int, table: OptionTable) -> bool:
 
 @internal()
 def standing(count: int, options: Opened) -> int:
-    """Index of the cheapest of ``count`` options that covers no ground; ``count`` if all do."""
+    """Index of the cheapest option to stand still among the first ``count`` options.
+
+    The cheapest is the one with the least lower bound.  Returns ``count`` if none stands still.
+    """
     found = count
     for k in range(count):
         if options.ends[SPEED, k] == 0.0 and (

@@ -31,10 +31,11 @@ def is_preset_file(preset: object) -> bool:
 
 
 def preset_of(preset: str | os.PathLike[str] | Preset) -> Preset:
-    """A preset, the one of this name, or that of a file.
+    """The preset that is given as an object, by the name of a shipped one, or as a file.
 
     Raises:
-        ModelError: there is none, it is something else, or the file is unusable.
+        ModelError: no preset has this name, the argument is of another type, or the file is
+            unusable.
     """
     if isinstance(preset, Preset):
         return preset

@@ -127,7 +127,7 @@ class StandingWatch(Saved):
 
     @property
     def now(self) -> list[Blocked]:
-        """Those who stood at the last look, by row."""
+        """People found standing when the model was last looked at, in the order of their rows."""
         return [self.reported[row] for row in self._standing]
 
     def look(self, model: World) -> None:

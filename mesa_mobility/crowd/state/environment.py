@@ -147,9 +147,14 @@ class Environment(Saved):
         return tuple(e.name for e in self.plan.exits if names is None or e.name in names)
 
     def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int64]) -> Targets:
-        """Targets of people at ``points`` (n, 2), metres.
+        """Targets of people, who may have different body sizes.
 
-        Corners have the numbers of ``corners``.
+        Args:
+            points: (n, 2) places of the people, metres.
+            destinations: (n,) numbers of their destinations.
+
+        Returns:
+            The targets. Their corners are numbered as in the attribute ``corners``.
         """
         if self.bodies == 1:
             return self._router(0).targets(points, destinations)
@@ -189,9 +194,12 @@ class Environment(Saved):
     def abreast(
         self, points: NDArray[np.float64], targets: Targets, areas: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """(n, 2) targets in metres of people at ``points`` who pass a corner abreast of others.
+        """Targets, (n, 2) metres, of people who pass a corner side by side with others.
 
-        They pass it within ``areas`` (n,), m2, divided by their distance; see ``Router.abreast``.
+        Args:
+            points: (n, 2) places of the people, metres.
+            targets: their targets, which must be up to date.
+            areas: (n,) m2, which limit how far from the corner they pass; see ``Router.abreast``.
         """
         if self.bodies == 1 or targets.corners is None:
             return self._router(0).abreast(points, targets, areas)

@@ -15,10 +15,10 @@ from ipywidgets import Widget
 
 
 class Feed:
-    """One property of a widget that holders of the feed write to.
+    """Sends values to one property of a widget.
 
     Args:
-        name: of the property.
+        name: the property's name.
     """
 
     def __init__(self, name: str) -> None:

@@ -31,7 +31,7 @@ class Holder(Protocol):
         """End, and keep the run."""
 
     def join(self) -> None:
-        """Wait until it has ended."""
+        """Wait until this holder has ended."""
 
 
 _lock = threading.Lock()

@@ -28,7 +28,7 @@ class GeoJson(PlanFormat):
         return read(path)
 
     def write(self, plan: Floor, path: Path) -> None:
-        """See ``FloorPlan.write_geojson``."""
+        """Write a floor plan; see ``FloorPlan.write_geojson``."""
         write(plan, path)
 
 

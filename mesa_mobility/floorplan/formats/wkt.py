@@ -27,7 +27,7 @@ class Wkt(PlanFormat):
     suffixes = (".wkt",)
 
     def read(self, path: Path) -> Content:
-        """See ``read`` of this module."""
+        """Read a floor plan; see the function ``read`` of this module."""
         return read(path)
 
 

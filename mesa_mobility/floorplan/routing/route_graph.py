@@ -51,7 +51,7 @@ def _curtain(ways: Ways, node: int) -> int:
 
 @kept()
 def edges_in_view(sight: Sight, ways: Ways, clearance: float) -> NDArray[np.int64]:
-    """(k, 2) all directed edges, from and to which node, between nodes in view of each other."""
+    """All directed edges between nodes in view of each other, as (k, 2) start and end nodes."""
     n = len(ways.kind)
     edges = [(0, 0) for _ in range(0)]
     for i in range(n):

@@ -41,7 +41,10 @@ def frames_at(trajectories: Tracks, every: float) -> list[tuple[float, int]]:
 
 
 def departures(trajectories: Tracks) -> FloatArray:
-    """Exit times, (k,) seconds in rising order: each is the first frame with the person outside."""
+    """Exit times of the k people who have left, (k,) seconds in rising order.
+
+    A person's exit time is the time of the first frame in which they are outside.
+    """
     frames = trajectories.exit_frames
     return np.sort(frames[frames >= 0]) / trajectories.frame_rate
 

@@ -60,8 +60,13 @@ def counter(seed: int) -> Figures:
 
 
 def breadths(tracks: Tracks) -> tuple[FloatArray, NDArray[np.int64]]:
-    """At each second at which four or more people stand near the counter: their breadth over their
-    length, and (k,) how many they are."""
+    """How broad the group of people before the counter is, once a second.
+
+    Only the k seconds at which four or more people stand near the counter count.
+
+    Returns:
+        (k,) breadth of the group over its length, and (k,) number of people in the group.
+    """
     frames = round(tracks.frame_rate)
     start, end = tracks.steps(frames)
     x, y = tracks.x[end], tracks.y[end]

@@ -82,7 +82,10 @@ def two_rooms(seed: int, *, people: int = 150) -> dict[str, Any]:
 
 
 def three_rooms(seed: int, *, people: int = 150) -> dict[str, Any]:
-    """Three rooms joined by openings of 1 m in walls of 0.2 m (RiMEA test 12c)."""
+    """Run people through three rooms joined by openings 1 m wide in walls 0.2 m thick.
+
+    This is RiMEA test 12c.
+    """
     plan = FloorPlan(
         THREE_ROOMS,
         exits=[Exit("exit", (25.4, 0.0), (25.4, 10.0))],
