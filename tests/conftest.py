@@ -12,7 +12,8 @@ import pytest
 from hypothesis import settings
 
 from mesa_mobility.compiled import cache
-from mesa_mobility.crowd import PRESETS
+from mesa_mobility.crowd import Preset
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.walker import walker_bvh
 
 VARIABLE = "MESA_MOBILITY_CAPTURES"
@@ -100,23 +101,18 @@ def _captures(folder: Path) -> Path:
 
 
 @pytest.fixture
-def whole(monkeypatch) -> str:
-    """A preset for one test: the default one with the options of the map and no part of them.
+def whole() -> Preset:
+    """That of the engine's tests with the options of the map and no part of them.
 
     Where options come in parts, to stay where one is is one of them, and always free.
     """
-    monkeypatch.setitem(PRESETS, "whole", replace(PRESETS["default"], name="whole", shares=()))
-    return "whole"
+    return replace(ENGINE, name="whole", shares=())
 
 
 @pytest.fixture
-def in_parts(monkeypatch) -> str:
-    """A preset for one test: the default one with a half, a quarter and none of short options."""
-    shares = ((0.5, 0.25, 0.0),)
-    monkeypatch.setitem(
-        PRESETS, "in_parts", replace(PRESETS["default"], name="in_parts", shares=shares)
-    )
-    return "in_parts"
+def in_parts() -> Preset:
+    """That of the engine's tests with a half, a quarter and none of short options."""
+    return replace(ENGINE, name="in_parts", shares=((0.5, 0.25, 0.0),))
 
 
 @pytest.fixture(scope="session")

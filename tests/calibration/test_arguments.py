@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from mesa_mobility.calibration import Distance, Free, HeldOut, Search, Seeds, calibrate
 from mesa_mobility.calibration.names import called, measured, measured_of, name_of
 from mesa_mobility.errors import MobilityError, ModelError
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.experiments import calibrations as fixture
 
 pytest.importorskip("cmaes", reason="needs the extra calibration")
@@ -62,6 +63,7 @@ def test_what_is_refused(changes, said, tmp_path, monkeypatch):
         "data": {"seen": {"time": 1.0}},
         "free": [FREE],
         "distances": [fixture.relative],
+        "search": Search(preset=ENGINE),
         "store": tmp_path / "store",
         "executor": "serial",
         **changes,
@@ -104,7 +106,7 @@ def test_a_store_is_of_one_calibration(tmp_path, change):
         "free": [FREE],
         "distances": [fixture.relative],
         "seeds": Seeds(held_out=1),
-        "search": Search(evaluations=4),
+        "search": Search(evaluations=4, preset=ENGINE),
         "store": tmp_path / "store",
         "executor": "serial",
     }
@@ -113,7 +115,7 @@ def test_a_store_is_of_one_calibration(tmp_path, change):
         "free": {"free": [Free("headway.time", 0.3, 3.0)]},
         "distances": {"distances": [Distance(fixture.relative, 2.0)]},
         "seeds": {"seeds": Seeds(held_out=2)},
-        "search": {"search": Search(evaluations=4, spread=0.3)},
+        "search": {"search": Search(evaluations=4, spread=0.3, preset=ENGINE)},
         "data": {"data": {"seen": {"time": 2.0}}},
         "preset": {"search": Search(evaluations=4, preset="paper"), "free": [
             Free("headway.time", 0.2, 3.0, start=1.2)]},

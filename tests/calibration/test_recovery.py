@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 from mesa_mobility.calibration import Distance, Free, HeldOut, Search, Seeds, calibrate
-from mesa_mobility.crowd import PRESETS, read_preset
+from mesa_mobility.crowd import read_preset
 from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.experiments import open_store
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.experiments import calibrations as fixture
 
 pytest.importorskip("cmaes", reason="needs the extra calibration")
 
+searched = partial(Search, preset=ENGINE)
 FREE = [Free("headway.time", 0.2, 3.0), Free("sideways.weight", 0.1, 10.0, log=True)]
 TRUE = {"time": 0.7, "weight": 4.0}
 
@@ -26,7 +28,7 @@ def given(tmp_path, **changes):
         "free": FREE,
         "distances": [fixture.relative],
         "store": tmp_path / "store",
-        "search": Search(evaluations=30),
+        "search": searched(evaluations=30),
         "executor": "serial",
         **changes,
     }
@@ -49,11 +51,11 @@ def rows(folder):
 
 @pytest.mark.thorough
 def test_numbers_are_found_again_and_held_out_data_agree(tmp_path):
-    found = calibrate(**given(tmp_path, search=Search(evaluations=240)))
+    found = calibrate(**given(tmp_path, search=searched(evaluations=240)))
     assert found.values["headway.time"] == pytest.approx(0.7, rel=0.02)
     assert found.values["sideways.weight"] == pytest.approx(4.0, rel=0.02)
     preset = read_preset(tmp_path / "store" / "preset.toml")
-    assert preset.parameters() == PRESETS["default"].parameters() | found.values
+    assert preset.parameters() == ENGINE.parameters() | found.values
     frame = found.frame().set_index(["part", "scenario", "distance"])
     # At the start 1.2 s and 2.2: by hand.
     start = np.mean([1.2 / 0.7 - 1.0, 1.0 - 2.2 / 4.0])
@@ -87,7 +89,7 @@ def test_each_generation_has_new_seeds_and_held_out_data_are_run_in_the_end_alon
     # The numbers of each run are those of its models.
     row = training.iloc[0]
     assert json.loads(row.inputs) == {
-        "preset": f"default, calibration, sha256 {PRESETS['default'].digest}",
+        "preset": f"engine, calibration, sha256 {ENGINE.digest}",
         "changed numbers": f"headway.time = {row['headway.time']}; "
         f"sideways.weight = {row['sideways.weight']} (experiment)",
     }
@@ -98,12 +100,12 @@ def test_each_generation_has_new_seeds_and_held_out_data_are_run_in_the_end_alon
 
 
 def test_resumed_is_uninterrupted_and_more_evaluations_go_on(tmp_path):
-    whole = calibrate(**given(tmp_path / "whole", search=Search(evaluations=24)))
+    whole = calibrate(**given(tmp_path / "whole", search=searched(evaluations=24)))
     marks = tmp_path / "marks"
     scenario = partial(fixture.interrupted, marks=str(marks))
     words = given(tmp_path / "other", scenarios={"seen": scenario, "new": fixture.product})
     words["data"] = {"seen": TRUE, "new": HeldOut({"product": 2.8})}
-    words["search"] = Search(evaluations=24)
+    words["search"] = searched(evaluations=24)
     marks.write_text("9")
     with pytest.raises(KeyboardInterrupt):
         calibrate(**words)
@@ -115,8 +117,8 @@ def test_resumed_is_uninterrupted_and_more_evaluations_go_on(tmp_path):
     # Nothing was run twice.
     done = 1000 - int(marks.read_text())
     assert done == 24 + 2 + 2 * 5 - 9
-    few = calibrate(**given(tmp_path / "more", search=Search(evaluations=12)))
-    more = calibrate(**given(tmp_path / "more", search=Search(evaluations=24)))
+    few = calibrate(**given(tmp_path / "more", search=searched(evaluations=12)))
+    more = calibrate(**given(tmp_path / "more", search=searched(evaluations=24)))
     assert len(few.history) == 2
     assert contents(tmp_path / "more" / "store") == contents(tmp_path / "whole" / "store")
     assert more.values == whole.values
@@ -127,7 +129,7 @@ def test_the_same_bytes_whatever_the_number_of_processes(tmp_path):
     found = {}
     for name, executor, workers in (("one", "serial", None), ("two", "processes", 2)):
         words = given(tmp_path / name, executor=executor, workers=workers)
-        calibrate(**words | {"search": Search(evaluations=12)})
+        calibrate(**words | {"search": searched(evaluations=12)})
         found[name] = contents(tmp_path / name / "store"), rows(tmp_path / name / "store")
     assert found["one"] == found["two"]
 
@@ -136,7 +138,7 @@ def test_the_same_bytes_whatever_the_number_of_processes(tmp_path):
 def test_the_same_on_dask(tmp_path, dask_cluster):
     found = {}
     for name, executor in (("one", "serial"), ("dask", dask_cluster)):
-        words = given(tmp_path / name, executor=executor, search=Search(evaluations=12))
+        words = given(tmp_path / name, executor=executor, search=searched(evaluations=12))
         calibrate(**words)
         found[name] = contents(tmp_path / name / "store"), rows(tmp_path / name / "store")
     assert found["one"] == found["dask"]
@@ -180,7 +182,7 @@ def test_weights_scenarios_and_seeds_make_the_objective(tmp_path):
                 "b": [fixture.squared],
             },
             seeds=Seeds(each=2, held_out=4, first=7),
-            search=Search(evaluations=6),
+            search=searched(evaluations=6),
         )
     )
     training = open_store(tmp_path / "store" / "training").frame()
@@ -203,7 +205,7 @@ def test_data_of_files_are_read_by_functions_and_have_digests(tmp_path, monkeypa
     file = tmp_path / "numbers.txt"
     file.write_text("time 0.7\nweight 4.0\n")
     data = {"seen": partial(fixture.Reader.read, "numbers.txt"), "new": HeldOut({"product": 5.6})}
-    found = calibrate(**given(tmp_path, data=data, search=Search(evaluations=6)))
+    found = calibrate(**given(tmp_path, data=data, search=searched(evaluations=6)))
     import hashlib
 
     digest = hashlib.sha256(file.read_bytes()).hexdigest()
@@ -211,7 +213,7 @@ def test_data_of_files_are_read_by_functions_and_have_digests(tmp_path, monkeypa
     assert digest in (tmp_path / "store" / "report.html").read_text(encoding="utf-8")
     file.write_text("time 0.8\nweight 4.0\n")
     with pytest.raises(ModelError, match="holds a calibration with other files, expected another"):
-        calibrate(**given(tmp_path, data=data, search=Search(evaluations=6)))
+        calibrate(**given(tmp_path, data=data, search=searched(evaluations=6)))
 
 
 @pytest.mark.thorough

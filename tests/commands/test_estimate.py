@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from mesa_mobility.crowd import PRESETS
 from tests.estimation.tracks import corridor, rows_of, walking
 
 
@@ -49,7 +50,8 @@ def test_a_term_that_the_preset_lacks_cannot_be_left_out(command, tmp_path, plan
     done = command("estimate", file, "--plan", plan, "--without", "queueing", "--no-progress")
 
     assert done.status == 2
-    assert "--without queueing: preset 'default' has target_distance" in done.err
+    terms = ", ".join(PRESETS["default"].terms)
+    assert f"--without queueing: preset 'default' has {terms}" in done.err
 
 
 @pytest.mark.slow
@@ -59,11 +61,8 @@ def test_two_files_give_weights_and_what_they_tell_of_each_other(command, tmp_pa
         written(tmp_path, rows_of(walking(people=9, seconds=8.0, speed=1.0)), "b.txt"),
     ]
     kept = {"preferred_velocity", "velocity_change"}
-    others = (
-        "target_distance facing_deviation sideways room_ahead interference headway right_of_way "
-        "stepping"
-    )
-    without = [part for name in others.split() for part in ("--without", name)]
+    others = [name for name in PRESETS["default"].terms if name not in kept]
+    without = [part for name in others for part in ("--without", name)]
 
     done = command(
         "estimate", *files, "--plan", plan, *without, "--choices", "60", "--json", "--no-progress"

@@ -18,13 +18,13 @@ def mine(command, tmp_path):
 
 
 def test_preset_lists_numbers_and_writes_them(command, mine):
-    told = command("preset", mine, "--set", "sideways.weight=2", "--json")
+    told = command("preset", mine, "--set", "right_of_way.weight=2", "--json")
     answer = json.loads(told.out.splitlines()[-1])
     assert answer["preset"] == "mine"
     assert answer["numbers"]["headway.time"] == {
         "value": 0.9, "unit": "s", "bounds": "more than 0 s", "source": "mine.toml",
     }  # fmt: skip
-    assert answer["numbers"]["sideways.weight"]["source"] == "command line"
+    assert answer["numbers"]["right_of_way.weight"]["source"] == "command line"
     rules = PRESETS["default"].with_parameters({"headway.time": 0.9})
     assert read_preset(mine).parameters() == rules.parameters()
     assert "headway.time" in command("preset", mine).out
@@ -79,14 +79,14 @@ def test_a_model_without_behaviours_refuses_their_numbers(command, plugins):
 def test_run_says_and_repeats_what_was_set(command, mine, tmp_path):
     words = ["run", "doorway", "--seed", 3, "--seconds", 3, "--set", "pedestrians=6", "--record",
              "decisions", "--behavior", "keep_distance=0.2", "--preset", mine,
-             "--set", "keep_distance.distance=1.1", "--set", "stepping.length=0.3"]  # fmt: skip
+             "--set", "keep_distance.distance=1.1", "--set", "right_of_way.width=0.5"]  # fmt: skip
     outcome = command(*words, "--out", tmp_path / "run", "--json")
     assert outcome.status == 0, outcome.err
     summary = json.loads(outcome.out.splitlines()[-1])
     assert summary["preset_sha256"] == read_preset(mine).digest
-    assert summary["set"] == {"keep_distance.distance": "1.1", "stepping.length": "0.3"}
+    assert summary["set"] == {"keep_distance.distance": "1.1", "right_of_way.width": "0.5"}
     assert summary["rules"]["settings"]["headway"]["time"] == 0.9
-    assert summary["rules"]["settings"]["stepping"]["length"] == 0.3
+    assert summary["rules"]["settings"]["right_of_way"]["width"] == 0.5
     explain = ["explain", tmp_path / "run", "--person", 2, "--time", 2.0, "--json"]
     assert command(*explain).status == 0
     mine.write_text(mine.read_text().replace("time = 0.9", "time = 0.8"))
@@ -99,10 +99,11 @@ def test_run_says_and_repeats_what_was_set(command, mine, tmp_path):
 def test_numbers_change_what_verification_measures(command, mine, tmp_path):
     page = tmp_path / "page.html"
     plain = command("verify", "rimea-01", "--jobs", 1, "--json")
+    onwards = {"target_distance", "preferred_velocity", "facing_deviation"}
+    without = [f"{name}.weight=0" for name in PRESETS["default"].terms if name in onwards]
     slow = command(
         "verify", "rimea-01", "--jobs", 1, "--json", "--preset", mine, "--report", page,
-        "--set", "target_distance.weight=0", "--set", "preferred_velocity.weight=0",
-        "--set", "facing_deviation.weight=0",
+        *(part for number in without for part in ("--set", number)),
     )  # fmt: skip
     assert plain.status == 0
     answers = [json.loads(each.out.splitlines()[-1]) for each in (plain, slow)]
@@ -112,7 +113,7 @@ def test_numbers_change_what_verification_measures(command, mine, tmp_path):
     assert not answers[1]["rimea-01"]["passed"]
     text = page.read_text(encoding="utf-8")
     assert f"mine, mine.toml, sha256 {read_preset(mine).digest}" in text
-    assert "target_distance.weight = 0; " in text
+    assert "facing_deviation.weight = 0; preferred_velocity.weight = 0" in text
 
 
 @pytest.mark.thorough
@@ -123,19 +124,19 @@ def test_experiments_vary_fix_and_list_numbers(command, mine, tmp_path):
         '[grid]\n"headway.time" = [0.5, 1.5]\n'
     )
     words = ("experiment", "run", file, "--workers", 1, "--preset", mine)
-    outcome = command(*words, "--set", "sideways.weight=2.5")
+    outcome = command(*words, "--set", "right_of_way.weight=2.5")
     assert outcome.status == 0, outcome.err
     store = open_store(tmp_path / "study")
     frame = store.frame()
     assert frame["headway.time"].tolist() == [0.5, 1.5]
-    assert frame["sideways.weight"].tolist() == [2.5, 2.5]
+    assert frame["right_of_way.weight"].tolist() == [2.5, 2.5]
     inputs = json.loads(frame["inputs"][0])
     assert inputs["preset"] == f"mine, mine.toml, sha256 {read_preset(mine).digest}"
     assert inputs["changed numbers"] == (
-        "sideways.weight = 2.5 (experiment); headway.time = 0.5 s (experiment)"
+        "right_of_way.weight = 2.5 (experiment); headway.time = 0.5 s (experiment)"
     )
     assert sorted(store.table(["headway.time"])["headway.time"].to_pylist()) == [0.5, 1.5]
     mine.write_text(mine.read_text().replace("time = 0.9", "time = 0.8"))
-    changed = command(*words, "--set", "sideways.weight=2.5")
+    changed = command(*words, "--set", "right_of_way.weight=2.5")
     assert changed.status == 2
     assert "holds runs with another preset" in changed.err

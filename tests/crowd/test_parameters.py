@@ -10,14 +10,15 @@ from hypothesis import strategies as st
 from mesa_mobility.behaviors import Headway, KeepDistance
 
 from mesa_mobility.crowd import PRESETS, model_rules
+from mesa_mobility.crowd.presets.naming import number_named
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.settings import declared
 from tests.fixtures.maps import strider
 from tests.fixtures.scenes import corridor, model_of, put
 
 
-def made(**keywords):
-    return model_of(corridor(), strider(), **keywords)
+def made(preset="default", **keywords):
+    return model_of(corridor(), strider(), preset=preset, **keywords)
 
 
 def test_every_weight_and_every_setting_of_the_default_preset_has_a_name():
@@ -30,17 +31,18 @@ def test_every_weight_and_every_setting_of_the_default_preset_has_a_name():
             if known.range is not None:
                 assert found[f"{behaviour.name}.{setting}"].value == getattr(behaviour, setting)
     time = found["headway.time"]
-    assert (time.value, time.unit, str(time.bounds)) == (1.2, "s", "more than 0 s")
-    assert found["options.most_acceleration"].value == 0.95
+    assert (time.unit, str(time.bounds)) == ("s", "more than 0 s")
+    most = PRESETS["default"].most_acceleration
+    assert found["options.most_acceleration"].value == most
     assert {each.source for each in found.values()} == {"preset default"}
-    assert str(time) == "headway.time = 1.2 s (preset default)"
+    assert str(time) == f"headway.time = {time.value:g} s (preset default)"
 
 
 def test_the_source_of_a_number_follows_it():
     with model_rules(parameters={"headway.width": 0.4}):
         model = made()
     put(model, 1.0, 2.0)
-    model.set_parameters({"stepping.length": "0.5"}, "command line")
+    model.set_parameters({"right_of_way.width": "0.5"}, "command line")
     term = next(each for each in model.terms if each.name == "headway")
     term.distance = 0.3
     keep = KeepDistance(weight=0.2)
@@ -49,17 +51,17 @@ def test_the_source_of_a_number_follows_it():
     assert {name: each.source for name, each in found.items() if "preset" not in each.source} == {
         "headway.width": "code",
         "headway.distance": "code",
-        "stepping.length": "command line",
+        "right_of_way.width": "command line",
         "keep_distance.weight": "code",
         "keep_distance.distance": "code",
     }
-    assert (term.width, found["stepping.length"].value) == (0.4, 0.5)
+    assert (term.width, found["right_of_way.width"].value) == (0.4, 0.5)
     copied = deepcopy(model)
     assert copied.parameters() == found
     assert model.rules_used() == {
         "preset": f"default, sha256 {PRESETS['default'].digest}",
         "changed numbers": "headway.distance = 0.3 m (code); headway.width = 0.4 m (code); "
-        "stepping.length = 0.5 m (command line); keep_distance.weight = 0.2 (code); "
+        "right_of_way.width = 0.5 m (command line); keep_distance.weight = 0.2 (code); "
         "keep_distance.distance = 1.5 m (code)",
     }
 
@@ -101,7 +103,8 @@ def test_bad_numbers_are_one_line_and_leave_the_model_as_it_was(values, said):
 
 
 def test_names_that_are_like_no_other_list_the_behaviours():
-    with pytest.raises(ModelError, match=r"'zzz', there are target_distance, .*, options$"):
+    first = next(iter(PRESETS["default"].terms))
+    with pytest.raises(ModelError, match=rf"'zzz', there are {first}, .*, options$"):
         made().set_parameters({"zzz": 1.0})
 
 
@@ -135,12 +138,15 @@ def test_rules_of_a_block_replace_the_default_preset_and_end_with_it():
 
 def test_a_preset_with_other_numbers_is_another_one():
     default = PRESETS["default"]
-    other = default.with_parameters({"headway.time": "0.6", "stepping.weight": 2})
-    assert other.settings == {"headway": {"time": 0.6}}
-    assert other.terms == default.terms | {"stepping": 2.0}
+    values = default.parameters()
+    other = default.with_parameters({"headway.time": "0.6", "right_of_way.weight": 2})
+    headway = {**default.settings.get("headway", {}), "time": 0.6}
+    assert other.settings == {**default.settings, "headway": headway}
+    assert other.terms == default.terms | {"right_of_way": 2.0}
     assert (default.source, other.source) == ("preset default", "code")
     assert default.digest != other.digest
-    back = other.with_parameters({"headway.time": 1.2, "stepping.weight": 1.3})
+    names = ("headway.time", "right_of_way.weight")
+    back = other.with_parameters({name: values[name] for name in names})
     # What is said is as it is by default: the rules are the same.
     assert back.digest == default.digest
     assert [each.time for each in other.make_terms() if each.name == "headway"] == [0.6]
@@ -171,7 +177,14 @@ TOGETHER = ("options.most_acceleration", "right_of_way.bias", "right_of_way.widt
 NUMBERS = sorted(PRESETS["default"].parameters().keys() - TOGETHER)
 
 
-@given(st.dictionaries(st.sampled_from(NUMBERS), st.floats(1.0, 50.0), max_size=6))
+def value_of(name):
+    """A name and a number from 1 to 50 that it takes."""
+    bounds = number_named(name).range
+    high = 50.0 if bounds.high is None else min(bounds.high, 50.0)
+    return st.tuples(st.just(name), st.floats(1.0, high, exclude_max=bounds.below))
+
+
+@given(st.lists(st.sampled_from(NUMBERS).flatmap(value_of), max_size=6).map(dict))
 def test_any_numbers_in_range_are_those_of_the_preset_afterwards(values):
     changed = PRESETS["default"].with_parameters(values)
     expected = PRESETS["default"].parameters() | values

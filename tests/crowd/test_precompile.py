@@ -1,10 +1,15 @@
 """Precompilation covers the functions that runs need."""
 
 import pytest
-from mesa_mobility.behaviors.steering import anticipation, people_ahead, speed_adaptation
+from mesa_mobility.behaviors.steering import (
+    anticipation,
+    course_choice,
+    people_ahead,
+    speed_adaptation,
+)
 from mesa_mobility.models import Doorway
 
-from mesa_mobility.crowd import precompile
+from mesa_mobility.crowd import PRESETS, precompile
 from mesa_mobility.crowd.conflicts import hindrance
 from mesa_mobility.crowd.planning import decision, decision_order
 from mesa_mobility.crowd.state import advance, aggregates, departed, people_grid
@@ -19,22 +24,26 @@ FUNCTIONS = [
     departed.walk_on,
     departed.move_on,
     departed.merge,
-    people_ahead.note_motion,
-    anticipation._turn_aside,
-    speed_adaptation._adapt_speeds,
     hindrance.find_hindered,
     hindrance.wait_behind,
     aggregates._look_over,
     aggregates.split_active,
 ]
+OF_TACTICS = {
+    "anticipation": [people_ahead.note_motion, anticipation._turn_aside],
+    "course_choice": [course_choice._choose_courses],
+    "speed_adaptation": [speed_adaptation._adapt_speeds],
+}
 
 
 def test_what_is_compiled_ahead_is_what_a_run_calls():
     Doorway(pedestrians=60, rng=1).run(max_seconds=20.0)
-    needed = [set(function.signatures) for function in FUNCTIONS]
+    tactics = PRESETS["default"].tactics
+    functions = FUNCTIONS + [each for name in tactics for each in OF_TACTICS.get(name, [])]
+    needed = [set(function.signatures) for function in functions]
     precompile.compile_decisions()
     precompile.compile_the_rest()
-    assert [set(function.signatures) for function in FUNCTIONS] == needed
+    assert [set(function.signatures) for function in functions] == needed
     assert all(needed)
 
 

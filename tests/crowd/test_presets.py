@@ -48,17 +48,19 @@ def test_the_papers_terms_and_its_options_of_45_frames():
 
 
 def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_shorter_options():
-    model = model_of(corridor(), strider())
+    model = model_of(corridor(), strider(), preset="default")
     assert model.preset == "default"
     rules = PRESETS["default"]
     assert weights(model) == {load_behavior(name): rules.terms[name] for name in rules.terms}
     assert PreferredVelocity in weights(model)
     assert Displacement not in weights(model)
     assert min(rules.terms.values()) > 0.0
+    assert min(rules.durations) < 45
     # Stand and half a metre in 12 frames, a metre in 24 and 1.875 in 45; whole, and each part of
     # those of its rank. Parts that leave nothing of the ground end in place alike: one is kept.
     options = put(model, 1.0, 2.0).movement_options()
-    ranks = [(0.4, [0.0, 0.5]), (0.8, [1.0]), (1.5, [1.875])]
+    by_frames = {12: [0.0, 0.5], 24: [1.0], 45: [1.875]}
+    ranks = [(frames / 30, by_frames[frames]) for frames in sorted(rules.durations)]
     expected = [(seconds, metres) for seconds, whole in ranks for metres in whole]
     for (seconds, whole), own in zip(ranks, rules.shares, strict=False):
         for share in own:
@@ -68,22 +70,29 @@ def test_the_default_has_a_preferred_velocity_in_place_of_displacement_and_short
     np.testing.assert_allclose(sorted(found), sorted(expected), atol=1e-6)
 
 
-def test_the_same_constants_in_both():
-    for preset in ("paper", "default"):
-        (term,) = (t for t in model_of(corridor(), strider(), preset=preset).terms
-                   if isinstance(t, Interference))  # fmt: skip
-        assert (term.a, term.b) == (10.5, 0.09)
+def test_the_constants_of_the_paper_wherever_there_is_interference():
+    found = {
+        name: (term.a, term.b)
+        for name, rules in PRESETS.items()
+        for term in rules.make_terms()
+        if isinstance(term, Interference)
+    }
+    assert "paper" in found
+    assert set(found.values()) == {(10.5, 0.09)}
 
 
 @pytest.mark.parametrize(("preset", "through"), [("paper", True), ("default", False)])
 def test_bodies_are_hard_in_the_default_only(preset, through):
-    # Two who can but walk straight at each other, 1.5 m apart, 1 m in 45 frames.
-    map_ = make_map([[stand(), stand(45), straight(1.0, 45, to=0)]])
+    # Two who can but walk straight at each other, 1.5 m apart, at 2/3 m/s.
+    steps = [straight(frames / 45, frames, to=0) for frames in (12, 24, 45)]
+    map_ = make_map([[stand(), stand(45), *steps]])
     model = model_of(corridor(length=8.0, both_ends=True), map_, preset=preset)
     put(model, 3.25, 2.0, 0.0, exits=["east"], preferred_speeds=[0.7])
     put(model, 4.75, 2.0, 3.141592653589793, exits=["west"], preferred_speeds=[0.7])
     advance(model, 180)
-    assert (overlaps(model.recorder.arrays(), 0.15, tolerance=0.0) > 0) == through
+    rows = model.recorder.arrays()
+    assert rows["x"][rows["person"] == 0].max() > 3.5  # they do walk
+    assert (overlaps(rows, 0.15, tolerance=0.0) > 0) == through
 
 
 def test_decisions_of_the_paper_last_45_frames_or_4():
@@ -100,7 +109,7 @@ def test_decisions_of_the_paper_last_45_frames_or_4():
 
 
 def test_each_model_has_terms_of_its_own():
-    one, other = model_of(corridor(), strider()), model_of(corridor(), strider())
+    one, other = (model_of(corridor(), strider(), preset="default") for _ in range(2))
     one.terms[0].weight = 99.0
     assert other.terms[0].weight == PRESETS["default"].terms[other.terms[0].name]
 

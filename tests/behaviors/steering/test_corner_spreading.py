@@ -7,6 +7,7 @@ from shapely import Polygon
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
 from mesa_mobility.crowd.state.records import Crowd
+from tests.fixtures.engine import ENGINE
 
 SPEED = 1.5
 CAPACITY = 1.22  # Weidmann's capacity of a level way, persons/(m s)
@@ -32,7 +33,7 @@ PLACES = [(10.0, 30.0 + 2.0 * k) for k in range(6)]
 
 
 def test_people_pass_as_far_out_as_those_before_them_take_up():
-    model = PedestrianModel(halls(), rng=1)
+    model = PedestrianModel(halls(), preset=ENGINE, rng=1)
     people = model.add_pedestrians(PLACES, preferred_speeds=SPEED)
     for k, person in enumerate(people):
         seconds = np.hypot(BEND - 10.0, PLACES[k][1] - BEND) / SPEED
@@ -42,10 +43,10 @@ def test_people_pass_as_far_out_as_those_before_them_take_up():
 
 def test_who_is_behind_does_not_count():
     # The same people, put there in another order.
-    model = PedestrianModel(halls(), rng=1)
+    model = PedestrianModel(halls(), preset=ENGINE, rng=1)
     people = model.add_pedestrians(PLACES[::-1], preferred_speeds=SPEED)
     assert passing(people[-1]) == pytest.approx(0.0, abs=CUTS)
-    model = PedestrianModel(halls(), rng=1)
+    model = PedestrianModel(halls(), preset=ENGINE, rng=1)
     (alone,) = model.add_pedestrians(PLACES[:1], preferred_speeds=SPEED)
     assert alone.target == pytest.approx(people[-1].target)
 

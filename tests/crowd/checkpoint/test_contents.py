@@ -12,6 +12,7 @@ from mesa_mobility.crowd.running.stall import StallWatch
 from mesa_mobility.crowd.state.aggregates import Aggregates
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.errors import ModelError
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import strider, wanderer
 from tests.fixtures.scenes import advance, corridor
 
@@ -38,7 +39,7 @@ class Counting(Tactic):
 def saved(tmp_path_factory):
     """A checkpoint of six people, one of whom has left, and 100 records' room."""
     model = PedestrianModel(corridor(length=6.0), mobility_map=wanderer(5, options=30), rng=1,
-                            record=True)  # fmt: skip
+                            preset=ENGINE, record=True)  # fmt: skip
     model.add_pedestrians([(1.0, 1.0), (2.0, 2.0), (3.0, 3.0), (4.0, 1.0), (2.5, 1.0), (1.0, 3.0)])
     model.tactics.append(Counting())
     advance(model, 40)

@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 
 from mesa_mobility import PedestrianModel
-from mesa_mobility.crowd import PRESETS, Provenance, model_rules, write_preset
+from mesa_mobility.crowd import Provenance, model_rules, write_preset
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import wanderer
 from tests.fixtures.scenes import advance, corridor
 
@@ -22,7 +23,7 @@ def places(model):
 
 @pytest.mark.parametrize("how", ["file", "block"])
 def test_rules_of_a_file_and_of_a_block_are_saved(how, tmp_path):
-    noted = replace(PRESETS["default"], name="mine", durations=(12, 24), most_acceleration=None)
+    noted = replace(ENGINE, name="mine", durations=(12, 24), most_acceleration=None)
     rules = replace(noted, provenance=Provenance(date="2026-11-26", figures={"flow": 1.5}))
     file = tmp_path / "mine.toml"
     write_preset(rules.with_parameters({"headway.time": 0.5}), file)

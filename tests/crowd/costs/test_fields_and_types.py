@@ -6,6 +6,7 @@ import pytest
 from mesa_mobility import CompiledTerm, CostTerm, PedestrianType, option_kernel, pair_kernel
 from mesa_mobility.crowd import PedestrianModel, Watch
 from mesa_mobility.errors import ModelError
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import wanderer
 from tests.fixtures.scenes import advance, corridor, model_of
 
@@ -171,8 +172,9 @@ def test_weights_by_type(term):
         same = wanderer(5, options=60)
         types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
         model = PedestrianModel(
-            corridor(), pedestrian_types=types, rng=1, fields={"mood": float}, record=True
-        )
+            corridor(), pedestrian_types=types, preset=ENGINE, rng=1, fields={"mood": float},
+            record=True,
+        )  # fmt: skip
         made = term(weights.pop("weight", 0.0))
         made.weight_by_type = weights
         model.terms.append(made)
@@ -218,8 +220,9 @@ def test_terms_by_type(term):
         same = wanderer(5, options=60)
         types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
         model = PedestrianModel(
-            corridor(), pedestrian_types=types, rng=1, fields={"mood": float}, record=True
-        )
+            corridor(), pedestrian_types=types, preset=ENGINE, rng=1, fields={"mood": float},
+            record=True,
+        )  # fmt: skip
         model.terms += terms
         for kind in (0, 1):
             model.add_pedestrians(
@@ -243,7 +246,7 @@ def test_one_term_with_other_numbers_for_each_type():
     def model_with(*kinds):
         same = wanderer(5)
         types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
-        model = PedestrianModel(corridor(), pedestrian_types=types, rng=1)
+        model = PedestrianModel(corridor(), pedestrian_types=types, preset=ENGINE, rng=1)
         model.add_pedestrians([(2.0, 2.0), (5.0, 2.0)], type_index=[0, 1])
         for weight, names in enumerate(kinds, start=1):
             term = Down(weight)

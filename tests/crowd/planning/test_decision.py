@@ -8,6 +8,7 @@ from mesa_mobility.behaviors import Displacement, Interference, PreferredVelocit
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import make_map, stand, straight, strider, through, wanderer
 from tests.fixtures.oracles.costs import PAPER_COST, cost_of
 from tests.fixtures.oracles.decisions import Oracle
@@ -171,7 +172,7 @@ ROOM = "POLYGON((0 0,6 0,6 5,0 5,0 0))"
 PILLAR = "POLYGON((3 2,3.5 2,3.5 3,3 3,3 2))"
 
 
-@pytest.mark.parametrize("preset", ["default", "paper"])
+@pytest.mark.parametrize("preset", [ENGINE, "paper"], ids=["engine", "paper"])
 @pytest.mark.parametrize("seed", range(6))
 def test_every_decision_is_the_one_worked_out_by_brute_force(preset, seed):
     plan = FloorPlan(
@@ -181,7 +182,7 @@ def test_every_decision_is_the_one_worked_out_by_brute_force(preset, seed):
     )
     model = model_of(plan, wanderer(seed), preset=preset, rng=seed)
     model.add_pedestrians(plan.random_points(10, model.rng, spacing=0.5, clearance=0.3))
-    if preset == "default":
+    if preset is ENGINE:
         oracle = Oracle(model)
     else:
         oracle = Oracle(model, PAPER_COST, cores=False, durations=(45,), shares=())
@@ -219,11 +220,11 @@ def test_brute_force_would_tell_another_choice():
     plan = FloorPlan(ROOM, exits=[Exit("east", (6, 1), (6, 1.8))], obstacles=[PILLAR])
     faults = []
     for terms in ([TargetDistance()], None):
-        preset = "default" if terms else "paper"
+        preset = ENGINE if terms else "paper"
         model = model_of(plan, wanderer(3), behaviors=terms, preset=preset, rng=3)
         model.add_pedestrians(plan.random_points(10, model.rng, spacing=0.5, clearance=0.3))
         if terms:
-            oracle = Oracle(model, cost_of("default"))
+            oracle = Oracle(model, cost_of(ENGINE))
         else:
             oracle = Oracle(model, PAPER_COST, durations=(45,), shares=())
         found = []

@@ -10,6 +10,7 @@ from mesa_mobility import CostTerm, FloorPlan
 from mesa_mobility.crowd import FREE, PERSON, WALL, Watch
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Exit
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import make_map, stand, straight, strider, wanderer
 from tests.fixtures.oracles.numpy_terms import Clearance
 from tests.fixtures.plugin_terms import KeepOff
@@ -28,7 +29,7 @@ class KeepLow(CostTerm):
         return np.abs(candidates.points[:, 1] - 1.0)
 
 
-def room(seed, preset="default", extra=()):
+def room(seed, preset=ENGINE, extra=()):
     plan = FloorPlan(
         ROOM,
         exits=[Exit("east", (6, 1), (6, 1.8)), Exit("north", (1, 5), (2, 5))],
@@ -58,7 +59,7 @@ def decisions_of(model, row, frames):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("preset", ["default", "paper"])
+@pytest.mark.parametrize("preset", [ENGINE, "paper"], ids=["engine", "paper"])
 @pytest.mark.parametrize("seed", [0, 1, 2])
 @pytest.mark.parametrize("plug_in", [False, True])
 def test_the_cheapest_of_the_free_options_is_what_the_engine_commits_to(preset, seed, plug_in):

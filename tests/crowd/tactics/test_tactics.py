@@ -8,6 +8,7 @@ import pytest
 from mesa_mobility import Preset, Tactic
 from mesa_mobility.crowd import PRESETS
 from mesa_mobility.errors import ModelError
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import strider
 from tests.fixtures.scenes import advance, corridor, model_of, put
 
@@ -41,15 +42,18 @@ def names(model):
 
 
 def test_those_of_the_presets():
+    # Without these four, places to visit, zones, rules and waiting times mean nothing.
+    needed = ["visits", "speed_zones", "speed_rules", "waiting"]
+    assert names(model_of(corridor(), strider(), preset="paper")) == needed
+    default = names(model_of(corridor(), strider(), preset="default"))
+    assert default == list(PRESETS["default"].tactics)
+    assert [name for name in default if name in needed] == needed
     everything = [
         "corner_spreading", "visits", "speed_zones", "speed_rules", "giving_way",
         "waiting", "speed_compensation", "anticipation", "speed_adaptation",
         "stepping_off",
     ]  # fmt: skip
-    assert names(model_of(corridor(), strider())) == everything
-    assert names(model_of(corridor(), strider(), preset="paper")) == [
-        "visits", "speed_zones", "speed_rules", "waiting"
-    ]  # fmt: skip
+    assert names(model_of(corridor(), strider(), preset=ENGINE)) == everything
 
 
 def test_they_apply_in_order_and_may_be_taken_out():
