@@ -189,14 +189,14 @@ def test_the_decision_shown_is_the_one_the_engine_takes(tab):
 @pytest.mark.thorough
 def test_weights_and_behaviours_change_while_it_runs(tab):
     tab.step(2)
-    tab.page.get_by_label("weight of target distance", exact=True).fill("0")
-    tab.page.get_by_label("weight of target distance", exact=True).press("Enter")
-    tab.page.get_by_role("checkbox", name="interference", exact=True).click()
+    tab.page.get_by_label("weight of preferred velocity", exact=True).fill("0")
+    tab.page.get_by_label("weight of preferred velocity", exact=True).press("Enter")
+    tab.page.get_by_role("checkbox", name="headway", exact=True).click()
     tab.step(15)
     model = ahead(Doorway(rng=SEED), 2)
-    (distance,) = (term for term in model.terms if term.name == "target_distance")
-    distance.weight = 0.0
-    model.terms = [term for term in model.terms if term.name != "interference"]
+    (velocity,) = (term for term in model.terms if term.name == "preferred_velocity")
+    velocity.weight = 0.0
+    model.terms = [term for term in model.terms if term.name != "headway"]
     assert same_people(tab.people(), ahead(model, 15))
     assert not same_people(tab.people(), ahead(Doorway(rng=SEED), 17))
 

@@ -227,7 +227,7 @@ class Monkey:
             self.page.mouse.click(*where)
 
     def type(self):
-        label = self.rng.choice((*PARAMETERS, "weight of headway", "weight of target distance"))
+        label = self.rng.choice((*PARAMETERS, "weight of headway", "weight of preferred velocity"))
         self.fill(label, self.rng.choice(TYPED))
 
     def fill(self, label, text):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mesa_mobility import CostTerm, Exit, FloorPlan, PedestrianModel, Trajectories
-from mesa_mobility.crowd import PRESETS
 from mesa_mobility.estimation import Sampling, estimate, observe
+from tests.fixtures.engine import ENGINE
 
 WEIGHTS = {
     "facing_deviation": 4.0,
@@ -36,7 +36,7 @@ class Drawn(CostTerm):
 
 
 RULES = replace(
-    PRESETS["default"],
+    ENGINE,
     name="logit",
     terms=WEIGHTS,
     durations=(24,),
