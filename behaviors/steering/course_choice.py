@@ -16,6 +16,12 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from mesa_mobility.behaviors.steering.anticipation import (
+    COURSE_TABLE,
+    GAINS,
+    STEPS,
+    WALKS,
+)
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Desired, FloorPlan, Range, Tactic
@@ -41,17 +47,12 @@ AHEAD = 3.0
 CLOSE = 0.4
 """Metres between the middles of two people, one behind the other, who stand."""
 
-GAINS = 0.4
-"""How much faster than now people expect to be soon, m/s."""
-
 ONCOMING = 0.1
 """Speed against one's way from which on somebody comes towards one, m/s."""
 
-STEPS, WIDEST = 6, 0.8
-"""Number of courses to each side, and the angle of the last, radians."""
-
-WALKS = 0.3
-"""Speed from which on a course wanders, m/s."""
+_COURSES = COURSE_TABLE[1:3, : 2 * STEPS + 1].copy()
+"""(2, courses) cosine and sine of the turn of each course at the full speed: straight on, then to
+the right and the left in turns, ever wider."""
 
 _FIELDS = 4
 
@@ -84,7 +85,8 @@ def choose_courses(
     points = points.copy()
     ahead = np.empty((_FIELDS, len(inside.grid.people)))
     sight = sight_on(plan, 0.0)
-    _choose_courses(rows, inside.grid, sight, inside.crowd.records, points, speeds, settings, ahead)
+    state = inside.crowd.records
+    _choose_courses(rows, inside.grid, sight, state, points, speeds, settings, _COURSES, ahead)
     return points
 
 
@@ -97,6 +99,7 @@ def _choose_courses(
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
     settings: CourseSettings,
+    courses: NDArray[np.float64],
     ahead: NDArray[np.float64],
 ) -> None:
     """Change ``points`` as of ``choose_courses``; ``ahead`` has room for everybody."""
@@ -116,17 +119,14 @@ def _choose_courses(
             continue
         count = _in_view(x, y, sight, ahead, count)
         best, bx, by = np.inf, ex, ey
-        for step in range(2 * STEPS + 1):
-            # Straight on, then to the right and the left in turns, ever wider.
-            number = (step + 1) // 2
-            turn = WIDEST / (STEPS * STEPS) * number * number
-            c, s = math.cos(turn), -math.sin(turn) if step % 2 == 1 else math.sin(turn)
+        for n in range(courses.shape[1]):
+            c, s = courses[0, n], courses[1, n]
             ux, uy = c * ex - s * ey, s * ex + c * ey
             cost = speed * math.sqrt(2.0 - 2.0 * c)
             if cost < best:
                 on = c * _gets_on(ux, uy, far, speed, settings.width, ahead, count)
                 cost += settings.haste * speed * (1.0 - on / far)
-            if cost < best and (step == 0 or unwalled(sight, x, y, x + far * ux, y + far * uy)):
+            if cost < best and (n == 0 or unwalled(sight, x, y, x + far * ux, y + far * uy)):
                 best, bx, by = cost, ux, uy
         points[k, 0], points[k, 1] = x + away * bx, y + away * by
 
