@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TracksOptions:
-    """What a file of measured tracks does not tell."""
+    """Unit and frame rate of measured tracks whose file does not tell them."""
 
     unit: Annotated[str | None, typer.Option(help="m, cm or mm, if a file does not tell.")] = None
     frame_rate: Annotated[

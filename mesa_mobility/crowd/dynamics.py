@@ -170,7 +170,7 @@ class Dynamics(Saved):
         return make_candidates(rows, self._outlook(rows))
 
     def _outlook(self, rows: NDArray[np.int64]) -> Outlook:
-        """What the people in ``rows`` would see if they decided now."""
+        """Neighbours, walls and options of the people in ``rows``, if they decided now."""
         scene = self._scene
         return Outlook(
             scene.repertoire.table,

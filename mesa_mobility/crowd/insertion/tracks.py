@@ -24,7 +24,7 @@ AT_EXIT = 1.0
 
 
 class MeasuredTracks(Protocol):
-    """What a model uses of ``Trajectories``."""
+    """The part of ``Trajectories`` that a model uses."""
 
     @property
     def reading(self) -> Any:

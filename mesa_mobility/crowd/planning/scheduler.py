@@ -220,7 +220,7 @@ class DecisionScheduler:
 
 
 def _not_a_number(weighed: Explanation) -> str:
-    """What is wrong where the cost of an option is not a number."""
+    """The error for an option whose cost is not a number."""
     row = weighed.pedestrian
     for name, costs in zip(weighed.terms, weighed.costs, strict=True):
         wrong = np.flatnonzero(~np.isfinite(costs))

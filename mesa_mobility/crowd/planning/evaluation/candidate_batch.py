@@ -20,7 +20,7 @@ from mesa_mobility.crowd.state.surroundings import Surroundings
 
 
 class Outlook(NamedTuple):
-    """What people see who decide.
+    """Everything that a decision looks at: options, people, walls, rules and the moment.
 
     Attributes:
         table: options of all pedestrian types.
