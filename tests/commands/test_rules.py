@@ -133,7 +133,7 @@ def test_experiments_vary_fix_and_list_numbers(command, mine, tmp_path):
     inputs = json.loads(frame["inputs"][0])
     assert inputs["preset"] == f"mine, mine.toml, sha256 {read_preset(mine).digest}"
     assert inputs["changed numbers"] == (
-        "right_of_way.weight = 2.5 (experiment); headway.time = 0.5 s (experiment)"
+        "headway.time = 0.5 s (experiment); right_of_way.weight = 2.5 (experiment)"
     )
     assert sorted(store.table(["headway.time"])["headway.time"].to_pylist()) == [0.5, 1.5]
     mine.write_text(mine.read_text().replace("time = 0.9", "time = 0.8"))
