@@ -10,14 +10,17 @@ from mesa_mobility import CompiledTerm, Me, Option, Other, Range, pair_kernel
 
 @pair_kernel
 def _headway(option: Option, me: Me, other: Other, p: "Headway") -> float:
+    wx = me.target_x - me.x
+    wy = me.target_y - me.y
+    way2 = wx * wx + wy * wy
+    if (other.x - me.x) * wx + (other.y - me.y) * wy >= way2:
+        return 0.0
     mx = option.facing_x
     my = option.facing_y
     if option.speed * option.duration <= STANDS:
-        mx = me.target_x - me.x
-        my = me.target_y - me.y
-        way = math.sqrt(mx * mx + my * my)
-        mx = mx / way if way > 0.0 else 0.0
-        my = my / way if way > 0.0 else 0.0
+        way = math.sqrt(way2)
+        mx = wx / way if way > 0.0 else 0.0
+        my = wy / way if way > 0.0 else 0.0
     dx = other.x + other.vx * option.duration - option.x
     dy = other.y + other.vy * option.duration - option.y
     ahead = dx * mx + dy * my
@@ -39,7 +42,8 @@ class Headway(CompiledTerm):
     neighbour will be by then at constant velocity, v the speed of the option, l the distance that
     people keep when they stand, T the time gap when they walk.  In metres over the paper's 1.5 s.
     Ahead is where one faces there or, for an option that covers no ground, where one's target is:
-    nobody makes room by looking elsewhere.
+    nobody makes room by looking elsewhere.  People beyond the target do not count: one does not
+    come up to them.
     h is Huber's loss (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 s) of an excess
     e up to s, ``softness``, and e - s / 2 beyond.  If all costs were linear, their sum would be
     least at a kink, and a small change of the room ahead would take people from one kink to

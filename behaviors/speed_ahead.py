@@ -18,7 +18,7 @@ def _speed_ahead(option: Option, me: Me, other: Other, p: "SpeedAhead") -> float
     ahead = dx * ex + dy * ey
     # By factors that all neighbours share: a processor does few divisions at a time.
     share = 1.0 - abs(dy * ex - dx * ey) * (1.0 / p.width)
-    if ahead <= 0.0 or share <= 0.0:
+    if ahead <= 0.0 or ahead >= way or share <= 0.0:
         return 0.0
     own = ((option.x - me.x) * ex + (option.y - me.y) * ey) / option.duration
     theirs = other.vx * ex + other.vy * ey
@@ -32,9 +32,10 @@ class SpeedAhead(CompiledTerm):
     Sum over neighbours ahead of ``|v - u| s exp(-(d - g) / r)``: v and u are the speeds of the
     option and of the neighbour along the way to the target, d is how far ahead the neighbour is
     now, g the gap up to which they count in full and r the range over which that falls. s is 1
-    straight ahead and 0 at ``width`` to the side. People who take over the speed of those ahead
-    keep the gap as it is, so that small changes do not grow on their way back through a queue
-    (Treiber and Kesting, Traffic Flow Dynamics, chapter 15).
+    straight ahead and 0 at ``width`` to the side.  People beyond the target do not count.
+    People who take over the speed of those ahead keep the gap as it is, so that small changes do
+    not grow on their way back through a queue (Treiber and Kesting, Traffic Flow Dynamics,
+    chapter 15).
 
     Args:
         weight: factor in the sum.

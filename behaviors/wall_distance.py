@@ -1,4 +1,4 @@
-"""Keeping a hand's breadth from walls."""
+"""Keeping away from walls."""
 
 import math
 from typing import Annotated
@@ -15,15 +15,16 @@ def _wall_distance(option: Option, me: Me, wall: Wall, p: "WallDistance") -> flo
     share = min(max(along / length2, 0.0), 1.0) if length2 > 0.0 else 0.0
     dx = option.x - wall.x1 - share * wx
     dy = option.y - wall.y1 - share * wy
-    room = math.sqrt(dx * dx + dy * dy) - me.core
-    return max(1.0 - room / p.within, 0.0)
+    return max(1.0 - math.sqrt(dx * dx + dy * dy) / p.within, 0.0)
 
 
 class WallDistance(CompiledTerm):
-    """Prefers options that end with some room between body and walls.
+    """Prefers options that end some way from walls.
 
-    ``1 - r / w`` of the nearest wall, as far as r is less than w: r is the distance from the core
-    to the wall at the mobility point and w is ``within``.
+    ``1 - d / w`` of the nearest wall, as far as d is less than w: d is the distance from the middle
+    of the body to the wall at the mobility point and w is ``within``.  Wide bodies so keep less
+    room between themselves and the wall: if all kept the same, two people in wheelchairs would
+    both keep to the middle of a narrow corridor and never pass each other.
 
     Args:
         weight: factor in the sum.
@@ -39,7 +40,7 @@ class WallDistance(CompiledTerm):
     def __init__(
         self,
         weight: float | None = None,
-        within: Annotated[float, Range(0.0, unit="m", above=True)] = 0.15,
+        within: Annotated[float, Range(0.0, unit="m", above=True)] = 0.3,
     ) -> None:
         super().__init__(weight)
         self.within = within

@@ -49,8 +49,11 @@ LEFT = 0.1
 """What turning left costs more, m/s: of two people who might as well pass on either side, both keep
 to the right."""
 
-STEPS, WIDEST = 6, 0.8
-"""Number of courses to each side, and the angle of the last, radians."""
+STEPS = 6
+"""Number of courses to each side."""
+
+NARROWEST = 0.8 / 36
+"""Angle of the first course to a side, radians; the n-th is turned by n^2 as much."""
 
 SLOWER = 0.7
 """Share of their speed at which people might walk on instead."""
@@ -66,21 +69,22 @@ _COURSES = 2 * (2 * STEPS + 1)
 _COURSE_FIELDS = 7
 
 
+def turns(steps: int) -> NDArray[np.float64]:
+    """(2 steps + 1,) angles by which courses turn, radians: straight on, then to the right and the
+    left in turns, ever wider."""
+    numbers = np.arange(1, steps + 1)
+    right = -NARROWEST * numbers * numbers
+    return np.concatenate([[0.0], np.column_stack([right, -right]).ravel()])
+
+
 def _course_table() -> NDArray[np.float64]:
     """(``_COURSE_FIELDS``, courses) share of the speed, cosine and sine of the turn, and what the
-    side costs, m/s, of each course; the other rows are workspace.
-
-    At each share, straight on comes first, then turns to the right and the left, ever wider.
-    """
+    side costs, m/s, of each course; the other rows are workspace."""
+    angles = np.tile(turns(STEPS), 2)
     courses = np.zeros((_COURSE_FIELDS, _COURSES))
-    for n in range(_COURSES):
-        number = (n % (2 * STEPS + 1) + 1) // 2
-        turn = WIDEST / (STEPS * STEPS) * number * number
-        left = n % (2 * STEPS + 1) % 2 == 0
-        share = 1.0 if n <= 2 * STEPS else SLOWER
-        angle = turn if left else -turn
-        side = LEFT if angle > 0.0 else 0.0
-        courses[:4, n] = share, math.cos(angle), math.sin(angle), side
+    courses[0] = np.repeat([1.0, SLOWER], 2 * STEPS + 1)
+    courses[1], courses[2] = np.cos(angles), np.sin(angles)
+    courses[3] = np.where(angles > 0.0, LEFT, 0.0)
     return courses
 
 

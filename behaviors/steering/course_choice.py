@@ -3,7 +3,7 @@
 The shortest way round a corner or through a door from the side touches the wall.  If everybody took
 it, a crowd would queue for a single place, and most of the door or corridor would stay empty.  So
 people who would catch up with slower people compare courses: straight to their target, and turned
-by up to 45 degrees to either side.  On each they get as far as those ahead let them who walk the
+by up to 62 degrees to either side.  On each they get as far as those ahead let them who walk the
 same way, or stand.  The cost of a course is the change of velocity that it takes, and what it loses
 of the way to the target.  Somebody who is alone goes straight.
 
@@ -17,10 +17,9 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from mesa_mobility.behaviors.steering.anticipation import (
-    COURSE_TABLE,
     GAINS,
-    STEPS,
     WALKS,
+    turns,
 )
 from numpy.typing import NDArray
 
@@ -50,9 +49,12 @@ CLOSE = 0.4
 ONCOMING = 0.1
 """Speed against one's way from which on somebody comes towards one, m/s."""
 
-_COURSES = COURSE_TABLE[1:3, : 2 * STEPS + 1].copy()
-"""(2, courses) cosine and sine of the turn of each course at the full speed: straight on, then to
-the right and the left in turns, ever wider."""
+STEPS = 7
+"""Number of courses to each side: the last is turned by 62 degrees, by which somebody gets round a
+person whom they stand behind."""
+
+_COURSES = np.stack([np.cos(turns(STEPS)), np.sin(turns(STEPS))])
+"""(2, courses) cosine and sine of the turn of each course."""
 
 _FIELDS = 4
 

@@ -65,6 +65,11 @@ def test_somebody_at_their_target_follows_nobody():
     assert cost((1.5, 0.0), ((0.5, 0.0), (0.0, 0.0)), target=(0.0, 0.0)) == 0.0
 
 
+def test_nobody_beyond_the_target_is_followed():
+    assert cost((1.5, 0.0), ((0.5, 0.0), (0.0, 0.0)), target=(0.6, 0.0)) == pytest.approx(1.0)
+    assert cost((1.5, 0.0), ((0.5, 0.0), (0.0, 0.0)), target=(0.4, 0.0)) == 0.0
+
+
 @given(st.integers(0, 10_000), turns, shifts)
 @settings(deadline=None)
 def test_turning_and_moving_everything_changes_nothing(seed, turn, shift):

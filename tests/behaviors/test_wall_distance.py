@@ -13,7 +13,7 @@ from tests.fixtures.options import Chooser, Ending, candidates
 WALL = (0.0, 0.0, 4.0, 0.0)
 
 
-def cost(point, *walls, core=0.15, within=0.2) -> float:
+def cost(point, *walls, core=0.15, within=0.5) -> float:
     chooser = Chooser([Ending(point)], position=(2.0, 2.0), core=core, walls=walls)
     return float(WallDistance(within=within).cost(candidates(chooser))[0])
 
@@ -21,9 +21,9 @@ def cost(point, *walls, core=0.15, within=0.2) -> float:
 @pytest.mark.parametrize(
     ("point", "expected"),
     [
-        ((2.0, 0.35), 0.0),
+        ((2.0, 0.5), 0.0),
         ((2.0, 0.25), 0.5),
-        ((2.0, 0.15), 1.0),
+        ((2.0, 0.15), 0.7),
         ((2.0, -0.25), 0.5),
         # Beside the end of the wall: 0.25 m away by 0.2 m and 0.15 m.
         ((4.2, 0.15), 0.5),
@@ -32,6 +32,10 @@ def cost(point, *walls, core=0.15, within=0.2) -> float:
 )
 def test_what_an_option_costs(point, expected):
     assert cost(point, WALL) == pytest.approx(expected, abs=1e-12)
+
+
+def test_wide_bodies_come_as_near_with_their_middle():
+    assert cost((2.0, 0.4), WALL, core=0.35) == cost((2.0, 0.4), WALL) == pytest.approx(0.2)
 
 
 def test_the_nearest_wall_counts_alone():
@@ -50,7 +54,7 @@ near = st.floats(-1.0, 1.0)
 def test_the_distance_is_shapelys(x, y, x1, y1, x2, y2):
     assume(np.hypot(x2 - x1, y2 - y1) > 1e-6)
     away = LineString([(x1, y1), (x2, y2)]).distance(Point(x, y))
-    expected = max(1.0 - (away - 0.15) / 0.2, 0.0)
+    expected = max(1.0 - away / 0.5, 0.0)
     found = cost((x, y), (x1, y1, x2, y2))
     np.testing.assert_allclose(found, expected, atol=1e-6)
 

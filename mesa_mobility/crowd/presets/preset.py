@@ -30,6 +30,12 @@ from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.registry import did_you_mean, load_behavior
 
+SCENE_FIRST = ("visits", "speed_zones", "speed_rules")
+"""Tactics by which people do what the scene says, before those of a preset."""
+
+SCENE_LAST = ("waiting", "stepping_off")
+"""The same, after those of a preset."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Preset:
@@ -43,7 +49,8 @@ class Preset:
         terms: weight of each registered cost term, by its name.
         target_choice: registered behaviour that gives people their targets.
         tactics: registered tactics, in order: the steps from a target to what people want of their
-            next movement.
+            next movement.  Those by which people do what the scene says (``SCENE_FIRST``,
+            ``SCENE_LAST``) come before and after them, unless the preset names their place.
         group_pace: registered speed rule that keeps groups together.
         durations: option durations in frames.
         shares: shortened copies of the options of each cluster, as shares of the ground covered:
@@ -132,6 +139,7 @@ class Preset:
         """
         numbers = self.numbers()
         del numbers["name"]
+        numbers["tactics"] = self.all_tactics
         numbers["settings"] = {
             made.name: {each: repr(value) for each, value in made.settings().items()}
             for made in self.behaviours()
@@ -154,9 +162,16 @@ class Preset:
         own = self.source in (CODE, f"preset {self.name}")
         return f"{self.name if own else f'{self.name}, {self.source}'}, sha256 {self.digest}"
 
+    @property
+    def all_tactics(self) -> tuple[str, ...]:
+        """Names of the preset's tactics and of those of every preset, in order."""
+        first = (each for each in SCENE_FIRST if each not in self.tactics)
+        last = (each for each in SCENE_LAST if each not in self.tactics)
+        return (*first, *self.tactics, *last)
+
     def make_tactics(self) -> list[Tactic]:
-        """The tactics in order, looked up among the installed behaviours."""
-        return [self._made(name) for name in self.tactics]
+        """All tactics in order, looked up among the installed behaviours."""
+        return [self._made(name) for name in self.all_tactics]
 
     def make_target_choice(self) -> TargetChoice:
         """The target choice, looked up among the installed behaviours."""
@@ -185,7 +200,7 @@ class Preset:
         ]
         kinds = {
             "terms": (CostTerm, self.terms),
-            "tactics": (Tactic, self.tactics),
+            "tactics": (Tactic, self.all_tactics),
             "target_choice": (TargetChoice, [self.target_choice]),
             "group_pace": (SpeedRule, [self.group_pace] if self.group_pace else []),
         }

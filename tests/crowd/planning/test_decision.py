@@ -8,6 +8,7 @@ from mesa_mobility.behaviors import Displacement, Interference, PreferredVelocit
 from shapely import box
 
 from mesa_mobility import Exit, FloorPlan
+from mesa_mobility.crowd import PRESETS
 from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import make_map, stand, straight, strider, through, wanderer
 from tests.fixtures.oracles.costs import PAPER_COST, cost_of
@@ -172,7 +173,9 @@ ROOM = "POLYGON((0 0,6 0,6 5,0 5,0 0))"
 PILLAR = "POLYGON((3 2,3.5 2,3.5 3,3 3,3 2))"
 
 
-@pytest.mark.parametrize("preset", [ENGINE, "paper"], ids=["engine", "paper"])
+@pytest.mark.parametrize(
+    "preset", [ENGINE, PRESETS["measured"], "paper"], ids=["engine", "measured", "paper"]
+)
 @pytest.mark.parametrize("seed", range(6))
 def test_every_decision_is_the_one_worked_out_by_brute_force(preset, seed):
     plan = FloorPlan(
@@ -182,8 +185,8 @@ def test_every_decision_is_the_one_worked_out_by_brute_force(preset, seed):
     )
     model = model_of(plan, wanderer(seed), preset=preset, rng=seed)
     model.add_pedestrians(plan.random_points(10, model.rng, spacing=0.5, clearance=0.3))
-    if preset is ENGINE:
-        oracle = Oracle(model)
+    if preset != "paper":
+        oracle = Oracle(model, durations=preset.durations)
     else:
         oracle = Oracle(model, PAPER_COST, cores=False, durations=(45,), shares=())
     decisions = 0

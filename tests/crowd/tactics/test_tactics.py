@@ -42,11 +42,13 @@ def names(model):
 
 
 def test_those_of_the_presets():
-    # Without these four, places to visit, zones, rules and waiting times mean nothing.
-    needed = ["visits", "speed_zones", "speed_rules", "waiting"]
+    # Without these, places to visit, zones, rules, waiting times and closing doors mean nothing.
+    needed = ["visits", "speed_zones", "speed_rules", "waiting", "stepping_off"]
     assert names(model_of(corridor(), strider(), preset="paper")) == needed
     default = names(model_of(corridor(), strider(), preset="default"))
-    assert default == list(PRESETS["default"].tactics)
+    assert [name for name in default if name not in needed] == [
+        name for name in PRESETS["default"].tactics if name not in needed
+    ]
     assert [name for name in default if name in needed] == needed
     everything = [
         "corner_spreading", "visits", "speed_zones", "speed_rules", "giving_way",
@@ -54,6 +56,14 @@ def test_those_of_the_presets():
         "stepping_off",
     ]  # fmt: skip
     assert names(model_of(corridor(), strider(), preset=ENGINE)) == everything
+
+
+def test_those_of_the_scene_come_around_those_of_a_preset_unless_it_names_their_place():
+    mine = replace(PRESETS["paper"], tactics=("giving_way", "stepping_off", "anticipation"))
+    assert names(model_of(corridor(), strider(), preset=mine)) == [
+        "visits", "speed_zones", "speed_rules", "giving_way", "stepping_off", "anticipation",
+        "waiting",
+    ]  # fmt: skip
 
 
 def test_they_apply_in_order_and_may_be_taken_out():
@@ -101,7 +111,7 @@ def test_a_preset_of_ones_own_is_saved_with_the_figures():
     model = model_of(corridor(), strider(), preset=mine)
     assert model.preset == "mine"
     assert [(term.name, term.weight) for term in model.terms] == [("target_distance", 2.0)]
-    assert names(model) == ["visits", "stepping_off"]
+    assert names(model) == ["speed_zones", "speed_rules", "visits", "stepping_off", "waiting"]
     rules = model.summary()["rules"]
     assert (rules["name"], rules["terms"], rules["tactics"]) == (
         "mine",
