@@ -1,0 +1,1 @@
+"""The calibration of the default preset: what it is calibrated on, and the command."""

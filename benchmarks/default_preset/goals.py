@@ -1,0 +1,141 @@
+"""Scenes without measured figures: what people must be able to do, whatever else is calibrated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from mesa_mobility.behaviors import WalkingAbreast
+from mesa_mobility.models import StraightWalk
+from shapely import Polygon, box
+
+from benchmarks.conflicts import corridor
+from benchmarks.default_preset.closeness import beyond
+from mesa_mobility import Exit, FloorPlan, PedestrianModel
+from mesa_mobility.populations import Population
+from mesa_mobility.verification.runs import crowd_model
+
+LIMIT_S = 240.0
+
+GOALS: dict[str, tuple[float, float, float]] = {
+    "two_way_door": (0.0, 60.0, 10.0),
+    "meeting": (0.65, 1.05, 0.05),
+    "setting_off": (0.952, 1.05, 0.006),
+    "abreast": (0.67, 0.83, 0.04),
+    "mixed_corridor": (0.0, 0.0, 1.5),
+    "round_somebody": (0.0, 8.0, 4.0),
+}
+"""The range in which what each scene gives should be, and how far outside counts as 1."""
+
+
+def two_way_door(seed: int) -> float:
+    """Seconds until 25 people from either side have passed a door 1 m wide, and two more for each
+    who has not."""
+    low, high, far = 3.5, 4.5, 10.2
+    floor = Polygon(
+        [(0, 0), (10, 0), (10, low), (far, low), (far, 0), (far + 10, 0), (far + 10, 8), (far, 8),
+         (far, high), (10, high), (10, 8), (0, 8)]
+    )  # fmt: skip
+    exits = [Exit("west", (0, 2), (0, 6)), Exit("east", (far + 10, 2), (far + 10, 6))]
+    plan = FloorPlan(floor, exits=exits)
+    model = crowd_model(plan, seed)
+    starts = ((box(3.5, 1, 9.5, 7), "east"), (box(far + 0.5, 1, far + 6.5, 7), "west"))
+    for start, goal in starts:
+        places = plan.random_points(25, model.rng, within=start, spacing=0.5, clearance=0.3)
+        model.add_pedestrians(places, exits=[goal])
+    model.run(max_seconds=LIMIT_S)
+    return model.elapsed + 2.0 * model.inside
+
+
+def meeting(seed: int) -> float:
+    """Least distance, in metres, of two people who meet head-on in the open; the smaller one of two
+    tries."""
+    return min(_meet(seed, aside) for aside in (0.0, 0.2))
+
+
+def _meet(seed: int, aside: float) -> float:
+    exits = [Exit("east", (40, 19), (40, 21)), Exit("west", (0, 19), (0, 21))]
+    model = crowd_model(FloorPlan(box(0, 0, 40, 40), exits=exits), seed)
+    one, other = (
+        *model.add_pedestrians([(16.0, 20.0)], exits=["east"]),
+        *model.add_pedestrians([(24.0, 20.0 + aside)], exits=["west"], headings=[math.pi]),
+    )
+    least = math.inf
+    for _ in range(240):
+        model.step()
+        least = min(least, float(np.hypot(*(one.position - other.position))))
+    return least
+
+
+def setting_off(seed: int) -> float:
+    """Least mean speed of 50 people who set off and walk 40 m, as a share of the preferred one."""
+    model = StraightWalk(record=True, rng=seed)
+    wanted = np.array([person.preferred_speed for person in model.agents])
+    model.run(max_seconds=120)
+    rows = model.recorder.arrays()
+    shares = []
+    for person, speed in enumerate(wanted):
+        own = np.flatnonzero(rows["person"] == person)
+        own = own[np.argsort(rows["frame"][own])]
+        way = rows["x"][own[-1]] - rows["x"][own[0]]
+        shares.append(way * 30.0 / (rows["frame"][own[-1]] - rows["frame"][own[0]]) / speed)
+    return float(min(shares))
+
+
+def abreast(seed: int) -> float:
+    """Mean distance, in metres, of two friends who walk side by side in a corridor of 1.5 m."""
+    plan = FloorPlan(box(0, 0, 36, 1.5), exits=[Exit("end", (36, 0), (36, 1.5))])
+    model = crowd_model(plan, seed, frames_per_step=3)
+    model.add_tactic(WalkingAbreast())
+    friends = model.add_pedestrians(
+        [(1.0, 0.75), (1.8, 0.75)], preferred_speeds=1.22, group="friends"
+    )
+    apart = []
+    while model.inside == 2 and model.elapsed < 60.0:
+        model.step()
+        (x, y), (other_x, other_y) = (person.position for person in friends)
+        if 12.0 < (x + other_x) / 2.0 < 32.0:
+            apart.append(abs(y - other_y))
+    return float(np.mean(apart)) if apart else 0.0
+
+
+def mixed_corridor(seed: int) -> float:
+    """How many of 16 people of every type are left in a two-way corridor 1.6 m wide."""
+    exits = [Exit("east", (16, 0), (16, 1.6)), Exit("west", (0, 0), (0, 1.6))]
+    plan = FloorPlan(box(0, 0, corridor.LENGTH, 1.6), exits=exits)
+    people = Population.of("every_type")
+    model = crowd_model(plan, seed, pedestrian_types=None, population=people)
+    for start, goal in ((0.0, "east"), (corridor.LENGTH - corridor.START, "west")):
+        area = box(start, 0.0, start + corridor.START, 1.6)
+        places = plan.random_points(
+            corridor.PEOPLE,
+            model.rng,
+            within=area,
+            spacing=corridor.SPACING,
+            clearance=corridor.CLEARANCE,
+        )
+        model.add_pedestrians(places, exits=[goal])
+    return float(_left(model, LIMIT_S))
+
+
+def round_somebody(seed: int) -> float:
+    """Seconds that somebody takes to get past a person who stands 0.35 m ahead of them."""
+    plan = FloorPlan(box(0, 0, 12, 6), exits=[Exit("end", (12, 1), (12, 5))])
+    model = crowd_model(plan, seed)
+    model.add_pedestrians([(4.35, 3.0)], pre_movement=[1e5])
+    (walker,) = model.add_pedestrians([(4.0, 3.0)])
+    while model.elapsed < 30.0 and walker.position[0] < 6.0:
+        model.step()
+    return model.elapsed
+
+
+def _left(model: PedestrianModel, seconds: float) -> int:
+    model.run(max_seconds=seconds)
+    return model.inside
+
+
+def outside(simulated: float, wanted: Sequence[float]) -> float:
+    """How far a scene is outside its range: (low, high, how far counts as 1)."""
+    low, high, tolerance = wanted
+    return beyond(simulated, low, high, tolerance)

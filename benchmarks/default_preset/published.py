@@ -1,0 +1,102 @@
+"""Scenes with published figures: necks, people alone, single files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from benchmarks.default_preset.closeness import off
+from mesa_mobility.validation.bottleneck import START, density_in_front, plan
+from mesa_mobility.validation.scenes import corridors, wide_necks
+from mesa_mobility.verification.references import bottleneck_fit, published
+from mesa_mobility.verification.runs import CLEARANCE, SPACING, crowd_model, evacuate, steady_flow
+from mesa_mobility.verification.scenarios.tracks.single_file import single_file
+
+NECKS = {0.9: 90, 1.6: 120, 3.6: 150}
+"""Width of each neck, metres, and how many people go through."""
+LONGEST_S = 120.0
+"""Measured people take less than a minute."""
+IN_LINE = (14, 23, 33, 43, 48)
+"""How many people walk round the oval."""
+STANDS = 0.03
+"""Added to both speeds of single files, m/s, so that a ratio exists where people stand."""
+ALONE = {"turns": 4.374, "across": 0.126, "speed_changes": 0.060}
+"""Of people who walk alone: standard deviation of the change of direction from step to step,
+degrees, of the lateral step, m, and of the change of speed, m/s (row "free walk 3 m corridor" of
+``motion_in_crowds.csv``)."""
+
+
+def neck(seed: int, *, width: float) -> dict[str, Any]:
+    """Flow and density in front of a neck, simulated."""
+    people = NECKS[width]
+    floor = plan(width)
+    model = crowd_model(floor, seed)
+    places = floor.random_points(
+        people, model.rng, within=START, spacing=SPACING, clearance=CLEARANCE
+    )
+    model.add_pedestrians(places)
+    run = evacuate(model, LONGEST_S)
+    gate = floor.gates[0]
+    times = run.crossing_times(gate.a, gate.b)
+    first, last = round(people / 6) - 1, round(people * 5 / 6) - 1
+    if len(times) <= last:
+        return {"flow": len(times) / LONGEST_S, "density": None}
+    return {
+        "flow": steady_flow(times, people),
+        "density": density_in_front(run, times[first], times[last]),
+    }
+
+
+def of_necks(width: float) -> dict[str, float | None]:
+    """The same, measured: of narrow necks the fit, of wide ones the experiment."""
+    if width not in wide_necks.MEASURED:
+        return {"flow": bottleneck_fit(width), "density": None}
+    row = wide_necks.MEASURED[width]
+    return {"flow": float(row["flow_1_s"]), "density": float(row["density_in_front_1_m2"])}
+
+
+def alone(seed: int) -> dict[str, float]:
+    """Standard deviations of ``ALONE``, simulated."""
+    found = corridors.alone(seed)
+    return {
+        "turns": float(np.degrees(found["turns"].std())),
+        "across": float(found["across"].std()),
+        "speed_changes": float(found["speed_changes"].std()),
+    }
+
+
+def in_line(seed: int, *, people: int) -> dict[str, float]:
+    """Density and speed in single file, simulated: persons a metre, and m/s."""
+    found = single_file(seed, people=people)
+    speed = float(np.median(found["along"]))
+    return {"density": float(np.median(found["density"])), "speed": max(speed, 0.0) + STANDS}
+
+
+def far(simulated: dict[str, float | None], measured: dict[str, float | None]) -> float:
+    """How far necks are off: 6 % of the flow count as 1, and 12 % of the density."""
+    tolerances = {"flow": 0.06, "density": 0.12}
+    return off(
+        {
+            name: ((simulated[name] or 0.0) / value, tolerances[name])
+            for name, value in measured.items()
+            if value is not None
+        }
+    )
+
+
+def far_alone(simulated: dict[str, float], measured: dict[str, float]) -> float:
+    """How far people alone are off: a quarter counts as 1."""
+    return off({name: (simulated[name] / value, 0.25) for name, value in measured.items()})
+
+
+def far_in_line(simulated: dict[str, float], measured: dict[str, list[float]]) -> float:
+    """How far single files are off the published speeds at their density: 24 % count as 1."""
+    speed = float(np.interp(simulated["density"], measured["density"], measured["speed"]))
+    return off({"speed": (simulated["speed"] / (speed + STANDS), 0.24)})
+
+
+def published_in_line() -> dict[str, list[float]]:
+    """The published fundamental diagram of single file."""
+    found = published("1D single file")
+    return {"density": found["density"].tolist(), "speed": found["v_mean"].tolist()}
