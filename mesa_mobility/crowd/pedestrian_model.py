@@ -35,7 +35,7 @@ class PedestrianModel(CrowdModel):
 
     Args:
         floor_plan: where people walk.
-        preset: "default", "measured", "paper", a TOML file, or rules of one's own.
+        preset: "default", "paper", a TOML file, or rules of one's own.
         mobility_map: a map, its file, or None for the able-bodied one that ships; stands
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
