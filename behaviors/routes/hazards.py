@@ -147,7 +147,8 @@ class Hazards(TargetChoice):
             if not len(left):
                 break
         self._enclosed.update(deciding.pedestrians[left].tolist())
-        return Targets(points, gates, distances, corners)
+        clear = self._floor(deciding.site.plan, self.margin, grown).clear
+        return Targets(points, gates, distances, corners, clear)
 
     def _grown(self, hazard: Hazard, elapsed: float) -> float | None:
         """Metres by which a hazard has grown, rounded up to steps; None before it begins."""
@@ -171,7 +172,11 @@ class Hazards(TargetChoice):
 
 
 class _Floor:
-    """The floor without the zone of the hazards."""
+    """The floor without the zone of the hazards.
+
+    Attributes:
+        clear: it, or None if nothing is left of it.
+    """
 
     def __init__(self, plan: FloorPlan, zone: BaseGeometry) -> None:
         self._plan = plan
@@ -179,14 +184,14 @@ class _Floor:
         shapely.prepare(self._zone)
         parts = [part for part in shapely.get_parts(zone) if part.intersects(plan.free)]
         try:
-            self._clear: FloorPlan | None = plan.altered(obstacles=parts)
+            self.clear: FloorPlan | None = plan.altered(obstacles=parts)
         except FloorPlanError:  # nothing of the floor is left
-            self._clear = None
+            self.clear = None
             return
         edge = zone.buffer(_BEYOND, quad_segs=_SIDES).boundary
         steps = np.arange(0.0, edge.length, _STEP)
         places = shapely.get_coordinates(shapely.line_interpolate_point(edge, steps))
-        self._edge = places[self._clear.contains(places)] if len(places) else places
+        self._edge = places[self.clear.contains(places)] if len(places) else places
 
     def targets(
         self, deciding: Deciding, who: NDArray[np.int64]
@@ -194,9 +199,9 @@ class _Floor:
         """(k,) whether there is a way clear of the zone for some of those who decide, and their
         targets on it."""
         places, to = deciding.positions[who], deciding.destinations[who]
-        if self._clear is None or not len(who):
+        if self.clear is None or not len(who):
             return np.zeros(len(who), dtype=np.bool_), _nowhere(places)
-        site = deciding.site.on(self._clear)
+        site = deciding.site.on(self.clear)
         there = site.targets(places, to)
         points, distances = np.array(there.points), np.array(there.distances)
         inside = shapely.intersects_xy(self._zone, *places.T)

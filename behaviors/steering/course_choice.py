@@ -23,7 +23,7 @@ from mesa_mobility.behaviors.steering.anticipation import (
 )
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, FloorPlan, Range, Tactic
+from mesa_mobility import Deciding, Desired, Range, Tactic
 from mesa_mobility.steering import (
     CrowdState,
     CrowdView,
@@ -69,7 +69,7 @@ class CourseSettings(NamedTuple):
 def choose_courses(
     rows: NDArray[np.int64],
     inside: CrowdView,
-    plan: FloorPlan,
+    sight: Sight,
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
     settings: CourseSettings,
@@ -79,14 +79,13 @@ def choose_courses(
     Args:
         rows: (n,) the pedestrians.
         inside: everybody inside.
-        plan: the floor plan: people behind walls do not count, and no course leads into one.
+        sight: the walls: people behind them do not count, and no course leads into one.
         points: (n, 2) their targets, metres.
         speeds: (n,) their preferred speeds, m/s.
         settings: of the comparison.
     """
     points = points.copy()
     ahead = np.empty((_FIELDS, len(inside.grid.people)))
-    sight = sight_on(plan, 0.0)
     state = inside.crowd.records
     _choose_courses(rows, inside.grid, sight, state, points, speeds, settings, _COURSES, ahead)
     return points
@@ -234,8 +233,8 @@ class ChooseCourse(Tactic):
         rows, inside, points = deciding.pedestrians, deciding.inside, desired.points
         if self.haste > 0.0:
             settings = CourseSettings(self.haste, self.width)
-            plan = deciding.site.plan
-            points = choose_courses(rows, inside, plan, points, desired.speeds, settings)
+            sight = sight_on(desired.targets.floor or deciding.site.plan, 0.0)
+            points = choose_courses(rows, inside, sight, points, desired.speeds, settings)
         if self.wander > 0.0:
             off = self.wander * deciding.rng.standard_normal(len(rows))
             crowd = inside.crowd
@@ -249,4 +248,5 @@ class ChooseCourse(Tactic):
         """Compile the comparison of courses."""
         (inside, plan), nowhere = nobody(), np.empty((0, 2))
         settings = CourseSettings(1.0, 1.0)
-        choose_courses(inside.pedestrians, inside, plan, nowhere, np.empty(0), settings)
+        sight = sight_on(plan, 0.0)
+        choose_courses(inside.pedestrians, inside, sight, nowhere, np.empty(0), settings)

@@ -73,7 +73,8 @@ def query_targets(choice: TargetChoice, deciding: Deciding, crowd: Crowd, frozen
             _BAD_CORNERS: f"corners, expected two of the site's, 0 to {known - 1}, or -1 for none",
         }
         raise ModelError(f"{giver}: gave other {expected[wrong]}")
-    return Targets(points, gates, distances, None if given.corners is None else corners)
+    known_corners = None if given.corners is None else corners
+    return Targets(points, gates, distances, known_corners, given.floor)
 
 
 @entry_point()

@@ -7,6 +7,8 @@ from typing import TypeAlias, TypeGuard
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.floorplan.floor.floor import Floor
+
 Destination: TypeAlias = tuple[str, ...] | tuple[float, float] | None
 """Names of exits, or of a gate; a point, metres; or None for all exits."""
 
@@ -30,12 +32,15 @@ class Targets:
             the point, in metres; inf where there is none.
         corners: (n, 2) the next corner of the route and the node after it, as their numbers in
             `Router.graph`; -1 where the next node is a gate or exit. None if unknown.
+        floor: the floor on which people may leave the straight line to their targets, such as that
+            without hazards. None for the model's.
     """
 
     points: NDArray[np.float64]
     gates: NDArray[np.int64]
     distances: NDArray[np.float64]
     corners: NDArray[np.int64] | None = None
+    floor: Floor | None = None
 
     @cached_property
     def nearest_first(self) -> NDArray[np.intp]:

@@ -68,7 +68,8 @@ def test_the_one_in_the_middle_of_three_walks_behind():
 
 def test_a_pair_fits_a_narrow_corridor():
     tracks = walk(2, [(1.0, 0.75), (1.8, 0.75)], width=1.5)
-    assert np.diff(tracks[:, 1], axis=0).mean() == pytest.approx(0.75, abs=0.1)
+    # A little nearer to each other than elsewhere, since walls are on either side.
+    assert 0.6 < np.diff(tracks[:, 1], axis=0).mean() < 0.8
 
 
 def test_without_it_they_go_as_they_are():

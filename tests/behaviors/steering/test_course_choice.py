@@ -15,6 +15,7 @@ from mesa_mobility import Exit, FloorPlan, PedestrianModel
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.errors import ModelError
+from mesa_mobility.steering import sight_on
 
 HALL = FloorPlan(box(0.0, 0.0, 40.0, 40.0), exits=[Exit("east", (40.0, 0.0), (40.0, 40.0))])
 AT = complex(20.0, 20.0)
@@ -35,7 +36,12 @@ def look(*others, plan=HALL, velocity=SPEED + 0j, away=12.0, speed=SPEED, haste=
     wanted = np.array([[AT.real + away, AT.imag]])
     inside = CrowdView(np.arange(len(places)), crowd)
     (found,) = choose_courses(
-        np.array([0]), inside, plan, wanted, np.array([speed]), CourseSettings(haste, WIDTH)
+        np.array([0]),
+        inside,
+        sight_on(plan, 0.0),
+        wanted,
+        np.array([speed]),
+        CourseSettings(haste, WIDTH),
     )
     assert wanted.tolist() == [[AT.real + away, AT.imag]]
     turned = complex(*found) - AT

@@ -18,6 +18,8 @@ from mesa_mobility.behaviors import (
 from shapely import Point, box
 
 from mesa_mobility import CostTerm, FloorPlan
+from mesa_mobility.crowd import Preset
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.maps import shipped_map, wanderer
 from tests.fixtures.oracles.costs import equation_one
 from tests.fixtures.oracles.decisions import Oracle
@@ -38,7 +40,12 @@ from tests.fixtures.scenes import corridor, model_of, two_doors
 
 
 def walk(
-    plan: FloorPlan, map_, terms, people: int = 12, seconds: float = 40.0, preset: str = "default"
+    plan: FloorPlan,
+    map_,
+    terms,
+    people: int = 12,
+    seconds: float = 40.0,
+    preset: str | Preset = ENGINE,
 ) -> bytes:
     """All positions and headings of a run, as bytes."""
     model = model_of(plan, map_, behaviors=terms, preset=preset, rng=7, frames_per_step=3)
