@@ -33,7 +33,7 @@ PACKAGE = Path(__file__).parents[1]
 PLAIN_WANTED: bool = os.environ.get("MESA_MOBILITY_PLAIN") == "1"
 """Whether plain Numba is to take the place of hand-written code; see ``compiled.twins``."""
 
-_PREFIX = "mesa-mobility-"
+PREFIX = "mesa-mobility-"
 
 _MOST = 8
 """Folders of other versions that are kept beside a new one."""
@@ -87,7 +87,7 @@ def folder() -> Path | None:
     the user's cache, else in a temporary folder: the first of them that has compiled code already,
     else the first that can be written.
     """
-    name = _PREFIX + _version()
+    name = PREFIX + _version()
     places = [place / name for place in _places()]
     for place in places:
         if any(place.glob("*/*.nbc")):
@@ -151,7 +151,7 @@ def _make(place: Path) -> bool:
 
 def _prune(place: Path) -> None:
     """Delete the least recently used folders of other versions."""
-    others = [path for path in place.parent.glob(f"{_PREFIX}*-*") if path != place]
+    others = [path for path in place.parent.glob(f"{PREFIX}*-*") if path != place]
     others.sort(key=lambda path: path.stat().st_mtime_ns, reverse=True)
     for path in others[_MOST:]:
         shutil.rmtree(path, ignore_errors=True)
