@@ -45,7 +45,8 @@ _log = logging.getLogger(__name__)
 
 
 @lru_cache
-def _say_once(message: str) -> None:
+def say_once(message: str) -> None:
+    """Warn of something about files, the first time that it is said."""
     # Without a logging configuration Python prints the message as it is on standard error.
     _log.warning(message)
 
@@ -99,12 +100,12 @@ def folder() -> Path | None:
             return place
     private = _temporary()
     if private is not None and _make(private / name):
-        _say_once(
+        say_once(
             f"compiled code is kept in {private / name}: nothing can be written to "
             + " or ".join(str(place.parent) for place in places)
         )
         return private / name
-    _say_once("compiled code is not kept, and compiled at each start: no folder can be written")
+    say_once("compiled code is not kept, and compiled at each start: no folder can be written")
     return None
 
 
@@ -243,7 +244,7 @@ class _Files(IndexDataCacheFile):
         super().save(key, data)
 
     def _damaged(self) -> None:
-        _say_once(f"{folder()}: compiled code there is damaged, and compiled again")
+        say_once(f"{folder()}: compiled code there is damaged, and compiled again")
 
 
 class _Impl(CompileResultCacheImpl):
@@ -265,7 +266,7 @@ class _Cache(FunctionCache):
         try:
             super().save_overload(signature, result)
         except OSError as error:
-            _say_once(
+            say_once(
                 f"{folder()}: compiled code cannot be kept there: {error.strerror or error}; "
                 "what is missing is compiled at each start"
             )

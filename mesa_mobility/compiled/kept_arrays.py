@@ -5,8 +5,11 @@ cache, then an index in JSON, its length, and a checksum of all. Processes share
 file that they map: what one of them writes to an array is its own.
 
 The name of a file is that of its key, which the index has in full. The folder is that of one
-version of the source. Files that are damaged, or of another key, are made again. Where nothing can
-be written, arrays are computed at each start.
+version of the source. A file that is damaged, or whose content does not fit, is made again. Where
+nothing can be written, arrays are computed at each start.
+
+Files are complete or absent, and never changed: a process that replaces or deletes one leaves what
+others have mapped as it was.
 """
 
 from __future__ import annotations
@@ -20,14 +23,14 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from llvmlite import binding
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled import cache
-from mesa_mobility.errors import MobilityError
+from mesa_mobility.errors import ContentError, MobilityError
 from mesa_mobility.files.atomic import replacing
 
 LEAST = 4_000_000
@@ -41,32 +44,46 @@ _LENGTH, _CHECK = 8, 4
 
 Arrays = Mapping[str, NDArray[Any]]
 
+Result = TypeVar("Result")
+
 
 def kept_arrays(
-    subject: str, key: object, dtypes: Mapping[str, np.dtype[Any]], make: Callable[[], Arrays]
-) -> Arrays:
-    """What ``make`` computes, from a file if it has been computed before.
+    subject: str,
+    key: object,
+    dtypes: Mapping[str, np.dtype[Any]],
+    make: Callable[[], tuple[Result, Arrays]],
+    take: Callable[[Arrays], Result],
+) -> Result:
+    """What ``make`` computes, from the arrays of a file if it has been computed before.
 
     Args:
         subject: what the arrays are, the beginning of the file's name.
         key: all that they depend on besides the source, with a ``repr`` that tells it.
         dtypes: the arrays' types by name. Others are computed each time.
-        make: computes the arrays.
-
-    Returns:
-        Arrays by name, in C order, that may be written to.
+        make: computes the result, and the arrays to keep.
+        take: checks the arrays of a file and makes the result of them. They are in C order, and
+            may be written to. If it raises an error, the file is made again.
     """
     folder = cache.folder()
     if folder is None:
-        return make()
+        return make()[0]
     written = _text(key, dtypes)
     name = f"{subject}-{hashlib.sha256(written.encode()).hexdigest()[:24]}.npy"
     path = folder / "arrays" / name
-    found = _read(path, written, dtypes)
-    if found is None:
-        found = make()
-        if _fit(found, dtypes):
-            _write(path, written, found)
+    try:
+        found = take(_read(path, written, dtypes))
+    except FileNotFoundError:
+        pass
+    # A file that is damaged may raise anything.
+    except Exception:
+        cache.say_once(f"{path}: damaged, and made again")
+    else:
+        with suppress(OSError):
+            os.utime(path)
+        return found
+    found, arrays = make()
+    if _fit(arrays, dtypes):
+        _write(path, written, arrays)
     return found
 
 
@@ -89,36 +106,36 @@ def _fit(arrays: Arrays, dtypes: Mapping[str, np.dtype[Any]]) -> bool:
     )
 
 
-def _read(path: Path, key: str, dtypes: Mapping[str, np.dtype[Any]]) -> Arrays | None:
-    """The arrays of a file, or None if it is missing, damaged or of another key."""
-    try:
-        memory = np.asarray(np.load(path, mmap_mode="c", allow_pickle=False))
-        if memory.dtype != np.uint8 or memory.ndim != 1:
-            return None
-        content, check = memory[:-_CHECK], memory[-_CHECK:].tobytes()
-        if zlib.crc32(content.data) != int.from_bytes(check, "little"):
-            return None
-        end = len(content) - _LENGTH
-        begin = end - int.from_bytes(content[end:].tobytes(), "little")
-        index = json.loads(content[begin:end].tobytes())
-        if index["key"] != key:
-            return None
-        found = {
-            name: _taken(memory[:begin], index["arrays"][name], np.dtype(dtype))
-            for name, dtype in dtypes.items()
-        }
-    # A file that is damaged may raise anything.
-    except Exception:
-        return None
-    with suppress(OSError):
-        os.utime(path)
-    return found
+def _read(path: Path, key: str, dtypes: Mapping[str, np.dtype[Any]]) -> Arrays:
+    """The arrays of a file.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        Exception: it is damaged or of another key.
+    """
+    memory = np.asarray(np.load(path, mmap_mode="c", allow_pickle=False))
+    if memory.dtype != np.uint8 or memory.ndim != 1:
+        raise ContentError(f"{path}: expected bytes")
+    content, check = memory[:-_CHECK], memory[-_CHECK:].tobytes()
+    if zlib.crc32(content.data) != int.from_bytes(check, "little"):
+        raise ContentError(f"{path}: its checksum is another")
+    end = len(content) - _LENGTH
+    begin = end - int.from_bytes(content[end:].tobytes(), "little")
+    index = json.loads(content[begin:end].tobytes())
+    if index["key"] != key:
+        raise ContentError(f"{path}: its key is another")
+    return {
+        name: _taken(memory[:begin], index["arrays"][name], np.dtype(dtype))
+        for name, dtype in dtypes.items()
+    }
 
 
 def _taken(
     memory: NDArray[np.uint8], where: tuple[int, list[int]], dtype: np.dtype[Any]
 ) -> NDArray[Any]:
     start, shape = where
+    if start % _LINE or min(start, *shape) < 0:
+        raise ContentError(f"got an array at {start} of {shape}, expected one in lines")
     size = math.prod(shape) * dtype.itemsize
     return memory[start : start + size].view(dtype).reshape(shape)
 

@@ -18,7 +18,7 @@ from mesa_mobility.mobility.mapfile import read_map
 Map = TypeVar("Map", bound=MapData)
 """The class of the map."""
 
-_FIELDS: dict[str, np.dtype[Any]] = {
+DTYPES: dict[str, np.dtype[Any]] = {
     "offsets": np.dtype("i8"),
     "durations": np.dtype("i2"),
     "costs": np.dtype("f4"),
@@ -29,6 +29,7 @@ _FIELDS: dict[str, np.dtype[Any]] = {
     "centres": np.dtype("f4"),
     "sizes": np.dtype("i8"),
     "mean_speeds": np.dtype("f4"),
+    "metadata": np.dtype("u1"),
 }
 
 
@@ -47,22 +48,23 @@ def read_kept_map(path: Path, make: type[Map], lender: Path, lend: Callable[[], 
     digests = _digests(path, lender)
     if digests is None:
         return read_map(path, make, lend)
-    made: list[Map] = []
+    origin = " ".join(digests)
 
-    def read() -> Mapping[str, NDArray[Any]]:
-        made.append(read_map(path, make, lend))
+    def read() -> tuple[Map, Mapping[str, NDArray[Any]]]:
+        found = read_map(path, make, lend)
         # A file that has been replaced meanwhile is not that of the digest.
-        return _arrays(made[0]) if _digests(path, lender) == digests else {}
+        if _digests(path, lender) != digests:
+            return found, {}
+        object.__setattr__(found, "origin", origin)
+        return found, _arrays(found)
 
-    arrays = kept_arrays("map", digests, {**_FIELDS, "metadata": np.dtype("u1")}, read)
-    if made:
-        found = made[0]
-    else:
+    def take(arrays: Mapping[str, NDArray[Any]]) -> Map:
         metadata = json.loads(arrays["metadata"].tobytes())
-        found = make.of_checked({**arrays, "metadata": metadata})
-    if arrays:
-        object.__setattr__(found, "origin", " ".join(digests))
-    return found
+        found = make(**{**arrays, "metadata": metadata})
+        object.__setattr__(found, "origin", origin)
+        return found
+
+    return kept_arrays("map", digests, DTYPES, read, take)
 
 
 def _digests(*paths: Path) -> list[str] | None:
@@ -81,7 +83,7 @@ def _digests(*paths: Path) -> list[str] | None:
 
 def _arrays(map_: MapData) -> dict[str, NDArray[Any]]:
     """The fields of a map; without metadata if JSON does not give back the same."""
-    arrays = {name: getattr(map_, name) for name in _FIELDS}
+    arrays = {name: getattr(map_, name) for name in DTYPES if name != "metadata"}
     told = json.dumps(dict(map_.metadata))
     if json.loads(told) == map_.metadata:
         arrays["metadata"] = np.frombuffer(told.encode(), np.uint8)

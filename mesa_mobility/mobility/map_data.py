@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,22 +59,6 @@ class MapData:
 
     def __post_init__(self) -> None:
         check_map(self)
-        self._freeze()
-
-    @classmethod
-    def of_checked(cls, fields: Mapping[str, Any]) -> Self:
-        """The map of fields that have been checked before.
-
-        Args:
-            fields: all arguments by name.
-        """
-        made = object.__new__(cls)
-        for name, value in fields.items():
-            object.__setattr__(made, name, value)
-        made._freeze()
-        return made
-
-    def _freeze(self) -> None:
         for name, array in vars(self).items():
             if isinstance(array, np.ndarray):  # maps are shared between models
                 view = array.view()

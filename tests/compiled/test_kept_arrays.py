@@ -1,6 +1,8 @@
 """Arrays kept on disk are those that were computed, whatever becomes of their files."""
 
+import json
 import os
+import signal
 import subprocess
 import sys
 import zlib
@@ -11,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mesa_mobility.compiled import cache, kept_arrays
+from mesa_mobility.errors import ContentError
 
 RECORD = np.dtype([("a", "i8"), ("b", "f4", (3,)), ("c", "u2")], align=True)
 DTYPES = {"floats": np.dtype("f4"), "records": RECORD, "none": np.dtype("i8")}
@@ -29,18 +32,19 @@ def place(tmp_path, monkeypatch):
     folder.mkdir()
     monkeypatch.setattr(cache, "folder", lambda: folder)
     monkeypatch.setattr(kept_arrays, "LEAST", 0)
+    cache.say_once.cache_clear()
     return folder / "arrays"
 
 
-def get(key="key", dtypes=DTYPES):
+def get(key="key", dtypes=DTYPES, take=lambda arrays: arrays):
     """The arrays, and whether they were computed."""
     computed = []
 
     def make():
         computed.append(True)
-        return made()
+        return made(), made()
 
-    return kept_arrays.kept_arrays("things", key, dtypes, make), bool(computed)
+    return kept_arrays.kept_arrays("things", key, dtypes, make, take), bool(computed)
 
 
 def the_file(place):
@@ -138,6 +142,59 @@ def test_arrays_that_are_not_bytes_are_made_again(place):
         assert not get()[1]
 
 
+def test_arrays_that_do_not_fit_are_made_again(place, caplog):
+    def refusing(arrays):
+        raise ContentError("no array of these")
+
+    get()
+    the_file(place).write_bytes(the_file(place).read_bytes())
+    assert get(take=refusing)[1]
+    assert [each.getMessage() for each in caplog.records] == [
+        f"{the_file(place)}: damaged, and made again"
+    ]
+    assert not get()[1]
+
+
+def rewritten(place, change):
+    """Change the index of the file, and make its checksum fit."""
+    path = the_file(place)
+    memory = np.load(path).tobytes()
+    end = len(memory) - 12
+    begin = end - int.from_bytes(memory[end : end + 8], "little")
+    index = json.loads(memory[begin:end])
+    change(index)
+    text = json.dumps(index).encode()
+    content = memory[:begin] + text + len(text).to_bytes(8, "little")
+    whole = content + zlib.crc32(content).to_bytes(4, "little")
+    np.save(path, np.frombuffer(whole, np.uint8))
+
+
+@pytest.mark.parametrize(
+    "where",
+    [
+        None, [], [0], [0, 5], ["0", [5, 2, 3]], [0, [5, 2, -3]], [0, [-5, 2, -3]],
+        [-128, [5, 2, 3]], [4, [5, 2, 3]], [0, [5, 2, 3.0]], [0, [10**9, 2, 3]], [0, [2**62, 4]],
+        [1 << 62, [5, 2, 3]],
+    ],
+)  # fmt: skip
+def test_arrays_that_lie_elsewhere_are_made_again(place, where):
+    get()
+    rewritten(place, lambda index: index["arrays"].update(floats=where))
+    assert get()[1]
+    assert not get()[1]
+    rewritten(place, lambda index: index["arrays"].pop("floats"))
+    assert get()[1]
+
+
+def test_what_is_mapped_stays_when_the_file_is_replaced_or_deleted(place):
+    get()
+    before = get()[0]
+    foreign = {**made(), "floats": np.full((5, 2, 3), -1.0, np.float32)}
+    kept_arrays._write(the_file(place), "another key", foreign)
+    the_file(place).unlink()
+    assert same(before)
+
+
 @given(at=st.floats(0.0, 1.0, exclude_max=True), bit=st.integers(0, 7), cut=st.booleans())
 @settings(max_examples=60, deadline=None)
 def test_whatever_is_flipped_or_cut(tmp_path_factory, at, bit, cut):
@@ -228,7 +285,7 @@ from tests.compiled.test_kept_arrays import DTYPES, made, same
 cache.folder = lambda: Path({folder!r})
 kept_arrays.LEAST = 0
 for k in range(20):
-    same(kept_arrays.kept_arrays("things", k % 2, DTYPES, made))
+    same(kept_arrays.kept_arrays("things", k % 2, DTYPES, lambda: (made(), made()), dict))
 """
 
 
@@ -239,3 +296,38 @@ def test_processes_that_write_at_the_same_time_read_whole_files(place):
     started = [subprocess.Popen([sys.executable, "-c", command]) for _ in range(2)]
     assert [each.wait() for each in started] == [0, 0]
     assert len(list(place.iterdir())) == 2
+
+
+_KILLED = (
+    _PROCESS.rpartition("for k")[0]
+    + """
+import os, signal
+class zlib:  # of which the first part that has been written is summed
+    def crc32(*_):
+        os.kill(os.getpid(), signal.SIGKILL)
+kept_arrays.zlib = zlib
+kept_arrays.kept_arrays("things", "key", DTYPES, lambda: (made(), made()), dict)
+"""
+)
+
+
+@pytest.mark.thorough
+def test_a_process_that_is_killed_while_it_writes_leaves_no_file_that_is_read(place, monkeypatch):
+    root = os.path.dirname(os.path.dirname(os.path.dirname(__file__)))
+    command = _KILLED.format(root=root, folder=str(place.parent))
+    killed = subprocess.run([sys.executable, "-c", command], check=False)
+    assert killed.returncode == -signal.SIGKILL
+    [left] = place.iterdir()
+    found, computed = get()
+    assert computed
+    assert same(found)
+    assert not get()[1]
+    # What it has left goes with the files that have not been used for the longest time.
+    os.utime(left, (1, 1))
+    monkeypatch.setattr(
+        kept_arrays, "MOST", 2 * max(each.stat().st_size for each in place.iterdir())
+    )
+    monkeypatch.setattr(kept_arrays, "_fit", lambda *_: True)
+    for key in ("2nd", "3rd"):
+        get(key)
+    assert not left.exists()

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from mesa_mobility._once import cached_once
 from mesa_mobility.compiled.kept_arrays import Arrays, kept_arrays
 from mesa_mobility.crowd.options.capability import Capability
-from mesa_mobility.crowd.options.option_groups import CLUSTER, OptionGroups, make_groups
+from mesa_mobility.crowd.options.kept_options import DTYPES, check_options
+from mesa_mobility.crowd.options.option_groups import OptionGroups, make_groups
 from mesa_mobility.crowd.options.table import (
     OPTION,
     OptionTable,
@@ -22,30 +23,6 @@ from mesa_mobility.crowd.options.table import (
     unstacked,
 )
 from mesa_mobility.mobility import MobilityMap
-
-_KINDS: dict[str, Any] = {
-    "table.offsets": "i8",
-    "table.groups": "i8",
-    "table.farthest": "f8",
-    "table.options": OPTION,
-    "table.heading": "f4",
-    "table.path": "f4",
-    "groups.clusters": CLUSTER,
-    "groups.first": "i8",
-    "groups.ends": "f8",
-    "groups.at": "f4",
-    "groups.lanes": "f4",
-    "parts.rows": "i8",
-    "parts.share": "f8",
-    "parts.clusters": "i8",
-    "first_cluster": "i4",
-    "first_option": "i8",
-    "standing": "i4",
-    "reach": "f8",
-    "extent": "f8",
-}
-
-_DTYPES = {name: np.dtype(kind) for name, kind in _KINDS.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,13 +74,18 @@ def repertoire(
     """
     numbers = durations, shares, most_acceleration
 
-    def lay_out() -> Arrays:
-        return _laid_out(maps, *numbers)
+    def lay_out() -> tuple[Repertoire, Arrays]:
+        arrays = _laid_out(maps, *numbers)
+        return _of_arrays(maps, arrays), arrays
+
+    def take(arrays: Arrays) -> Repertoire:
+        check_options(arrays, maps)
+        return _of_arrays(maps, arrays)
 
     origins = [each.origin for each in maps]
     if None in origins:
-        return _of_arrays(maps, lay_out())
-    return _of_arrays(maps, kept_arrays("options", (origins, numbers), _DTYPES, lay_out))
+        return lay_out()[0]
+    return kept_arrays("options", (origins, numbers), DTYPES, lay_out, take)
 
 
 def _laid_out(
@@ -116,14 +98,10 @@ def _laid_out(
     own = {
         map_: Capability(map_, durations, shares, most_acceleration) for map_ in dict.fromkeys(maps)
     }
-    capabilities = tuple(own[map_] for map_ in maps)
+    capabilities = [own[map_] for map_ in maps]
     table = stack_tables([each.table for each in capabilities])
     spanned = boxes(table.path)
-    clusters = np.cumsum([0] + [each.n_clusters for each in capabilities], dtype=np.int64)[:-1]
-    options = np.cumsum([0] + [len(each.table.options) for each in capabilities], dtype=np.int64)[
-        :-1
-    ]
-    standing = clusters + [each.standing for each in capabilities]
+    options = np.cumsum([0] + [len(each.table.options) for each in capabilities[:-1]])
     widths = np.hypot(*(spanned[:, 2:] - spanned[:, :2]).T)
     parts = Parts(
         *(np.concatenate(each) for each in zip(*(c.parts for c in capabilities), strict=True))
@@ -132,10 +110,6 @@ def _laid_out(
         **_named("table", table),
         **_named("groups", make_groups(table, spanned)),
         **_named("parts", parts),
-        "first_cluster": clusters.astype(np.int32),
-        "first_option": options.astype(np.int64),
-        "standing": standing.astype(np.int32),
-        "reach": np.array([each.longest_reach for each in capabilities]),
         "extent": np.maximum.reduceat(widths, options).astype(np.float64),
     }
 
@@ -156,14 +130,23 @@ def _of_arrays(maps: tuple[MobilityMap, ...], arrays: Arrays) -> Repertoire:
             if name.startswith(start)
         }
 
-    table, parts = named("table"), Parts(**named("parts"))
-    table["options"] = table["options"].view(OPTION).view(np.recarray)
-    whole = OptionTable(**table)
-    rest = {name: each for name, each in arrays.items() if "." not in name}
-    tables = unstacked(whole, rest["first_option"], rest["first_cluster"])
-    starts = [*rest["first_option"].tolist(), len(whole.options)]
-    capabilities = (
-        Capability.of_table(map_, parts.taken(slice(*rows)), own)
-        for map_, rows, own in zip(maps, pairwise(starts), tables, strict=True)
+    columns, parts = named("table"), Parts(**named("parts"))
+    columns["options"] = columns["options"].view(OPTION).view(np.recarray)
+    table = OptionTable(**columns)
+    clusters = np.cumsum([0] + [each.n_clusters for each in maps])
+    rows = table.offsets[clusters]
+    tables = unstacked(table, rows[:-1], clusters[:-1])
+    capabilities = tuple(
+        Capability.of_table(map_, parts.taken(slice(*own)), laid_out)
+        for map_, own, laid_out in zip(maps, pairwise(rows.tolist()), tables, strict=True)
     )
-    return Repertoire(tuple(capabilities), whole, OptionGroups(**named("groups")), **rest)
+    return Repertoire(
+        capabilities=capabilities,
+        table=table,
+        groups=OptionGroups(**named("groups")),
+        first_cluster=clusters[:-1].astype(np.int32),
+        first_option=rows[:-1].astype(np.int64),
+        standing=(clusters[:-1] + [each.standing for each in capabilities]).astype(np.int32),
+        reach=np.array([each.longest_reach for each in capabilities]),
+        extent=arrays["extent"],
+    )

@@ -2,12 +2,17 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from mesa_mobility import MobilityMap
 from mesa_mobility.compiled import cache, kept_arrays
 from mesa_mobility.crowd.options.capability import Capability
-from mesa_mobility.crowd.options.repertoire import repertoire
+from mesa_mobility.crowd.options.kept_options import DTYPES, check_options
+from mesa_mobility.crowd.options.repertoire import _laid_out, repertoire
 from mesa_mobility.crowd.options.table import stack_tables, unstacked
+from mesa_mobility.errors import ContentError
+from tests.fixtures.damage.contents import mangle_array
 from tests.fixtures.maps import make_map, stand, straight, strider
 
 DURATIONS = (12, 24, 45)
@@ -89,3 +94,77 @@ def test_maps_without_a_file_are_laid_out_in_memory(tmp_path, monkeypatch):
     monkeypatch.setattr(kept_arrays, "LEAST", 0)
     repertoire((strider(), other()), DURATIONS, SHARES)
     assert list(tmp_path.iterdir()) == []
+
+
+def laid_out():
+    maps = strider(), other()
+    return maps, dict(_laid_out(maps, DURATIONS, SHARES, None))
+
+
+def test_laid_out_options_are_what_a_file_of_them_must_hold():
+    maps, arrays = laid_out()
+    check_options(arrays, maps)
+    assert {name: each.dtype for name, each in arrays.items()} == DTYPES
+
+
+@pytest.mark.parametrize("name", sorted(DTYPES))
+@given(seed=st.integers(0, 2**32))
+@settings(max_examples=30, deadline=None)
+def test_options_that_were_changed_are_refused_or_within_reach(name, seed):
+    maps, arrays = laid_out()
+    changed, said = mangle_array(arrays[name], np.random.default_rng(seed))
+    same = (changed.dtype, changed.shape) == (arrays[name].dtype, arrays[name].shape)
+    try:
+        check_options({**arrays, name: changed}, maps)
+    except ContentError as error:
+        assert "\n" not in str(error)
+        return
+    assert same, said
+    # All that numbers rows of other arrays is as it was; other numbers cannot lead far.
+    flat = [changed[field] for field in changed.dtype.names or ()] or [changed]
+    whole = [arrays[name][field] for field in changed.dtype.names or ()] or [arrays[name]]
+    for found, expected in zip(flat, whole, strict=True):
+        if found.dtype.kind in "iu" and name != "parts.rows" and len(found) > 1:
+            differs = found != expected
+            # Another option of the same group of those that stay, and of as many frames.
+            assert not differs.any() or said.startswith("stay"), said
+        elif found.dtype.kind == "f":
+            assert np.isfinite(found).all()
+            assert abs(found).max() <= 200.0
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "at", "value"),
+    [
+        ("table.offsets", None, 0, 1),
+        ("table.offsets", None, 1, 2),
+        ("table.groups", None, 1, 2),
+        ("groups.first", None, -1, 9),
+        ("groups.clusters", "first", 1, 0),
+        ("groups.clusters", "last", 0, 2),
+        ("groups.clusters", "stay", 2, 0),
+        ("table.options", "frames", 0, 45),
+        ("table.options", "cluster", 0, 1),
+        ("parts.rows", None, -1, 1000),
+        ("parts.clusters", None, -1, 2),
+        ("parts.share", None, 0, 1.5),
+        ("table.path", None, (0, 1, 7), np.nan),
+        ("table.path", None, (0, 1, 7), 101.0),
+        ("extent", None, 1, -0.5),
+    ],
+)
+def test_options_that_do_not_fit_each_other(name, field, at, value):
+    maps, arrays = laid_out()
+    changed = np.array(arrays[name])
+    target = changed if field is None else changed[field]
+    assert target[at] != value
+    target[at] = value
+    with pytest.raises(ContentError, match="options"):
+        check_options({**arrays, name: changed}, maps)
+
+
+def test_options_of_other_maps():
+    maps, arrays = laid_out()
+    for others in (maps[::-1], maps[:1], maps + maps[:1]):
+        with pytest.raises(ContentError, match="options"):
+            check_options(arrays, others)
