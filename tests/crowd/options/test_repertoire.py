@@ -116,8 +116,7 @@ def test_options_that_were_changed_are_refused_or_within_reach(name, seed):
     same = (changed.dtype, changed.shape) == (arrays[name].dtype, arrays[name].shape)
     try:
         check_options({**arrays, name: changed}, maps)
-    except ContentError as error:
-        assert "\n" not in str(error)
+    except ContentError:
         return
     assert same, said
     # All that numbers rows of other arrays is as it was; other numbers cannot lead far.
