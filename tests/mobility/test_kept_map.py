@@ -10,6 +10,7 @@ from mesa_mobility.compiled import cache, kept_arrays
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.map import LENDER
 from mesa_mobility.mobility.mapfile import shipped_map_path
+from tests.fixtures.damage.kept_files import KeptContents
 from tests.fixtures.maps import strider
 
 
@@ -57,6 +58,33 @@ def test_a_map_is_read_once(place, tmp_path, monkeypatch):
     first = read(path)
     monkeypatch.setattr("mesa_mobility.mobility.kept_map.read_map", None)
     assert same(first, read(path))
+
+
+@pytest.mark.parametrize(
+    ("name", "at", "value"),
+    [
+        ("offsets", -1, 1000),
+        ("durations", 0, 7),
+        ("path_offsets", 1, 0),
+        ("path_clusters", 0, 60_000),
+        ("paths", (0, 1), np.nan),
+        ("paths", (0, 0), 50.0),
+        ("sizes", 0, 0),
+        ("metadata", 0, ord("x")),
+    ],
+)
+def test_a_kept_map_that_does_not_fit_is_made_again(place, tmp_path, name, at, value):
+    path = tmp_path / "map.npz"
+    strider().save(path)
+    first = read(path)
+    [file] = place.glob("map-*.npy")
+    sound = KeptContents(file, "map")
+    changed = np.array(sound.arrays[name])
+    assert changed[at] != value
+    changed[at] = value
+    kept_arrays._write(file, sound.key, {**sound.arrays, name: changed})
+    assert same(first, read(path))
+    assert KeptContents(file, "map").arrays[name].tobytes() == sound.arrays[name].tobytes()
 
 
 def test_another_file_is_another_map(place, tmp_path):
