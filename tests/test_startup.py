@@ -1,7 +1,11 @@
 """Starting without looking for garbage."""
 
 import gc
+import os
+import subprocess
+import sys
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -29,3 +33,20 @@ def test_what_was_made_within_is_not_gone_through_again():
         assert gc.get_freeze_count() >= len(made)
     finally:
         gc.unfreeze()
+
+
+@pytest.mark.parametrize(
+    ("code", "slow"),
+    [
+        ("import mesa_mobility", "mesa numba numpy pandas scipy networkx shapely pyarrow"),
+        ("from mesa_mobility.errors import MobilityError", "mesa numba numpy pandas scipy"),
+        ("from mesa_mobility import PedestrianModel", "matplotlib rich scipy.stats"),
+    ],
+)
+def test_an_import_brings_only_what_it_needs(code, slow):
+    script = f"import sys; {code}; print(sorted(set({slow.split()}) & set(sys.modules)))"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[1])},
+    )  # fmt: skip
+    assert done.stdout == "[]\n"

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Annotated, ClassVar
+from graphlib import CycleError, TopologicalSorter
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Desired, Pedestrian, Range, Tactic, World
-from mesa_mobility.errors import FloorPlanError, ModelError
+from mesa_mobility.errors import ContentError, FloorPlanError, ModelError
 from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.schema import Array, Kind, Several, Whole
 
@@ -56,7 +57,9 @@ class Following(Tactic):
     after = "speed_rules"
     saved: ClassVar[Mapping[str, Kind]] = {
         "_leaders": Several(Whole(below="people"), dict, values=Whole(below="people")),
-        "_trails": Several(Whole(below="people"), dict, values=Array("f8", (None, 2), -1e9, 1e9)),
+        "_trails": Several(
+            Whole(below="people"), dict, values=Array("f8", (None, 2), -1e9, 1e9, filled=True)
+        ),
     }
 
     _model: World
@@ -69,6 +72,16 @@ class Following(Tactic):
     def bind(self, model: World) -> None:
         """Keep the model, whose people follow and lead."""
         self._model = model
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        super().restore(state)
+        try:
+            TopologicalSorter({row: [ahead] for row, ahead in self._leaders.items()}).prepare()
+        except CycleError as error:
+            raise ContentError(
+                f"_leaders: pedestrian {error.args[1][0]} would follow itself"
+            ) from error
 
     def follow(self, people: Iterable[Pedestrian], leader: Pedestrian | None) -> None:
         """Let people follow a leader from their next decision on, or nobody any more.

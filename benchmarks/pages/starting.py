@@ -73,8 +73,8 @@ def main() -> None:
         ),
         ("later runs of the doorway, with pictures", f"{statistics.median(later):.1f}"),
         ("- Mesa with pandas and SciPy, Numba and shapely imported", imported),
-        ("- the map read", read),
-        ("- its options laid out, and the model made", made),
+        ("- the map mapped into memory", read),
+        ("- its options as well, and the model made", made),
         ("- the run itself", simulated),
     ]
     told = f"{machine()} Medians of {REPEATS}, except for the first run."

@@ -79,9 +79,9 @@ def run(
     with progress_bar(shown=not no_progress) as report, nothing_collected():
         report("loading")
         from mesa_mobility.crowd.model_files import find_model
-        from mesa_mobility.crowd.precompile import compiling_ahead, is_compiled
+        from mesa_mobility.crowd.precompile import COMPILING, compiling_ahead, is_compiled
 
-        report("preparing" if is_compiled() else "compiling, once after installation")
+        report("preparing" if is_compiled() else COMPILING)
         with compiling_ahead():
             simulation, given = create_model(
                 find_model(model), model, options, record=record or True

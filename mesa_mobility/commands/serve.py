@@ -56,8 +56,10 @@ def serve(
     with nothing_collected():
         from mesa_mobility.crowd import PedestrianModel
         from mesa_mobility.crowd.model_files import find_model
-        from mesa_mobility.crowd.precompile import compiling_ahead
+        from mesa_mobility.crowd.precompile import COMPILING, compiling_ahead, is_compiled
 
+        if not is_compiled():
+            say(COMPILING)
         with compiling_ahead():
             simulation, _ = create_model(find_model(model), model, options)
             if not isinstance(simulation, PedestrianModel):

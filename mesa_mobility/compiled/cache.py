@@ -33,7 +33,7 @@ PACKAGE = Path(__file__).parents[1]
 PLAIN_WANTED: bool = os.environ.get("MESA_MOBILITY_PLAIN") == "1"
 """Whether plain Numba is to take the place of hand-written code; see ``compiled.twins``."""
 
-_PREFIX = "mesa-mobility-"
+PREFIX = "mesa-mobility-"
 
 _MOST = 8
 """Folders of other versions that are kept beside a new one."""
@@ -45,7 +45,8 @@ _log = logging.getLogger(__name__)
 
 
 @lru_cache
-def _say_once(message: str) -> None:
+def say_once(message: str) -> None:
+    """Warn of something about files, the first time that it is said."""
     # Without a logging configuration Python prints the message as it is on standard error.
     _log.warning(message)
 
@@ -87,7 +88,7 @@ def folder() -> Path | None:
     the user's cache, else in a temporary folder: the first of them that has compiled code already,
     else the first that can be written.
     """
-    name = _PREFIX + _version()
+    name = PREFIX + _version()
     places = [place / name for place in _places()]
     for place in places:
         if any(place.glob("*/*.nbc")):
@@ -99,12 +100,12 @@ def folder() -> Path | None:
             return place
     private = _temporary()
     if private is not None and _make(private / name):
-        _say_once(
+        say_once(
             f"compiled code is kept in {private / name}: nothing can be written to "
             + " or ".join(str(place.parent) for place in places)
         )
         return private / name
-    _say_once("compiled code is not kept, and compiled at each start: no folder can be written")
+    say_once("compiled code is not kept, and compiled at each start: no folder can be written")
     return None
 
 
@@ -151,7 +152,7 @@ def _make(place: Path) -> bool:
 
 def _prune(place: Path) -> None:
     """Delete the least recently used folders of other versions."""
-    others = [path for path in place.parent.glob(f"{_PREFIX}*-*") if path != place]
+    others = [path for path in place.parent.glob(f"{PREFIX}*-*") if path != place]
     others.sort(key=lambda path: path.stat().st_mtime_ns, reverse=True)
     for path in others[_MOST:]:
         shutil.rmtree(path, ignore_errors=True)
@@ -243,7 +244,7 @@ class _Files(IndexDataCacheFile):
         super().save(key, data)
 
     def _damaged(self) -> None:
-        _say_once(f"{folder()}: compiled code there is damaged, and compiled again")
+        say_once(f"{folder()}: compiled code there is damaged, and compiled again")
 
 
 class _Impl(CompileResultCacheImpl):
@@ -265,7 +266,7 @@ class _Cache(FunctionCache):
         try:
             super().save_overload(signature, result)
         except OSError as error:
-            _say_once(
+            say_once(
                 f"{folder()}: compiled code cannot be kept there: {error.strerror or error}; "
                 "what is missing is compiled at each start"
             )

@@ -33,6 +33,9 @@ from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.interrupts import cleaning_up, deaf_children
 
+COMPILING = "compiling, once after installation: takes half a minute on two free processors"
+"""What a command says while the first run compiles."""
+
 _COMMAND = """
 import gc
 gc.disable()

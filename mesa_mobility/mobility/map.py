@@ -6,8 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mesa_mobility.files.read_once import read_once
+from mesa_mobility.mobility.kept_map import read_kept_map
 from mesa_mobility.mobility.map_data import MapData
-from mesa_mobility.mobility.mapfile import read_map, shipped_map_path, write_map
+from mesa_mobility.mobility.mapfile import shipped_map_path, write_map
+
+LENDER = "able_bodied"
+"""The map that ships of which others borrow what they lack."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,14 +57,14 @@ class MobilityMap(MapData):
         Raises:
             MapError: the file is missing, damaged, of another version or inconsistent.
         """
-        path = Path(shipped_map_path("able_bodied") if path is None else path)
+        path = Path(shipped_map_path(LENDER) if path is None else path)
         found = read_once(path, cls._read)
         object.__setattr__(found, "file", path)
         return found
 
     @classmethod
     def _read(cls, path: Path) -> MobilityMap:
-        return read_map(path, cls, lender=cls.load)
+        return read_kept_map(path, cls, lender=shipped_map_path(LENDER), lend=cls.load)
 
     @classmethod
     def named(cls, name: str) -> MobilityMap:

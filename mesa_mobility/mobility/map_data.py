@@ -54,6 +54,9 @@ class MapData:
     file: Path | None = field(default=None, init=False, repr=False, compare=False)
     """The file that it was read from, if any."""
 
+    origin: str | None = field(default=None, init=False, repr=False, compare=False)
+    """The digest of all files that it follows from, None for a map that was made in memory."""
+
     def __post_init__(self) -> None:
         check_map(self)
         for name, array in vars(self).items():

@@ -38,6 +38,7 @@ class Array(Kind):
         infinite: whether numbers may be infinite.
         missing: whether numbers may be nan.
         rising: whether each number is greater than the one before.
+        filled: whether there must be a number at all.
     """
 
     dtype: str
@@ -48,6 +49,7 @@ class Array(Kind):
     infinite: bool = False
     missing: bool = False
     rising: bool = False
+    filled: bool = False
 
     def check(self, value: Any, where: str, sizes: Sizes) -> None:
         """Raise ContentError unless ``value`` is an array of this type, shape and range."""
@@ -57,6 +59,8 @@ class Array(Kind):
             refuse(where, found, f"an array of {wanted}")
         if self.shape is not None:
             check_shape(value.shape, self.shape, where, sizes)
+        if self.filled and not value.size:
+            raise ContentError(f"{where}: has no numbers, expected some")
         self.check_numbers(value, where, sizes)
 
     def check_numbers(self, values: NDArray[Any], where: str, sizes: Sizes) -> None:

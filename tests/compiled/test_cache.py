@@ -35,7 +35,7 @@ def module(tmp_path_factory):
 @pytest.fixture
 def place(tmp_path, monkeypatch):
     monkeypatch.setattr(kernel_cache, "folder", lambda: tmp_path / "kept")
-    kernel_cache._say_once.cache_clear()
+    kernel_cache.say_once.cache_clear()
     return tmp_path / "kept"
 
 
@@ -130,7 +130,7 @@ def places(tmp_path, monkeypatch):
     monkeypatch.setattr(numba.config, "CACHE_DIR", "")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
     monkeypatch.setattr(kernel_cache.tempfile, "gettempdir", lambda: str(tmp_path / "tmp"))
-    kernel_cache._say_once.cache_clear()
+    kernel_cache.say_once.cache_clear()
     return tmp_path
 
 

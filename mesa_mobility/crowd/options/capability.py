@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from mesa_mobility.crowd.options.shortened import with_shortened
 from mesa_mobility.crowd.options.table import (
     FRAME_SECONDS,
     SAMPLE_FRAMES,
+    OptionTable,
     Parts,
     option_table,
     padded_paths,
@@ -76,6 +78,19 @@ class Capability:
         self.parts = parts.taken(order)
         path = padded_paths(mobility_map, self.parts)
         self.table = option_table(mobility_map, self.parts, path, offsets, groups)
+
+    @classmethod
+    def of_table(cls, mobility_map: MobilityMap, parts: Parts, table: OptionTable) -> Self:
+        """A capability whose options have been laid out before.
+
+        Args:
+            mobility_map: the type's clustered mobility map.
+            parts: as the attribute.
+            table: the options.
+        """
+        made = object.__new__(cls)
+        made.map, made.parts, made.table = mobility_map, parts, table
+        return made
 
     @property
     def n_clusters(self) -> int:

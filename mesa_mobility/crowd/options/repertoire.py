@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility._once import cached_once
+from mesa_mobility.compiled.kept_arrays import Arrays, kept_arrays
 from mesa_mobility.crowd.options.capability import Capability
+from mesa_mobility.crowd.options.kept_options import DTYPES, check_options
 from mesa_mobility.crowd.options.option_groups import OptionGroups, make_groups
-from mesa_mobility.crowd.options.table import OptionTable, boxes, stack_tables
+from mesa_mobility.crowd.options.table import (
+    OPTION,
+    OptionTable,
+    Parts,
+    boxes,
+    stack_tables,
+    unstacked,
+)
 from mesa_mobility.mobility import MobilityMap
 
 
@@ -62,26 +72,81 @@ def repertoire(
     Raises:
         ModelError: a cluster has no option of these durations.
     """
+    numbers = durations, shares, most_acceleration
+
+    def lay_out() -> tuple[Repertoire, Arrays]:
+        arrays = _laid_out(maps, *numbers)
+        return _of_arrays(maps, arrays), arrays
+
+    def take(arrays: Arrays) -> Repertoire:
+        check_options(arrays, maps)
+        return _of_arrays(maps, arrays)
+
+    origins = [each.origin for each in maps]
+    if None in origins:
+        return lay_out()[0]
+    return kept_arrays("options", (origins, numbers), DTYPES, lay_out, take)
+
+
+def _laid_out(
+    maps: tuple[MobilityMap, ...],
+    durations: tuple[int, ...],
+    shares: tuple[tuple[float, ...], ...],
+    most_acceleration: float | None,
+) -> dict[str, NDArray[Any]]:
+    """The arrays of a repertoire, by name."""
     own = {
         map_: Capability(map_, durations, shares, most_acceleration) for map_ in dict.fromkeys(maps)
     }
-    capabilities = tuple(own[map_] for map_ in maps)
+    capabilities = [own[map_] for map_ in maps]
     table = stack_tables([each.table for each in capabilities])
     spanned = boxes(table.path)
-    clusters = np.cumsum([0] + [each.n_clusters for each in capabilities], dtype=np.int64)[:-1]
-    options = np.cumsum([0] + [len(each.table.options) for each in capabilities], dtype=np.int64)[
-        :-1
-    ]
-    standing = clusters + [each.standing for each in capabilities]
+    options = np.cumsum([0] + [len(each.table.options) for each in capabilities[:-1]])
+    widths = np.hypot(*(spanned[:, 2:] - spanned[:, :2]).T)
+    parts = Parts(
+        *(np.concatenate(each) for each in zip(*(c.parts for c in capabilities), strict=True))
+    )
+    return {
+        **_named("table", table),
+        **_named("groups", make_groups(table, spanned)),
+        **_named("parts", parts),
+        "extent": np.maximum.reduceat(widths, options).astype(np.float64),
+    }
+
+
+def _named(of: str, arrays: OptionTable | OptionGroups | Parts) -> dict[str, NDArray[Any]]:
+    # Record arrays have types of their own, which a file does not tell apart.
+    return {f"{of}.{name}": np.asarray(each) for name, each in arrays._asdict().items()}
+
+
+def _of_arrays(maps: tuple[MobilityMap, ...], arrays: Arrays) -> Repertoire:
+    """The repertoire of these arrays."""
+
+    def named(of: str) -> dict[str, Any]:
+        start = f"{of}."
+        return {
+            name.removeprefix(start): each
+            for name, each in arrays.items()
+            if name.startswith(start)
+        }
+
+    columns, parts = named("table"), Parts(**named("parts"))
+    columns["options"] = columns["options"].view(OPTION).view(np.recarray)
+    table = OptionTable(**columns)
+    clusters = np.cumsum([0] + [each.n_clusters for each in maps])
+    rows = table.offsets[clusters]
+    tables = unstacked(table, rows[:-1], clusters[:-1])
+    capabilities = tuple(
+        Capability.of_table(map_, parts.taken(slice(*own)), laid_out)
+        for map_, own, laid_out in zip(maps, pairwise(rows.tolist()), tables, strict=True)
+    )
     return Repertoire(
         capabilities=capabilities,
         table=table,
-        groups=make_groups(table, spanned),
-        first_cluster=clusters.astype(np.int32),
-        first_option=options.astype(np.int64),
-        standing=standing.astype(np.int32),
+        groups=OptionGroups(**named("groups")),
+        first_cluster=clusters[:-1].astype(np.int32),
+        first_option=rows[:-1].astype(np.int64),
+        standing=(clusters[:-1] + [each.standing for each in capabilities]).astype(np.int32),
         reach=np.array([each.longest_reach for each in capabilities]),
-        extent=np.maximum.reduceat(np.hypot(*(spanned[:, 2:] - spanned[:, :2]).T), options).astype(
-            np.float64
-        ),
+        extent=arrays["extent"],
     )

@@ -237,3 +237,41 @@ def stack_tables(tables: Sequence[OptionTable]) -> OptionTable:
         heading=np.concatenate([table.heading for table in tables]),
         path=path,
     )
+
+
+def unstacked(
+    table: OptionTable, first_option: NDArray[np.int64], first_cluster: NDArray[np.int32]
+) -> list[OptionTable]:
+    """The tables of which `stack_tables` has made one; paths and headings stay where they are.
+
+    Args:
+        table: the table of all.
+        first_option: (tables,) row of the first option of each.
+        first_cluster: (tables,) number of the first cluster of each.
+    """
+    if len(first_option) == 1:
+        return [table]
+    ends = *first_option[1:], len(table.options)
+    last_clusters = *first_cluster[1:], len(table.farthest)
+    return [
+        _part(table, slice(*options), slice(*clusters))
+        for options, clusters in zip(
+            zip(first_option, ends, strict=True),
+            zip(first_cluster, last_clusters, strict=True),
+            strict=True,
+        )
+    ]
+
+
+def _part(table: OptionTable, rows: slice, clusters: slice) -> OptionTable:
+    options = table.options[rows].copy().view(np.recarray)
+    options.cluster -= options.cluster.dtype.type(clusters.start)
+    groups = table.groups[slice(*np.searchsorted(table.groups, (rows.start, rows.stop)))]
+    return OptionTable(
+        offsets=table.offsets[clusters.start : clusters.stop + 1] - rows.start,
+        groups=groups - rows.start,
+        farthest=table.farthest[clusters],
+        options=options,
+        heading=table.heading[rows],
+        path=table.path[rows],
+    )

@@ -127,6 +127,26 @@ def test_it_goes_on_from_a_checkpoint(tmp_path):
     check_going_on(Street(rng=1), tmp_path, saved_at=3, until=6)
 
 
+@pytest.mark.parametrize(
+    ("leaders", "trails", "text"),
+    [
+        ({1: 0}, {0: np.empty((0, 2))}, r"_trails\[0\]: has no numbers, expected some"),
+        ({1: 1}, {}, "_leaders: pedestrian 1 would follow itself"),
+        ({2: 0, 0: 1, 1: 2}, {}, "_leaders: pedestrian [012] would follow itself"),
+    ],
+)
+def test_what_a_checkpoint_must_not_say(tmp_path, leaders, trails, text):
+    following = Following()
+    model = PedestrianModel(corridor(), mobility_map=strider(), rng=1)
+    model.add_tactic(following)
+    model.add_pedestrians([(2.0, 1.0), (3.0, 1.0), (4.0, 1.0)])
+    following._leaders, following._trails = leaders, trails
+    model.save(tmp_path / "saved")
+    with pytest.raises(ModelError, match=text) as caught:
+        PedestrianModel.load(tmp_path / "saved", mobility_map=strider(), plugins=[Following()])
+    assert "\n" not in str(caught.value)
+
+
 def test_what_is_refused():
     with pytest.raises(ModelError, match=r"following: distance 0.0, expected more than 0 m"):
         Following(distance=0.0)
