@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -30,6 +31,7 @@ from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
+from mesa_mobility.crowd.state.twins import change_sheets, laid_twins
 from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
 from mesa_mobility.errors import ModelError
@@ -167,15 +169,16 @@ class Dynamics(Saved):
         Raises:
             ModelError: one of them is not inside.
         """
-        return make_candidates(rows, self._outlook(rows))
+        with self._seen(rows) as grid:
+            return make_candidates(rows, self._outlook(grid))
 
-    def _outlook(self, rows: NDArray[np.int64]) -> Outlook:
-        """Neighbours, walls and options of the people in ``rows``, if they decided now."""
+    def _outlook(self, grid: Grid) -> Outlook:
+        """Neighbours, walls and options of the people, if they decided now."""
         scene = self._scene
         return Outlook(
             scene.repertoire.table,
             scene.crowd,
-            self._grid(rows),
+            grid,
             scene.environment.surroundings,
             scene.rules,
             self._moment.aside(),
@@ -189,8 +192,10 @@ class Dynamics(Saved):
         """The decision of the person in ``row`` if it decided now, before all others."""
         scene, model = self._scene, self._model
         self.bind()
-        outlook, names = self._outlook(np.array([row])), [each.name for each in scene.types]
-        judged = judge(weigh(row, outlook, scene.repertoire, model.terms, names), outlook)
+        names = [each.name for each in scene.types]
+        with self._seen(np.array([row])) as grid:
+            outlook = self._outlook(grid)
+            judged = judge(weigh(row, outlook, scene.repertoire, model.terms, names), outlook)
         return replace(judged, blocked_by=int(self.wishes(np.array([row])).blockers[0]))
 
     def wishes(
@@ -274,18 +279,25 @@ class Dynamics(Saved):
         scene.journeys.advance(
             deciding, model.frame, scene.crowd, scene.repertoire.table, model.rng
         )
+        change_sheets(scene.strips, deciding, scene.crowd)
         model.waits.evaluate(deciding, model.frame, scene.crowd)
         # The crowd has the rest of the targets by then, so they can be freed here.
         order = decision_order(deciding, self._set_targets(deciding, inside))
-        self._scheduler.take(
-            order,
-            self._moment,
-            people.departed.together_with(inside),
-            scene.crowd,
-            scene.environment.surroundings,
-            model.terms,
-            model.watch,
-        )
+        everybody = people.departed.together_with(inside)
+        with laid_twins(scene.strips, everybody, people.count, scene.reach, scene.crowd) as (
+            twins,
+            rows,
+        ):
+            self._scheduler.take(
+                order,
+                self._moment,
+                rows,
+                scene.crowd,
+                scene.environment.surroundings,
+                model.terms,
+                model.watch,
+                twins,
+            )
         if model.decisions is not None:
             model.decisions.add(model.frame, deciding, scene.crowd)
 
@@ -303,11 +315,17 @@ class Dynamics(Saved):
         if model.recorder is not None:
             model.recorder.add(model.frame, rows, self._scene.crowd)
 
-    def _grid(self, rows: NDArray[np.int64]) -> Grid:
-        """A grid of everybody, among them those in ``rows``."""
-        people, crowd = self._model.population, self._scene.crowd
+    @contextmanager
+    def _seen(self, rows: NDArray[np.int64]) -> Iterator[Grid]:
+        """A grid of everybody, among them those in ``rows``, as seen on all sheets."""
+        people, scene = self._model.population, self._scene
         people.see_off(self._model.frame)
         everybody = people.departed.together_with(people.present)
         if not np.isin(rows, everybody).all():
             raise ModelError(f"candidates: got the rows {rows}, expected people inside")
-        return grid_of_frame(everybody, crowd.records)
+        with laid_twins(scene.strips, everybody, people.count, scene.reach, scene.crowd) as (
+            twins,
+            all_rows,
+        ):
+            seen = all_rows[twins.here[all_rows]] if len(twins.follow) else all_rows
+            yield grid_of_frame(seen, scene.crowd.records)
