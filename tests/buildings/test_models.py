@@ -1,5 +1,7 @@
 """Models of buildings: people walk down stairs, and results say where they were."""
 
+import copy
+
 import numpy as np
 import pytest
 import shapely
@@ -7,6 +9,7 @@ from shapely import box
 
 from mesa_mobility import Building, Exit, FloorPlan, Level, PedestrianModel, Trajectories
 from mesa_mobility.buildings import ON_STAIRS
+from mesa_mobility.commands.models.making import create_model
 from mesa_mobility.errors import ModelError
 from mesa_mobility.results import check_safety, read_parquet
 from tests.fixtures.buildings import HALL, RISE, two_storeys
@@ -166,3 +169,31 @@ def test_one_level_gives_the_bytes_of_its_floor_plan(tmp_path):
 def test_fields_may_not_be_named_as_columns_of_buildings():
     with pytest.raises(ModelError, match="fields: 'level' is a column of all results of buildings"):
         PedestrianModel(two_storeys(), fields={"level": int})
+
+
+def test_a_saved_run_goes_on_as_it_would_have(tmp_path):
+    office = two_storeys()
+    model = PedestrianModel(office, record=True, rng=1)
+    model.add_pedestrians(office.random_points(20, model.rng, level=1, spacing=0.8, clearance=0.3))
+    model.run(max_seconds=12)
+    assert (Trajectories.of(model).level == ON_STAIRS).any()
+    model.save(tmp_path / "saved.npz")
+    again = PedestrianModel.load(tmp_path / "saved.npz", floor_plan=two_storeys())
+    found = []
+    for each in (model, copy.deepcopy(model), again):
+        each.run(max_seconds=20)
+        tracks = Trajectories.of(each)
+        found.append([values.tobytes() for values in (tracks.x, tracks.y, tracks.z)])
+    assert found[0] == found[1] == found[2]
+
+
+class Office(PedestrianModel):
+    """A building without people."""
+
+    def __init__(self, rng=None):
+        super().__init__(two_storeys(), rng=rng)
+
+
+def test_commands_refuse_models_of_buildings():
+    with pytest.raises(ModelError, match="model office: has a building of 2 levels"):
+        create_model(Office, "office", [], map_file=None, rng=1)
