@@ -282,12 +282,13 @@ class Dynamics(Saved):
         change_sheets(scene.strips, deciding, scene.crowd)
         model.waits.evaluate(deciding, model.frame, scene.crowd)
         # The crowd has the rest of the targets by then, so they can be freed here.
-        order = decision_order(deciding, self._set_targets(deciding, inside))
-        everybody = people.departed.together_with(inside)
-        with laid_twins(scene.strips, everybody, people.count, scene.reach, scene.crowd) as (
-            twins,
-            rows,
-        ):
+        known = scene.strips, people.departed.together_with(inside), people.count, scene.reach
+        with laid_twins(*known, scene.crowd) as (twins, rows):
+            copies = rows[(twins.strip[rows] >= 0) & twins.here[rows]] if len(twins.here) else None
+            targets = self._set_targets(deciding, inside, copies=copies)
+            order = decision_order(deciding, targets)
+            del targets
+        with laid_twins(*known, scene.crowd) as (twins, rows):  # with the new targets
             self._scheduler.take(
                 order,
                 self._moment,
@@ -302,13 +303,20 @@ class Dynamics(Saved):
             model.decisions.add(model.frame, deciding, scene.crowd)
 
     def _set_targets(
-        self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, newcomers: bool = False
+        self,
+        rows: NDArray[np.int64],
+        inside: NDArray[np.int64],
+        *,
+        newcomers: bool = False,
+        copies: NDArray[np.int64] | None = None,
     ) -> Targets:
         """Set targets and preferred speeds of those in ``rows``, who are among those ``inside``."""
         model = self._model
         self.bind()
         wants = Wants(model.target_choice, model.tactics, model.rng)
-        return self._desired_motion.update(rows, inside, model.frame, wants, newcomers=newcomers)
+        return self._desired_motion.update(
+            rows, inside, model.frame, wants, newcomers=newcomers, copies=copies
+        )
 
     def _record(self, rows: NDArray[np.int64]) -> None:
         model = self._model

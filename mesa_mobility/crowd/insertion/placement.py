@@ -65,6 +65,11 @@ def place_newcomers(
         ModelError: see ``PedestrianModel.add_pedestrians``.
         FloorPlanError: see there.
     """
+    if len(scene.crowd.person_of):
+        raise ModelError(
+            "add_pedestrians: in a building nobody can be added while others decide, expected a "
+            "call between two steps"
+        )
     points = check_places(positions, scene.plan)
     n = len(points)
     if new.type_index is None and new.population is None:

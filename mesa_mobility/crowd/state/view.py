@@ -20,11 +20,18 @@ class CrowdView:
     Args:
         pedestrians: (m,) their rows in the crowd.
         crowd: the crowd.
+        copies: (k,) rows of copies of people on other sheets of the floor plan, if there are any.
     """
 
-    def __init__(self, pedestrians: NDArray[np.int64], crowd: Crowd) -> None:
+    def __init__(
+        self,
+        pedestrians: NDArray[np.int64],
+        crowd: Crowd,
+        copies: NDArray[np.int64] | None = None,
+    ) -> None:
         self.pedestrians = pedestrians
         self.crowd = crowd
+        self._copies = copies
 
     def places(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
         """(n,) indices of people with these rows in the arrays of this class."""
@@ -41,8 +48,15 @@ class CrowdView:
 
     @cached_property
     def grid(self) -> Grid:
-        """The people by cell, where they were when it was first asked for: tactics share it."""
-        return build_grid(self.pedestrians, self.crowd.x, self.crowd.y)
+        """The people by cell, where they were when it was first asked for: tactics share it.
+
+        In a building, people on stairs are there on both sheets, once in a row of their own and
+        once in that of a copy, which ``crowd.person_of`` leads back to the person.
+        """
+        rows = self.pedestrians
+        if self._copies is not None:
+            rows = np.concatenate([rows, self._copies])
+        return build_grid(rows, self.crowd.x, self.crowd.y)
 
     @property
     def preferred_speeds(self) -> NDArray[np.float64]:
