@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -31,7 +31,7 @@ from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
-from mesa_mobility.crowd.state.twins import change_sheets, laid_twins
+from mesa_mobility.crowd.state.twins import Twins, change_sheets, laid_twins
 from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
 from mesa_mobility.errors import ModelError
@@ -209,16 +209,19 @@ class Dynamics(Saved):
         crowd = scene.crowd
         if points is None:
             points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
-        return self._scheduler.wishes(
-            rows,
-            points,
-            crowd.preferred[rows] if speeds is None else speeds,
-            self._moment,
-            people.departed.together_with(people.present),
-            crowd,
-            scene.environment.surroundings,
-            model.terms,
-        )
+        everybody = people.departed.together_with(people.present)
+        # Tactics ask while there are twins.
+        with nullcontext() if len(crowd.person_of) else self._twins(everybody):
+            return self._scheduler.wishes(
+                rows,
+                points,
+                crowd.preferred[rows] if speeds is None else speeds,
+                self._moment,
+                everybody,
+                crowd,
+                scene.environment.surroundings,
+                model.terms,
+            )
 
     def _let_in(self) -> None:
         """Insert arrivals of the sources, and measured people, where there is room."""
@@ -281,14 +284,11 @@ class Dynamics(Saved):
         )
         change_sheets(scene.strips, deciding, scene.crowd)
         model.waits.evaluate(deciding, model.frame, scene.crowd)
-        # The crowd has the rest of the targets by then, so they can be freed here.
-        known = scene.strips, people.departed.together_with(inside), people.count, scene.reach
-        with laid_twins(*known, scene.crowd) as (twins, rows):
-            copies = rows[(twins.strip[rows] >= 0) & twins.here[rows]] if len(twins.here) else None
-            targets = self._set_targets(deciding, inside, copies=copies)
-            order = decision_order(deciding, targets)
-            del targets
-        with laid_twins(*known, scene.crowd) as (twins, rows):  # with the new targets
+        everybody = people.departed.together_with(inside)
+        with self._twins(everybody):  # whom tactics see beyond seams
+            # The crowd has the rest of the targets by then, so they can be freed here.
+            order = decision_order(deciding, self._set_targets(deciding, inside))
+        with self._twins(everybody) as (twins, rows):  # with the new targets
             self._scheduler.take(
                 order,
                 self._moment,
@@ -303,37 +303,35 @@ class Dynamics(Saved):
             model.decisions.add(model.frame, deciding, scene.crowd)
 
     def _set_targets(
-        self,
-        rows: NDArray[np.int64],
-        inside: NDArray[np.int64],
-        *,
-        newcomers: bool = False,
-        copies: NDArray[np.int64] | None = None,
+        self, rows: NDArray[np.int64], inside: NDArray[np.int64], *, newcomers: bool = False
     ) -> Targets:
         """Set targets and preferred speeds of those in ``rows``, who are among those ``inside``."""
         model = self._model
         self.bind()
         wants = Wants(model.target_choice, model.tactics, model.rng)
-        return self._desired_motion.update(
-            rows, inside, model.frame, wants, newcomers=newcomers, copies=copies
-        )
+        return self._desired_motion.update(rows, inside, model.frame, wants, newcomers=newcomers)
 
     def _record(self, rows: NDArray[np.int64]) -> None:
         model = self._model
         if model.recorder is not None:
             model.recorder.add(model.frame, rows, self._scene.crowd)
 
+    def _twins(
+        self, rows: NDArray[np.int64]
+    ) -> AbstractContextManager[tuple[Twins, NDArray[np.int64]]]:
+        """The twins of people for a while, and their rows together with those of the people."""
+        scene = self._scene
+        return laid_twins(
+            scene.strips, rows, self._model.population.count, scene.reach, scene.crowd
+        )
+
     @contextmanager
     def _seen(self, rows: NDArray[np.int64]) -> Iterator[Grid]:
         """A grid of everybody, among them those in ``rows``, as seen on all sheets."""
-        people, scene = self._model.population, self._scene
+        people, crowd = self._model.population, self._scene.crowd
         people.see_off(self._model.frame)
         everybody = people.departed.together_with(people.present)
         if not np.isin(rows, everybody).all():
             raise ModelError(f"candidates: got the rows {rows}, expected people inside")
-        with laid_twins(scene.strips, everybody, people.count, scene.reach, scene.crowd) as (
-            twins,
-            all_rows,
-        ):
-            seen = all_rows[twins.here[all_rows]] if len(twins.follow) else all_rows
-            yield grid_of_frame(seen, scene.crowd.records)
+        with self._twins(everybody):
+            yield grid_of_frame(np.concatenate([everybody, crowd.copies]), crowd.records)

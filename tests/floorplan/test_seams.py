@@ -9,6 +9,7 @@ from shapely import box
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, FloorPlan, Router, Seam
+from mesa_mobility.floorplan.floor.seams import to_own_sheets
 from tests.fixtures.seams import APART, cut_corridor, room_with_corridor, true_x
 
 metres = st.floats(-50.0, 50.0)
@@ -145,3 +146,12 @@ def test_a_plan_with_seams_is_not_written_as_a_floor_plan(tmp_path):
     with pytest.raises(FloorPlanError, match="expected that of its building"):
         cut_corridor(1.6).write_geojson(tmp_path / "plan.geojson")
     assert not list(tmp_path.iterdir())
+
+
+def test_places_on_copied_parts_belong_to_the_other_sheet():
+    found = to_own_sheets(
+        np.array([[9.0, 1.0], [11.0, 1.0], [59.0, 1.0], [61.0, 1.0], [15.0, 1.0], [11.0, 3.0]]),
+        [seam()],
+    )
+    assert found[:, 0].tolist() == [0.0, 50.0, -50.0, 0.0, 0.0, 0.0]
+    assert (found[:, 1] == 0.0).all()

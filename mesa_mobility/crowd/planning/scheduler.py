@@ -31,7 +31,7 @@ from mesa_mobility.crowd.state.people_grid import build_grid, grid_of_frame
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
 from mesa_mobility.crowd.state.twins import NO_TWINS, Twins
-from mesa_mobility.crowd.state.wishes import Wishes
+from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
 from mesa_mobility.errors import ModelError
 
 
@@ -145,7 +145,8 @@ class DecisionScheduler:
         row = order[at : at + 1]
         target = np.column_stack([crowd.target_x[row], crowd.target_y[row]])
         speed = crowd.preferred[row]
-        wish = self.wishes(row, target, speed, moment, rows, crowd, around, terms)
+        people = rows[twins.strip[rows] < 0] if len(twins.follow) else rows
+        wish = self.wishes(row, target, speed, moment, people, crowd, around, terms)
         judged = judge(weighed, outlook)
         watch.decision = replace(judged, blocked_by=int(wish.blockers[0]))
         part(at, len(order))
@@ -199,11 +200,16 @@ class DecisionScheduler:
         most = min(len(inside), self._most_near)
         [work] = self._works_for(1, most, around, len(terms), fields.shape[1])
         self._decide(order, new_queue(len(order)), scene, extra, offsets, work)
-        everybody = build_grid(inside, crowd.x, crowd.y)
+        seen = np.concatenate([inside, crowd.copies]) if len(crowd.copies) else inside
+        everybody = build_grid(seen, crowd.x, crowd.y)
         reach = self._rules.search_radius
-        return wishes_of(
+        found = wishes_of(
             alone, rows, moment.frame, self._repertoire.table, everybody, crowd.records, reach
         )
+        if len(crowd.copies):
+            hit = found.blockers != NOBODY
+            found.blockers[hit] = crowd.person_of[found.blockers[hit]]
+        return found
 
     def _works_for(
         self, threads: int, people: int, around: Surroundings, terms: int, fields: int

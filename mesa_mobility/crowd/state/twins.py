@@ -97,10 +97,11 @@ def laid_twins(
     crowd.target_y[new] += strips[numbers, 7]
     crowd.person_of = np.arange(len(follow), dtype=np.int64)
     crowd.person_of[new] = owners
+    crowd.copies = new[here[new]]
     try:
         yield Twins(follow, strip, here, strips), np.concatenate([rows, new])
     finally:
-        crowd.person_of = NO_TWINS.follow
+        crowd.person_of = crowd.copies = NO_TWINS.follow
         # Rows are taken to be empty until somebody comes in.
         for values in (crowd.records, crowd.agenda, *crowd.fields.values()):
             values[new] = np.zeros(1, values.dtype)

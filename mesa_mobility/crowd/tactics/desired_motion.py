@@ -57,7 +57,6 @@ class DesiredMotion:
         wants: Wants,
         *,
         newcomers: bool = False,
-        copies: NDArray[np.int64] | None = None,
     ) -> Targets:
         """Update targets, route lengths and preferred speeds of the pedestrians in ``rows``.
 
@@ -67,7 +66,6 @@ class DesiredMotion:
             frame: now.
             wants: the model's behaviours.
             newcomers: whether they have only just been put on the floor.
-            copies: rows of copies of people on other sheets of the floor plan, if there are any.
 
         Raises:
             ModelError: a behaviour gives values of the wrong shape or out of range.
@@ -81,7 +79,7 @@ class DesiredMotion:
             positions,
             destinations,
             frame * FRAME_SECONDS,
-            CrowdView(inside, crowd, copies),
+            CrowdView(inside, crowd),
             wants.rng,
             self._environment,
         )

@@ -156,6 +156,19 @@ class Seam:
         return np.array(self.centre) + (self.shift if second else (0.0, 0.0))
 
 
+def to_own_sheets(points: NDArray[np.float64], seams: Sequence[Seam]) -> NDArray[np.float64]:
+    """(n, 2) metres from places to the same on the sheets to which they belong.
+
+    They are 0 for all (n, 2) points that are not on the copied part of a strip.
+    """
+    shifts = np.zeros((len(points), 2))
+    for seam in seams:
+        for second, sign in ((False, 1.0), (True, -1.0)):
+            copied = seam.on_strip(points, second) & (sign * seam.past(points, second) > 0.0)
+            shifts[copied] = sign * np.array(seam.shift)
+    return shifts
+
+
 def check_seams(walkable: BaseGeometry, seams: Sequence[Seam]) -> None:
     """Strips must lie on the walkable area on both sheets; FloorPlanError otherwise."""
     room = walkable.buffer(1e-6)
