@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.buildings.sheets import Sheet, middle_of
+from mesa_mobility.buildings.sheets import BEYOND, Sheet, middle_of
 from mesa_mobility.buildings.stairs import Flight
 from mesa_mobility.errors import FloorPlanError
 
@@ -16,6 +16,9 @@ ON_STAIRS = -32_768
 
 _HEIGHT = 0.01
 """Most metres by which a place may be above or below the floor."""
+
+_ROUNDING = 1e-6
+"""Metres."""
 
 
 class Places:
@@ -52,10 +55,8 @@ class Places:
             places[own[drawn], 2] = _height(flight, down[drawn])
             levels[own[drawn]] = ON_STAIRS
             # Beyond the flight, the copied end of a strip is on the other sheet's floor.
-            for ends, here, there in (
-                (down >= flight.going, upper, lower),
-                (down <= 0.0, lower, upper),
-            ):
+            for past, here, there in ((down - flight.going, upper, lower), (-down, lower, upper)):
+                ends = (past >= 0.0) & (past <= BEYOND + _ROUNDING)
                 over = own[ends & (aside <= flight.width / 2.0) & (sheet[own] == here)]
                 over = over[self._copied(flight, here, places[over, :2])]
                 places[over, 2], levels[over] = self._elevations[there], self._levels[there]

@@ -76,6 +76,22 @@ def test_both_drawings_of_a_place_on_a_flight_are_one_place():
         assert (level == other).all()
 
 
+def test_flights_in_one_line_along_a_wall_are_told_apart():
+    """Stairs down from the first and from the second level, one behind the other on the former."""
+    levels = [GROUND, FIRST, Level(2, HALL, 2 * RISE)]
+    lower, upper = ((3, 1.2), (3, 0)), ((12, 1.2), (12, 0))
+    office = Building(
+        levels, [stairs("lower", head=lower), stairs("upper", upper=2, lower=1, head=upper)]
+    )
+    down = np.linspace(0.05, 4.88, 20)
+    for level, left, top in ((0, 3, 1), (1, 3, 1), (1, 12, 2), (2, 12, 2)):
+        points = office.places(np.column_stack([left + down, np.full(20, 0.6)]), level)
+        places, numbers = office.true_places(points)
+        assert np.allclose(places[:, 0], left + down)
+        assert np.allclose(places[:, 2], RISE * (top - down / 4.93))
+        assert (numbers == ON_STAIRS).all()
+
+
 levels_of = st.sampled_from([0, 1])
 
 
