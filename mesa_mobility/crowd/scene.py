@@ -78,7 +78,12 @@ def make_scene(
     )
     radii = np.array([each.half_width for each in types])
     reach, extent, largest = known.reach.max(), known.extent.max(), radii.max()
-    environment = Environment(plan, reach=float(reach + largest) + 0.02, core_radii=radii.tolist())
+    environment = Environment(
+        plan,
+        reach=float(reach + largest) + 0.02,
+        core_radii=radii.tolist(),
+        climbs=[bool(each.climbs) for each in types],
+    )
     return Scene(
         plan=plan,
         types=types,

@@ -9,7 +9,7 @@ from shapely import box
 
 from mesa_mobility import Building, Exit, FloorPlan, Level, PedestrianModel, Trajectories
 from mesa_mobility.buildings import ON_STAIRS
-from mesa_mobility.commands.models.making import create_model
+from mesa_mobility.commands.models.making import ModelOptions, create_model
 from mesa_mobility.errors import ModelError
 from mesa_mobility.results import check_safety, read_parquet
 from tests.fixtures.buildings import HALL, RISE, two_storeys
@@ -196,4 +196,4 @@ class Office(PedestrianModel):
 
 def test_commands_refuse_models_of_buildings():
     with pytest.raises(ModelError, match="model office: has a building of 2 levels"):
-        create_model(Office, "office", [], map_file=None, rng=1)
+        create_model(Office, "office", ModelOptions(seed=1))

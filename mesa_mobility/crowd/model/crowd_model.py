@@ -213,7 +213,26 @@ class CrowdModel(mesa.Model):
         """Why the evacuation has stalled, in a few words; None if it has not."""
         if not self.stalled:
             return None
-        return stall_reason(self.floor_plan, self.population.aggregates, self._stall_watch.ring)
+        return stall_reason(
+            self.floor_plan,
+            self.population.aggregates,
+            self._stall_watch.ring,
+            self.without_stairs,
+        )
+
+    @property
+    def without_stairs(self) -> list[int]:
+        """Rows of the people inside who have no way to go since they cannot use stairs.
+
+        They stay on their level, where they stand.
+        """
+        if not self.floor_plan.seams:
+            return []
+        rows, crowd = self.population.present, self.crowd
+        climbs = np.array([each.climbs for each in self.pedestrian_types])
+        lost = rows[~climbs[crowd.type_index[rows]] & np.isinf(crowd.route[rows])]
+        found: list[int] = lost.tolist()
+        return found
 
     @property
     def blocked(self) -> list[Blocked]:

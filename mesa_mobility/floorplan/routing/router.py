@@ -47,12 +47,15 @@ class Router:
             shrinks to 85 % of this; narrower gaps are impassable.
         beyond: how far behind a gate or exit the target lies, metres, above 0; less where a wall
             is nearer.
+        seams: whether routes lead across seams.
 
     Raises:
         FloorPlanError: clearance or beyond out of range.
     """
 
-    def __init__(self, plan: Floor, *, clearance: float = 0.2, beyond: float = 2.0) -> None:
+    def __init__(
+        self, plan: Floor, *, clearance: float = 0.2, beyond: float = 2.0, seams: bool = True
+    ) -> None:
         if not (np.isfinite([clearance, beyond]).all() and clearance > 0 and beyond > 0):
             raise FloorPlanError(
                 f"a router needs clearance > 0 and beyond > 0, found {clearance} and {beyond}"
@@ -60,6 +63,7 @@ class Router:
         self._plan = plan
         self._clearance = float(clearance)
         self._beyond = float(beyond)
+        self._seams = plan.seams if seams else ()
         self._destinations: list[Destination] = [None]
         self._version = -1
         self._distances: dict[int, NDArray[np.float64]] = {}
@@ -267,7 +271,7 @@ class Router:
         self._edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
-        self._leaving, self._arriving, lengths = seam_links(plan, nodes)
+        self._leaving, self._arriving, lengths = seam_links(self._seams, plan.openings(), nodes)
         if len(lengths):
             links = np.column_stack([self._leaving, self._arriving])
             self._edges = np.concatenate([self._edges, links])

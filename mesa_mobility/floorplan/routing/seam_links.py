@@ -1,10 +1,13 @@
 """Edges of the route graph that lead from one sheet of a floor plan to another."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from mesa_mobility.floorplan.floor.floor import Floor
+from mesa_mobility.floorplan.floor.openings import Gate
+from mesa_mobility.floorplan.floor.seams import Seam
 from mesa_mobility.floorplan.routing.route_nodes import Nodes
 
 _APART = 0.01
@@ -15,22 +18,23 @@ _LEAST = 1e-9
 
 
 def seam_links(
-    plan: Floor, nodes: Nodes
+    seams: Sequence[Seam], openings: Sequence[Gate], nodes: Nodes
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Edges from the copied gates of seams to the gates themselves.
 
     Args:
-        plan: the floor plan.
+        seams: the seams of a floor plan.
+        openings: its gates and exits.
         nodes: the nodes of its route graph.
 
     Returns:
         (k,) nodes that they leave, (k,) nodes to which they lead, and their (k,) lengths in metres:
         the extra length of the seam.
     """
-    numbers = {opening.name: number for number, opening in enumerate(plan.openings())}
+    numbers = {opening.name: number for number, opening in enumerate(openings)}
     leaving, arriving = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
     lengths = [np.empty(0)]
-    for seam in plan.seams:
+    for seam in seams:
         for copy, gate, direction, shift in seam.links:
             own, other = (
                 np.flatnonzero((nodes.opening == numbers[name]) & (nodes.normal @ direction > 0.5))
