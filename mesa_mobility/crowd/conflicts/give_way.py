@@ -178,8 +178,7 @@ class GiveWay(Tactic):
         others = inside[self._notes["first"][inside] != NOBODY]
         others = deciding.inside.with_copies(others)
         to = deciding.positions[:, None] - np.column_stack([crowd.x[others], crowd.y[others]])
-        near: NDArray[np.bool_] = (np.hypot(to[..., 0], to[..., 1]) < NEAR).any(axis=1)
-        return near
+        return np.asarray((np.hypot(to[..., 0], to[..., 1]) < NEAR).any(axis=1))
 
     def _go_on(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> None:
         """Let those go on making way whose own way still leads across that of the others."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from mesa_mobility.floorplan.floor.openings import Gate
+from mesa_mobility.floorplan.floor.openings import Opening
 from mesa_mobility.floorplan.floor.seams import Seam
 from mesa_mobility.floorplan.routing.route_nodes import Nodes
 
@@ -18,7 +18,7 @@ _LEAST = 1e-9
 
 
 def seam_links(
-    seams: Sequence[Seam], openings: Sequence[Gate], nodes: Nodes
+    seams: Sequence[Seam], openings: Sequence[Opening], nodes: Nodes
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Edges from the copied gates of seams to the gates themselves.
 
