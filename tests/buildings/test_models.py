@@ -13,6 +13,7 @@ from mesa_mobility.commands.models.making import ModelOptions, create_model
 from mesa_mobility.errors import ModelError
 from mesa_mobility.results import check_safety, read_parquet
 from tests.fixtures.buildings import HALL, RISE, two_storeys
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.seams import overlaps
 
 PEOPLE = 60
@@ -22,7 +23,7 @@ PEOPLE = 60
 def run():
     """A building, and the tracks of people who leave its upper level."""
     office = two_storeys()
-    model = PedestrianModel(office, record=True, rng=1)
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=1)
     model.add_pedestrians(
         office.random_points(PEOPLE, model.rng, level=1, spacing=0.6, clearance=0.25)
     )
@@ -92,7 +93,7 @@ def test_both_stairs_are_used_and_people_slow_down_on_them(run):
 def test_a_lone_walker_takes_the_time_that_the_reference_gives():
     """On the straight flight, at 1.34 m/s on a level floor: 1.34 times the factor, to 12 %."""
     office = two_storeys()
-    model = PedestrianModel(office, record=True, rng=3)
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=3)
     model.add_pedestrians(office.places([(4.0, 0.6)], level=1), preferred_speeds=1.34)
     model.run(max_seconds=60)
     tracks = Trajectories.of(model)
@@ -105,7 +106,7 @@ def test_people_walk_up_too():
     ground = Level(0, HALL)
     first = Level(1, HALL, RISE, exits=[Exit("roof", (0, 3), (0, 5))])
     office = Building([ground, first], two_storeys().stairs)
-    model = PedestrianModel(office, record=True, rng=2)
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=2)
     model.add_pedestrians(office.random_points(10, model.rng, level=0, spacing=1.0, clearance=0.3))
     model.run(max_seconds=120)
     assert model.inside == 0
@@ -120,7 +121,7 @@ def test_people_who_cross_on_the_stairs_pass_each_other():
         [Level(0, HALL, exits=hall[0]), Level(1, HALL, RISE, exits=hall[1])],
         two_storeys().stairs[:1],
     )
-    model = PedestrianModel(office, record=True, rng=2)
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=2)
     for level, exit_ in ((0, "roof"), (1, "west")):
         places = office.random_points(12, model.rng, level=level, spacing=1.0, clearance=0.3)
         model.add_pedestrians(places, exits=[exit_])
@@ -157,7 +158,7 @@ def test_one_level_gives_the_bytes_of_its_floor_plan(tmp_path):
     exits = [Exit("out", (0, 3), (0, 5))]
     floors = FloorPlan(HALL, exits=exits), Building([Level(0, HALL, exits=exits)])
     for name, floor in zip(("plan", "building"), floors, strict=True):
-        model = PedestrianModel(floor, record=True, rng=5)
+        model = PedestrianModel(floor, preset=ENGINE, record=True, rng=5)
         assert model.building is None
         points = floor.random_points(30, model.rng, spacing=0.6, clearance=0.3)
         model.add_pedestrians(points)

@@ -8,12 +8,13 @@ from mesa_mobility import CostTerm, PedestrianModel, Trajectories
 from mesa_mobility.compiled import threads
 from mesa_mobility.errors import ModelError
 from mesa_mobility.results import check_safety
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.seams import APART, cut_corridor, overlaps, room_with_corridor, true_x
 
 
 def evacuation(plan, seed, people=40):
     """A model in which these people have left the room."""
-    model = PedestrianModel(plan, record=True, rng=seed)
+    model = PedestrianModel(plan, preset=ENGINE, record=True, rng=seed)
     room = box(-8, -3, 0, 3)
     rng = np.random.default_rng(seed)
     model.add_pedestrians(plan.random_points(people, rng, within=room, spacing=0.5, clearance=0.2))
@@ -55,7 +56,7 @@ def test_a_queue_across_a_seam_keeps_its_distances():
     """At a narrow exit people queue through the seam: none stands where another is drawn."""
     plan = cut_corridor(0.9)
     plan.close_gate("east")
-    model = PedestrianModel(plan, record=True, rng=2)
+    model = PedestrianModel(plan, preset=ENGINE, record=True, rng=2)
     model.add_pedestrians(
         plan.random_points(
             30, np.random.default_rng(2), within=box(-4, -3, 0, 3), spacing=0.5, clearance=0.2
@@ -97,7 +98,7 @@ def test_nobody_comes_in_where_the_other_sheet_is_drawn():
 
 
 def test_newcomers_keep_clear_of_people_beyond_the_seam():
-    model = PedestrianModel(cut_corridor(1.6), rng=1)
+    model = PedestrianModel(cut_corridor(1.6), preset=ENGINE, rng=1)
     model.add_pedestrians([(5.9, 0.0)])
     with pytest.raises(ModelError, match="too close to where pedestrian 0 is"):
         model.add_pedestrians([(6.1 + APART, 0.0)])
@@ -128,7 +129,7 @@ class Crowded(CostTerm):
 
 
 def test_terms_see_people_across_the_seam_under_their_own_rows():
-    model = PedestrianModel(cut_corridor(1.6), rng=1)
+    model = PedestrianModel(cut_corridor(1.6), preset=ENGINE, rng=1)
     model.add_pedestrians([(5.5, 0.0), (6.5 + APART, 0.0), (-7.0, 2.0)])
     candidates = model.candidates(np.array([0, 1]))
     assert candidates.neighbours.tolist() == [1, 0]
@@ -143,7 +144,7 @@ def test_terms_see_people_across_the_seam_under_their_own_rows():
 
 
 def test_an_explanation_names_who_is_in_the_way_beyond_the_seam():
-    model = PedestrianModel(cut_corridor(0.9), rng=1)
+    model = PedestrianModel(cut_corridor(0.9), preset=ENGINE, rng=1)
     model.add_pedestrians([(5.8, 0.0), (6.2 + APART, 0.0)], headings=0.0)
     explained = model.explain(0)
     assert explained.candidates.neighbours.tolist() == [1]
