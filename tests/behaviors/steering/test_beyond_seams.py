@@ -11,6 +11,7 @@ from mesa_mobility.behaviors.steering.speed_adaptation import adapt_speeds
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.twins import laid_twins, strips_of
 from mesa_mobility.crowd.state.view import CrowdView
+from mesa_mobility.steering import sight_on
 from tests.fixtures.seams import APART, MIDDLE, cut_corridor, room_with_corridor
 
 WIDTH = 1.6
@@ -31,8 +32,8 @@ def slowed(inside, _plan, targets, speeds):
 
 def led(inside, plan, targets, speeds):
     """Points and speeds by ``course_choice``."""
-    settings = CourseSettings(8.0, 0.4)
-    return choose_courses(inside.pedestrians, inside, plan, targets, speeds, settings), speeds
+    sight, settings = sight_on(plan, 0.0), CourseSettings(8.0, 0.4)
+    return choose_courses(inside.pedestrians, inside, sight, targets, speeds, settings), speeds
 
 
 def asked(tactic, seed, cut):
