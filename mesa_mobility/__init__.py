@@ -13,6 +13,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mesa_mobility._version import __version__ as __version__
     from mesa_mobility.batch import batch_run as batch_run
+    from mesa_mobility.buildings import Building as Building
+    from mesa_mobility.buildings import Level as Level
+    from mesa_mobility.buildings import Stairs as Stairs
     from mesa_mobility.crowd import Candidates as Candidates
     from mesa_mobility.crowd import Capability as Capability
     from mesa_mobility.crowd import CompiledTerm as CompiledTerm

@@ -7,7 +7,8 @@ Python calls, `inner` those that only compiled functions call. They get arrays o
   the model: ``x``, ``y`` (metres), ``vx``, ``vy`` (m/s), ``heading`` (radians), ``start``, ``end``
   (frames), ``preferred`` (m/s), ``route`` (metres);
 - ``deciding.inside.grid``, a `Grid`: its arrays have the rows of the people in each cell, and
-  `cells_within` gives the cells within some metres of a place;
+  `cells_within` gives the cells within some metres of a place. In a building, people on stairs are
+  there twice, the second time in the row of a copy on the other sheet;
 - ``sight_on(plan, clearance)``, the walls for `unwalled`, which tells whether one point sees
   another.
 

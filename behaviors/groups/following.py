@@ -114,7 +114,7 @@ class Following(Tactic):
         if not len(who):
             return
         crowd, leads, here = self._model.crowd, leads[who], deciding.positions[who]
-        there = np.column_stack([crowd.x[leads], crowd.y[leads]])
+        there = deciding.inside.seen_by(rows[who], leads)
         clearance = max(_CLEARANCE, float(crowd.core[rows[who]].max()))
         seen = lines_of_sight(deciding.site.plan, here, there, clearance)
         to_go = np.hypot(*(there - here).T)

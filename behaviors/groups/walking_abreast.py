@@ -86,7 +86,9 @@ class WalkingAbreast(Tactic):
         ex, ey = (ahead / np.maximum(away, 1e-9)[:, None]).T
 
         # Where the others will soon be, seen from oneself: along the way, and to its left.
-        there = inside.positions[others] - here[:, None]
+        looks = deciding.pedestrians[who].repeat(others.shape[1])
+        there = inside.seen_by(looks, rows[others.ravel()]).reshape(*others.shape, 2)
+        there -= here[:, None]
         near = (others >= 0) & (np.hypot(there[..., 0], there[..., 1]) <= _NEAR)
         i, j = np.nonzero(near)
         near[i, j] = lines_of_sight(deciding.site.plan, here[i], here[i] + there[i, j])

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from mesa_mobility._numbers import is_number
+from mesa_mobility.buildings import Building
 from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
@@ -27,6 +28,24 @@ from mesa_mobility.populations import Population
 
 MOST_FRAMES = 108_000
 """Most frames in one step: an hour."""
+
+
+def building_of(
+    floor: FloorPlan | Building, fields: Mapping[str, type] | None
+) -> tuple[Building | None, FloorPlan]:
+    """The building if there are several levels, and the floor plan on which people are simulated.
+
+    Raises:
+        ModelError: fields with names of columns that the results of buildings have.
+    """
+    if not isinstance(floor, Building):
+        return None, floor
+    if len(floor.levels) == 1:
+        return None, floor.floor_plan
+    taken = sorted({"z", "level"} & (fields or {}).keys())
+    if taken:
+        raise ModelError(f"fields: {taken[0]!r} is a column of all results of buildings")
+    return floor, floor.floor_plan
 
 
 def read_scene(

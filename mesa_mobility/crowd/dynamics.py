@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -30,6 +31,7 @@ from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
 from mesa_mobility.crowd.state.people_grid import Grid, grid_of_frame
+from mesa_mobility.crowd.state.twins import Twins, change_sheets, laid_twins
 from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.tactics.desired_motion import DesiredMotion, Wants
 from mesa_mobility.errors import ModelError
@@ -167,15 +169,16 @@ class Dynamics(Saved):
         Raises:
             ModelError: one of them is not inside.
         """
-        return make_candidates(rows, self._outlook(rows))
+        with self._seen(rows) as grid:
+            return make_candidates(rows, self._outlook(grid))
 
-    def _outlook(self, rows: NDArray[np.int64]) -> Outlook:
-        """Neighbours, walls and options of the people in ``rows``, if they decided now."""
+    def _outlook(self, grid: Grid) -> Outlook:
+        """Neighbours, walls and options of the people, if they decided now."""
         scene = self._scene
         return Outlook(
             scene.repertoire.table,
             scene.crowd,
-            self._grid(rows),
+            grid,
             scene.environment.surroundings,
             scene.rules,
             self._moment.aside(),
@@ -189,8 +192,10 @@ class Dynamics(Saved):
         """The decision of the person in ``row`` if it decided now, before all others."""
         scene, model = self._scene, self._model
         self.bind()
-        outlook, names = self._outlook(np.array([row])), [each.name for each in scene.types]
-        judged = judge(weigh(row, outlook, scene.repertoire, model.terms, names), outlook)
+        names = [each.name for each in scene.types]
+        with self._seen(np.array([row])) as grid:
+            outlook = self._outlook(grid)
+            judged = judge(weigh(row, outlook, scene.repertoire, model.terms, names), outlook)
         return replace(judged, blocked_by=int(self.wishes(np.array([row])).blockers[0]))
 
     def wishes(
@@ -204,16 +209,19 @@ class Dynamics(Saved):
         crowd = scene.crowd
         if points is None:
             points = np.column_stack([crowd.target_x[rows], crowd.target_y[rows]])
-        return self._scheduler.wishes(
-            rows,
-            points,
-            crowd.preferred[rows] if speeds is None else speeds,
-            self._moment,
-            people.departed.together_with(people.present),
-            crowd,
-            scene.environment.surroundings,
-            model.terms,
-        )
+        everybody = people.departed.together_with(people.present)
+        # Tactics ask while there are twins.
+        with nullcontext() if len(crowd.person_of) else self._twins(everybody):
+            return self._scheduler.wishes(
+                rows,
+                points,
+                crowd.preferred[rows] if speeds is None else speeds,
+                self._moment,
+                everybody,
+                crowd,
+                scene.environment.surroundings,
+                model.terms,
+            )
 
     def _let_in(self) -> None:
         """Insert arrivals of the sources, and measured people, where there is room."""
@@ -274,18 +282,23 @@ class Dynamics(Saved):
         scene.journeys.advance(
             deciding, model.frame, scene.crowd, scene.repertoire.table, model.rng
         )
+        change_sheets(scene.strips, deciding, scene.crowd)
         model.waits.evaluate(deciding, model.frame, scene.crowd)
-        # The crowd has the rest of the targets by then, so they can be freed here.
-        order = decision_order(deciding, self._set_targets(deciding, inside))
-        self._scheduler.take(
-            order,
-            self._moment,
-            people.departed.together_with(inside),
-            scene.crowd,
-            scene.environment.surroundings,
-            model.terms,
-            model.watch,
-        )
+        everybody = people.departed.together_with(inside)
+        with self._twins(everybody):  # whom tactics see beyond seams
+            # The crowd has the rest of the targets by then, so they can be freed here.
+            order = decision_order(deciding, self._set_targets(deciding, inside))
+        with self._twins(everybody) as (twins, rows):  # with the new targets
+            self._scheduler.take(
+                order,
+                self._moment,
+                rows,
+                scene.crowd,
+                scene.environment.surroundings,
+                model.terms,
+                model.watch,
+                twins,
+            )
         if model.decisions is not None:
             model.decisions.add(model.frame, deciding, scene.crowd)
 
@@ -303,11 +316,22 @@ class Dynamics(Saved):
         if model.recorder is not None:
             model.recorder.add(model.frame, rows, self._scene.crowd)
 
-    def _grid(self, rows: NDArray[np.int64]) -> Grid:
-        """A grid of everybody, among them those in ``rows``."""
+    def _twins(
+        self, rows: NDArray[np.int64]
+    ) -> AbstractContextManager[tuple[Twins, NDArray[np.int64]]]:
+        """The twins of people for a while, and their rows together with those of the people."""
+        scene = self._scene
+        return laid_twins(
+            scene.strips, rows, self._model.population.count, scene.reach, scene.crowd
+        )
+
+    @contextmanager
+    def _seen(self, rows: NDArray[np.int64]) -> Iterator[Grid]:
+        """A grid of everybody, among them those in ``rows``, as seen on all sheets."""
         people, crowd = self._model.population, self._scene.crowd
         people.see_off(self._model.frame)
         everybody = people.departed.together_with(people.present)
         if not np.isin(rows, everybody).all():
             raise ModelError(f"candidates: got the rows {rows}, expected people inside")
-        return grid_of_frame(everybody, crowd.records)
+        with self._twins(everybody):
+            yield grid_of_frame(np.concatenate([everybody, crowd.copies]), crowd.records)

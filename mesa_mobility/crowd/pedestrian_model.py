@@ -34,7 +34,8 @@ class PedestrianModel(CrowdModel):
     ``add_pedestrians``.
 
     Args:
-        floor_plan: where people walk.
+        floor_plan: where people walk, a ``FloorPlan`` or a ``Building``. In a building, positions
+            are places in the plane of its sheets: see its ``places`` and ``true_places``.
         preset: "default", "paper", a TOML file, or rules of one's own.
         mobility_map: a map, its file, or None for the able-bodied one that ships; stands
             for a single pedestrian type with default speeds.
@@ -55,6 +56,8 @@ class PedestrianModel(CrowdModel):
         preset: name of the preset.
         rules: the preset, with the numbers that were given to the model.
         numbers: where the numbers of its behaviours come from; see ``parameters``.
+        floor_plan: the floor plan; that of all sheets of a building.
+        building: the building, if it has several levels, otherwise None.
         space: Mesa's continuous space with everybody inside.
         crowd: the crowd's arrays; see ``Crowd``.
         population: who has come and who is inside; see ``Population``.

@@ -7,10 +7,11 @@ from typing import Any, ClassVar
 
 import mesa
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.crowd.insertion.free_space import first_free
+from mesa_mobility.crowd.insertion.free_space import first_free, too_close
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.insertion.placement import face, place_newcomers
 from mesa_mobility.crowd.journeys.visit import Route
@@ -21,6 +22,7 @@ from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import Moved
 from mesa_mobility.crowd.state.aggregates import EMPTY, Aggregates, aggregate, split_active
 from mesa_mobility.crowd.state.departed import ROWS, Departed
+from mesa_mobility.crowd.state.twins import with_copies
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
 from mesa_mobility.schema import MOST, Either, Kind, Members, Several, Text, Whole
@@ -232,20 +234,21 @@ class Population(Saved):
         places = places[scene.plan.contains(places)]
         room = distances_to_walls(scene.plan, places, width) >= width
         places = places[room & ~scene.environment.without_way_out(places, destination)]
+        if scene.plan.seams:
+            places = places[~shapely.intersects_xy(scene.plan.copied, *places.T)]
         if not scene.rules.hard_bodies:
             return places[0] if len(places) else None
         # People who have just crossed an exit still take up room.
         there = self.departed.together_with(self.present)
-        free = first_free(
-            places,
-            width,
-            frame,
-            there,
-            scene.repertoire.table,
-            scene.crowd.records,
-            scene.rules.search_radius,
-        )
-        return places[free] if free >= 0 else None
+        known = frame, there, scene.repertoire.table, scene.crowd.records, scene.rules.search_radius
+        if not scene.plan.seams:
+            free = first_free(places, width, *known)
+            return places[free] if free >= 0 else None
+        for place in places:
+            spots, _ = with_copies(scene.strips, place[None], width)
+            if too_close(spots, width, *known)[0] < 0:
+                return place
+        return None
 
     def awaits(self, row: int | None) -> bool:
         """Whether somebody inside has this row and no agent yet."""

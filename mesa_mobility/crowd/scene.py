@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
@@ -14,6 +15,7 @@ from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets.preset import Preset
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.crowd.state.twins import strips_of
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.populations import Population
@@ -33,6 +35,8 @@ class Scene:
         environment: walls and routes.
         journeys: the routes of people who cross gates in order.
         crowd: a record for each person.
+        reach: metres from a person within which its movements, body included, end.
+        strips: the strips of the plan's seams, as in ``Twins``.
     """
 
     plan: FloorPlan
@@ -44,6 +48,8 @@ class Scene:
     environment: Environment
     journeys: Journeys
     crowd: Crowd
+    reach: float
+    strips: NDArray[np.float64]
 
 
 def make_scene(
@@ -72,7 +78,12 @@ def make_scene(
     )
     radii = np.array([each.half_width for each in types])
     reach, extent, largest = known.reach.max(), known.extent.max(), radii.max()
-    environment = Environment(plan, reach=float(reach + largest) + 0.02, core_radii=radii.tolist())
+    environment = Environment(
+        plan,
+        reach=float(reach + largest) + 0.02,
+        core_radii=radii.tolist(),
+        climbs=[bool(each.climbs) for each in types],
+    )
     return Scene(
         plan=plan,
         types=types,
@@ -93,4 +104,6 @@ def make_scene(
         environment=environment,
         journeys=Journeys(plan, environment),
         crowd=Crowd(64, fields),
+        reach=float(reach + largest) + 0.02,
+        strips=strips_of(plan.seams),
     )

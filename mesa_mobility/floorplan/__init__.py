@@ -1,6 +1,7 @@
 """Walkable area, walls, doors, exits and routes."""
 
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.seams import Seam
 from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import Content
@@ -18,6 +19,7 @@ __all__ = [
     "Gate",
     "PlanFormat",
     "Router",
+    "Seam",
     "SpeedZone",
     "Targets",
     "WallIndex",

@@ -17,6 +17,7 @@ from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.free_area import FreeArea
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.seams import Seam
 from mesa_mobility.floorplan.floor.wall_index import WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats import geojson
@@ -44,6 +45,8 @@ class FloorPlan(Floor):
         simplify: metres by which walls may recede where that leaves out vertices, at most 0.1;
             0 keeps every vertex. The floor only grows, so no gap gets narrower; along exits and
             gates, and in `walkable` and `obstacles`, nothing changes.
+        seams: where people change from one sheet of the plan to another. With them the walkable
+            area may be several polygons, and pieces may be without an exit.
 
     Raises:
         FloorPlanError: geometry that is empty, not valid, not finite or in several pieces; a
@@ -80,8 +83,9 @@ class FloorPlan(Floor):
         name: str = "",
         cut_off: bool = False,
         simplify: float = SIMPLIFY,
+        seams: Iterable[Seam] = (),
     ) -> None:
-        super().__init__(walkable, exits, gates, zones, name, simplify)
+        super().__init__(walkable, exits, gates, zones, name, simplify, seams)
         self.version = 0
         polygons = {
             i: read_polygon(obstacle, f"obstacle {i}") for i, obstacle in enumerate(obstacles)

@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.openings import Exit
+from mesa_mobility.floorplan.floor.seams import joined
 from mesa_mobility.floorplan.walls.smooth_floor import CLOSER, smooth_floor
 
 
@@ -74,6 +75,7 @@ def _pieces(
     pieces = shapely.get_parts(room.difference(closed))
     lines = shapely.union_all([e.line for e in exits])
     leads_out = shapely.intersects(pieces, lines)
+    joined(pieces, plan.seams, leads_out)
     # What lies in such a corridor is no place to be.
     cut_off = [piece for piece in pieces[~leads_out] if piece.intersects(floor)]
     return shapely.union_all(pieces[leads_out]), shapely.union_all(cut_off)

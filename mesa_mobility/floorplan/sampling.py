@@ -31,12 +31,12 @@ def random_points(
 ) -> NDArray[np.float64]:
     """(n, 2) random points in metres with room for people to stand.
 
-    Every point is at least `clearance` from walls and exits and at least `spacing` from
-    the other points and from the (k, 2) points of `avoid`. It has a way to an exit, were
-    all doors open, through gaps of at least 0.323 m, which adults pass; if there is no such
-    place, none needs to have one. The points are the same for the same state of `rng`. Points
-    thrown one by one (random sequential placement) are tried first, then a jittered hexagonal
-    lattice.
+    Every point is at least `clearance` from walls and exits, on no copied part of a seam's strip,
+    and at least `spacing` from the other points and from the (k, 2) points of `avoid`. It has a way
+    to an exit, were all doors open, through gaps of at least 0.323 m, which adults pass; if there
+    is no such place, none needs to have one. The points are the same for the same state of `rng`.
+    Points thrown one by one (random sequential placement) are tried first, then a jittered
+    hexagonal lattice.
 
     Args:
         plan: the floor plan.
@@ -109,6 +109,8 @@ def _standing_region(plan: Floor, within: BaseGeometry | None, clearance: float)
     whole = clearance >= PASSING and region.geom_type == "Polygon"
     if within is not None:
         region = region.intersection(within)
+    if plan.seams:
+        region = region.difference(plan.copied)
     if not whole:
         region = with_way_out(plan, region, PASSING)
     parts = [part for part in shapely.get_parts(region) if part.geom_type == "Polygon"]

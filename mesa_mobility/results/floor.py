@@ -45,7 +45,8 @@ def draw_floor(axes: Axes, plan: FloorPlan) -> list[Line2D | Patch]:
     axes.set_facecolor(OUTSIDE)
     handles: list[Line2D | Patch] = []
     # Holes of the walkable area are pillars and the like: obstacles to the eye.
-    solid = shapely.difference(shapely.Polygon(plan.walkable.exterior), plan.free)
+    outlines = [shapely.Polygon(part.exterior) for part in shapely.get_parts(plan.walkable)]
+    solid = shapely.difference(shapely.union_all(outlines), plan.free)
     axes.add_patch(PathPatch(_path(plan.free), facecolor="white", linewidth=0, zorder=1))
     if not solid.is_empty:
         axes.add_patch(PathPatch(_path(solid), facecolor=OBSTACLE, linewidth=0, zorder=1))

@@ -67,6 +67,36 @@ class Tracks:
         present = self.person[self.frame == last]
         object.__setattr__(self, "inside_at_end", remaining_of(self.inside_at_end, present, last))
 
+    @property
+    def z(self) -> FloatArray:
+        """(n,) float64, metres: elevation; 0 where the people walked on a floor plan."""
+        return self.fields.get("z", np.zeros(len(self)))
+
+    @property
+    def level(self) -> NDArray[np.int16]:
+        """(n,) int16: number of the level; `ON_STAIRS` of ``mesa_mobility.buildings`` for places on
+        flights and landings, 0 where the people walked on a floor plan."""
+        return self.fields.get("level", np.zeros(len(self), dtype=np.int16))
+
+    def on(self, *, level: int) -> Self:
+        """The rows of people on one level alone, in the same frames.
+
+        A person's last row on the level is the last before they take the stairs or leave. People on
+        flights and landings are on no level.
+
+        Args:
+            level: its number.
+        """
+        rows = self.level == level
+        now = self.person[rows & (self.frame == self.last_frame)]
+        return replace(
+            self,
+            **{name: getattr(self, name)[rows] for name in COLUMNS},
+            fields={name: values[rows] for name, values in self.fields.items()},
+            inside_at_end=np.intersect1d(self.remaining, now),
+            decisions=None,
+        )
+
     def __len__(self) -> int:
         return len(self.frame)
 

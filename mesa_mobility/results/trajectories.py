@@ -44,7 +44,8 @@ class Trajectories(Tracks):
         person_data: what is known of people besides, by name: (m,) texts or numbers, of person p
             ``person_data[name][p]``. That of a model has ``type`` and ``group``, which is empty for
             people without one.
-        fields: (n,) values of each field that the model declares for its people, by name.
+        fields: (n,) values of each field that the model declares for its people, by name. Those of
+            a building have ``z`` and ``level``, too.
         decisions: who has taken which option, if that was recorded; bodies are drawn from it.
         reading: how the file was read from which they come, and what is wrong with it.
 
@@ -62,7 +63,8 @@ class Trajectories(Tracks):
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
                 and of fields, if any),
                 ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now); ``person_data()``, where it has it. Its
+                ``rows`` (the people inside now); ``person_data()``, where it has it; a
+                ``building`` with ``true_places``, where it has several levels. Its
                 decisions are taken too if it records them.
 
         Raises:
@@ -77,6 +79,10 @@ class Trajectories(Tracks):
         rows = {name: arrays.pop(name) for name in COLUMNS}
         if len(model.rows) and not len(rows["frame"]):
             raise ResultsError("the model has recorded nothing: expected a step before")
+        if getattr(model, "building", None) is not None:
+            places, levels = model.building.true_places(np.column_stack([rows["x"], rows["y"]]))
+            rows["x"], rows["y"], arrays["z"] = places.T
+            arrays["level"] = levels
         return cls(
             **rows,
             frame_rate=float(model.frame_rate),

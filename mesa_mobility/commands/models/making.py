@@ -98,7 +98,7 @@ def create_model(
 
     Raises:
         ModelError: a parameter that the constructor does not take, an unknown behaviour or number,
-            or a value that is refused.
+            a value that is refused, or a building of several levels.
     """
     from mesa_mobility import PedestrianModel
     from mesa_mobility.crowd.presets.given import Given
@@ -134,6 +134,11 @@ def create_model(
             raise
         # In the words of the user, who has typed no parameter's name.
         raise ModelError(f"{OWN_OPTION[parameter]}:{rest}") from error
+    if getattr(model, "building", None) is not None:
+        raise ModelError(
+            f"model {name}: has a building of {len(model.building.levels)} levels, which commands "
+            "cannot write or show; expected one floor plan (Python runs buildings)"
+        )
     if recorded_later:
         model.start_recording(record)
     use_behaviors(model, options.behaviors or [])

@@ -115,7 +115,8 @@ def check_crowd(model: CrowdModel, states: Mapping[str, Any]) -> None:
     if columns:
         check_choices(columns[2], columns[3], scene)
     if model.recorder is not None:
-        check_recording(states["recorder"], scene.crowd, model.frame)
+        shifts = scene.strips[:, 6:]
+        check_recording(states["recorder"], scene.crowd, model.frame, shifts)
     counted = (model.frame - 2) * FRAME_SECONDS
     for source, inflow in states["sources"]["inflows"]:
         if source.times is None:  # arrivals are counted frame by frame

@@ -17,13 +17,19 @@ _ROUNDING = 1e-6
 """Metres and radians."""
 
 
-def check_recording(recorded: Mapping[str, NDArray[Any]], crowd: Crowd, frame: int) -> None:
+def check_recording(
+    recorded: Mapping[str, NDArray[Any]],
+    crowd: Crowd,
+    frame: int,
+    shifts: NDArray[np.float64],
+) -> None:
     """Check the order of a recording, its end, and how far people go from frame to frame.
 
     Args:
         recorded: the columns, see ``Recorder.arrays``.
         crowd: the crowd now.
         frame: now.
+        shifts: (k, 2) metres from sheet to sheet, by which people may go at once.
 
     Raises:
         ContentError: naming the first row that cannot be.
@@ -38,7 +44,10 @@ def check_recording(recorded: Mapping[str, NDArray[Any]], crowd: Crowd, frame: i
         _check(~now | (np.abs(recorded[name] - there) <= _ROUNDING), f"{name} is not that of now")
     track = np.lexsort((when, who))
     same = (np.diff(who[track]) == 0) & (np.diff(when[track]) == 1)
-    steps = np.hypot(np.diff(recorded["x"][track]), np.diff(recorded["y"][track]))
+    dx, dy = np.diff(recorded["x"][track]), np.diff(recorded["y"][track])
+    steps = np.hypot(dx, dy)
+    for x, y in shifts:
+        steps = np.minimum(steps, np.hypot(dx - x, dy - y))
     most = max(FASTEST_SPRINT, float(crowd.agenda["speed"].max(initial=0.0))) / FRAMES_A_SECOND
     walks = np.ones(len(who), dtype=np.bool_)
     walks[track[1:]] = ~same | (steps <= most + _ROUNDING)

@@ -44,6 +44,7 @@ from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.floorplan.floor.seams import to_own_sheets
 from mesa_mobility.schema import Kind, Records
 
 NEAR = 2.5
@@ -114,8 +115,7 @@ class GiveWay(Tactic):
         speeds = _speeds(deciding, desired)
         find_hindered(rows, speeds, now, crowd.records, crowd.agenda, hindered)
         if hindered.any():
-            people = build_grid(deciding.inside.pedestrians, crowd.x, crowd.y)
-            wait_behind(rows, now, people, crowd.records, crowd.agenda, hindered)
+            wait_behind(rows, now, deciding.inside.grid, crowd.records, crowd.agenda, hindered)
         if not hindered.any() and not (notes["first"][deciding.inside.pedestrians] >= 0).any():
             notes["blocker"][rows] = NOBODY
             return
@@ -127,9 +127,9 @@ class GiveWay(Tactic):
         near = self._near_others(deciding) & stays & goes & ~(hindered | served)
         who = np.flatnonzero(near)
         if len(who):
-            join(
-                rows[who], self._wishes(deciding, desired, who).blockers, now, crowd.records, notes
-            )
+            blockers = self._wishes(deciding, desired, who).blockers
+            seen = deciding.inside.seen_by(rows[who], blockers)
+            join(rows[who], blockers, seen, now, crowd.records, notes)
         who = np.flatnonzero((hindered | served) & goes & stays)
         if len(who):
             wishes = self._wishes(deciding, desired, who)
@@ -163,7 +163,7 @@ class GiveWay(Tactic):
         people = build_grid(nobody, crowd.x, crowd.y)
         wait_behind(nobody, 0.0, people, state, agenda, none)
         stop_making_way(nobody, 0.0, state, notes)
-        join(nobody, nobody, 0.0, state, notes)
+        join(nobody, nobody, np.empty((0, 2)), 0.0, state, notes)
         resolve(nobody, nobody, none, none, 0.0, state, agenda, notes)
         pass_on(nobody, nobody, 0.0, state, notes)
 
@@ -176,9 +176,9 @@ class GiveWay(Tactic):
         """(n,) whether each is near somebody who makes way."""
         inside, crowd = deciding.inside.pedestrians, deciding.inside.crowd
         others = inside[self._notes["first"][inside] != NOBODY]
+        others = deciding.inside.with_copies(others)
         to = deciding.positions[:, None] - np.column_stack([crowd.x[others], crowd.y[others]])
-        near: NDArray[np.bool_] = (np.hypot(to[..., 0], to[..., 1]) < NEAR).any(axis=1)
-        return near
+        return np.asarray((np.hypot(to[..., 0], to[..., 1]) < NEAR).any(axis=1))
 
     def _go_on(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> None:
         """Let those go on making way whose own way still leads across that of the others."""
@@ -243,18 +243,23 @@ class GiveWay(Tactic):
         self, row: int, firsts: Mapping[int, Way], deciding: Deciding
     ) -> NDArray[np.float64]:
         """(k, 2) where somebody may make way to, metres, the best place first."""
-        crowd, inside = deciding.inside.crowd, deciding.inside.pedestrians
+        crowd, everybody = deciding.inside.crowd, deciding.inside.pedestrians
+        inside = deciding.inside.with_copies(everybody)
         me, ways = _body(row, deciding), self._ways(row, firsts, deciding)
         concerned = [row, self._notes["first"][row], self._notes["asked_by"][row]]
         reach = AROUND + me.core + crowd.core[inside].max()
         near = inside[
             (np.hypot(crowd.x[inside] - me.place[0], crowd.y[inside] - me.place[1]) < reach)
-            & ~np.isin(inside, concerned)
+            & ~np.isin(deciding.inside.person_of(inside), concerned)
         ]
         places = np.column_stack([crowd.x[near], crowd.y[near]])
         # Nobody makes way to where somebody else does.
-        others = near[self._notes["first"][near] != NOBODY]
-        wanted = np.column_stack([self._notes["x"][others], self._notes["y"][others]])
+        who = deciding.inside.person_of(near)
+        makes_way = self._notes["first"][who] != NOBODY
+        others, who = near[makes_way], who[makes_way]
+        wanted = np.column_stack([self._notes["x"][who], self._notes["y"][who]])
+        wanted[:, 0] += crowd.x[others] - crowd.x[who]
+        wanted[:, 1] += crowd.y[others] - crowd.y[who]
         taken = np.concatenate([places, wanted])
         cores = np.concatenate([crowd.core[near], crowd.core[others]])
         if not ways:
@@ -277,11 +282,11 @@ class GiveWay(Tactic):
         first, by = int(self._notes["first"][row]), int(self._notes["asked_by"][row])
         if first == row:
             return []
-        ways = [firsts[first]]
+        ways = [_seen_by(row, first, firsts[first], deciding)]
         if self._notes["first"][by] == first and deciding.inside.crowd.active[by]:
             body = _body(by, deciding)
             to = np.array([self._notes["x"][by], self._notes["y"][by]])
-            ways.append(Way(body, np.array([body.place, to])))
+            ways.append(_seen_by(row, by, Way(body, np.array([body.place, to])), deciding))
         return ways
 
 
@@ -304,13 +309,21 @@ def _body(row: int, deciding: Deciding) -> Body:
     return Body(np.array([crowd.x[row], crowd.y[row]]), float(crowd.core[row]))
 
 
+def _seen_by(row: int, other: int, way: Way, deciding: Deciding) -> Way:
+    """The way of somebody as a person sees it, who may be on another sheet."""
+    [seen] = deciding.inside.seen_by(np.array([row]), np.array([other]))
+    shift = seen - way.body.place
+    return Way(way.body._replace(place=seen), way.points + shift) if shift.any() else way
+
+
 def _way(row: int, deciding: Deciding) -> NDArray[np.float64]:
     """(k, 2) points of the next metres of somebody's route."""
     crowd, left = deciding.inside.crowd, AHEAD
     way = [np.array([crowd.x[row], crowd.y[row]])]
     destination = crowd.destination[[row]].astype(np.int64)
     for _ in range(LEGS):
-        step = deciding.site.targets(way[-1][None], destination).points[0] - way[-1]
+        own = way[-1][None] + to_own_sheets(way[-1][None], deciding.site.plan.seams)
+        [step] = deciding.site.targets(own, destination).points - own
         length = float(np.hypot(*step))
         if length < 1e-6 or left <= 0.0:
             break

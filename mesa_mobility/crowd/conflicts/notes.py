@@ -124,18 +124,22 @@ def pass_on(
 def join(
     rows: NDArray[np.int64],
     blockers: NDArray[np.int64],
+    seen: NDArray[np.float64],
     elapsed: float,
     state: CrowdState,
     notes: NDArray[np.void],
 ) -> None:
     """Have people in ``rows`` make way who would run into somebody who comes towards them to make
-    way."""
+    way.
+
+    Each sees that person at one of the (n, 2) places ``seen``, metres.
+    """
     for k in range(len(rows)):
         i, j = rows[k], blockers[k]
         if j == NOBODY or notes[j]["first"] == NOBODY or notes[j]["first"] == i:
             continue
         to_x, to_y = notes[j]["x"] - state[j].x, notes[j]["y"] - state[j].y
-        if to_x * (state[i].x - state[j].x) + to_y * (state[i].y - state[j].y) > 0.0:
+        if to_x * (state[i].x - seen[k, 0]) + to_y * (state[i].y - seen[k, 1]) > 0.0:
             ask(i, notes[j]["first"], j, elapsed, state, notes)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.crowd.insertion.free_space import too_close
@@ -12,6 +13,7 @@ from mesa_mobility.crowd.insertion.newcomers import Newcomers, check_column, dis
 from mesa_mobility.crowd.insertion.suited_places import suited
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.records import NO_CORNER, NO_OPTION, Crowd
+from mesa_mobility.crowd.state.twins import with_copies
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
@@ -63,6 +65,11 @@ def place_newcomers(
         ModelError: see ``PedestrianModel.add_pedestrians``.
         FloorPlanError: see there.
     """
+    if len(scene.crowd.person_of):
+        raise ModelError(
+            "add_pedestrians: in a building nobody can be added while others decide, expected a "
+            "call between two steps"
+        )
     points = check_places(positions, scene.plan)
     n = len(points)
     if new.type_index is None and new.population is None:
@@ -199,8 +206,9 @@ def _check_room(
     """
     if not scene.rules.hard_bodies:
         return
+    places, owners = with_copies(scene.strips, points, radius)
     where, who = too_close(
-        points,
+        places,
         radius,
         frame,
         there,
@@ -209,6 +217,7 @@ def _check_room(
         scene.rules.search_radius,
     )
     if where >= 0:
+        where = owners[where]
         newcomer = who < 0 or who >= count
         other = "another newcomer" if newcomer else f"where pedestrian {who} is or will be"
         raise ModelError(
@@ -221,7 +230,7 @@ def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
     """(n, 2) positions as an array.
 
     Raises:
-        ModelError: the wrong shape, or positions off the floor.
+        ModelError: the wrong shape, or positions off the floor or on a copied part of a strip.
     """
     points = numbers_in("positions", positions, "(n, 2) metres")
     if points.size == 0:
@@ -232,6 +241,14 @@ def check_places(positions: ArrayLike, plan: FloorPlan) -> NDArray[np.float64]:
     if off.any():
         k = int(np.argmax(off))
         raise ModelError(f"pedestrian {k} at {points[k].tolist()}: expected a place on the floor")
+    if plan.seams:
+        copied = shapely.intersects_xy(plan.copied, points[:, 0], points[:, 1])
+        if copied.any():
+            k = int(np.argmax(copied))
+            raise ModelError(
+                f"pedestrian {k} at {points[k].tolist()}: on a part of a strip that belongs to "
+                "another sheet, expected the same place on that sheet"
+            )
     return points
 
 

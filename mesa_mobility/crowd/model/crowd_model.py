@@ -12,8 +12,10 @@ import numpy as np
 from mesa.datacollection import DataCollector
 from numpy.typing import NDArray
 
+from mesa_mobility.buildings import Building
 from mesa_mobility.crowd.arguments import (
     SETTABLE,
+    building_of,
     check_record,
     check_seconds,
     checked_attribute,
@@ -88,7 +90,7 @@ class CrowdModel(mesa.Model):
     @making
     def __init__(
         self,
-        floor_plan: FloorPlan,
+        floor_plan: FloorPlan | Building,
         *,
         preset: str | os.PathLike[str] | Preset = "default",
         mobility_map: MobilityMap | str | Path | None = None,
@@ -103,6 +105,7 @@ class CrowdModel(mesa.Model):
         rng: Any = None,
     ) -> None:
         super().__init__(rng=seed_of(rng))
+        self.building, plan = building_of(floor_plan, fields)
         self.events_at_first = scheduled_events(self)
         self.frames_per_step = frames_per_step
         check_record(record)
@@ -110,7 +113,7 @@ class CrowdModel(mesa.Model):
         base = given.base(preset)
         changes = given.changes(base)
         self._scene = scene = read_scene(
-            floor_plan,
+            plan,
             rules=base.with_parameters(changes),
             mobility_map=mobility_map,
             pedestrian_types=pedestrian_types,
@@ -119,7 +122,7 @@ class CrowdModel(mesa.Model):
             fields=fields,
         )
         self.preset, self.rules = scene.preset.name, scene.preset
-        self.floor_plan, self.pedestrian_types = floor_plan, scene.types
+        self.floor_plan, self.pedestrian_types = plan, scene.types
         self._agents_step = pedestrian_class.step is not mesa.Agent.step
         self.crowd, self.journeys = scene.crowd, scene.journeys
         terms: Any = self.rules.make_terms() if behaviors is None else behaviors
@@ -133,7 +136,7 @@ class CrowdModel(mesa.Model):
         self.frame, self.time = 0, 0.0
         self.start_recording(record)
         self.watch: Watch | None = None
-        self.space = space_of(floor_plan, float(scene.repertoire.reach.max()), self.random)
+        self.space = space_of(plan, float(scene.repertoire.reach.max()), self.random)
         self.population = People(scene, self.space, pedestrian_class)
         self.sources = Sources(scene)
         self.statistics = Statistics(self.population, self.crowd)
@@ -141,7 +144,7 @@ class CrowdModel(mesa.Model):
         self.dynamics = Dynamics(self, scene)
         self._standing_watch = StandingWatch()
         self._stall_watch, self.stalled = StallWatch(), False
-        add_occupants(floor_plan, self.population)
+        add_occupants(plan, self.population)
         self.datacollector = DataCollector(model_reporters=REPORTERS)
         set_clock(self)
         self.framework_attributes = frozenset({*vars(self), "framework_attributes"})
@@ -210,7 +213,26 @@ class CrowdModel(mesa.Model):
         """Why the evacuation has stalled, in a few words; None if it has not."""
         if not self.stalled:
             return None
-        return stall_reason(self.floor_plan, self.population.aggregates, self._stall_watch.ring)
+        return stall_reason(
+            self.floor_plan,
+            self.population.aggregates,
+            self._stall_watch.ring,
+            self.without_stairs,
+        )
+
+    @property
+    def without_stairs(self) -> list[int]:
+        """Rows of the people inside who have no way to go since they cannot use stairs.
+
+        They stay on their level, where they stand.
+        """
+        if not self.floor_plan.seams:
+            return []
+        rows, crowd = self.population.present, self.crowd
+        climbs = np.array([each.climbs for each in self.pedestrian_types])
+        lost = rows[~climbs[crowd.type_index[rows]] & np.isinf(crowd.route[rows])]
+        found: list[int] = lost.tolist()
+        return found
 
     @property
     def blocked(self) -> list[Blocked]:

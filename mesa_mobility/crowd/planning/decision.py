@@ -25,6 +25,7 @@ from mesa_mobility.crowd.planning.evaluation.relevant_neighbours import (
 )
 from mesa_mobility.crowd.planning.fallback import FALLBACK_SECONDS, fall_back
 from mesa_mobility.crowd.planning.feasibility import Obstacles
+from mesa_mobility.crowd.planning.following import follow
 from mesa_mobility.crowd.planning.grid import place_in
 from mesa_mobility.crowd.planning.neighbours import gather_neighbours
 from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
@@ -76,7 +77,7 @@ def decide(
         d = take_number(queue.next, 0)
         if d >= n:
             return n
-        before = await_neighbours(d, before, rows, queue, scene.state, scene.rules.search_radius)
+        before = await_neighbours(d, before, rows, queue, scene)
         own_extra = extra
         if len(extra) > 0:
             own_extra = extra[extra_offsets[d] : extra_offsets[d + 1]]
@@ -252,3 +253,5 @@ def _commit(
         )
         fall_back(i, scene.frame, scene.table, state, obstacles, standing, work.path)
     cover_in(scene.grid, around.place, i, state)
+    if len(scene.twins.follow) > 0:
+        follow(i, scene)

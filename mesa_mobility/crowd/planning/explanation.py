@@ -24,6 +24,7 @@ from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, mak
 from mesa_mobility.crowd.planning.feasibility import Obstacles, Trial, path_gone_or_blocked
 from mesa_mobility.crowd.state.paths import to_world
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
+from mesa_mobility.crowd.state.twins import rows_seen
 from mesa_mobility.crowd.state.wishes import NOBODY
 
 FREE, WALL, PERSON = 0, 1, 2
@@ -133,12 +134,14 @@ def judge(weighed: Explanation, outlook: Outlook) -> Explanation:
     table, crowd, _, around, rules, _ = outlook
     row = weighed.pedestrian
     options = weighed.candidates.options + rules.first_option[crowd.type_index[row]]
-    near = weighed.candidates.neighbours
+    near = rows_seen(crowd, weighed.candidates.neighbours, weighed.candidates.neighbour_positions)
     verdicts, blockers = weighed.verdicts.copy(), weighed.blockers.copy()
     walls = np.empty((len(around.segments) + len(around.exits), 5))
     given = Obstacles(walls, around, near, False, rules.hard_bodies)
     found = _Found(weighed.paths, weighed.knots, verdicts, blockers)
     _judge(row, options, weighed.frame, table, crowd.records, given, found)
+    if len(crowd.person_of):
+        blockers[blockers >= 0] = crowd.person_of[blockers[blockers >= 0]]
     totals = np.where(verdicts == FREE, weighed.totals, np.inf)
     # The cheapest; of several the one that turns least.
     order = np.lexsort((np.abs(table.heading[options]), totals))

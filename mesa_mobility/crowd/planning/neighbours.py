@@ -30,6 +30,7 @@ from mesa_mobility.crowd.costs.layout import (
     Terms,
 )
 from mesa_mobility.crowd.planning.evaluation.lanes import fill_lane
+from mesa_mobility.crowd.planning.following import keep_seen
 from mesa_mobility.crowd.planning.grid import farthest_range, interact
 from mesa_mobility.crowd.planning.workspace import FrameContext, Neighbours
 from mesa_mobility.crowd.state.clearances import MARGIN
@@ -62,6 +63,8 @@ def gather_neighbours(
     )
     if len(rules.interaction_ranges) > 1:
         count = keep_interacting(i, count, rules.interaction_ranges, state, to)
+    if len(scene.twins.follow) > 0:
+        count = keep_seen(count, scene.twins, to)
     if state.presses[i]:
         count = 0
     route, lead = state.route[i], others[LEAD]

@@ -24,12 +24,14 @@ from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, mak
 from mesa_mobility.crowd.planning.evaluation.sample_checks import SampleChecks, check_terms
 from mesa_mobility.crowd.planning.evaluation.term_table import NO_EXTRA, CompiledTerms, extra_costs
 from mesa_mobility.crowd.planning.explanation import Explanation, Watch, judge, weigh
+from mesa_mobility.crowd.planning.following import show_all
 from mesa_mobility.crowd.planning.thread_queue import new_queue
 from mesa_mobility.crowd.planning.workspace import FrameContext, Rules, Workspace, make_workspace
 from mesa_mobility.crowd.state.people_grid import build_grid, grid_of_frame
 from mesa_mobility.crowd.state.records import Crowd, CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
-from mesa_mobility.crowd.state.wishes import Wishes
+from mesa_mobility.crowd.state.twins import NO_TWINS, Twins
+from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
 from mesa_mobility.errors import ModelError
 
 
@@ -76,17 +78,19 @@ class DecisionScheduler:
         around: Surroundings,
         terms: Sequence[CostTerm],
         watch: Watch | None = None,
+        twins: Twins = NO_TWINS,
     ) -> None:
         """Decide for the pedestrians in ``order``, one after the other, and commit them.
 
         Args:
             order: who decides, those first who go first.
             moment: now.
-            rows: everybody inside.
+            rows: everybody inside, and their twins.
             crowd: the crowd; targets must be set.
             around: walls and exits.
             terms: cost terms.
             watch: gets the decision of the pedestrian that it watches.
+            twins: those on other sheets.
 
         Raises:
             ModelError: a cost is not a number, or a term does not give one for each option.
@@ -94,8 +98,11 @@ class DecisionScheduler:
         table, groups = self._repertoire.table, self._repertoire.groups
         compiled, others = self._compiled(terms, crowd)
         extra, extra_offsets = NO_EXTRA
-        grid = grid_of_frame(rows, crowd.records)
-        outlook = Outlook(table, crowd, grid, around, self._rules, moment)
+        grid = seen = grid_of_frame(rows, crowd.records)
+        if len(twins.follow):
+            show_all(rows[twins.strip[rows] < 0], grid, twins, table, crowd.records)
+            seen = grid_of_frame(rows[twins.here[rows]], crowd.records)
+        outlook = Outlook(table, crowd, seen, around, self._rules, moment)
         if others:
             extra, extra_offsets = extra_costs(others, order, outlook, self._types)
         checked = self._checks.due(terms) if len(order) else []
@@ -104,11 +111,13 @@ class DecisionScheduler:
             check_terms(checked, first, groups, int(crowd.cluster[order[0]]))
         state = crowd.records
         scene = FrameContext(
-            moment.frame, table, groups, state, grid, around, compiled, self._rules
+            moment.frame, table, groups, state, grid, around, compiled, self._rules, twins
         )
         threads = 1 if PLAIN else threads_for(len(order))
         fields = compiled.fields.shape[1]
-        works = self._works_for(threads, len(rows), around, len(terms), fields)
+        # Each sheet has room for a body at the same place.
+        most = min(len(rows), self._most_near * (1 + len(twins.strips)))
+        works = self._works_for(threads, most, around, len(terms), fields)
 
         def part(first: int, last: int) -> None:
             people, offsets = order[first:last], extra_offsets[first : last + 1]
@@ -136,7 +145,8 @@ class DecisionScheduler:
         row = order[at : at + 1]
         target = np.column_stack([crowd.target_x[row], crowd.target_y[row]])
         speed = crowd.preferred[row]
-        wish = self.wishes(row, target, speed, moment, rows, crowd, around, terms)
+        people = rows[twins.strip[rows] < 0] if len(twins.follow) else rows
+        wish = self.wishes(row, target, speed, moment, people, crowd, around, terms)
         judged = judge(weighed, outlook)
         watch.decision = replace(judged, blocked_by=int(wish.blockers[0]))
         part(at, len(order))
@@ -184,22 +194,28 @@ class DecisionScheduler:
             around,
             compiled._replace(fields=fields[rows] if fields.size else fields),
             self._rules._replace(hard_bodies=False),
+            NO_TWINS,
         )
         extra, offsets = NO_EXTRA
-        [work] = self._works_for(1, len(inside), around, len(terms), fields.shape[1])
+        most = min(len(inside), self._most_near)
+        [work] = self._works_for(1, most, around, len(terms), fields.shape[1])
         self._decide(order, new_queue(len(order)), scene, extra, offsets, work)
-        everybody = build_grid(inside, crowd.x, crowd.y)
+        seen = np.concatenate([inside, crowd.copies]) if len(crowd.copies) else inside
+        everybody = build_grid(seen, crowd.x, crowd.y)
         reach = self._rules.search_radius
-        return wishes_of(
+        found = wishes_of(
             alone, rows, moment.frame, self._repertoire.table, everybody, crowd.records, reach
         )
+        if len(crowd.copies):
+            hit = found.blockers != NOBODY
+            found.blockers[hit] = crowd.person_of[found.blockers[hit]]
+        return found
 
     def _works_for(
         self, threads: int, people: int, around: Surroundings, terms: int, fields: int
     ) -> list[Workspace]:
         """A workspace for each thread."""
         walls = len(around.segments) + len(around.exits)
-        people = min(people, self._most_near)
         works = self._works
         if works and (
             people > len(works[0].neighbours.marks)

@@ -17,6 +17,7 @@ from mesa_mobility.crowd.options.table import LEVELS, SAMPLES, OptionTable
 from mesa_mobility.crowd.state.people_grid import Grid
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.crowd.state.surroundings import Surroundings
+from mesa_mobility.crowd.state.twins import Twins
 
 
 class Rules(NamedTuple):
@@ -51,6 +52,7 @@ class FrameContext(NamedTuple):
         around: walls and exits.
         terms: compiled terms.
         rules: the model's constants.
+        twins: the twins in this frame.
     """
 
     frame: int
@@ -61,6 +63,7 @@ class FrameContext(NamedTuple):
     around: Surroundings
     terms: Terms
     rules: Rules
+    twins: Twins
 
 
 class DecisionContext(NamedTuple):

@@ -135,17 +135,21 @@ class StallWatch(Saved):
         return np.where(with_way, start, 0.0) - np.where(with_way, route, 0.0)
 
 
-def stall_reason(plan: FloorPlan, seen: Aggregates, ring: Sequence[int] = ()) -> str:
+def stall_reason(
+    plan: FloorPlan, seen: Aggregates, ring: Sequence[int] = (), upstairs: Sequence[int] = ()
+) -> str:
     """Why an evacuation has stalled, in a few words.
 
     Args:
         plan: the floor plan.
         seen: aggregates of the people inside.
         ring: rows of people who are in each other's way.
+        upstairs: rows of people who would have to climb stairs, which they cannot.
     """
     if plan.exits and not plan.open_exits():
         return "every exit is closed"
     if seen.going == 0:
-        return "nobody inside has a way to go"
+        said = "nobody inside has a way to go"
+        return f"{said}: people {in_words(upstairs)} cannot use stairs" if upstairs else said
     said = f"nobody has come nearer to an exit for {STALL_SECONDS:.0f} s"
     return f"{said}: people {in_words(ring)} are in each other's way" if ring else said

@@ -27,26 +27,40 @@ class Environment(Saved):
     """Walls for the collision tests and routes for the targets of one floor plan.
 
     Bodies of each core radius have routes of their own, which are searched for when the first of
-    them has a destination. The number of a destination stands for both a set of exits, a gate or a
-    point, and a core radius.
+    them has a destination; so have people of each who do not climb stairs. The number of a
+    destination stands for both a set of exits, a gate or a point, and such a body.
 
     Args:
         plan: the floor plan; obstacles and doors may change while a model runs.
         reach: how far from a person walls matter, metres.
         core_radii: core radius of each pedestrian type, metres.
+        climbs: whether each type crosses seams; by default all do.
 
     Attributes:
         plan: the floor plan.
         corners: the corners of all routes.
     """
 
-    def __init__(self, plan: FloorPlan, *, reach: float, core_radii: Sequence[float]) -> None:
+    def __init__(
+        self,
+        plan: FloorPlan,
+        *,
+        reach: float,
+        core_radii: Sequence[float],
+        climbs: Sequence[bool] | None = None,
+    ) -> None:
         self.plan = plan
         self._reach = reach
         self._of_types = tuple(core_radii)
-        self._radii = list(dict.fromkeys(core_radii))
+        self._climbs = (True,) * len(core_radii) if climbs is None else tuple(climbs)
+        # Without seams all bodies of one size have the same routes.
+        over = self._climbs if plan.seams else (True,) * len(core_radii)
+        types = list(zip(core_radii, over, strict=True))
+        bodies = list(dict.fromkeys(types))
+        self._radii = [radius for radius, _ in bodies]
+        self._over_seams = [climbs for _, climbs in bodies]
         self._clearances = [clearance_of(radius) for radius in self._radii]
-        self._body_of = [self._radii.index(core) for core in core_radii]
+        self._body_of = [bodies.index(each) for each in types]
         self._make_routers([None])
         self._elsewhere: WeakKeyDictionary[FloorPlan, Environment] = WeakKeyDictionary()
 
@@ -123,12 +137,14 @@ class Environment(Saved):
     def _router(self, body: int) -> Router:
         router = self._routers[body]
         if router is None:
-            router = self._routers[body] = self._new_router(self.plan, self._clearances[body])
+            router = self._routers[body] = self._new_router(
+                self.plan, self._clearances[body], self._over_seams[body]
+            )
         return router
 
-    def _new_router(self, plan: FloorPlan, clearance: float) -> Router:
+    def _new_router(self, plan: FloorPlan, clearance: float, seams: bool = True) -> Router:
         """A router that knows all destinations by their numbers."""
-        router = Router(plan, clearance=clearance)
+        router = Router(plan, clearance=clearance, seams=seams)
         for names in self._destinations:
             self._add_destination(router, names)
         return router
@@ -182,7 +198,9 @@ class Environment(Saved):
         """
         known = self._elsewhere.get(plan)
         if known is None:
-            known = Environment(plan, reach=self._reach, core_radii=self._of_types)
+            known = Environment(
+                plan, reach=self._reach, core_radii=self._of_types, climbs=self._climbs
+            )
             self._elsewhere[plan] = known
         for names in self._destinations[len(known._destinations) :]:
             known._destinations.append(names)
@@ -215,7 +233,8 @@ class Environment(Saved):
         return found
 
     def check_way_out(self, points: NDArray[np.float64], destination: int) -> None:
-        """Raise FloorPlanError if some places would have no route even if everything were open."""
+        """Raise FloorPlanError if some places would have no route even if everything were open, and
+        everybody climbed stairs."""
         lost = points[self.without_way_out(points, destination)]
         if len(lost):
             raise FloorPlanError(
@@ -225,10 +244,11 @@ class Environment(Saved):
             )
 
     def without_way_out(self, points: NDArray[np.float64], destination: int) -> NDArray[np.bool_]:
-        """(n,) whether there would be no route from (n, 2) places even if everything were open."""
+        """(n,) whether there would be no route from (n, 2) places even if everything were open, and
+        everybody climbed stairs."""
         number, body = divmod(destination, self.bodies)
         lost = _without_way(self._router(body), points, number)
-        if lost.any() and not self._all_open():
+        if lost.any() and not (self._all_open() and self._over_seams[body]):
             lost[lost] = _without_way(self._router_when_open(body), points[lost], number)
         return lost
 

@@ -145,10 +145,15 @@ class Crowd:
         records: (capacity,) records of ``PERSON``; each of its fields is an attribute as well.
         agenda: (capacity,) records of ``AGENDA``.
         fields: (capacity,) values of each field that the model declares for its people.
+        person_of: (rows,) for each row that of the person whose copy it is, while there are copies
+            for people on other sheets of the floor plan; otherwise empty.
+        copies: (k,) rows of the copies of those who are where two sheets are one, in order.
     """
 
     agenda: NDArray[np.void]
     fields: dict[str, NDArray[Any]]
+    person_of: NDArray[np.int64] = np.empty(0, np.int64)
+    copies: NDArray[np.int64] = np.empty(0, np.int64)
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]

@@ -41,8 +41,43 @@ class CrowdView:
 
     @cached_property
     def grid(self) -> Grid:
-        """The people by cell, where they were when it was first asked for: tactics share it."""
-        return build_grid(self.pedestrians, self.crowd.x, self.crowd.y)
+        """The people by cell, where they were when it was first asked for: tactics share it.
+
+        In a building, people on stairs are there on both sheets, once in a row of their own and
+        once in that of a copy, which ``person_of`` leads back to the person.
+        """
+        return build_grid(self.with_copies(self.pedestrians), self.crowd.x, self.crowd.y)
+
+    def with_copies(self, pedestrians: NDArray[np.int64]) -> NDArray[np.int64]:
+        """These rows, and those of the copies of the same people on other sheets, if any."""
+        copies = self.crowd.copies
+        if not len(copies):
+            return pedestrians
+        return np.concatenate([pedestrians, copies[np.isin(self.person_of(copies), pedestrians)]])
+
+    def person_of(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,) rows of the people who, or whose copies, are in these rows."""
+        return self.crowd.person_of[rows] if len(self.crowd.person_of) else rows
+
+    def seen_by(
+        self, pedestrians: NDArray[np.int64], others: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """(n, 2) where each of n people sees one of the others, metres.
+
+        That is where the other is, or where their copy is, if that is nearer.
+
+        Args:
+            pedestrians: (n,) rows of those who look.
+            others: (n,) rows of those whom they look at.
+        """
+        crowd = self.crowd
+        seen = np.column_stack([crowd.x[others], crowd.y[others]])
+        here = np.column_stack([crowd.x[pedestrians], crowd.y[pedestrians]])
+        for copy in crowd.copies[np.isin(self.person_of(crowd.copies), others)]:
+            there = np.array([crowd.x[copy], crowd.y[copy]])
+            nearer = np.hypot(*(there - here).T) < np.hypot(*(seen - here).T)
+            seen[nearer & (others == crowd.person_of[copy])] = there
+        return seen
 
     @property
     def preferred_speeds(self) -> NDArray[np.float64]:

@@ -21,6 +21,9 @@ from mesa_mobility.populations import Population
 
 _LEAST, _GREATEST = EXTREMES
 
+_SEATED = "wheelchair"
+"""With this begin the types of maps of people in wheelchairs."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PedestrianType:
@@ -33,12 +36,14 @@ class PedestrianType:
             default that of the map (see ``free_speeds``).
         core_radius: radius of the body, a disc about the person's position that no other body
             enters, metres, or a distribution of radii; by default the map's.
+        climbs: whether they use stairs; by default all do but those with a map of a wheelchair.
     """
 
     mobility_map: MobilityMap
     name: str = ""
     preferred_speed: Distribution | float | None = None
     core_radius: Distribution | float = field(default=0.0)
+    climbs: bool | None = None
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -56,6 +61,11 @@ class PedestrianType:
                 f"type {self.name!r}: core_radius {self.core_radius}, "
                 f"expected {SLIMMEST_CORE} to 1 m"
             )
+        if self.climbs is None:
+            seated = self.mobility_map.pedestrian_type.startswith(_SEATED)
+            object.__setattr__(self, "climbs", not seated)
+        elif not isinstance(self.climbs, bool):
+            raise ModelError(f"type {self.name!r}: climbs {self.climbs!r:.60}, expected a bool")
         if self.preferred_speed is None:
             object.__setattr__(self, "preferred_speed", free_speeds(self.mobility_map))
         elif not isinstance(self.preferred_speed, Distribution):

@@ -44,7 +44,7 @@ class FreeArea:
         cut_off: bool = False,
     ) -> None:
         self._walkable, self._exits, self._gates = layout.walkable, layout.exits, layout.gates
-        self._simplify = layout.simplify
+        self._simplify, self._in_sheets = layout.simplify, bool(layout.seams)
         self.cut_off = cut_off
         self.closed: frozenset[str] = frozenset()
         self._subtract(obstacles)
@@ -88,7 +88,7 @@ class FreeArea:
                 list(self.obstacles.values()),
                 self._exits,
                 self._gates,
-                self.cut_off,
+                self.cut_off or self._in_sheets,
             )
             self.geometry: BaseGeometry = outline_of(
                 pieces, self._simplify, [*self._exits, *self._gates]

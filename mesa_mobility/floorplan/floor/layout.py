@@ -1,15 +1,19 @@
 """The parts of a floor plan that never change: walkable area, exits, gates and zones."""
 
 from collections.abc import Iterable
+from typing import cast
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor import checks, extent
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import check_tolerance
+from mesa_mobility.floorplan.floor.seams import Seam, check_seams
 from mesa_mobility.floorplan.floor.zones import SpeedZone, check_zones, speed_factors
 
 
@@ -23,6 +27,7 @@ class Layout:
         zones: parts of the floor where people walk more slowly.
         name: for titles and files.
         simplify: metres by which walls may recede to have fewer vertices.
+        seams: where people change from one piece of the walkable area to another.
 
     Raises:
         FloorPlanError: parts that ``FloorPlan`` refuses.
@@ -36,13 +41,18 @@ class Layout:
         zones: Iterable[SpeedZone],
         name: str,
         simplify: float,
+        seams: Iterable[Seam] = (),
     ) -> None:
         self.name = name
         self._simplify = check_tolerance(simplify)
-        self._walkable = checks.read_polygon(walkable, "walkable area")
+        self._seams = tuple(seams)
+        read = checks.read_area if self._seams else checks.read_polygon
+        self._walkable = cast("Polygon", read(walkable, "walkable area"))
         extent.check_extent(self._walkable)
+        check_seams(self._walkable, self._seams)
+        self._copied = shapely.union_all([part for each in self._seams for part in each.copies])
         self._exits = tuple(exits)
-        self._gates = tuple(gates)
+        self._gates = (*gates, *(gate for each in self._seams for gate in each.gates))
         checks.check_exits(self._walkable, self._exits, self._gates)
         checks.check_gates(self._walkable, self._gates)
         self._zones = tuple(zones)
@@ -51,7 +61,8 @@ class Layout:
 
     @property
     def walkable(self) -> Polygon:
-        """The walkable polygon as given, obstacles not subtracted."""
+        """The walkable polygon as given, obstacles not subtracted; several polygons if there are
+        seams."""
         return self._walkable
 
     @property
@@ -66,13 +77,23 @@ class Layout:
 
     @property
     def gates(self) -> tuple[Gate, ...]:
-        """All gates, open or closed."""
+        """All gates, open or closed, those of seams last."""
         return self._gates
 
     @property
     def zones(self) -> tuple[SpeedZone, ...]:
         """The zones of reduced speed."""
         return self._zones
+
+    @property
+    def seams(self) -> tuple[Seam, ...]:
+        """The seams between sheets; none where the plan is one sheet."""
+        return self._seams
+
+    @property
+    def copied(self) -> BaseGeometry:
+        """The parts of strips that belong to another sheet; empty without seams."""
+        return self._copied
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

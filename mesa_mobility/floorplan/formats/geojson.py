@@ -39,21 +39,25 @@ def feature_collection(plan: Floor) -> dict[str, Any]:
     and `name`; a closed gate or exit has `closed` true, a zone its `factor`.
     Reading it back gives the same coordinates to the last bit; obstacle ids count from 0 again.
     """
-    features = [_feature("walkable", plan.name, plan.walkable)]
+    if plan.seams:
+        raise FloorPlanError(
+            "a floor plan with seams has no GeoJSON of its own, expected that of its building"
+        )
+    features = [feature_of("walkable", plan.name, plan.walkable)]
     if plan.cut_off:
         features[0]["properties"]["cut_off"] = True
     if plan.simplify != SIMPLIFY:
         features[0]["properties"]["simplify"] = plan.simplify
     features += [
-        _feature("obstacle", str(i), polygon) for i, polygon in enumerate(plan.obstacles.values())
+        feature_of("obstacle", str(i), polygon) for i, polygon in enumerate(plan.obstacles.values())
     ]
     for opening in plan.openings():
-        feature = _feature(opening.kind, opening.name, opening.line)
+        feature = feature_of(opening.kind, opening.name, opening.line)
         if not plan.is_open(opening.name):
             feature["properties"]["closed"] = True
         features.append(feature)
     for zone in plan.zones:
-        feature = _feature("zone", zone.name, zone.area)
+        feature = feature_of("zone", zone.name, zone.area)
         feature["properties"]["factor"] = zone.factor
         features.append(feature)
     return {"type": "FeatureCollection", "features": features}
@@ -79,8 +83,21 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
         FloorPlanError: the file cannot be read, is not JSON or not a FeatureCollection, or a
             feature has an unknown kind or the wrong geometry; the message names file and feature.
     """
+    where = label(source)
+    features = features_of(load(source), where)
+    return content_of(
+        ((feature, f"{where}: feature {number}") for number, feature in enumerate(features)), where
+    )
+
+
+def load(source: "str | os.PathLike[str] | Mapping[str, Any]") -> object:
+    """What a file holds as JSON; a mapping as it is.
+
+    Raises:
+        FloorPlanError: the file cannot be read or is not JSON.
+    """
     if isinstance(source, Mapping):
-        return _content(source, label(source))
+        return source
     try:
         text = Path(source).read_text(encoding="utf-8")
     except OSError as error:
@@ -88,28 +105,28 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
     except UnicodeDecodeError:
         raise FloorPlanError(f"{source}: is not text, expected GeoJSON") from None
     try:
-        data = json.loads(text)
+        data: object = json.loads(text)
     except json.JSONDecodeError as error:
         raise FloorPlanError(f"{source}: is not JSON (line {error.lineno}: {error.msg})") from None
     except RecursionError:
         raise FloorPlanError(f"{source}: is not a floor plan (nested too deeply)") from None
     except ValueError:  # Python refuses integers of thousands of digits
         raise FloorPlanError(f"{source}: has a number of thousands of digits") from None
-    return _content(data, label(source))
+    return data
 
 
-def _content(data: object, where: str) -> Content:
+def features_of(data: object, where: str) -> list[Any]:
+    """The features of a FeatureCollection; FloorPlanError, naming ``where``, for anything else."""
     if not isinstance(data, Mapping) or data.get("type") != "FeatureCollection":
         raise FloorPlanError(f"{where}: expected a GeoJSON FeatureCollection")
     features = data.get("features")
     if not isinstance(features, list):
         raise FloorPlanError(f"{where}: features must be a list")
-    return content_of(
-        ((feature, f"{where}: feature {number}") for number, feature in enumerate(features)), where
-    )
+    return features
 
 
-def _feature(kind: str, name: str, geometry: BaseGeometry) -> dict[str, Any]:
+def feature_of(kind: str, name: str, geometry: BaseGeometry) -> dict[str, Any]:
+    """A GeoJSON feature of a kind, with its name."""
     return {
         "type": "Feature",
         "properties": {"kind": kind, "name": name},

@@ -83,6 +83,8 @@ def opening_behind(
         way = np.hypot(qx - x, qy - y)
         if after[node] >= 0:
             way += np.hypot(ways.xy[node, 0] - qx, ways.xy[node, 1] - qy) + to_go[node]
+        else:
+            way += to_go[node]
         if way > _DETOUR * by_corner:
             break
         if _serves(sight, ways, (x, y), node, after[node], (qx, qy), ways.view_clearance, own):

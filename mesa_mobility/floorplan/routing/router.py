@@ -23,6 +23,7 @@ from mesa_mobility.floorplan.routing.route_nodes import (
     find_nodes,
     with_points,
 )
+from mesa_mobility.floorplan.routing.seam_links import seam_links
 from mesa_mobility.floorplan.routing.target_cache import Found, empty_cache
 from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
 from mesa_mobility.floorplan.routing.targets import Destination, Targets, is_point
@@ -35,10 +36,10 @@ class Router:
     """Shortest routes to exits, gates and points of a floor plan, kept up to date with it.
 
     Routes bend at corners that stand `clearance` from the walls and lead through gates and exits,
-    but through no exits other than the destination's. A person aims at the node in view with the
-    shortest route through it. At a gate or exit the target lies `beyond` its line, so that it is
-    crossed. It lies straight behind the nearest point that serves, so that nobody is led into the
-    wall beside it.
+    but through no exits other than the destination's. At seams they lead to another sheet. A
+    person aims at the node in view with the shortest route through it. At a gate or exit the target
+    lies `beyond` its line, so that it is crossed. It lies straight behind the nearest point that
+    serves, so that nobody is led into the wall beside it.
 
     Args:
         plan: the floor plan; changes to it are followed.
@@ -46,12 +47,15 @@ class Router:
             shrinks to 85 % of this; narrower gaps are impassable.
         beyond: how far behind a gate or exit the target lies, metres, above 0; less where a wall
             is nearer.
+        seams: whether routes lead across seams.
 
     Raises:
         FloorPlanError: clearance or beyond out of range.
     """
 
-    def __init__(self, plan: Floor, *, clearance: float = 0.2, beyond: float = 2.0) -> None:
+    def __init__(
+        self, plan: Floor, *, clearance: float = 0.2, beyond: float = 2.0, seams: bool = True
+    ) -> None:
         if not (np.isfinite([clearance, beyond]).all() and clearance > 0 and beyond > 0):
             raise FloorPlanError(
                 f"a router needs clearance > 0 and beyond > 0, found {clearance} and {beyond}"
@@ -59,6 +63,7 @@ class Router:
         self._plan = plan
         self._clearance = float(clearance)
         self._beyond = float(beyond)
+        self._seams = plan.seams if seams else ()
         self._destinations: list[Destination] = [None]
         self._version = -1
         self._distances: dict[int, NDArray[np.float64]] = {}
@@ -245,6 +250,8 @@ class Router:
         follow[start[first]] = end[first]
         # A gate or point that is the destination ends its route, though others lead on from it.
         follow[lengths == 0.0] = -1
+        # So does one from which a route goes on on another sheet: nothing there is in view.
+        follow[self._leaving[follow[self._leaving] == self._arriving]] = -1
         return follow
 
     def _update(self) -> None:
@@ -264,6 +271,11 @@ class Router:
         self._edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
+        self._leaving, self._arriving, lengths = seam_links(self._seams, plan.openings(), nodes)
+        if len(lengths):
+            links = np.column_stack([self._leaving, self._arriving])
+            self._edges = np.concatenate([self._edges, links])
+            self._edge_lengths = np.concatenate([self._edge_lengths, lengths])
         self._nodes, self._graph = nodes, None
         shape = (len(nodes.kind), len(nodes.kind))
         # From the ends of routes back to their starts.

@@ -58,8 +58,8 @@ def aim_at(
         px, py = past_corner(sight, ways, x, y, qx, qy, after[node])
     else:
         leaves = ways.kind[node] == EXIT
-        if after[node] < 0:
-            length = min(length, away)
+        if after[node] < 0:  # the end of the route, or of its part on this sheet
+            length = min(length, away + to_go[node])
         px, py = _beyond(
             sight, ways, x, y, qx, qy, ways.normal[node, 0], ways.normal[node, 1], leaves
         )

@@ -87,7 +87,7 @@ def test_whoever_comes_towards_somebody_who_makes_way_joins(x, joins):
     notes = resolved(crowd, [1, 0, -1])
     # 1 is at 0 and makes way to x = 2; 2 stands behind or ahead.
     notes["x"][1], crowd.x[2] = 2.0, x
-    join(np.array([2]), np.array([1]), 11.0, crowd.records, notes)
+    join(np.array([2]), np.array([1]), np.array([[0.0, 0.0]]), 11.0, crowd.records, notes)
     assert (notes["first"][2] == 0) == joins
 
 

@@ -83,6 +83,9 @@ def candidates_of(
         rows, grid, crowd.records, rules.interaction_ranges
     )
     neighbours = grid.people[neighbour_places]
+    if len(crowd.person_of):
+        # Terms know people by their own rows, wherever they see them.
+        grid = grid._replace(people=crowd.person_of[grid.people])
     wall_offsets, walls = _all_walls(rows, table, around, crowd.records)
     durations = table.options.frames[options] * FRAME_SECONDS
     speeds = table.options.speed[options].astype(np.float64)

@@ -1,0 +1,283 @@
+"""A building: levels joined by stairs, laid out in one plane."""
+
+import os
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import networkx as nx
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.buildings import geojson
+from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.places import Places
+from mesa_mobility.buildings.sheets import Sheet, seam_of, sheets_of, zones_of
+from mesa_mobility.buildings.stairs import Flight, Landing, Stairs, sheet_of
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan import Exit, FloorPlan
+from mesa_mobility.floorplan.formats.geojson import label
+
+
+class Building:
+    """Levels that stairs join.
+
+    People are simulated in a plane, in which the levels and landings lie side by side as sheets.
+    Each flight of stairs is drawn on both sheets that it joins, up to 0.3 m beyond its end. At its
+    middle people change from one drawing to the other. So all that is made for floor plans works
+    in buildings. `true_places` and `plane_places` lead from the plane to true coordinates and back.
+
+    On a flight, people walk as in a speed zone: at a share of the speed of a level floor, the same
+    upwards and downwards, after the SFPE Handbook; see `Flight.factor`. Their movement is that
+    recorded on level floors.
+
+    A flight should be at least 2.7 m long in plan, twice the longest step: on a shorter one people
+    see less far and walk more slowly. Where a flight passes over a level, or under it, its place
+    on the plan of the levels that it joins is taken from the floor, with 0.35 m beyond it.
+
+    Args:
+        levels: at least one.
+        stairs: what joins them.
+        name: for titles and files.
+
+    Raises:
+        FloorPlanError: levels or stairs of one number or name; stairs that lead nowhere, do not fit
+            their rise, have no floor before them, or overlap an obstacle, an opening or other
+            stairs; levels from which no stairs lead to an exit; or what `FloorPlan` refuses.
+
+    Attributes:
+        levels: the levels, in the order given.
+        stairs: the stairs, in the order given.
+        flights: the flights of all stairs.
+        landings: the landings of all stairs.
+        floor_plan: all sheets in one plane, which models use.
+
+    Examples:
+        >>> from mesa_mobility import Building, Exit, Level, Stairs
+        >>> hall = "POLYGON ((0 0, 20 0, 20 6, 0 6, 0 0))"
+        >>> ground = Level(0, hall, exits=[Exit("street", (0, 2), (0, 4))])
+        >>> first = Level(1, hall, elevation=3.06)
+        >>> main = Stairs.straight(
+        ...     "main", first, ground, head=((12, 5), (12, 3)), risers=18, tread=0.29
+        ... )
+        >>> office = Building([ground, first], [main])
+        >>> places, levels = office.true_places(office.places([(1.0, 1.0)], level=1))
+        >>> places.tolist(), levels.tolist()
+        ([[1.0, 1.0, 3.06]], [1])
+    """
+
+    def __init__(
+        self, levels: Sequence[Level], stairs: Sequence[Stairs] = (), *, name: str = ""
+    ) -> None:
+        self.levels, self.stairs, self.name = tuple(levels), tuple(stairs), name
+        _check_names(self.levels, self.stairs)
+        flights: list[Flight] = []
+        landings: list[Landing] = []
+        for each in self.stairs:
+            try:
+                upper, lower = self.level(each.upper), self.level(each.lower)
+            except FloorPlanError as error:
+                raise FloorPlanError(f"stairs {each.name!r}: {error}") from None
+            more, between = each.parts(upper.elevation, lower.elevation)
+            flights += more
+            landings += between
+        self.flights, self.landings = tuple(flights), tuple(landings)
+        self._sheets = sheets_of(self.levels, flights, landings)
+        self._check_joined()
+        self._places = Places(self._sheets, flights)
+        self.floor_plan = self._plan()
+
+    def __repr__(self) -> str:
+        named = f" {self.name!r}" if self.name else ""
+        return f"<Building{named}: levels: {len(self.levels)}, stairs: {len(self.stairs)}>"
+
+    @classmethod
+    def from_geojson(cls, source: "str | os.PathLike[str] | dict[str, Any]") -> "Building":
+        """Read a building from a GeoJSON file, or from the FeatureCollection itself.
+
+        A floor plan is a building of one level. See `to_geojson` for what it holds. Raises
+        FloorPlanError naming the file and the feature.
+        """
+        where, parts = label(source), geojson.read(source)
+        try:
+            building = cls(parts.levels, parts.stairs, name=parts.name)
+        except FloorPlanError as error:
+            raise FloorPlanError(f"{where}: {error}") from None
+        for closed in parts.closed:
+            building.floor_plan.close_gate(closed)
+        building.floor_plan.version = 0
+        return building
+
+    def to_geojson(self) -> dict[str, Any]:
+        """The building as a GeoJSON FeatureCollection, in its own coordinates, metres.
+
+        Features are those of a floor plan, each with the number of its `level`; walkable areas have
+        an `elevation`. A feature of the kind `stairs` is their upper edge, the end on the left of
+        somebody who walks down first. It has `from` and `to`, the numbers of the upper and the
+        lower level, `risers`, `tread` and `type`, straight or dog_leg; a dog-leg also `turn`,
+        `well` and, if it is not as deep as wide, `landing`. A building of one level is written as
+        its floor plan.
+        """
+        first, plan = self.levels[0], self.floor_plan
+        if len(self.levels) == 1 and first.number == 0 and first.elevation == 0.0:
+            return plan.to_geojson()
+        closed = [each.name for each in plan.openings() if not plan.is_open(each.name)]
+        return geojson.feature_collection(
+            geojson.Parts(self.levels, self.stairs, self.name, closed)
+        )
+
+    def write_geojson(self, path: "str | os.PathLike[str]") -> None:
+        """Write `to_geojson` to a file, complete or not at all."""
+        geojson.write(self.to_geojson(), path)
+
+    def level(self, number: int) -> Level:
+        """The level of this number; a FloorPlanError lists the known numbers."""
+        for level in self.levels:
+            if level.number == number:
+                return level
+        known = ", ".join(str(each.number) for each in self.levels)
+        raise FloorPlanError(f"there is no level {number!r:.60}; there are {known}")
+
+    def exits(self, level: int) -> tuple[str, ...]:
+        """Names of the exits on a level."""
+        return tuple(each.name for each in self.level(level).exits)
+
+    def true_places(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
+        """True places of points in the plane.
+
+        Args:
+            points: (n, 2) metres.
+
+        Returns:
+            (n, 3) x, y and z in metres, and the (n,) numbers of the levels; `ON_STAIRS` for places
+            on flights and landings.
+        """
+        return self._places.true(points)
+
+    def plane_places(self, places: ArrayLike) -> NDArray[np.float64]:
+        """(n, 2) points in the plane of (n, 3) true places, metres.
+
+        Raises:
+            FloorPlanError: a place more than a centimetre above or below any floor.
+        """
+        return self._places.plane(places)
+
+    def places(self, points: ArrayLike, level: int) -> NDArray[np.float64]:
+        """(n, 2) points in the plane of (n, 2) places on a level, metres."""
+        xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        shifted: NDArray[np.float64] = xy + self._sheet(level).shift
+        return shifted
+
+    def random_points(
+        self,
+        n: int,
+        rng: np.random.Generator,
+        *,
+        level: int | None = None,
+        spacing: float,
+        clearance: float,
+        avoid: ArrayLike = (),
+    ) -> NDArray[np.float64]:
+        """(n, 2) random points in the plane, in metres, with room for people to stand.
+
+        They are on levels, never on stairs. See `FloorPlan.random_points`.
+
+        Args:
+            n: how many.
+            rng: where they come from.
+            level: number of the level on which they are; by default on all.
+            spacing: least distance of the points to each other, metres.
+            clearance: least distance to walls and exits, metres.
+            avoid: (k, 2) further points in the plane from which they keep the spacing, metres.
+
+        Raises:
+            FloorPlanError: there is room for fewer than n points, or no such level.
+        """
+        chosen = self.levels if level is None else [self.level(level)]
+        floors = [self._sheet(each.number) for each in chosen]
+        parts = [part for each in floors for part in shapely.get_parts(each.in_plane(each.floor))]
+        return self.floor_plan.random_points(
+            n,
+            rng,
+            within=shapely.MultiPolygon(parts),
+            spacing=spacing,
+            clearance=clearance,
+            avoid=avoid,
+        )
+
+    def floor_plan_of(self, level: int) -> FloorPlan:
+        """The floor of one level as a plan of its own, in the building's coordinates.
+
+        Stairs are not part of it: people leave by the end of a flight as by an exit, which has the
+        name of the flight.
+        """
+        own, sheet = self.level(level), self._sheet(level)
+        ends = [Exit(each.name, *each.head) for each in self.flights if each.upper == sheet.name]
+        ends += [Exit(each.name, *each.foot) for each in self.flights if each.lower == sheet.name]
+        return FloorPlan(
+            max(shapely.get_parts(sheet.floor), key=lambda part: part.area),
+            exits=[*own.exits, *ends],
+            gates=own.gates,
+            obstacles=own.obstacles,
+            zones=own.zones,
+            name=own.name or self.name,
+            cut_off=True,
+        )
+
+    def _sheet(self, level: int) -> Sheet:
+        return self._sheets[sheet_of(self.level(level).number)]
+
+    def _check_joined(self) -> None:
+        """Stairs must lead from each level to one with an exit; FloorPlanError otherwise."""
+        graph = nx.Graph()
+        graph.add_nodes_from(level.number for level in self.levels)
+        graph.add_edges_from((each.upper, each.lower) for each in self.stairs)
+        leading_out = {level.number for level in self.levels if level.exits}
+        for joined in nx.connected_components(graph):
+            if len(self.levels) > 1 and not joined & leading_out:
+                raise FloorPlanError(
+                    f"level {min(joined)}: no stairs lead from there to a level with an exit"
+                )
+
+    def _plan(self) -> FloorPlan:
+        exits, gates, obstacles, zones = [], [], [], []
+        for level in self.levels:
+            sheet = self._sheet(level.number)
+            exits += [sheet.opening(each) for each in level.exits]
+            gates += [sheet.opening(each) for each in level.gates]
+            obstacles += [sheet.in_plane(each) for each in level.blocked]
+            for zone in level.zones:
+                zones.append(type(zone)(sheet.in_plane(zone.area), zone.factor, zone.name))
+        for flight in self.flights:
+            zones += zones_of(flight, self._sheets)
+        areas = [sheet.in_plane(sheet.area) for sheet in self._sheets.values()]
+        parts = [part for area in areas for part in shapely.get_parts(area)]
+        return FloorPlan(
+            parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts),
+            exits=exits,
+            gates=gates,
+            obstacles=obstacles,
+            zones=zones,
+            name=self.name or (self.levels[0].name if len(self.levels) == 1 else ""),
+            seams=[seam_of(flight, self._sheets) for flight in self.flights],
+        )
+
+
+def _check_names(levels: Sequence[Level], stairs: Sequence[Stairs]) -> None:
+    """Levels and stairs must be that, and have different numbers and names."""
+    if not levels:
+        raise FloorPlanError("a building needs at least one level")
+    for given, kind in ((levels, Level), (stairs, Stairs)):
+        for each in given:
+            if not isinstance(each, kind):
+                raise FloorPlanError(
+                    f"a building has {kind.__name__} objects, found {type(each).__name__}"
+                )
+    for what, names in (
+        ("level", sorted(each.number for each in levels)),
+        ("stairs", sorted(each.name for each in stairs)),
+    ):
+        for one, other in pairwise(names):
+            if one == other:
+                raise FloorPlanError(f"{what} {one!r} is there twice")

@@ -1,0 +1,82 @@
+"""A level of a building: its floor in true coordinates."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from shapely import Polygon
+
+from mesa_mobility._numbers import is_number
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan import Exit, Gate, SpeedZone
+from mesa_mobility.floorplan.floor.checks import read_polygon
+
+MOST_LEVEL = 1_000
+"""Greatest number of a level, above ground or below."""
+
+HIGHEST = 10_000.0
+"""Greatest elevation of a level, metres, above or below the origin."""
+
+
+@dataclass(frozen=True)
+class Level:
+    """A level of a building.
+
+    Coordinates are those of the building. Names of exits and gates are unique in the building.
+
+    Args:
+        number: its number, as on the buttons of a lift: 0 is mostly the ground floor.
+        walkable: one connected polygon, holes allowed; shapely or WKT, metres.
+        elevation: height of the floor, metres.
+        exits: lines on the edge of the walkable area by which people leave the building.
+        gates: doors, and other lines to cross, inside the walkable area.
+        obstacles: polygons (shapely or WKT) to subtract.
+        zones: parts of the floor where people walk more slowly.
+        name: for titles and files.
+
+    Raises:
+        FloorPlanError: a number that is not whole, an elevation that is not finite, or what
+            `FloorPlan` refuses of the walkable area and the obstacles.
+    """
+
+    number: int
+    walkable: Polygon | str
+    elevation: float = 0.0
+    exits: Sequence[Exit] = ()
+    gates: Sequence[Gate] = ()
+    obstacles: Sequence[Polygon | str] = ()
+    zones: Sequence[SpeedZone] = ()
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        number = self.number
+        if not isinstance(number, int) or isinstance(number, bool) or abs(number) > MOST_LEVEL:
+            raise FloorPlanError(
+                f"level {number!r:.60}: expected a whole number, {MOST_LEVEL} at most"
+            )
+        if not is_number(self.elevation) or not abs(self.elevation) <= HIGHEST:
+            raise FloorPlanError(
+                f"level {number}: elevation must be metres, {HIGHEST:g} at most, "
+                f"found {self.elevation!r:.60}"
+            )
+        where = f"level {number}: "
+        values = {
+            "elevation": float(self.elevation),
+            "walkable": read_polygon(self.walkable, where + "walkable area"),
+            "obstacles": tuple(
+                read_polygon(each, f"{where}obstacle {k}") for k, each in enumerate(self.obstacles)
+            ),
+            **{name: tuple(getattr(self, name)) for name in ("exits", "gates", "zones")},
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def area(self) -> Polygon:
+        """The walkable polygon as a shapely geometry."""
+        assert isinstance(self.walkable, Polygon)
+        return self.walkable
+
+    @property
+    def blocked(self) -> tuple[Polygon, ...]:
+        """The obstacles as shapely geometries."""
+        return tuple(each for each in self.obstacles if isinstance(each, Polygon))

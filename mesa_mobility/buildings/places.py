@@ -1,0 +1,112 @@
+"""Places in a building: from the plane, in which it is simulated, to true coordinates, and back."""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from mesa_mobility.buildings.sheets import BEYOND, Sheet, middle_of
+from mesa_mobility.buildings.stairs import Flight
+from mesa_mobility.errors import FloorPlanError
+
+ON_STAIRS = -32_768
+"""The level of people on flights and landings."""
+
+_HEIGHT = 0.01
+"""Most metres by which a place may be above or below the floor."""
+
+_ROUNDING = 1e-6
+"""Metres."""
+
+
+class Places:
+    """The lookup of places.
+
+    Args:
+        sheets: the sheets of a building.
+        flights: its flights.
+    """
+
+    def __init__(self, sheets: Mapping[str, Sheet], flights: Sequence[Flight]) -> None:
+        self._sheets = list(sheets.values())
+        self._number = {sheet.name: number for number, sheet in enumerate(self._sheets)}
+        self._flights = tuple(flights)
+        bounds = [sheet.in_plane(sheet.area).bounds for sheet in self._sheets]
+        self._between = np.array([(a[2] + b[0]) / 2.0 for a, b in pairwise(bounds)])
+        self._shifts = np.array([sheet.shift for sheet in self._sheets])
+        self._elevations = np.array([sheet.elevation for sheet in self._sheets])
+        self._levels = np.array(
+            [ON_STAIRS if each.level is None else each.level for each in self._sheets], np.int16
+        )
+
+    def true(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
+        """(n, 3) true places in metres, and (n,) levels, of (n, 2) points in the plane."""
+        xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        sheet = np.searchsorted(self._between, xy[:, 0], side="right")
+        places = np.column_stack([xy - self._shifts[sheet], self._elevations[sheet]])
+        levels = self._levels[sheet]
+        for flight in self._flights:
+            upper, lower = self._number[flight.upper], self._number[flight.lower]
+            own = np.flatnonzero((sheet == upper) | (sheet == lower))
+            down, aside = _on(flight, places[own, :2])
+            drawn = (aside <= flight.width / 2.0) & (down > 0.0) & (down < flight.going)
+            places[own[drawn], 2] = _height(flight, down[drawn])
+            levels[own[drawn]] = ON_STAIRS
+            # Beyond the flight, the copied end of a strip is on the other sheet's floor.
+            for past, here, there in ((down - flight.going, upper, lower), (-down, lower, upper)):
+                ends = (past >= 0.0) & (past <= BEYOND + _ROUNDING)
+                over = own[ends & (aside <= flight.width / 2.0) & (sheet[own] == here)]
+                over = over[self._copied(flight, here, places[over, :2])]
+                places[over, 2], levels[over] = self._elevations[there], self._levels[there]
+        return places, levels
+
+    def plane(self, places: ArrayLike) -> NDArray[np.float64]:
+        """(n, 2) points in the plane of (n, 3) true places, metres.
+
+        Raises:
+            FloorPlanError: a place that is on no level, landing or flight.
+        """
+        xyz = np.asarray(places, dtype=np.float64).reshape(-1, 3)
+        sheet = np.full(len(xyz), -1, dtype=np.int64)
+        nearest = np.full(len(xyz), np.inf)
+        points = shapely.points(xyz[:, :2])
+        for number, each in enumerate(self._sheets):
+            level = np.flatnonzero(np.abs(xyz[:, 2] - each.elevation) <= _HEIGHT)
+            away = shapely.distance(each.floor, points[level])
+            nearer = away < nearest[level]
+            sheet[level[nearer]], nearest[level[nearer]] = number, away[nearer]
+        for flight in self._flights:
+            down, aside = _on(flight, xyz[:, :2])
+            on = (down > 0.0) & (down < flight.going) & (aside <= flight.width / 2.0)
+            on &= np.abs(_height(flight, down) - xyz[:, 2]) <= _HEIGHT
+            lower, upper = self._number[flight.lower], self._number[flight.upper]
+            sheet[on] = np.where(down[on] >= flight.going / 2.0, lower, upper)
+        if (sheet < 0).any():
+            lost = xyz[np.argmax(sheet < 0)].tolist()
+            raise FloorPlanError(
+                f"({', '.join(f'{each:.2f}' for each in lost)}): expected a place on a level, a "
+                "landing or a flight of stairs"
+            )
+        return xyz[:, :2] + self._shifts[sheet]
+
+    def _copied(self, flight: Flight, sheet: int, xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether places beyond a flight, on a sheet, are on its strip and not on the floor."""
+        floor = self._sheets[sheet].floor
+        return ~shapely.intersects_xy(floor, xy[:, 0], xy[:, 1]) & shapely.intersects_xy(
+            self._sheets[sheet].area, xy[:, 0], xy[:, 1]
+        )
+
+
+def _on(flight: Flight, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Metres down from the head of a flight, and metres from its middle line, of (n, 2) places."""
+    away, down = xy - middle_of(flight.head), flight.down
+    return away @ down, np.abs(away @ np.array([-down[1], down[0]]))
+
+
+def _height(flight: Flight, down: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Elevation of places on a flight, as on a ramp."""
+    share = down / flight.going
+    height: NDArray[np.float64] = flight.top + share * (flight.bottom - flight.top)
+    return height

@@ -1,0 +1,222 @@
+"""Sheets: the levels and landings of a building, each with the stairs that end there."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.stairs import Flight, Landing, Line, sheet_of
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan import Exit, Gate, Seam, SpeedZone
+
+BEYOND = 0.3
+"""Metres by which a strip goes on beyond its flight, on the sheet to which that half is copied."""
+
+APART = 20.0
+"""Least metres between sheets in the plane: nobody acts on others so far away."""
+
+_WALL = 0.05
+"""Metres that are taken from the floor beside and behind a strip."""
+
+_INTO = 0.01
+"""Metres by which a strip overlaps the floor from which it leads, so that the two are one."""
+
+_GRID = 1e-9
+"""Vertices are put on this grid, metres: of edges that nearly coincide, GEOS may otherwise give a
+wrong intersection."""
+
+_FREE = 0.5
+"""Metres of floor that must be free before either end of a flight."""
+
+Opening = TypeVar("Opening", Exit, Gate)
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A level or a landing, with the strips of the flights that end there.
+
+    Attributes:
+        name: unique in the building.
+        level: number of the level; None for a landing.
+        elevation: of its floor, metres.
+        floor: the floor without strips, in the building's coordinates.
+        area: the floor and the strips, in the building's coordinates.
+        shift: (dx, dy) in metres from the building's coordinates to the plane.
+    """
+
+    name: str
+    level: int | None
+    elevation: float
+    floor: BaseGeometry
+    area: BaseGeometry
+    shift: tuple[float, float] = (0.0, 0.0)
+
+    def in_plane(self, geometry: BaseGeometry) -> BaseGeometry:
+        """A geometry in the building's coordinates as drawn in the plane."""
+        if self.shift == (0.0, 0.0):
+            return geometry
+        moved: BaseGeometry = shapely.transform(geometry, lambda xy: xy + self.shift)
+        return moved
+
+    def opening(self, opening: Opening) -> Opening:
+        """An exit or gate as drawn in the plane."""
+        (ax, ay), (bx, by), (dx, dy) = opening.a, opening.b, self.shift
+        return replace(opening, a=(ax + dx, ay + dy), b=(bx + dx, by + dy))
+
+
+def sheets_of(
+    levels: Sequence[Level], flights: Sequence[Flight], landings: Sequence[Landing]
+) -> dict[str, Sheet]:
+    """The sheets of a building by name, side by side in the plane in the order given.
+
+    The first level keeps its coordinates.
+
+    Raises:
+        FloorPlanError: a flight without floor before one of its ends, or over an obstacle or
+            opening, or two that overlap.
+    """
+    sheets = []
+    for level in levels:
+        own = _strips(sheet_of(level.number), flights)
+        _check_level(level, own)
+        sheets.append(
+            _sheet(sheet_of(level.number), level.number, level.elevation, level.area, own)
+        )
+    for landing in landings:
+        own = _strips(landing.name, flights)
+        sheets.append(_sheet(landing.name, None, landing.elevation, landing.area, own))
+    placed: dict[str, Sheet] = {}
+    end = -np.inf
+    for sheet in sheets:
+        least, _, most, _ = sheet.area.bounds
+        # Whole metres keep most coordinates exact.
+        shift = 0.0 if not placed else float(np.ceil(end + APART - least))
+        placed[sheet.name] = replace(sheet, shift=(shift, 0.0))
+        end = most + shift
+    return placed
+
+
+def seam_of(flight: Flight, sheets: Mapping[str, Sheet]) -> Seam:
+    """The seam of a flight: at its middle, from the lower sheet to the upper one."""
+    lower, upper = (np.array(sheets[name].shift) for name in (flight.lower, flight.upper))
+    left, right = (np.array(end) + flight.going / 2.0 * flight.down for end in flight.head)
+    return Seam(
+        flight.name,
+        tuple((right + lower).tolist()),
+        tuple((left + lower).tolist()),
+        tuple((upper - lower).tolist()),
+        flight.going / 2.0 + BEYOND,
+        extra=flight.going * (1.0 / flight.factor - 1.0),
+    )
+
+
+def zones_of(flight: Flight, sheets: Mapping[str, Sheet]) -> list[SpeedZone]:
+    """The zones in which people walk as fast as on stairs, on both sheets of a flight."""
+    area = flight.part(0.0, flight.going)
+    names = dict.fromkeys((flight.lower, flight.upper))
+    return [
+        SpeedZone(sheets[name].in_plane(area), flight.factor, f"{flight.name} on {name}")
+        for name in names
+    ]
+
+
+@dataclass(frozen=True)
+class _Strip:
+    """A flight as drawn on one of its sheets.
+
+    Attributes:
+        flight: the flight.
+        drawn: the strip.
+        taken: what is taken from the floor for it.
+        before: the floor that must be free before it.
+    """
+
+    flight: Flight
+    drawn: Polygon
+    taken: Polygon
+    before: Polygon
+
+
+def _strips(sheet: str, flights: Sequence[Flight]) -> list[_Strip]:
+    found = []
+    for flight in flights:
+        going = flight.going
+        if flight.upper == sheet:
+            found.append(
+                _Strip(
+                    flight,
+                    flight.part(-_INTO, going + BEYOND),
+                    flight.part(0.0, going + BEYOND + _WALL, _WALL),
+                    flight.part(-_FREE, 0.0),
+                )
+            )
+        if flight.lower == sheet:
+            found.append(
+                _Strip(
+                    flight,
+                    flight.part(-BEYOND, going + _INTO),
+                    flight.part(-BEYOND - _WALL, going, _WALL),
+                    flight.part(going, going + _FREE),
+                )
+            )
+    return found
+
+
+def _sheet(
+    name: str, level: int | None, elevation: float, area: Polygon, strips: Sequence[_Strip]
+) -> Sheet:
+    if not strips:
+        return Sheet(name, level, elevation, area, area)
+    for k, one in enumerate(strips):
+        for other in strips[:k]:
+            shared = shapely.intersection(one.taken, other.taken, grid_size=_GRID)
+            if shared.area > 1e-6:
+                spot = shared.representative_point()
+                raise FloorPlanError(
+                    f"stairs {other.flight.name!r} and {one.flight.name!r} overlap on the plan of "
+                    f"{name} at ({spot.x:.2f}, {spot.y:.2f})"
+                )
+    taken = shapely.union_all([each.taken for each in strips], grid_size=_GRID)
+    floor = shapely.difference(area, taken, grid_size=_GRID)
+    drawn = [each.drawn for each in strips]
+    whole = shapely.union_all([floor, *drawn], grid_size=_GRID)
+    return Sheet(name, level, elevation, floor, whole)
+
+
+def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
+    """There must be floor before stairs, and nothing on them; FloorPlanError otherwise."""
+    obstacles = {f"obstacle {k}": each for k, each in enumerate(level.blocked)}
+    openings = {f"{each.kind} {each.name!r}": each.line for each in (*level.exits, *level.gates)}
+    free = shapely.difference(
+        level.area, shapely.union_all(list(obstacles.values())), grid_size=_GRID
+    )
+    free = free.buffer(1e-6)
+    for strip in strips:
+        where = f"stairs {strip.flight.name!r} on level {level.number}"
+        for what, shape in (*obstacles.items(), *openings.items()):
+            if strip.taken.buffer(-1e-6).intersects(shape):
+                spot = strip.taken.intersection(shape).representative_point()
+                raise FloorPlanError(
+                    f"{where}: {what} is in their way at ({spot.x:.2f}, {spot.y:.2f})"
+                )
+        others = [each.taken for each in strips if each is not strip]
+        left = shapely.difference(free, shapely.union_all(others), grid_size=_GRID)
+        missing = shapely.difference(strip.before, left, grid_size=_GRID)
+        if missing.area > 1e-6:
+            spot = missing.representative_point()
+            raise FloorPlanError(
+                f"{where}: no floor at ({spot.x:.2f}, {spot.y:.2f}), expected {_FREE} m of free "
+                "floor before them"
+            )
+
+
+def middle_of(line: Line) -> NDArray[np.float64]:
+    """(2,) the middle of a line."""
+    middle: NDArray[np.float64] = np.array(line).mean(axis=0)
+    return middle

@@ -1,0 +1,338 @@
+"""Stairs between two levels: flights, and landings between them."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely import Polygon
+
+from mesa_mobility._numbers import is_number
+from mesa_mobility.buildings.level import Level
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan import Gate
+
+STRAIGHT, DOG_LEG = "straight", "dog_leg"
+
+LEAST_WIDTH = 0.6
+"""Least clear width of stairs, metres."""
+
+RISERS = 0.10, 0.22
+"""Least and greatest height of a riser, metres."""
+
+TREADS = 0.20, 0.60
+"""Least and greatest depth of a tread, metres."""
+
+_FLAT = 1.40
+"""Speed on a level floor without others, m/s: SFPE Handbook, chapter on employing the hydraulic
+model."""
+
+_ON_STAIRS = 0.861
+"""Speed along the slope of stairs without others, m/s, where treads are as deep as risers are high;
+it grows with the root of their ratio. The same: 1.00, 1.08, 1.16 and 1.23 m/s on stairs of 7.5/10,
+7/11, 6.5/12 and 6.5/13 inches."""
+
+Line = tuple[tuple[float, float], tuple[float, float]]
+"""A line (left, right), each (x, y) in metres."""
+
+
+def speed_factor(riser: float, tread: float) -> float:
+    """The share of their speed on a level floor at which people cover ground on stairs.
+
+    It is for ground as a plan shows it, and the same upwards and downwards: the SFPE Handbook does
+    not tell these apart.
+
+    Args:
+        riser: height of a riser, metres.
+        tread: depth of a tread, metres.
+    """
+    along_slope = min(_ON_STAIRS * math.sqrt(tread / riser) / _FLAT, 1.0)
+    return along_slope * tread / math.hypot(tread, riser)
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight of stairs.
+
+    Attributes:
+        name: unique in the building.
+        head: its upper edge, (left, right) as seen by somebody who walks down.
+        going: metres from its upper to its lower edge, in plan.
+        top: elevation of the upper edge, metres.
+        bottom: elevation of the lower edge, metres.
+        upper: name of the sheet from which it leads down.
+        lower: name of the sheet to which it leads.
+        risers: number of its risers.
+        tread: depth of a tread, metres.
+    """
+
+    name: str
+    head: Line
+    going: float
+    top: float
+    bottom: float
+    upper: str
+    lower: str
+    risers: int
+    tread: float
+
+    @property
+    def width(self) -> float:
+        """Clear width, metres."""
+        return math.dist(*self.head)
+
+    @property
+    def down(self) -> NDArray[np.float64]:
+        """(2,) unit vector in which people walk down."""
+        return _down(self.head)
+
+    @property
+    def foot(self) -> Line:
+        """Its lower edge, (left, right) as seen by somebody who walks down."""
+        return _moved(self.head, self.going * self.down)
+
+    @property
+    def factor(self) -> float:
+        """The share of their speed on a level floor at which people walk; see `speed_factor`."""
+        return speed_factor((self.top - self.bottom) / self.risers, self.tread)
+
+    def part(self, first: float, last: float, wider: float = 0.0) -> Polygon:
+        """The strip from `first` to `last` metres below the upper edge, measured in plan.
+
+        Args:
+            first: metres; below 0 before the edge.
+            last: metres.
+            wider: metres by which it is wider to either side.
+        """
+        (left, right), down = np.array(self.head), self.down
+        aside = wider * (left - right) / self.width
+        left, right = left + aside, right - aside
+        return Polygon(
+            [left + first * down, right + first * down, right + last * down, left + last * down]
+        )
+
+
+@dataclass(frozen=True)
+class Landing:
+    """A landing between two flights.
+
+    Attributes:
+        name: unique in the building.
+        area: its floor.
+        elevation: metres.
+    """
+
+    name: str
+    area: Polygon
+    elevation: float
+
+
+@dataclass(frozen=True)
+class Stairs:
+    """Stairs from one level down to another; `straight` and `dog_leg` make them.
+
+    Args:
+        name: unique in the building.
+        upper: number of the level from which they lead down.
+        lower: number of the level to which they lead.
+        head: their upper edge, two points (x, y) in metres on the upper level, the first on the
+            left of somebody who walks down. Its length is the clear width.
+        risers: number of all risers.
+        tread: depth of a tread, metres.
+        shape: "straight" for one flight, "dog_leg" for two, side by side, with a landing between.
+        turn: "left" or "right", where a dog-leg turns on the way down.
+        well: metres between the flights of a dog-leg.
+        landing: depth of its landing, metres; by default the clear width.
+
+    Raises:
+        FloorPlanError: numbers out of range, or another shape or turn.
+    """
+
+    name: str
+    upper: int
+    lower: int
+    head: Line
+    risers: int
+    tread: float = 0.29
+    shape: str = STRAIGHT
+    turn: str = "left"
+    well: float = 0.2
+    landing: float | None = None
+
+    @classmethod
+    def straight(
+        cls,
+        name: str,
+        upper: Level | int,
+        lower: Level | int,
+        head: Sequence[Sequence[float]],
+        *,
+        risers: int,
+        tread: float = 0.29,
+    ) -> Self:
+        """Stairs of one straight flight; see the class for the arguments."""
+        return cls(name, _number(upper), _number(lower), _line(name, head), risers, tread)
+
+    @classmethod
+    def dog_leg(
+        cls,
+        name: str,
+        upper: Level | int,
+        lower: Level | int,
+        head: Sequence[Sequence[float]],
+        *,
+        risers: int,
+        tread: float = 0.29,
+        turn: str = "left",
+        well: float = 0.2,
+        landing: float | None = None,
+    ) -> Self:
+        """Stairs of two flights side by side, which lead in opposite directions, and a landing.
+
+        Of an odd number of risers the lower flight has one more. See the class for the arguments.
+        """
+        return cls(
+            name,
+            _number(upper),
+            _number(lower),
+            _line(name, head),
+            risers,
+            tread,
+            DOG_LEG,
+            turn,
+            well,
+            landing,
+        )
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "head", _line(self.name, self.head))
+        least = 2 if self.shape == STRAIGHT else 4
+        if (
+            not isinstance(self.risers, int)
+            or isinstance(self.risers, bool)
+            or not (least <= self.risers <= 200)
+        ):
+            self._refuse(f"{least} to 200 risers", self.risers)
+        if not is_number(self.tread) or not TREADS[0] <= self.tread <= TREADS[1]:
+            self._refuse(f"treads of {TREADS[0]} to {TREADS[1]} m", self.tread)
+        if self.width < LEAST_WIDTH:
+            self._refuse(f"a clear width of {LEAST_WIDTH} m or more", round(self.width, 3))
+        if self.shape not in (STRAIGHT, DOG_LEG):
+            self._refuse(f"the shape {STRAIGHT!r} or {DOG_LEG!r}", self.shape)
+        if self.turn not in ("left", "right"):
+            self._refuse("a turn to the 'left' or 'right'", self.turn)
+        if not is_number(self.well) or not 0.1 <= self.well <= 10.0:
+            self._refuse("0.1 to 10 m between its flights", self.well)
+        deep = self.landing
+        if deep is not None and not (is_number(deep) and LEAST_WIDTH <= deep <= 10.0):
+            self._refuse(f"a landing {LEAST_WIDTH} to 10 m deep", deep)
+
+    @property
+    def width(self) -> float:
+        """Clear width, metres."""
+        return math.dist(*self.head)
+
+    def parts(self, top: float, bottom: float) -> tuple[list[Flight], list[Landing]]:
+        """The flights, from the top, and the landings between them.
+
+        Args:
+            top: elevation of the upper level, metres.
+            bottom: elevation of the lower level, metres.
+
+        Raises:
+            FloorPlanError: the rise does not fit the number of risers.
+        """
+        riser = (top - bottom) / self.risers
+        if not RISERS[0] <= riser <= RISERS[1]:
+            raise FloorPlanError(
+                f"stairs {self.name!r}: {self.risers} risers for a rise of {top - bottom:g} m are "
+                f"{riser:.3f} m each, expected {RISERS[0]:.2f} to {RISERS[1]:.2f} m"
+            )
+        upper, lower = sheet_of(self.upper), sheet_of(self.lower)
+        if self.shape == STRAIGHT:
+            return [
+                Flight(
+                    self.name,
+                    self.head,
+                    (self.risers - 1) * self.tread,
+                    top,
+                    bottom,
+                    upper,
+                    lower,
+                    self.risers,
+                    self.tread,
+                )
+            ], []
+        count = self.risers // 2
+        going, middle = (count - 1) * self.tread, bottom + (self.risers - count) * riser
+        half = f"landing of {self.name}"
+        first = Flight(
+            f"{self.name} 2", self.head, going, top, middle, upper, half, count, self.tread
+        )
+        left, right = (np.array(each) for each in first.foot)
+        across, deep = (left - right) / self.width, self.landing or self.width
+        if self.turn == "left":
+            head = left + self.well * across, left + (self.well + self.width) * across
+            ends = right, head[1]
+        else:
+            head = right - (self.well + self.width) * across, right - self.well * across
+            ends = head[0], left
+        count = self.risers - count
+        second = Flight(
+            f"{self.name} 1",
+            (_pair(head[0]), _pair(head[1])),
+            (count - 1) * self.tread,
+            middle,
+            bottom,
+            half,
+            lower,
+            count,
+            self.tread,
+        )
+        away = deep * first.down
+        area = Polygon([*ends, ends[1] + away, ends[0] + away])
+        return [first, second], [Landing(half, area, middle)]
+
+    def _refuse(self, expected: str, found: object) -> None:
+        raise FloorPlanError(f"stairs {self.name!r}: expected {expected}, found {found!r:.60}")
+
+
+def sheet_of(level: int) -> str:
+    """Name of the sheet of a level."""
+    return f"level {level}"
+
+
+def _number(level: Level | int) -> int:
+    return level.number if isinstance(level, Level) else level
+
+
+def _line(name: str, head: Sequence[Sequence[float]]) -> Line:
+    """The head of stairs as two points; FloorPlanError for anything else."""
+    if not isinstance(name, str) or not name:
+        raise FloorPlanError(f"stairs: expected a name of at least one letter, found {name!r:.60}")
+    try:
+        a, b = head
+        line = Gate("head", tuple(a), tuple(b))  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise FloorPlanError(
+            f"stairs {name!r}: head must be two points (x, y), found {head!r:.60}"
+        ) from None
+    except FloorPlanError as error:
+        raise FloorPlanError(f"stairs {name!r}: {error}") from None
+    return line.a, line.b
+
+
+def _down(head: Line) -> NDArray[np.float64]:
+    (ax, ay), (bx, by) = head
+    return np.array([ay - by, bx - ax]) / math.dist(*head)
+
+
+def _moved(line: Line, by: NDArray[np.float64]) -> Line:
+    a, b = np.array(line) + by
+    return _pair(a), _pair(b)
+
+
+def _pair(point: NDArray[np.float64]) -> tuple[float, float]:
+    return float(point[0]), float(point[1])

@@ -1,0 +1,152 @@
+"""Buildings as GeoJSON, written and read."""
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mesa_mobility import Building, Exit, FloorPlan, Level, SpeedZone, Stairs
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan import Gate
+from tests.fixtures.buildings import HALL, two_storeys
+
+
+def parts(building):
+    """All that a building has been made of."""
+    levels = [
+        (
+            each.number,
+            each.elevation,
+            each.name,
+            each.area.wkt,
+            tuple(each.exits),
+            tuple(each.gates),
+            tuple(one.wkt for one in each.blocked),
+            tuple((zone.area.wkt, zone.factor, zone.name) for zone in each.zones),
+        )
+        for each in building.levels
+    ]
+    return building.name, levels, building.stairs
+
+
+def furnished():
+    ground = Level(
+        0,
+        HALL,
+        exits=[Exit("street", (0, 3), (0, 5))],
+        gates=[Gate("door", (20, 0), (20, 8))],
+        obstacles=["POLYGON ((21 1, 22 1, 22 2, 21 2, 21 1))"],
+        zones=[SpeedZone("POLYGON ((2 1, 3 1, 3 2, 2 2, 2 1))", 0.7, "mud")],
+        name="ground floor",
+    )
+    cellar = Level(-1, HALL, -2.72)
+    stairs = Stairs.straight("down", ground, cellar, ((8, 1.2), (8, 0)), risers=16, tread=0.3)
+    return Building([ground, cellar], [stairs], name="shop")
+
+
+@pytest.mark.parametrize("make", [two_storeys, furnished])
+def test_what_is_written_is_read_again(make, tmp_path):
+    building = make()
+    building.write_geojson(tmp_path / "building.geojson")
+    read = Building.from_geojson(tmp_path / "building.geojson")
+    assert parts(read) == parts(building)
+    assert read.to_geojson() == building.to_geojson()
+
+
+@given(
+    risers=st.integers(8, 24),
+    tread=st.floats(0.25, 0.4),
+    well=st.floats(0.1, 0.5),
+    landing=st.none() | st.floats(1.2, 2.0),
+    turn=st.sampled_from(["left", "right"]),
+    wide=st.floats(0.8, 1.6),
+)
+def test_stairs_of_any_measures_are_read_again(risers, tread, well, landing, turn, wide):
+    hall = "POLYGON ((-30 -30, 30 -30, 30 30, -30 30, -30 -30))"
+    ground = Level(0, hall, exits=[Exit("out", (-30, 0), (-30, 1))])
+    first = Level(1, hall, 0.17 * risers)
+    stairs = Stairs.dog_leg(
+        "s", first, ground, ((1.1, 2.2 + wide), (1.1, 2.2)),
+        risers=risers, tread=tread, turn=turn, well=well, landing=landing,
+    )  # fmt: skip
+    building = Building([ground, first], [stairs])
+    text = json.dumps(building.to_geojson())
+    assert parts(Building.from_geojson(json.loads(text))) == parts(building)
+
+
+def test_features_have_the_number_of_their_level():
+    features = two_storeys().to_geojson()["features"]
+    kinds = [(each["properties"]["kind"], each["properties"]["level"]) for each in features]
+    assert kinds == [
+        ("walkable", 0),
+        ("exit", 0),
+        ("exit", 0),
+        ("walkable", 1),
+        ("stairs", 1),
+        ("stairs", 1),
+    ]
+    assert features[3]["properties"]["elevation"] == 3.06
+    assert features[4]["properties"] == {
+        "kind": "stairs",
+        "name": "south",
+        "level": 1,
+        "from": 1,
+        "to": 0,
+        "risers": 18,
+        "tread": 0.29,
+        "type": "straight",
+    }
+    assert features[5]["properties"]["turn"] == "right"
+
+
+def test_a_floor_plan_is_a_building_of_one_level(tmp_path):
+    plan = FloorPlan(HALL, exits=[Exit("out", (0, 3), (0, 5))], name="hall")
+    plan.write_geojson(tmp_path / "plan.geojson")
+    building = Building.from_geojson(tmp_path / "plan.geojson")
+    assert [each.number for each in building.levels] == [0]
+    assert building.to_geojson() == plan.to_geojson()
+
+
+def test_closed_exits_stay_closed():
+    building = two_storeys()
+    building.floor_plan.close_gate("west")
+    read = Building.from_geojson(building.to_geojson())
+    assert [read.floor_plan.is_open(name) for name in ("west", "east")] == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("feature", "name", "value", "said"),
+    [
+        (4, "risers", "many", "GeoJSON: feature 4: risers must be a whole number, found 'many'"),
+        (4, "risers", 12, "GeoJSON: stairs 'south': 12 risers for a rise of 3.06 m"),
+        (4, "tread", None, "GeoJSON: feature 4: tread must be a number, found None"),
+        (4, "type", "spiral", "GeoJSON: feature 4: stairs 'south': expected the shape"),
+        (4, "to", 7, "GeoJSON: stairs 'south': there is no level 7"),
+        (5, "turn", 3, "GeoJSON: feature 5: stairs 'north': expected a turn"),
+        (1, "level", "zero", "GeoJSON: feature 1: level must be a whole number, found 'zero'"),
+        (1, "level", 5, "GeoJSON: level 5: expected one walkable area, found 0"),
+        (3, "elevation", "high", "GeoJSON: level 1: elevation must be metres"),
+        (3, "kind", "lift", "GeoJSON: feature 3: property kind must be one of"),
+    ],
+)
+def test_what_is_wrong_is_named_with_its_feature(feature, name, value, said):
+    collection = two_storeys().to_geojson()
+    collection["features"][feature]["properties"][name] = value
+    with pytest.raises(FloorPlanError, match=said) as error:
+        Building.from_geojson(collection)
+    assert "\n" not in str(error.value)
+
+
+def test_stairs_are_lines():
+    collection = two_storeys().to_geojson()
+    collection["features"][4]["geometry"] = {"type": "Point", "coordinates": [0, 0]}
+    with pytest.raises(FloorPlanError, match="feature 4: stairs must be a LineString, found Point"):
+        Building.from_geojson(collection)
+
+
+def test_a_building_has_no_pieces_cut_off():
+    collection = two_storeys().to_geojson()
+    collection["features"][0]["properties"]["cut_off"] = True
+    with pytest.raises(FloorPlanError, match="level 0: cut_off is for floor plans"):
+        Building.from_geojson(collection)

@@ -1,0 +1,200 @@
+"""Models of buildings: people walk down stairs, and results say where they were."""
+
+import copy
+
+import numpy as np
+import pytest
+import shapely
+from shapely import box
+
+from mesa_mobility import Building, Exit, FloorPlan, Level, PedestrianModel, Trajectories
+from mesa_mobility.buildings import ON_STAIRS
+from mesa_mobility.commands.models.making import ModelOptions, create_model
+from mesa_mobility.errors import ModelError
+from mesa_mobility.results import check_safety, read_parquet
+from tests.fixtures.buildings import HALL, RISE, two_storeys
+from tests.fixtures.engine import ENGINE
+from tests.fixtures.seams import overlaps
+
+PEOPLE = 60
+
+
+@pytest.fixture(scope="module")
+def run():
+    """A building, and the tracks of people who leave its upper level."""
+    office = two_storeys()
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=1)
+    model.add_pedestrians(
+        office.random_points(PEOPLE, model.rng, level=1, spacing=0.6, clearance=0.25)
+    )
+    model.run(max_seconds=200)
+    assert model.inside == 0
+    return office, Trajectories.of(model)
+
+
+def test_nobody_is_lost_doubled_or_jumps(run):
+    _, tracks = run
+    assert tracks.people == PEOPLE
+    first, later = tracks.steps()
+    assert len(first) == len(tracks) - PEOPLE
+    xyz = np.column_stack([tracks.x, tracks.y, tracks.z])
+    step = np.abs(xyz[later] - xyz[first])
+    assert np.hypot(step[:, 0], step[:, 1]).max() < 0.1
+    # A riser of 0.17 m to a tread of 0.29 m.
+    assert step[:, 2].max() < 0.1 * 0.17 / 0.29 * 18 / 17 + 1e-9
+    last = np.array([tracks.rows_of(person)[-1] for person in range(PEOPLE)])
+    assert (tracks.level[last] == 0).all()
+    assert (np.abs(tracks.x[last] - 12.0) >= 12.0).all()
+
+
+def test_nobody_walks_through_others_on_any_floor_or_flight(run):
+    _, tracks = run
+    xyz = np.column_stack([tracks.x, tracks.y, tracks.z])
+    assert overlaps(tracks.frame, xyz, tracks.radii[tracks.person]) == 0
+
+
+def test_nobody_walks_through_walls_or_beside_stairs(run):
+    office, tracks = run
+    for level in (0, 1):
+        plan, there = office.floor_plan_of(level), tracks.on(level=level)
+        report = check_safety(there, plan.walls, plan.free.buffer(1e-3))
+        assert report.wall_crossings == 0
+        gone = there.exit_frames[there.person] == there.frame
+        inside = shapely.intersects_xy(plan.free.buffer(1e-3), there.x, there.y)
+        assert (inside | gone).all()
+    on = tracks.level == ON_STAIRS
+    # By hand: south, both flights of north, and its landing.
+    parts = [
+        box(8, 0, 12.93, 1.2),
+        box(14, 6.8, 16.32, 8),
+        box(14, 5.4, 16.32, 6.6),
+        box(16.32, 5.4, 17.52, 8),
+    ]
+    stairs = shapely.union_all(parts).buffer(1e-6)
+    assert shapely.intersects_xy(stairs, tracks.x[on], tracks.y[on]).all()
+    assert on.any()
+
+
+def test_both_stairs_are_used_and_people_slow_down_on_them(run):
+    office, tracks = run
+    on = tracks.level == ON_STAIRS
+    south = np.unique(tracks.person[on & (tracks.y < 2.0)])
+    north = np.unique(tracks.person[on & (tracks.y > 2.0)])
+    assert len(south) + len(north) == PEOPLE
+    assert min(len(south), len(north)) > PEOPLE / 4
+    first, later = tracks.steps(30)
+    speed = np.hypot(tracks.x[later] - tracks.x[first], tracks.y[later] - tracks.y[first])
+    flights = on[first] & on[later] & (tracks.y[first] < 2.0)
+    factor = office.flights[0].factor
+    assert factor == pytest.approx(0.693, abs=0.001)
+    assert np.quantile(speed[flights], 0.95) < 1.6 * factor
+
+
+def test_a_lone_walker_takes_the_time_that_the_reference_gives():
+    """On the straight flight, at 1.34 m/s on a level floor: 1.34 times the factor, to 12 %."""
+    office = two_storeys()
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=3)
+    model.add_pedestrians(office.places([(4.0, 0.6)], level=1), preferred_speeds=1.34)
+    model.run(max_seconds=60)
+    tracks = Trajectories.of(model)
+    on = np.flatnonzero((tracks.level == ON_STAIRS) & (tracks.x > 9.0) & (tracks.x < 12.0))
+    speed = (tracks.x[on[-1]] - tracks.x[on[0]]) / ((len(on) - 1) / 30.0)
+    assert speed == pytest.approx(1.34 * office.flights[0].factor, rel=0.12)
+
+
+def test_people_walk_up_too():
+    ground = Level(0, HALL)
+    first = Level(1, HALL, RISE, exits=[Exit("roof", (0, 3), (0, 5))])
+    office = Building([ground, first], two_storeys().stairs)
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=2)
+    model.add_pedestrians(office.random_points(10, model.rng, level=0, spacing=1.0, clearance=0.3))
+    model.run(max_seconds=120)
+    assert model.inside == 0
+    tracks = Trajectories.of(model)
+    last = np.array([tracks.rows_of(person)[-1] for person in range(10)])
+    assert (tracks.level[last] == 1).all()
+
+
+def test_people_who_cross_on_the_stairs_pass_each_other():
+    hall = [Exit("west", (0, 3), (0, 5))], [Exit("roof", (0, 3), (0, 5))]
+    office = Building(
+        [Level(0, HALL, exits=hall[0]), Level(1, HALL, RISE, exits=hall[1])],
+        two_storeys().stairs[:1],
+    )
+    model = PedestrianModel(office, preset=ENGINE, record=True, rng=2)
+    for level, exit_ in ((0, "roof"), (1, "west")):
+        places = office.random_points(12, model.rng, level=level, spacing=1.0, clearance=0.3)
+        model.add_pedestrians(places, exits=[exit_])
+    model.run(max_seconds=240)
+    tracks = Trajectories.of(model)
+    xyz = np.column_stack([tracks.x, tracks.y, tracks.z])
+    assert overlaps(tracks.frame, xyz, tracks.radii[tracks.person]) == 0
+    assert model.inside == 0
+
+
+def test_results_are_written_with_elevation_and_level(run, tmp_path):
+    _, tracks = run
+    tracks.to_parquet(tmp_path / "tracks.parquet")
+    read = read_parquet(tmp_path / "tracks.parquet")
+    for name in ("frame", "person", "x", "y", "z", "level"):
+        assert (getattr(read, name) == getattr(tracks, name)).all()
+    assert read.level.dtype == np.int16
+    assert {"z", "level"} <= set(tracks.to_pandas().columns)
+
+
+def test_the_rows_of_one_level_are_those_at_its_height(run):
+    _, tracks = run
+    above, below = tracks.on(level=1), tracks.on(level=0)
+    assert (above.z == RISE).all()
+    assert (below.z == 0.0).all()
+    on = tracks.level == ON_STAIRS
+    assert len(above) + len(below) + on.sum() == len(tracks)
+    assert ((tracks.z[on] > 0.0) & (tracks.z[on] < RISE)).all()
+    assert above.frames == below.frames == tracks.frames
+    assert len(tracks.on(level=7)) == 0
+
+
+def test_one_level_gives_the_bytes_of_its_floor_plan(tmp_path):
+    exits = [Exit("out", (0, 3), (0, 5))]
+    floors = FloorPlan(HALL, exits=exits), Building([Level(0, HALL, exits=exits)])
+    for name, floor in zip(("plan", "building"), floors, strict=True):
+        model = PedestrianModel(floor, preset=ENGINE, record=True, rng=5)
+        assert model.building is None
+        points = floor.random_points(30, model.rng, spacing=0.6, clearance=0.3)
+        model.add_pedestrians(points)
+        model.run(max_seconds=60)
+        Trajectories.of(model).to_parquet(tmp_path / name)
+    assert (tmp_path / "plan").read_bytes() == (tmp_path / "building").read_bytes()
+
+
+def test_fields_may_not_be_named_as_columns_of_buildings():
+    with pytest.raises(ModelError, match="fields: 'level' is a column of all results of buildings"):
+        PedestrianModel(two_storeys(), fields={"level": int})
+
+
+def test_a_saved_run_goes_on_as_it_would_have(tmp_path):
+    office = two_storeys()
+    model = PedestrianModel(office, record=True, rng=1)
+    model.add_pedestrians(office.random_points(20, model.rng, level=1, spacing=0.8, clearance=0.3))
+    model.run(max_seconds=12)
+    assert (Trajectories.of(model).level == ON_STAIRS).any()
+    model.save(tmp_path / "saved.npz")
+    again = PedestrianModel.load(tmp_path / "saved.npz", floor_plan=two_storeys())
+    found = []
+    for each in (model, copy.deepcopy(model), again):
+        each.run(max_seconds=20)
+        tracks = Trajectories.of(each)
+        found.append([values.tobytes() for values in (tracks.x, tracks.y, tracks.z)])
+    assert found[0] == found[1] == found[2]
+
+
+class Office(PedestrianModel):
+    """A building without people."""
+
+    def __init__(self, rng=None):
+        super().__init__(two_storeys(), rng=rng)
+
+
+def test_commands_refuse_models_of_buildings():
+    with pytest.raises(ModelError, match="model office: has a building of 2 levels"):
+        create_model(Office, "office", ModelOptions(seed=1))
