@@ -34,8 +34,8 @@ _VELOCITY_S = 6.0
 _TURN_M = 2.0
 """Metres that a m/s and a radian count for when options are compared.
 
-The terms of the default preset that follow the mean velocity of an option have weights of 6 in
-all, and those that follow its facing of some 2 a radian.
+About what the terms of a preset weigh that follow the mean velocity of an option and its facing.
+The times of decisions hardly depend on these numbers (decision record 6).
 """
 
 _SLACK = 1e-6
