@@ -7,7 +7,8 @@ by up to 62 degrees to either side.  On each they get as far as those ahead let 
 same way, or stand.  The cost of a course is the change of velocity that it takes, and what it loses
 of the way to the target.  Somebody who is alone goes straight.
 
-Those who come towards one do not count: they are a matter of anticipation.
+Those who come towards one do not count: they are a matter of anticipation.  Nor do those beyond the
+target.
 """
 
 from __future__ import annotations
@@ -115,7 +116,7 @@ def _choose_courses(
         now = math.sqrt(state[i].vx * state[i].vx + state[i].vy * state[i].vy)
         speed = min(speeds[k], now + GAINS)
         far = min(speed * AHEAD, away)
-        count = _people_ahead(x, y, ex, ey, grid, state, ahead)
+        count = _people_ahead(x, y, ex, ey, away, grid, state, ahead)
         if _gets_on(ex, ey, far, speed, settings.width, ahead, count) >= far:
             continue
         count = _in_view(x, y, sight, ahead, count)
@@ -138,18 +139,20 @@ def _people_ahead(
     y: float,
     ex: float,
     ey: float,
+    away: float,
     grid: Grid,
     state: CrowdState,
     ahead: NDArray[np.float64],
 ) -> int:
-    """Write place, from (x, y) on, and velocity of those ahead who do not come towards one; returns
-    their number."""
+    """Write place, from (x, y) on, and velocity of those on this side of a target who do not come
+    towards one; returns their number."""
     first, last, low, high = cells_within(grid, x, y, REACH)
     count = 0
     for row in range(low, high + 1):
         for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
             dx, dy = grid.x[a] - x, grid.y[a] - y
-            if dx * ex + dy * ey <= 0.0 or dx * dx + dy * dy > REACH * REACH:
+            along = dx * ex + dy * ey
+            if not 0.0 < along < away or dx * dx + dy * dy > REACH * REACH:
                 continue
             vx, vy = state[grid.people[a]].vx, state[grid.people[a]].vy
             if vx * ex + vy * ey >= -ONCOMING:

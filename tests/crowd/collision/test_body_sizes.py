@@ -133,9 +133,9 @@ def test_who_is_too_wide_for_the_way_is_told_what_it_lacks():
 def test_routes_are_searched_for_bodies_that_are_there(monkeypatch):
     searched = []
 
-    def router(plan, *, clearance):
+    def router(plan, *, clearance, **given):
         searched.append(clearance)
-        return Router(plan, clearance=clearance)
+        return Router(plan, clearance=clearance, **given)
 
     monkeypatch.setattr(environment, "Router", router)
     model = mixed(neck(1.0), 0.14, 0.25, 0.35)
