@@ -147,8 +147,8 @@ class Hazards(TargetChoice):
             if not len(left):
                 break
         self._enclosed.update(deciding.pedestrians[left].tolist())
-        clear = self._floor(deciding.site.plan, self.margin, grown).clear
-        return Targets(points, gates, distances, corners, clear)
+        without = self._floor(deciding.site.plan, self.margin, grown).clear
+        return Targets(points, gates, distances, corners, without)
 
     def _grown(self, hazard: Hazard, elapsed: float) -> float | None:
         """Metres by which a hazard has grown, rounded up to steps; None before it begins."""

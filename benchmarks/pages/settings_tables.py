@@ -4,7 +4,7 @@ python benchmarks/pages/settings_tables.py [--out FOLDER]
 
 The tables are the files of `TABLES` beside this one. In them {{default.headway}} is a weight,
 {{headway.time}} a setting of a term or tactic, {{anticipation.HORIZON}} a constant of the module of
-a tactic, or of `people_ahead`, {{preset.durations}} a member of the preset `default`, and
+a tactic, of `people_ahead` or of `places`, {{preset.durations}} a member of the preset `default`, and
 {{map.options}} a figure of the map. {{bounds.headway.time}} is where the calibration searches for a
 number, {{goals.meeting}} the range of a goal and {{outside.meeting}} how far outside of it counts
 as 1, {{tolerances.flow}} a tolerance, {{weights.goals}} the weight of all goals, and
@@ -27,6 +27,7 @@ from benchmarks.default_preset import goals, measured, published
 from benchmarks.default_preset.__main__ import BOUNDS, scenarios
 from mesa_mobility import MobilityMap
 from mesa_mobility.crowd import PRESETS
+from mesa_mobility.crowd.conflicts import places
 from mesa_mobility.mobility.map_data import CORE_RADIUS
 
 TABLES = {
@@ -47,7 +48,8 @@ def names() -> dict[str, Mapping[str, Any]]:
         found[tactic.name] = vars(sys.modules[type(tactic).__module__]) | tactic.settings()
     for term in preset.make_terms():
         found[term.name] = term.settings()
-    return found | {"people_ahead": vars(people_ahead), "map": map_figures()} | calibration()
+    modules = {each.__name__.rpartition(".")[2]: vars(each) for each in (people_ahead, places)}
+    return found | modules | {"map": map_figures()} | calibration()
 
 
 def calibration() -> dict[str, Mapping[str, Any]]:
