@@ -4,7 +4,7 @@ python benchmarks/pages/settings_tables.py [--out FOLDER]
 
 The tables are the files of `TABLES` beside this one. In them {{default.headway}} is a weight,
 {{headway.time}} a setting of a term or tactic, {{anticipation.HORIZON}} a constant of the module of
-a tactic, of `people_ahead` or of `places`, {{preset.durations}} a member of the preset `default`, and
+a tactic, `people_ahead` or `places`, {{preset.durations}} a member of the preset `default`, and
 {{map.options}} a figure of the map. {{bounds.headway.time}} is where the calibration searches for a
 number, {{goals.meeting}} the range of a goal and {{outside.meeting}} how far outside of it counts
 as 1, {{tolerances.flow}} a tolerance, {{weights.goals}} the weight of all goals, and
