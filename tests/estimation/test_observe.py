@@ -226,13 +226,20 @@ def test_a_profile_is_greatest_where_the_numbers_fit_and_leaves_the_term_as_it_w
         estimate([VelocityChange(turning=each)], steady, tests=False).log_likelihood
         for each in (1.0, 1.5, 3.0)
     ]
-    np.testing.assert_allclose(found.log_likelihoods, turned, atol=0.1)
+    np.testing.assert_allclose(found.log_likelihoods, turned, atol=0.5)
     assert found.best == [1.0, 1.5, 3.0][int(np.argmax(turned))]
     assert found.within[0] <= found.best <= found.within[1]
     with pytest.raises(ModelError, match=r"velocity_change\.turning"):
         profile("velocity_change.no_such", [1.0], [term], steady)
     with pytest.raises(ModelError, match="no term 'headway'"):
         profile("headway.time", [1.0], [term], steady)
+
+
+def test_durations_are_those_of_options():
+    assert Sampling().with_frames((45, 12, 24)).frames == (24, 45)
+    assert Sampling(frames=(12,)).with_frames((12, 24)).frames == (12,)
+    with pytest.raises(ModelError, match="sampling: 45 frames, expected .*: 12, 24$"):
+        observe(corridor(), walking(), name="a.txt", sampling=Sampling(frames=(24, 45)))
 
 
 def test_tracks_too_short_for_a_choice_are_refused():

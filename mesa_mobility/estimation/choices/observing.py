@@ -66,11 +66,11 @@ def observe(
     Raises:
         ResultsError: tracks that cannot be used, or no choice in them; the error names the person
             and the frame.
-        ModelError: arguments that the model does not take.
+        ModelError: arguments that the model does not take, or durations that its options lack.
     """
-    chosen = sampling or Sampling()
     of = places_of(tracks, plan, name)
     stage = Stage(plan, tuple(tactics), **model)
+    chosen = (sampling or Sampling()).with_frames(stage.model.rules.durations)
     rng = np.random.default_rng(chosen.seed)
     looks = _Looks(of, stage, chosen, rng)
     moments = situations(of, chosen, between, rng)

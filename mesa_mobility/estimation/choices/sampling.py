@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.errors import ModelError
 from mesa_mobility.estimation.choices.places import Places
 
 
@@ -18,8 +19,8 @@ class Sampling:
     """Which choices are looked at, and which of their options.
 
     Attributes:
-        frames: durations of choices in frames of the simulation; those of the preset by which
-            choices are explained. They take turns.
+        frames: durations of choices in frames of the simulation, of those that the preset's options
+            have; by default the two longest. They take turns.
         interval: seconds between two instants at which everybody's choice is looked at.
         most: most choices; more are thinned out at random.
         alternatives: options drawn uniformly from those available, beside the observed one.
@@ -30,7 +31,7 @@ class Sampling:
         seed: of all that is drawn.
     """
 
-    frames: Sequence[int] = (24, 45)
+    frames: Sequence[int] = ()
     interval: float = 0.5
     most: int = 2500
     alternatives: int = 120
@@ -38,6 +39,25 @@ class Sampling:
     speeds: int = 3
     history: float = 0.8
     seed: int = 1
+
+    def with_frames(self, durations: Sequence[int]) -> Sampling:
+        """The same with durations of a preset's options.
+
+        Args:
+            durations: of the options, frames.
+
+        Raises:
+            ModelError: another duration is asked for.
+        """
+        known = sorted(durations)
+        for each in self.frames:
+            if each not in known:
+                expected = ", ".join(map(str, known))
+                raise ModelError(
+                    f"sampling: {each} frames, expected durations of the preset's options: "
+                    f"{expected}"
+                )
+        return self if self.frames else replace(self, frames=tuple(known[-2:]))
 
 
 class Situation(NamedTuple):

@@ -16,6 +16,7 @@ from mesa_mobility.behaviors import (
 from mesa_mobility.models import Doorway
 
 from mesa_mobility import CostTerm
+from tests.fixtures.engine import ENGINE
 from tests.fixtures.oracles.numpy_terms import Clearance, StraightOn
 from tests.fixtures.plugin_terms import KeepOff
 
@@ -56,7 +57,7 @@ class Nothing(CostTerm):
 
 
 def run(*terms):
-    model = Doorway(rng=3, record=True)
+    model = Doorway(rng=3, record=True, preset=ENGINE)
     model.terms = [*terms, Interference(), Headway(), RightOfWay()]
     model.run(max_seconds=3.0)
     return [column.tobytes() for column in model.recorder.arrays().values()]
