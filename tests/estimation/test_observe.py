@@ -238,7 +238,7 @@ def test_a_profile_is_greatest_where_the_numbers_fit_and_leaves_the_term_as_it_w
 def test_durations_are_those_of_options():
     assert Sampling().with_frames((45, 12, 24)).frames == (24, 45)
     assert Sampling(frames=(12,)).with_frames((12, 24)).frames == (12,)
-    with pytest.raises(ModelError, match="sampling: 45 frames, expected .*: 12, 24$"):
+    with pytest.raises(ModelError, match=r"sampling: 45 frames, expected .*: 12, 24$"):
         observe(corridor(), walking(), name="a.txt", sampling=Sampling(frames=(24, 45)))
 
 
