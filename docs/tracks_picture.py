@@ -2,16 +2,15 @@
 
 python docs/tracks_picture.py docs/images/tracks.png
 
-The upper row lacks the terms and the tactic of `LEFT_OUT`.
+Decision record 23 has the terms and tactics that the upper row lacks.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from io import BytesIO
-from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
@@ -37,26 +36,28 @@ SEED = 1
 BAR = 2.0
 """Length of the bar below each panel, metres."""
 RED, BLUE = "#b2182b", "#2166ac"
-LEFT_OUT = ("velocity_change", "room_ahead", "anticipation")
-
-
-def without(preset: Preset) -> Preset:
-    """The preset without what is left out, and with options that start abruptly."""
-
-    def kept(numbers: Mapping[str, Any]) -> dict[str, Any]:
-        return {name: each for name, each in numbers.items() if name not in LEFT_OUT}
-
-    return replace(
-        preset,
-        name="without",
-        terms=kept(preset.terms),
-        settings=kept(preset.settings),
-        tactics=tuple(name for name in preset.tactics if name not in LEFT_OUT),
-        most_acceleration=None,
-    )
-
-
-ROWS = {"without": without(PRESETS["default"]), "default preset": PRESETS["default"]}
+# The terms of record 3, and the options of that time.
+WITHOUT = replace(
+    PRESETS["default"],
+    name="without",
+    terms={
+        "target_distance": 1.0,
+        "facing_deviation": 1.2,
+        "preferred_velocity": 2.0,
+        "interference": 1.0,
+        "headway": 1.5,
+        "right_of_way": 3.0,
+        "stepping": 1.0,
+    },
+    shares=((0.5, 0.25, 0.0),),
+    most_acceleration=None,
+    tactics=tuple(
+        name
+        for name in PRESETS["default"].tactics
+        if name not in ("anticipation", "speed_adaptation")
+    ),
+)
+ROWS = {"without": WITHOUT, "default preset": PRESETS["default"]}
 
 
 def corridor(preset: Preset) -> PedestrianModel:

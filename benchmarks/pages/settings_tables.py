@@ -1,14 +1,11 @@
-"""Tables of presets, their calibration and the shipped map, with numbers taken from the code.
+"""Tables of what the presets and the shipped map are, with numbers taken from the code.
 
 python benchmarks/pages/settings_tables.py [--out FOLDER]
 
-The tables are the files of `TABLES` beside this one. In them {{default.headway}} is a weight,
-{{headway.time}} a setting of a term or tactic, {{anticipation.HORIZON}} a constant of the module of
-a tactic, `people_ahead` or `places`, {{preset.durations}} a member of the preset `default`, and
-{{map.options}} a figure of the map. {{bounds.headway.time}} is where the calibration searches for a
-number, {{goals.meeting}} the range of a goal and {{outside.meeting}} how far outside of it counts
-as 1, {{tolerances.flow}} a tolerance, {{weights.goals}} the weight of all goals, and
-{{published.IN_LINE}} a constant of the scenes with published figures.
+The tables are cost_terms.md, default_numbers.md and shipped_map.md beside this file. In them
+{{default.headway}} is a weight, {{headway.time}} a setting of a term, {{anticipation.HORIZON}} a
+constant of the module of a tactic, or of `people_ahead`, {{preset.durations}} a member of the
+preset `default`, and {{map.options}} a figure of the map.
 """
 
 from __future__ import annotations
@@ -23,18 +20,13 @@ from typing import Any
 from blocks import give
 from mesa_mobility.behaviors.steering import people_ahead
 
-from benchmarks.default_preset import goals, measured, published
-from benchmarks.default_preset.__main__ import BOUNDS, scenarios
 from mesa_mobility import MobilityMap
 from mesa_mobility.crowd import PRESETS
-from mesa_mobility.crowd.conflicts import places
 from mesa_mobility.mobility.map_data import CORE_RADIUS
 
 TABLES = {
     "cost-terms": "cost_terms.md",
     "default-numbers": "default_numbers.md",
-    "calibration-data": "calibration_data.md",
-    "calibration-goals": "calibration_goals.md",
     "shipped-map": "shipped_map.md",
 }
 
@@ -45,30 +37,10 @@ def names() -> dict[str, Mapping[str, Any]]:
     found: dict[str, Mapping[str, Any]] = {name: p.terms for name, p in PRESETS.items()}
     found["preset"] = preset.numbers()
     for tactic in preset.make_tactics():
-        found[tactic.name] = vars(sys.modules[type(tactic).__module__]) | tactic.settings()
+        found[tactic.name] = vars(sys.modules[type(tactic).__module__])
     for term in preset.make_terms():
         found[term.name] = term.settings()
-    modules = {each.__name__.rpartition(".")[2]: vars(each) for each in (people_ahead, places)}
-    return found | modules | {"map": map_figures()} | calibration()
-
-
-def calibration() -> dict[str, Mapping[str, Any]]:
-    """What the calibration of the default preset searches and wants."""
-    _, _, distances = scenarios(Path(), None)
-    of_goals = sum(distances[name][0].weight for name in goals.GOALS)
-    return {
-        "bounds": {name: f"{low:g} to {high:g}" for name, (low, high) in BOUNDS.items()},
-        "goals": {
-            name: f"{low:g}" if low == high else f"{low:g} to {high:g}"
-            for name, (low, high, _) in goals.GOALS.items()
-        },
-        "outside": {name: each for name, (_, _, each) in goals.GOALS.items()},
-        "tolerances": {
-            name: f"{each:.0%}".replace("%", " %") for name, each in measured.TOLERANCES.items()
-        },
-        "weights": {"goals": of_goals},
-        "published": {"NECKS": list(published.NECKS), "IN_LINE": list(published.IN_LINE)},
-    }
+    return found | {"people_ahead": vars(people_ahead), "map": map_figures()}
 
 
 def map_figures() -> dict[str, Any]:

@@ -5,7 +5,6 @@
 | `preset` | settings of the preset `default`, its terms and its tactics; reference runs with it |
 | `paper` | the same of the preset `paper` |
 | `map` | the able-bodied map, its body and its preferred speeds |
-| `calibration` | what the calibration of the preset `default` searches and wants |
 | `types` | all maps that ship likewise; a reference run of people of many types |
 | `version` | the version of the package, for times and memory |
 
@@ -73,13 +72,6 @@ def _paper() -> list[Any]:
     return [settings_of("paper"), positions(Doorway(preset="paper", rng=1))]
 
 
-def _calibration() -> list[Any]:
-    from benchmarks.default_preset import goals, measured, published
-    from benchmarks.default_preset.__main__ import BOUNDS
-
-    return [BOUNDS, goals.GOALS, measured.TOLERANCES, published.NECKS, published.IN_LINE]
-
-
 def _map() -> list[Any]:
     kind = PedestrianType(mobility_map=MobilityMap.load(None), name="able_bodied")
     return _type(kind)
@@ -96,7 +88,6 @@ def _types() -> list[Any]:
 PARTS: dict[str, Callable[[], list[Any]]] = {
     "preset": _preset,
     "paper": _paper,
-    "calibration": _calibration,
     "map": _map,
     "types": _types,
     "version": lambda: [__version__],

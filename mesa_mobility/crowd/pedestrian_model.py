@@ -36,7 +36,7 @@ class PedestrianModel(CrowdModel):
     Args:
         floor_plan: where people walk, a ``FloorPlan`` or a ``Building``. In a building, positions
             are places in the plane of its sheets: see its ``places`` and ``true_places``.
-        preset: "default", "paper", a TOML file, or rules of one's own.
+        preset: "default", "measured", "paper", a TOML file, or rules of one's own.
         mobility_map: a map, its file, or None for the able-bodied one that ships; stands
             for a single pedestrian type with default speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.

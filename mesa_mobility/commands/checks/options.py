@@ -33,7 +33,7 @@ class CheckOptions:
         str | None,
         typer.Option(
             metavar="NAME|FILE",
-            help="paper or a TOML file, instead of the default preset.",
+            help="measured, paper or a TOML file, instead of the default preset.",
         ),
     ] = None
     numbers: Numbers = None

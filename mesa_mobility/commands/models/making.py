@@ -22,7 +22,7 @@ PresetName = Annotated[
     typer.Option(
         "--preset",
         metavar="NAME|FILE",
-        help="default, paper or a TOML file; without it the model's own.",
+        help="default, measured, paper or a TOML file; without it the model's own.",
     ),
 ]
 Settings = Annotated[

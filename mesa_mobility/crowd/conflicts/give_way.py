@@ -29,19 +29,22 @@ from mesa_mobility.crowd.conflicts.notes import (
     stop_making_way,
 )
 from mesa_mobility.crowd.conflicts.places import (
+    AHEAD,
     AROUND,
+    Body,
     Way,
+    distances_to_way,
     leaves_free,
     places_aside,
     places_to_set_out,
 )
-from mesa_mobility.crowd.conflicts.ways import body_of, leads_across, seen_by, way_of
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.state.people_grid import build_grid
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.floorplan.floor.seams import to_own_sheets
 from mesa_mobility.schema import Kind, Records
 
 NEAR = 2.5
@@ -63,6 +66,9 @@ BEYOND = 1.0
 """Metres by which those aim beyond a place who would rather stand than take so short a step, such
 as people in wheelchairs. They stop once they are clear."""
 
+LEGS = 3
+"""Most straight pieces of the way that is left free."""
+
 GOES_ON = 0.5
 """Seconds for which somebody goes on to make way whose own way still leads across the other's."""
 
@@ -75,7 +81,7 @@ class GiveWay(Tactic):
     other in a ring, the one with the shortest route goes first, and the person in their way makes
     way: to the nearest place that leaves the next 4 m of that route free, or ahead along the route
     if there is none. Whoever is in the way of that makes way, too. People go on when their own way
-    no longer leads across that of the first, nor across that of those who follow the first.
+    no longer leads across that of the first.
     """
 
     name = "giving_way"
@@ -175,51 +181,18 @@ class GiveWay(Tactic):
         return np.asarray((np.hypot(to[..., 0], to[..., 1]) < NEAR).any(axis=1))
 
     def _go_on(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> None:
-        """Let those go on making way whose own way still leads across that of the others, or across
-        that of somebody who follows the first."""
+        """Let those go on making way whose own way still leads across that of the others."""
         if len(who) == 0:
             return
-        wishes, now, notes = self._wishes(deciding, desired, who), deciding.elapsed, self._notes
+        wishes, crowd = self._wishes(deciding, desired, who), deciding.inside.crowd
         firsts = self._ways_of_firsts(deciding.pedestrians[who], deciding)
         for k, row in enumerate(deciding.pedestrians[who].tolist()):
-            path, core = (
-                wishes.paths[k, :, : wishes.pieces[k] + 1].T,
-                deciding.inside.crowd.core[row],
-            )
-            ways = self._ways(row, firsts, deciding)
-            if not ways:
-                continue
-            if not any(leads_across(path, core, way) for way in ways):
-                first = next(
-                    (
-                        each
-                        for each in self._followers(row, deciding)
-                        if leads_across(path, core, way_of(each, deciding))
-                    ),
-                    NOBODY,
-                )
-                if first == NOBODY:
-                    continue
-                notes["first"][row], notes["asked_by"][row] = first, first
-                notes["served"][first] = now
-            notes["until"][row] = max(notes["until"][row], now + GOES_ON)
-
-    def _followers(self, row: int, deciding: Deciding) -> list[int]:
-        """People nearby who go where the first goes, and come before somebody who makes way."""
-        crowd, notes, inside = deciding.inside.crowd, self._notes, deciding.inside.pedestrians
-        if notes["later"][row] <= deciding.elapsed:
-            return []
-        first = notes["first"][row]
-        near = np.hypot(crowd.x[inside] - crowd.x[row], crowd.y[inside] - crowd.y[row]) < NEAR
-        found: list[int] = inside[
-            near
-            & (notes["first"][inside] == NOBODY)
-            & (notes["later"][inside] <= deciding.elapsed)
-            & (crowd.destination[inside] == crowd.destination[first])
-            & (inside != row)
-            & (inside != first)
-        ].tolist()
-        return found
+            path = wishes.paths[k, :, : wishes.pieces[k] + 1].T
+            for other in self._ways(row, firsts, deciding):
+                off, along = distances_to_way(path, other.points)
+                if ((off < other.body.core + crowd.core[row]) & (along > 0.0)).any():
+                    until = deciding.elapsed + GOES_ON
+                    self._notes["until"][row] = max(self._notes["until"][row], until)
 
     def _make_way(self, who: NDArray[np.intp], deciding: Deciding, desired: Desired) -> None:
         """Set points and speeds of those who make way, and ask those who are in the way of that."""
@@ -272,7 +245,7 @@ class GiveWay(Tactic):
         """(k, 2) where somebody may make way to, metres, the best place first."""
         crowd, everybody = deciding.inside.crowd, deciding.inside.pedestrians
         inside = deciding.inside.with_copies(everybody)
-        me, ways = body_of(row, deciding), self._ways(row, firsts, deciding)
+        me, ways = _body(row, deciding), self._ways(row, firsts, deciding)
         concerned = [row, self._notes["first"][row], self._notes["asked_by"][row]]
         reach = AROUND + me.core + crowd.core[inside].max()
         near = inside[
@@ -302,18 +275,18 @@ class GiveWay(Tactic):
         """The ways of the people for whom others make way, by row."""
         firsts = self._notes["first"][rows]
         others = np.unique(firsts[firsts != rows]).tolist()
-        return {each: way_of(each, deciding) for each in others}
+        return {each: Way(_body(each, deciding), _way(each, deciding)) for each in others}
 
     def _ways(self, row: int, firsts: Mapping[int, Way], deciding: Deciding) -> list[Way]:
         """The ways that somebody leaves free: of the first, and of who has asked them."""
         first, by = int(self._notes["first"][row]), int(self._notes["asked_by"][row])
         if first == row:
             return []
-        ways = [seen_by(row, first, firsts[first], deciding)]
+        ways = [_seen_by(row, first, firsts[first], deciding)]
         if self._notes["first"][by] == first and deciding.inside.crowd.active[by]:
-            body = body_of(by, deciding)
+            body = _body(by, deciding)
             to = np.array([self._notes["x"][by], self._notes["y"][by]])
-            ways.append(seen_by(row, by, Way(body, np.array([body.place, to])), deciding))
+            ways.append(_seen_by(row, by, Way(body, np.array([body.place, to])), deciding))
         return ways
 
 
@@ -329,3 +302,31 @@ def _gains(wishes: Wishes, points: NDArray[np.float64]) -> NDArray[np.float64]:
     gains: NDArray[np.float64] = np.hypot(*(wishes.paths[:, :, 0] - points).T)
     gains -= np.hypot(*(ends - points).T)
     return gains
+
+
+def _body(row: int, deciding: Deciding) -> Body:
+    crowd = deciding.inside.crowd
+    return Body(np.array([crowd.x[row], crowd.y[row]]), float(crowd.core[row]))
+
+
+def _seen_by(row: int, other: int, way: Way, deciding: Deciding) -> Way:
+    """The way of somebody as a person sees it, who may be on another sheet."""
+    [seen] = deciding.inside.seen_by(np.array([row]), np.array([other]))
+    shift = seen - way.body.place
+    return Way(way.body._replace(place=seen), way.points + shift) if shift.any() else way
+
+
+def _way(row: int, deciding: Deciding) -> NDArray[np.float64]:
+    """(k, 2) points of the next metres of somebody's route."""
+    crowd, left = deciding.inside.crowd, AHEAD
+    way = [np.array([crowd.x[row], crowd.y[row]])]
+    destination = crowd.destination[[row]].astype(np.int64)
+    for _ in range(LEGS):
+        own = way[-1][None] + to_own_sheets(way[-1][None], deciding.site.plan.seams)
+        [step] = deciding.site.targets(own, destination).points - own
+        length = float(np.hypot(*step))
+        if length < 1e-6 or left <= 0.0:
+            break
+        way.append(way[-1] + step * min(1.0, left / length))
+        left -= length
+    return np.array(way if len(way) > 1 else way * 2)

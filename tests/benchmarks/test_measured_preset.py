@@ -1,12 +1,12 @@
-"""What the default preset is calibrated on."""
+"""What the calibrated preset is calibrated on."""
 
 import math
 
 import pytest
 
-from benchmarks.default_preset import goals, measured
-from benchmarks.default_preset.__main__ import BOUNDS, scenarios
-from benchmarks.default_preset.closeness import beyond, off
+from benchmarks.measured_preset import goals, measured
+from benchmarks.measured_preset.__main__ import BOUNDS, scenarios
+from benchmarks.measured_preset.closeness import beyond, off
 from mesa_mobility.calibration import HeldOut
 from mesa_mobility.crowd import PRESETS
 
@@ -43,7 +43,7 @@ def test_each_run_is_in_one_fold():
 
 
 def test_the_numbers_that_are_free_are_the_presets_and_in_their_ranges():
-    values = PRESETS["default"].parameters()
+    values = PRESETS["measured"].parameters()
     for name, (low, high) in BOUNDS.items():
         assert low <= values[name] <= high, name
     assert {name for name in values if name.endswith(".weight")} <= BOUNDS.keys()

@@ -11,7 +11,7 @@ from mesa_mobility.models import StraightWalk
 from shapely import Polygon, box
 
 from benchmarks.conflicts import corridor
-from benchmarks.default_preset.closeness import beyond
+from benchmarks.measured_preset.closeness import beyond
 from mesa_mobility import Exit, FloorPlan, PedestrianModel
 from mesa_mobility.populations import Population
 from mesa_mobility.verification.runs import crowd_model

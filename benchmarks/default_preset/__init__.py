@@ -1,1 +1,0 @@
-"""The calibration of the default preset: what it is calibrated on, and the command."""
