@@ -8,7 +8,7 @@ from benchmarks.measured_preset import goals, measured
 from benchmarks.measured_preset.__main__ import BOUNDS, scenarios
 from benchmarks.measured_preset.closeness import beyond, off
 from mesa_mobility.calibration import HeldOut
-from mesa_mobility.crowd import PRESETS
+from mesa_mobility.crowd import PRESETS, model_rules
 
 
 def test_each_figure_is_off_in_units_of_its_tolerance_and_by_six_at_most():
@@ -57,6 +57,7 @@ def test_people_can_walk_where_a_run_is_measured(run):
         assert area.intersection(plan.free).area > 0.5 * area.area
 
 
-def test_goals_are_met_by_what_people_do_alone():
+def test_somebody_gets_round_a_person_whom_they_stand_behind():
     low, high, _ = goals.GOALS["round_somebody"]
-    assert low <= goals.round_somebody(3) <= high
+    with model_rules(preset="measured"):
+        assert low <= goals.round_somebody(3) <= high
