@@ -101,9 +101,10 @@ def test_options_that_are_forbidden_have_the_colour_of_the_dearest(start_server,
 def test_messages_leave_the_crowd_where_it_is(start_server, open_tab):
     blocked = Path(face_to_face.__file__).read_text()
     tab = open_tab(start_server(BLOCKED, blocked=blocked).address, height=600)
-    place = tab.page.evaluate(f"() => {PLACE}")
     tab.choose("speed", "full")
     tab.button("Play").click()  # the run may have ended before its Pause is seen
+    # The clicks may have scrolled the page.
+    place = tab.page.evaluate(f"() => {PLACE}")
     standing = tab.page.get_by_text("blocked for a minute: people 0")
     standing.wait_for()
     assert tab.page.evaluate(f"() => {PLACE}") == place
