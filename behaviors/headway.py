@@ -13,8 +13,6 @@ def _headway(option: Option, me: Me, other: Other, p: "Headway") -> float:
     wx = me.target_x - me.x
     wy = me.target_y - me.y
     way2 = wx * wx + wy * wy
-    if (other.x - me.x) * wx + (other.y - me.y) * wy >= way2:
-        return 0.0
     mx = option.facing_x
     my = option.facing_y
     if option.speed * option.duration <= STANDS:
@@ -29,6 +27,8 @@ def _headway(option: Option, me: Me, other: Other, p: "Headway") -> float:
     excess = option.speed - (ahead - p.distance) * (1.0 / p.time)
     if ahead <= 0.0 or share <= 0.0 or excess <= 0.0:
         return 0.0
+    if (other.x - me.x) * wx + (other.y - me.y) * wy >= way2:
+        share = share * p.beyond
     soft = p.softness
     counts = excess * excess * (0.5 / soft) if excess < soft else excess - 0.5 * soft
     return 1.5 * share * counts
@@ -42,8 +42,7 @@ class Headway(CompiledTerm):
     neighbour will be by then at constant velocity, v the speed of the option, l the distance that
     people keep when they stand, T the time gap when they walk.  In metres over the paper's 1.5 s.
     Ahead is where one faces there or, for an option that covers no ground, where one's target is:
-    nobody makes room by looking elsewhere.  People beyond the target do not count: one does not
-    come up to them.
+    nobody makes room by looking elsewhere.
     h is Huber's loss (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 s) of an excess
     e up to s, ``softness``, and e - s / 2 beyond.  If all costs were linear, their sum would be
     least at a kink, and a small change of the room ahead would take people from one kink to
@@ -59,6 +58,8 @@ class Headway(CompiledTerm):
         time: T, seconds.
         width: metres.
         softness: s, m/s.
+        beyond: how much people beyond the target count. At 0 people come up to a door or to the end
+            of a queue as if nobody stood behind it.
 
     Raises:
         ModelError: a number out of range.
@@ -75,9 +76,11 @@ class Headway(CompiledTerm):
         time: Annotated[float, Range(0.0, unit="s", above=True)] = 1.2,
         width: Annotated[float, Range(0.0, unit="m", above=True)] = 0.35,
         softness: Annotated[float, Range(0.0, unit="m/s", above=True)] = 0.15,
+        beyond: Annotated[float, Range(0.0, 1.0)] = 1.0,
     ) -> None:
         super().__init__(weight)
         self.distance = distance
         self.time = time
         self.width = width
         self.softness = softness
+        self.beyond = beyond

@@ -94,16 +94,18 @@ def test_ahead_is_where_the_neighbour_will_be():
     assert cost(A_METRE_A_SECOND, ((1.0, 0.0), (-1.0, 0.0))) == 0.0
 
 
-def test_nobody_beyond_the_target_needs_room():
-    for x, expected in ((1.1, 0.6), (0.9, 0.0)):
+@pytest.mark.parametrize("beyond", [0.0, 0.5, 1.0])
+def test_people_beyond_the_target_count_by_their_factor(beyond):
+    term = Headway(**ROUND, beyond=beyond)
+    for x, expected in ((1.1, 0.6), (0.9, 0.6 * beyond)):
         options = one_option(A_METRE_A_SECOND, target=(x, 0.0), neighbours=[((1.0, 0.0), STILL)])
-        assert Headway(**ROUND).cost(options) == pytest.approx([expected])
+        assert term.cost(options) == pytest.approx([expected])
 
 
 def test_neighbours_add_up_and_those_of_others_do_not_count():
     two = [((1.0, 0.0), STILL), ((1.0, 0.2), STILL)]
-    alone = Chooser([A_METRE_A_SECOND], target=(20.0, 0.0))
-    beset = Chooser([A_METRE_A_SECOND] * 2, target=(20.0, 0.0), neighbours=two)
+    alone = Chooser([A_METRE_A_SECOND])
+    beset = Chooser([A_METRE_A_SECOND] * 2, neighbours=two)
     costs = Headway(**ROUND).cost(candidates(alone, beset, alone))
     assert costs == pytest.approx([0.0, 0.9, 0.9, 0.0])
 
@@ -142,24 +144,10 @@ def pairs(options):
     return rows, gap[:, 0] * c + gap[:, 1] * s, gap[:, 1] * c - gap[:, 0] * s
 
 
-def beyond(options):
-    """How far each neighbour is beyond the target on the way to it, times the length of the way."""
-    rows, others = options.pairs()
-    own = options.owner[rows]
-    way = (options.targets - options.positions)[own]
-    to = options.neighbour_positions[others] - options.positions[own]
-    return ((to - way) * way).sum(axis=1)
-
-
-def before_target(options):
-    return beyond(options) < 0.0
-
-
 def decided(options):
     """(n,) where rounding does not decide which neighbours are ahead, or which stand."""
     rows, ahead, _ = pairs(options)
-    unsure = (np.abs(ahead) < EDGE) | (np.abs(beyond(options)) < EDGE)
-    beside = np.bincount(rows[unsure], minlength=len(options)) > 0
+    beside = np.bincount(rows[np.abs(ahead) < EDGE], minlength=len(options)) > 0
     aim = np.hypot(*(options.targets - options.positions)[options.owner].T)
     stands = options.speeds * options.durations
     return ~beside & (np.abs(stands - 0.01) > EDGE) & ((stands > 0.01) | (aim > EDGE))
@@ -173,7 +161,7 @@ def test_sum_over_the_neighbours_of_any_batch(options):
     excess = np.maximum(options.speeds[rows] - allowed, 0.0)
     share = np.maximum(1.0 - np.abs(aside) / ROUND["width"], 0.0)
     counts = np.where(excess < 0.2, excess**2 / 0.4, excess - 0.1)
-    each = np.where((ahead > 0.0) & before_target(options), 1.5 * counts * share, 0.0)
+    each = np.where(ahead > 0.0, 1.5 * counts * share, 0.0)
     expected = np.bincount(rows, weights=each, minlength=len(options))
     sure = decided(options)
     costs = Headway(**ROUND).cost(options)
