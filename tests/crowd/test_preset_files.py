@@ -59,7 +59,7 @@ def test_a_model_takes_a_file_and_says_so(file):
             "headway.weight": "mine.toml",
             "headway.time": "mine.toml",
             **dict.fromkeys(
-                [f"headway.{x}" for x in ("distance", "width", "softness")], "behaviour"
+                [f"headway.{x}" for x in ("distance", "width", "softness", "beyond")], "behaviour"
             ),
         }
         assert model.rules_used() == {

@@ -13,6 +13,7 @@ from mesa_mobility.estimation.choices.free_speeds import FreeSpeeds
 from mesa_mobility.estimation.choices.places import places_of
 from mesa_mobility.estimation.problem import Problem
 from tests.estimation.tracks import RATE, corridor, rows_of, tracks_of, walking
+from tests.fixtures.engine import ENGINE
 
 pytestmark = pytest.mark.thorough
 

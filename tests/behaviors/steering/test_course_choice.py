@@ -107,11 +107,11 @@ PLACES = st.tuples(METRES, METRES, st.floats(-1.5, 1.5)).filter(
 
 @given(st.lists(PLACES, max_size=12), st.floats(0.0, 1.6), st.floats(0.2, 1.8))
 @settings(max_examples=150, deadline=None)
-def test_the_course_is_the_cheapest_of_thirteen(others, now, preferred):
+def test_the_course_is_the_cheapest_of_fifteen(others, now, preferred):
     people = [(complex(x, y), complex(v, 0.0)) for x, y, v in others]
     speed = min(preferred, now + 0.4)
     far = min(3.0 * speed, 12.0)
-    turns = np.array([0.0, *(sign * 0.8 * (k / 6) ** 2 for k in range(1, 7) for sign in (-1, 1))])
+    turns = np.array([0.0, *(sign * 0.8 * (k / 6) ** 2 for k in range(1, 8) for sign in (-1, 1))])
     costs = []
     for turn in turns:
         course, on = cmath.exp(1j * turn), far
