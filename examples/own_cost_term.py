@@ -37,7 +37,7 @@ class Corridor(PedestrianModel):
 
 
 def main():
-    for bias in (0.0, 6.0):
+    for bias in (0.0, 3.0):
         model = Corridor(left_bias=bias, rng=1)
         model.run(max_seconds=60)
         tracks = Trajectories.of(model)

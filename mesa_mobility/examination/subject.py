@@ -19,10 +19,9 @@ BESIDE = 0.3
 DOOR, CORRIDOR = 0.9, 1.2
 """Least widths in metres: a door and a corridor of a flat."""
 
-SLACK_S, SLACK = 20.0, 3.0
+SLACK_S, SLACK = 15.0, 3.0
 """Seconds that people may take besides so many times those of the straight way. Of the maps that
-ship, people take at most 20 s besides the straight way: those in wheelchairs who stand at the wall
-beside a door."""
+ship, people take at most 8 s besides the straight way."""
 
 
 @dataclass(frozen=True)

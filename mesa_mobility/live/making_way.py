@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.state.records import Crowd
 
-SECONDS_AHEAD = 4.0
+SECONDS_AHEAD = 2.0
 """How far ahead of somebody others make way: what it covers in this time."""
 
 ROOM = 0.3

@@ -241,9 +241,10 @@ def way_through_a_crowd(*, steered):
 
 
 def test_the_crowd_makes_way_for_somebody_who_is_steered():
-    # The others first turn, and then step aside. So the walker loses little of 10 m.
-    assert way_through_a_crowd(steered=False) < 6.5
-    assert way_through_a_crowd(steered=True) > 7.5
+    # Who is not steered goes round those who stand: 7.3 m. As people look ahead that costs little,
+    # so the limit is far from what it is without: 10 m less the first steps.
+    assert way_through_a_crowd(steered=False) < 8.0
+    assert way_through_a_crowd(steered=True) > 9.0
 
 
 def test_those_whom_a_client_steers_are_let_go_when_it_goes(room):

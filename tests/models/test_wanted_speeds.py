@@ -48,9 +48,7 @@ def fastest(kind):
     ],
 )
 def test_slow_people_do_not_freeze(name, speed, factor):
-    # In a zone this slow steps are as short as those of people who stand.
-    allowed = 0.15 if speed * factor < 0.07 else 0.05
-    assert abs(off(PedestrianType.named(name), speed, factor, 1)) <= allowed
+    assert abs(off(PedestrianType.named(name), speed, factor, 1)) <= 0.05
 
 
 @pytest.mark.slow

@@ -31,7 +31,7 @@ def serve(counter, places, *, plan=None, seconds=200, route=None, rng=1, **keywo
         model.step()
         for person in people:
             if person in model.agents and not person.gates_crossed and person.waiting:
-                at = np.hypot(*(person.position - counter.line[0])) < 0.5
+                at = np.hypot(*(person.position - counter.line[0])) < 0.3
                 if at and queueing.line(counter)[:1] == [person.row]:
                     times.setdefault(person.row, [model.elapsed, 0.0])[1] = model.elapsed
         line = [people[row] for row in queueing.line(counter)]
@@ -46,7 +46,7 @@ def test_the_last_of_six_is_served_after_six_service_times():
     assert model.inside == 0
     assert len(times) == 6
     # Everybody is served for 4 s, as far as steps of 0.1 s tell.
-    assert times[:, 1] - times[:, 0] == pytest.approx(4.0, abs=0.35)
+    assert times[:, 1] - times[:, 0] == pytest.approx(4.0, abs=0.25)
     # In between the next one walks 0.6 m: more than 0.4 s, the shortest movement.
     moving_up = times[1:, 0] - times[:-1, 1]
     assert (moving_up > 0.4).all()

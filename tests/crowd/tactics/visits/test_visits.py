@@ -46,7 +46,7 @@ def test_a_point_behind_a_corner_is_visited_for_as_long_as_said_then_the_exit():
     near = np.hypot(*(places - (14.0, 1.5)).T) < 0.6
     # 8 s of standing, and half a metre of walking to and from, slowly before it.
     assert 8.0 <= np.ptp(times[near]) <= 12.5
-    assert 0.1 * near.sum() < 11.5
+    assert 0.1 * near.sum() < 10.5
     still = np.hypot(*np.diff(places, axis=0).T)[near[1:]] < 0.01
     assert 0.1 * still.sum() == pytest.approx(8.0, abs=0.3)
 
@@ -83,7 +83,7 @@ def test_everybody_has_a_spot_of_its_own_in_an_area_and_around_a_point():
         gaps = np.hypot(*(where[:, None] - where).T) + 9.0 * np.eye(len(where))
         # Spots are 0.6 m apart, and people stop within 0.3 m of theirs: two may all but touch.
         assert gaps.min() > 0.28
-        assert gaps.min(axis=0).mean() > 0.4
+        assert gaps.min(axis=0).mean() > 0.45
         model.run(max_seconds=200)
         assert model.inside == 0
         assert overlaps(model.recorder.arrays(), core_of(model)) == 0
