@@ -88,8 +88,7 @@ def _course_table() -> NDArray[np.float64]:
     return courses
 
 
-COURSE_TABLE = _course_table()
-"""The courses that people compare; see ``_course_table``."""
+_COURSE_TABLE = _course_table()
 
 
 def turn_aside(
@@ -126,7 +125,7 @@ def turn_aside(
         points,
         speeds,
         np.empty(n + 1, dtype=np.int64),
-        (np.empty((AHEAD_FIELDS, n)), COURSE_TABLE.copy()),
+        (np.empty((AHEAD_FIELDS, n)), _COURSE_TABLE.copy()),
     )
     return points, speeds
 

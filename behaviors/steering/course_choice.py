@@ -17,11 +17,7 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from mesa_mobility.behaviors.steering.anticipation import (
-    GAINS,
-    WALKS,
-    turns,
-)
+from mesa_mobility.behaviors.steering.anticipation import GAINS, WALKS, turns
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Desired, Range, Tactic

@@ -8,7 +8,7 @@ from typing import Any
 from shapely import box
 
 from benchmarks.conflicts.walking import Walk
-from mesa_mobility import Exit, FloorPlan
+from mesa_mobility import Exit, FloorPlan, Pedestrian, PedestrianModel
 from mesa_mobility.populations import Population
 from mesa_mobility.verification import Case, case
 from mesa_mobility.verification.runs import crowd_model
@@ -29,13 +29,13 @@ LIMIT_S = 300.0
 """Beside the time that the slowest one takes alone."""
 
 
-def corridor(seed: int, *, width: float, population: str) -> dict[str, Any]:
-    """Figures of a run, with the types of those who are lost and who stood."""
+def crowd(seed: int, *, width: float, population: str) -> tuple[PedestrianModel, list[Pedestrian]]:
+    """A model of the corridor, and its people: first those from the west."""
     exits = [Exit("east", (LENGTH, 0.0), (LENGTH, width)), Exit("west", (0.0, 0.0), (0.0, width))]
     plan = FloorPlan(box(0.0, 0.0, LENGTH, width), exits=exits)
     model = crowd_model(plan, seed, pedestrian_types=None, population=Population.of(population))
     starts = (box(0.0, 0.0, START, width), "east"), (box(LENGTH - START, 0, LENGTH, width), "west")
-    people = []
+    people: list[Pedestrian] = []
     for area, goal in starts:
         places = plan.random_points(
             PEOPLE, model.rng, within=area, spacing=SPACING, clearance=CLEARANCE
@@ -44,6 +44,12 @@ def corridor(seed: int, *, width: float, population: str) -> dict[str, Any]:
     assert model.inside == 2 * PEOPLE
     assert all(person.position[0] < START for person in people[:PEOPLE])
     assert all(person.position[0] > LENGTH - START for person in people[PEOPLE:])
+    return model, people
+
+
+def corridor(seed: int, *, width: float, population: str) -> dict[str, Any]:
+    """Figures of a run, with the types of those who are lost and who stood."""
+    model, people = crowd(seed, width=width, population=population)
     slowest = min(person.preferred_speed for person in people)
     return Walk(model, LIMIT_S + LENGTH / slowest).run()
 

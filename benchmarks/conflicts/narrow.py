@@ -49,15 +49,21 @@ def niche(seed: int, *, niche: bool) -> dict[str, Any]:
     return Walk(model, LIMIT_S).run()
 
 
-def both_ways(seed: int, *, width: float, depth: float) -> dict[str, Any]:
-    """70 people on either side of a passage so many metres wide and deep cross it."""
+def two_rooms(width: float, depth: float) -> FloorPlan:
+    """Two rooms of 10 m x 8 m, joined by a passage so many metres wide and deep, with exits to the
+    west and the east."""
     low, high, x = 4.0 - width / 2, 4.0 + width / 2, 10.0 + depth
     floor = Polygon(
         [(0, 0), (10, 0), (10, low), (x, low), (x, 0), (x + 10, 0), (x + 10, 8), (x, 8), (x, high),
          (10, high), (10, 8), (0, 8)]
     )  # fmt: skip
     exits = [Exit("west", (0.0, 2.0), (0.0, 6.0)), Exit("east", (x + 10, 2.0), (x + 10, 6.0))]
-    plan = FloorPlan(floor, exits=exits)
+    return FloorPlan(floor, exits=exits)
+
+
+def both_ways(seed: int, *, width: float, depth: float) -> dict[str, Any]:
+    """70 people on either side of a passage so many metres wide and deep cross it."""
+    x, plan = 10.0 + depth, two_rooms(width, depth)
     model = crowd_model(plan, seed)
     for start, goal in ((box(1.5, 0, 9.5, 8), "east"), (box(x + 0.5, 0, x + 8.5, 8), "west")):
         places = plan.random_points(CROWD, model.rng, within=start, spacing=0.5, clearance=0.3)

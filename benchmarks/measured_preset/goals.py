@@ -8,12 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 from mesa_mobility.behaviors import WalkingAbreast
 from mesa_mobility.models import StraightWalk
-from shapely import Polygon, box
+from shapely import box
 
-from benchmarks.conflicts import corridor
+from benchmarks.conflicts import corridor, narrow
 from benchmarks.measured_preset.closeness import beyond
-from mesa_mobility import Exit, FloorPlan, PedestrianModel
-from mesa_mobility.populations import Population
+from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.verification.runs import crowd_model
 
 LIMIT_S = 240.0
@@ -32,15 +31,9 @@ GOALS: dict[str, tuple[float, float, float]] = {
 def two_way_door(seed: int) -> float:
     """Seconds until 25 people from either side have passed a door 1 m wide, and two more for each
     who has not."""
-    low, high, far = 3.5, 4.5, 10.2
-    floor = Polygon(
-        [(0, 0), (10, 0), (10, low), (far, low), (far, 0), (far + 10, 0), (far + 10, 8), (far, 8),
-         (far, high), (10, high), (10, 8), (0, 8)]
-    )  # fmt: skip
-    exits = [Exit("west", (0, 2), (0, 6)), Exit("east", (far + 10, 2), (far + 10, 6))]
-    plan = FloorPlan(floor, exits=exits)
+    plan = narrow.two_rooms(1.0, 0.2)
     model = crowd_model(plan, seed)
-    starts = ((box(3.5, 1, 9.5, 7), "east"), (box(far + 0.5, 1, far + 6.5, 7), "west"))
+    starts = ((box(3.5, 1, 9.5, 7), "east"), (box(10.7, 1, 16.7, 7), "west"))
     for start, goal in starts:
         places = plan.random_points(25, model.rng, within=start, spacing=0.5, clearance=0.3)
         model.add_pedestrians(places, exits=[goal])
@@ -102,21 +95,9 @@ def abreast(seed: int) -> float:
 
 def mixed_corridor(seed: int) -> float:
     """How many of 16 people of every type are left in a two-way corridor 1.6 m wide."""
-    exits = [Exit("east", (16, 0), (16, 1.6)), Exit("west", (0, 0), (0, 1.6))]
-    plan = FloorPlan(box(0, 0, corridor.LENGTH, 1.6), exits=exits)
-    people = Population.of("every_type")
-    model = crowd_model(plan, seed, pedestrian_types=None, population=people)
-    for start, goal in ((0.0, "east"), (corridor.LENGTH - corridor.START, "west")):
-        area = box(start, 0.0, start + corridor.START, 1.6)
-        places = plan.random_points(
-            corridor.PEOPLE,
-            model.rng,
-            within=area,
-            spacing=corridor.SPACING,
-            clearance=corridor.CLEARANCE,
-        )
-        model.add_pedestrians(places, exits=[goal])
-    return float(_left(model, LIMIT_S))
+    model, _ = corridor.crowd(seed, width=1.6, population="every_type")
+    model.run(max_seconds=LIMIT_S)
+    return float(model.inside)
 
 
 def round_somebody(seed: int) -> float:
@@ -128,11 +109,6 @@ def round_somebody(seed: int) -> float:
     while model.elapsed < 30.0 and walker.position[0] < 6.0:
         model.step()
     return model.elapsed
-
-
-def _left(model: PedestrianModel, seconds: float) -> int:
-    model.run(max_seconds=seconds)
-    return model.inside
 
 
 def outside(simulated: float, wanted: Sequence[float]) -> float:
