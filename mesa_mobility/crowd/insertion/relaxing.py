@@ -13,6 +13,9 @@ from mesa_mobility.floorplan.walls.wall_distances import distances_to_walls
 MARGIN = 1e-4
 """Metres by which bodies are moved further apart than they need: the last steps are short."""
 
+SAME = 1e-9
+"""Metres below which two places are one: their difference is too small to give a direction."""
+
 ROUNDS = 2000
 """Rounds after which there is no room."""
 
@@ -59,7 +62,7 @@ def _part(places: NDArray[np.float64], radii: NDArray[np.float64]) -> bool:
         return False
     one, other, way, distance = one[near], other[near], way[near], distance[near]
     # Those at the same place part in directions of their own.
-    same = distance == 0.0
+    same = distance < SAME
     angle = GOLDEN_ANGLE * one[same]
     way[same] = np.column_stack([np.cos(angle), np.sin(angle)])
     distance[same] = 1.0

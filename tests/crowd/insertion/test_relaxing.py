@@ -32,10 +32,16 @@ def test_people_on_an_exit_stay_there():
     np.testing.assert_array_equal(relaxed(places, np.array([0.2]), ROOM), places)
 
 
-def test_two_at_the_same_place_part():
-    moved = relaxed(np.full((2, 2), 0.5), np.full(2, 0.15), ROOM)
+@pytest.mark.parametrize("apart", [0.0, 1e-16, 1e-10])
+def test_two_at_the_same_place_part(apart):
+    moved = relaxed(np.array([[0.5, 0.5], [0.5, 0.5 + apart]]), np.full(2, 0.15), ROOM)
     assert np.linalg.norm(moved[0] - moved[1]) >= 0.3
     assert np.linalg.norm(moved.mean(axis=0) - 0.5) < 1e-9
+
+
+def test_two_a_denormal_number_apart_part():
+    moved = relaxed(np.array([[0.0, 0.0], [0.0, 5e-324]]), np.full(2, 0.12), ROOM)
+    assert np.linalg.norm(moved[0] - moved[1]) >= 0.24
 
 
 def test_bodies_that_need_not_be_apart_only_leave_walls():
