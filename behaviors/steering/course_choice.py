@@ -7,8 +7,8 @@ by up to 62 degrees to either side.  On each they get as far as those ahead let 
 same way, or stand.  The cost of a course is the change of velocity that it takes, and what it loses
 of the way to the target.  Somebody who is alone goes straight.
 
-Those who come towards one do not count: they are a matter of anticipation.  Nor do those beyond the
-target.
+Nobody leaves their course while somebody comes the other way: people who do so fill the lane of
+those who come, and both stand.  Those beyond the target do not count.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ AHEAD = 3.0
 CLOSE = 0.4
 """Metres between the middles of two people, one behind the other, who stand."""
 
-ONCOMING = 0.1
-"""Speed against one's way from which on somebody comes towards one, m/s."""
+COMING = 6.0
+"""Metres within which those who come the other way count."""
 
 STEPS = 7
 """Number of courses to each side: the last is turned by 62 degrees, by which somebody gets round a
@@ -63,9 +63,22 @@ class CourseSettings(NamedTuple):
     width: float
 
 
+class _Around(NamedTuple):
+    """What those who choose see: everybody, in the order of ``grid``, and the walls.
+
+    ``ways`` (2, people) are where they want to go from where they are, metres; 0 of those who wait.
+    """
+
+    grid: Grid
+    sight: Sight
+    state: CrowdState
+    ways: NDArray[np.float64]
+
+
 def choose_courses(
     rows: NDArray[np.int64],
     inside: CrowdView,
+    frame: int,
     sight: Sight,
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
@@ -76,24 +89,35 @@ def choose_courses(
     Args:
         rows: (n,) the pedestrians.
         inside: everybody inside.
+        frame: now.
         sight: the walls: people behind them do not count, and no course leads into one.
         points: (n, 2) their targets, metres.
         speeds: (n,) their preferred speeds, m/s.
         settings: of the comparison.
     """
     points = points.copy()
-    ahead = np.empty((_FIELDS, len(inside.grid.people)))
-    state = inside.crowd.records
-    _choose_courses(rows, inside.grid, sight, state, points, speeds, settings, _COURSES, ahead)
+    grid, state = inside.grid, inside.crowd.records
+    ahead, ways = np.empty((_FIELDS, len(grid.people))), np.empty((2, len(grid.people)))
+    around = _Around(grid, sight, state, ways)
+    _note_ways(around, inside.crowd.agenda, frame)
+    _choose_courses(rows, around, points, speeds, settings, _COURSES, ahead)
     return points
+
+
+@compiled()
+def _note_ways(around: _Around, agenda: NDArray[np.void], frame: int) -> None:
+    """Write where everybody wants to go who does not wait."""
+    for a in range(len(around.grid.people)):
+        j = around.grid.people[a]
+        goes = agenda[j]["waits_until"] <= frame
+        around.ways[0, a] = around.state[j].target_x - around.state[j].x if goes else 0.0
+        around.ways[1, a] = around.state[j].target_y - around.state[j].y if goes else 0.0
 
 
 @compiled()
 def _choose_courses(
     rows: NDArray[np.int64],
-    grid: Grid,
-    sight: Sight,
-    state: CrowdState,
+    around: _Around,
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
     settings: CourseSettings,
@@ -101,6 +125,7 @@ def _choose_courses(
     ahead: NDArray[np.float64],
 ) -> None:
     """Change ``points`` as of ``choose_courses``; ``ahead`` has room for everybody."""
+    state, sight = around.state, around.sight
     for k in range(len(rows)):
         i = rows[k]
         x, y = state[i].x, state[i].y
@@ -112,8 +137,10 @@ def _choose_courses(
         now = math.sqrt(state[i].vx * state[i].vx + state[i].vy * state[i].vy)
         speed = min(speeds[k], now + GAINS)
         far = min(speed * AHEAD, away)
-        count = _people_ahead(x, y, ex, ey, away, grid, state, ahead)
+        count = _people_ahead(x, y, ex, ey, away, around, ahead)
         if _gets_on(ex, ey, far, speed, settings.width, ahead, count) >= far:
+            continue
+        if _somebody_comes(x, y, ex, ey, away, around):
             continue
         count = _in_view(x, y, sight, ahead, count)
         best, bx, by = np.inf, ex, ey
@@ -136,12 +163,12 @@ def _people_ahead(
     ex: float,
     ey: float,
     away: float,
-    grid: Grid,
-    state: CrowdState,
+    around: _Around,
     ahead: NDArray[np.float64],
 ) -> int:
-    """Write place, from (x, y) on, and velocity of those on this side of a target who do not come
-    towards one; returns their number."""
+    """Write place, from (x, y) on, and velocity of those on this side of a target; returns their
+    number."""
+    grid = around.grid
     first, last, low, high = cells_within(grid, x, y, REACH)
     count = 0
     for row in range(low, high + 1):
@@ -150,12 +177,31 @@ def _people_ahead(
             along = dx * ex + dy * ey
             if not 0.0 < along < away or dx * dx + dy * dy > REACH * REACH:
                 continue
-            vx, vy = state[grid.people[a]].vx, state[grid.people[a]].vy
-            if vx * ex + vy * ey >= -ONCOMING:
-                ahead[0, count], ahead[1, count] = dx, dy
-                ahead[2, count], ahead[3, count] = vx, vy
-                count += 1
+            j = grid.people[a]
+            ahead[0, count], ahead[1, count] = dx, dy
+            ahead[2, count], ahead[3, count] = around.state[j].vx, around.state[j].vy
+            count += 1
     return count
+
+
+@inner()
+def _somebody_comes(
+    x: float, y: float, ex: float, ey: float, away: float, around: _Around
+) -> bool:
+    """Whether somebody in view, on this side of a target, wants to go the other way."""
+    grid, ways = around.grid, around.ways
+    first, last, low, high = cells_within(grid, x, y, COMING)
+    for row in range(low, high + 1):
+        for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
+            dx, dy = grid.x[a] - x, grid.y[a] - y
+            if (
+                ways[0, a] * ex + ways[1, a] * ey < 0.0
+                and 0.0 < dx * ex + dy * ey < away
+                and dx * dx + dy * dy <= COMING * COMING
+                and unwalled(around.sight, x, y, grid.x[a], grid.y[a])
+            ):
+                return True
+    return False
 
 
 @inner()
@@ -233,7 +279,9 @@ class ChooseCourse(Tactic):
         if self.haste > 0.0:
             settings = CourseSettings(self.haste, self.width)
             sight = sight_on(desired.targets.floor or deciding.site.plan, 0.0)
-            points = choose_courses(rows, inside, sight, points, desired.speeds, settings)
+            points = choose_courses(
+                rows, inside, deciding.frame, sight, points, desired.speeds, settings
+            )
         if self.wander > 0.0:
             off = self.wander * deciding.rng.standard_normal(len(rows))
             crowd = inside.crowd
@@ -248,4 +296,4 @@ class ChooseCourse(Tactic):
         (inside, plan), nowhere = nobody(), np.empty((0, 2))
         settings = CourseSettings(1.0, 1.0)
         sight = sight_on(plan, 0.0)
-        choose_courses(inside.pedestrians, inside, sight, nowhere, np.empty(0), settings)
+        choose_courses(inside.pedestrians, inside, 0, sight, nowhere, np.empty(0), settings)

@@ -35,6 +35,7 @@ BOUNDS = {
     "headway.time": (0.3, 2.0),
     "headway.distance": (0.2, 0.5),
     "headway.width": (0.2, 0.7),
+    "headway.beyond": (0.0, 1.0),
     "speed_ahead.width": (0.2, 0.7),
     "speed_ahead.range": (0.4, 3.0),
     "right_of_way.width": (0.25, 0.8),
@@ -82,8 +83,16 @@ def scenarios(
             f"{people} in line",
             partial(published.in_line, people=people),
             published.published_in_line,
-            published.far_in_line,
+            published.far_at_density,
             1.0 / len(published.IN_LINE),
+        )
+    for density in published.CROWDED:
+        add(
+            f"{density:g} persons a square metre",
+            partial(published.crowded, density=density),
+            published.published_crowded,
+            published.far_at_density,
+            1.0 / len(published.CROWDED),
         )
     for name, wanted in goals.GOALS.items():
         add(name, getattr(goals, name), list(wanted), goals.outside, 2.0 / len(goals.GOALS))
@@ -109,7 +118,7 @@ def main() -> int:
         found = calibrate(
             simulates,
             data,
-            free=[Free(name, *bounds, log=True) for name, bounds in BOUNDS.items()],
+            free=[Free(name, *bounds, log=bounds[0] > 0.0) for name, bounds in BOUNDS.items()],
             distances=distances,
             store=given.store,
             seeds=Seeds(held_out=given.seeds),

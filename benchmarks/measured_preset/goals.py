@@ -14,13 +14,16 @@ from benchmarks.conflicts import corridor, narrow
 from benchmarks.measured_preset.closeness import beyond
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.verification.runs import crowd_model
+from mesa_mobility.verification.scenarios import counterflow, walks
 
 LIMIT_S = 240.0
 
 GOALS: dict[str, tuple[float, float, float]] = {
     "two_way_door": (0.0, 60.0, 10.0),
+    "through_each_other": (0.0, 0.0, 20.0),
     "meeting": (0.65, 1.05, 0.05),
     "setting_off": (0.952, 1.05, 0.006),
+    "own_speed": (0.0, 0.025, 0.01),
     "abreast": (0.67, 0.83, 0.04),
     "mixed_corridor": (0.0, 0.0, 1.5),
     "round_somebody": (0.0, 8.0, 4.0),
@@ -39,6 +42,13 @@ def two_way_door(seed: int) -> float:
         model.add_pedestrians(places, exits=[goal])
     model.run(max_seconds=LIMIT_S)
     return model.elapsed + 2.0 * model.inside
+
+
+def through_each_other(seed: int) -> float:
+    """How many of 100 people against 100 in a corridor 2 m wide have not arrived when FDS+Evac is
+    done (IMO test 8)."""
+    found = counterflow.counterflow(seed, opposing=100, limit_s=counterflow.FDS_EVAC_S)
+    return float(found["left_inside"])
 
 
 def meeting(seed: int) -> float:
@@ -74,6 +84,14 @@ def setting_off(seed: int) -> float:
         way = rows["x"][own[-1]] - rows["x"][own[0]]
         shares.append(way * 30.0 / (rows["frame"][own[-1]] - rows["frame"][own[0]]) / speed)
     return float(min(shares))
+
+
+def own_speed(seed: int) -> float:
+    """By how much, at most, 50 people of all ages miss the speed that they want, m/s (RiMEA test
+    7)."""
+    found = walks.speeds_by_age(seed, people=50, youngest=20.0, oldest=80.0)
+    missed = np.abs(np.array(found["walked_mps"], dtype=np.float64) - found["assigned_mps"])
+    return float(np.nanmax(missed))
 
 
 def abreast(seed: int) -> float:

@@ -1,4 +1,4 @@
-"""Scenes with published figures: necks, people alone, single files."""
+"""Scenes with published figures: necks, people alone, single files, crowded corridors."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 from benchmarks.measured_preset.closeness import off
 from mesa_mobility.validation.bottleneck import START, density_in_front, plan
 from mesa_mobility.validation.scenes import corridors, wide_necks
-from mesa_mobility.verification.references import bottleneck_fit, published
+from mesa_mobility.verification.references import bottleneck_fit, corridor_band, published
 from mesa_mobility.verification.runs import CLEARANCE, SPACING, crowd_model, evacuate, steady_flow
 from mesa_mobility.verification.scenarios.tracks.single_file import single_file
+from mesa_mobility.verification.scenarios.tracks.track import track
 
 NECKS = {0.9: 90, 1.6: 120, 3.6: 150}
 """Width of each neck, metres, and how many people go through."""
@@ -19,6 +20,8 @@ LONGEST_S = 120.0
 """Measured people take less than a minute."""
 IN_LINE = (14, 23, 33, 43, 48)
 """How many people walk round the oval."""
+CROWDED = (2.0, 3.0, 4.0)
+"""Persons a square metre in a closed corridor 2 m wide."""
 STANDS = 0.03
 """Added to both speeds of single files, m/s, so that a ratio exists where people stand."""
 ALONE = {"turns": 4.374, "across": 0.126, "speed_changes": 0.060}
@@ -73,6 +76,12 @@ def in_line(seed: int, *, people: int) -> dict[str, float]:
     return {"density": float(np.median(found["density"])), "speed": max(speed, 0.0) + STANDS}
 
 
+def crowded(seed: int, *, density: float) -> dict[str, float]:
+    """Density and mean speed in a closed corridor, simulated: persons a square metre, and m/s."""
+    found = track(seed, density=density, width=2.0, speed=1.34, settle_s=10.0, measure_s=20.0)
+    return {"density": found["mean_density"], "speed": max(found["mean_speed"], 0.0) + STANDS}
+
+
 def far(simulated: dict[str, float | None], measured: dict[str, float | None]) -> float:
     """How far necks are off: 6 % of the flow count as 1, and 12 % of the density."""
     tolerances = {"flow": 0.06, "density": 0.12}
@@ -90,10 +99,17 @@ def far_alone(simulated: dict[str, float], measured: dict[str, float]) -> float:
     return off({name: (simulated[name] / value, 0.25) for name, value in measured.items()})
 
 
-def far_in_line(simulated: dict[str, float], measured: dict[str, list[float]]) -> float:
-    """How far single files are off the published speeds at their density: 24 % count as 1."""
+def far_at_density(simulated: dict[str, float], measured: dict[str, list[float]]) -> float:
+    """How far single files and corridors are off the published speeds at their density: 24 % count
+    as 1."""
     speed = float(np.interp(simulated["density"], measured["density"], measured["speed"]))
     return off({"speed": (simulated["speed"] / (speed + STANDS), 0.24)})
+
+
+def published_crowded() -> dict[str, list[float]]:
+    """The median speed at each density of a corridor."""
+    density = np.arange(0.5, 6.0, 0.1)
+    return {"density": density.tolist(), "speed": corridor_band(density)[1].tolist()}
 
 
 def published_in_line() -> dict[str, list[float]]:

@@ -33,7 +33,7 @@ def slowed(inside, _plan, targets, speeds):
 def led(inside, plan, targets, speeds):
     """Points and speeds by ``course_choice``."""
     sight, settings = sight_on(plan, 0.0), CourseSettings(8.0, 0.4)
-    return choose_courses(inside.pedestrians, inside, sight, targets, speeds, settings), speeds
+    return choose_courses(inside.pedestrians, inside, 0, sight, targets, speeds, settings), speeds
 
 
 def asked(tactic, seed, cut):

@@ -23,21 +23,30 @@ SPEED = 1.2
 HASTE, WIDTH = 8.0, 0.4
 
 
-def look(*others, plan=HALL, velocity=SPEED + 0j, away=12.0, speed=SPEED, haste=HASTE):
+def look(
+    *others, plan=HALL, velocity=SPEED + 0j, away=12.0, speed=SPEED, haste=HASTE, west=(), wait=()
+):
     """The angle, radians, by which somebody at ``AT`` turns who wants to walk east.
 
-    ``others`` are (place from there, velocity), complex, in metres and m/s.
+    ``others`` are (place from there, velocity), complex, in metres and m/s.  All want to walk east
+    but those numbered in ``west``, and do but those in ``wait``.
     """
     places = np.array([AT, *(AT + place for place, _ in others)])
     velocities = np.array([velocity, *(v for _, v in others)])
     crowd = Crowd(len(places))
     crowd.x[:], crowd.y[:] = places.real, places.imag
     crowd.vx[:], crowd.vy[:] = velocities.real, velocities.imag
+    crowd.target_x[:], crowd.target_y[:] = places.real + 5.0, places.imag
+    for k in west:
+        crowd.target_x[1 + k] -= 10.0
+    for k in wait:
+        crowd.agenda["waits_until"][1 + k] = 31
     wanted = np.array([[AT.real + away, AT.imag]])
     inside = CrowdView(np.arange(len(places)), crowd)
     (found,) = choose_courses(
         np.array([0]),
         inside,
+        30,
         sight_on(plan, 0.0),
         wanted,
         np.array([speed]),
@@ -73,7 +82,6 @@ def test_of_two_sides_the_free_one_is_taken(side):
     "other",
     [
         (1.0 + 0j, SPEED + 0j),  # as fast
-        (1.0 + 0j, -1.0 + 0j),  # comes towards them
         (-1.0 + 0j, 0j),  # behind
         (1.0 + 0.45j, 0j),  # beside the way
         (3.1 + 0j, 0j),  # too far
@@ -82,6 +90,35 @@ def test_of_two_sides_the_free_one_is_taken(side):
 )
 def test_who_does_not_hold_one_up(other):
     assert look(other) == 0.0
+
+
+BLOCKED = (1.0 + 0j, 0j)
+
+
+@pytest.mark.parametrize("other", [(1.0 + 0j, 0j), (5.0 + 1.0j, -1.0 + 0j), (2.0 - 3.0j, 0j)])
+def test_nobody_leaves_their_course_while_somebody_comes_the_other_way(other):
+    assert look(BLOCKED, other) != 0.0
+    assert look(BLOCKED, other, west=[1]) == 0.0
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        (-1.0 + 0j, 0j),  # behind
+        (6.1 + 0j, 0j),  # too far
+        (5.0 + 4.0j, 0j),  # 6.4 m away
+        (5.5 + 0j, 0j),  # beyond the target
+    ],
+)
+def test_who_does_not_come_the_other_way(other):
+    assert look(BLOCKED, other, away=5.2, west=[1]) == look(BLOCKED, away=5.2) != 0.0
+
+
+def test_whoever_waits_does_not_come_nor_does_anybody_behind_a_wall():
+    other = (5.0 + 1.0j, 0j)
+    assert look(BLOCKED, other, west=[1], wait=[1]) == look(BLOCKED) != 0.0
+    wall = HALL.altered(obstacles=[box(24.0, 20.6, 24.2, 40.0)])
+    assert look(BLOCKED, other, plan=wall, west=[1]) != 0.0
 
 
 def test_nobody_passes_people_behind_the_target():
@@ -116,7 +153,7 @@ def test_the_course_is_the_cheapest_of_fifteen(others, now, preferred):
     for turn in turns:
         course, on = cmath.exp(1j * turn), far
         for place, v in people:
-            if place.real <= 0.0 or abs(place) > 3.0 or v.real < -0.1:
+            if place.real <= 0.0 or abs(place) > 3.0:
                 continue
             along, aside = (place / course).real, abs((place / course).imag)
             share = min(max(2.0 * (1.0 - aside / WIDTH), 0.0), 1.0)
