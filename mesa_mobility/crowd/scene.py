@@ -23,7 +23,7 @@ from mesa_mobility.populations import Population
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The parts of a model that do not change hands while it runs.
+    """The parts of a model that are never replaced while it runs.
 
     Attributes:
         plan: the floor plan.

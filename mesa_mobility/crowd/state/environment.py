@@ -26,9 +26,9 @@ _SLIM = 0.05
 class Environment(Saved):
     """Walls for the collision tests and routes for the targets of one floor plan.
 
-    Bodies of each core radius have routes of their own, which are searched for when the first of
-    them has a destination; so have people of each who do not climb stairs. The number of a
-    destination stands for both a set of exits, a gate or a point, and such a body.
+    A body is a core radius and, on a plan with seams, whether it crosses them. Each body has routes
+    of its own, which are searched for when the first person with such a body has a destination. The
+    number of a destination stands for two things: a set of exits, a gate or a point, and a body.
 
     Args:
         plan: the floor plan; obstacles and doors may change while a model runs.
@@ -93,15 +93,15 @@ class Environment(Saved):
 
     @property
     def bodies(self) -> int:
-        """Number of distinct core radii."""
+        """Number of distinct bodies."""
         return len(self._radii)
 
     def body(self, type_index: int) -> int:
-        """Index of the core radius of a pedestrian type."""
+        """Index of the body of a pedestrian type."""
         return self._body_of[type_index]
 
     def core_radius(self, body: int) -> float:
-        """Core radius with this index, metres."""
+        """Core radius of the body with this index, metres."""
         return self._radii[body]
 
     def destination(self, exits: tuple[str, ...] | None, type_index: int = 0) -> int:
