@@ -33,8 +33,8 @@ def read_amc(
 
     Args:
         path: the file.
-        asf: its skeleton; without one, the file in the same folder that has the subject's name
-            (``16.asf`` for ``16_11.amc``) or the clip's, or else the only one there.
+        asf: the ASF file of the skeleton. By default it is looked for in the same folder: the
+            subject's (``16.asf`` for ``16_11.amc``), the clip's, or the only one.
         unit_to_m: metres in one unit of the file.
         frame_rate: frames a second, which the format does not store.
 

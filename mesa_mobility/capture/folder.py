@@ -48,7 +48,9 @@ def read_folder(path: str | Path) -> Manifest:
 
     Without a manifest, all frames are used, the type is unknown,
     the unit is the one in :data:`UNITS_M` that gives legs a plausible length, and AMC files
-    have 120 frames a second.  A T-pose at the beginning of a recording is cut off as a jump.
+    have 120 frames a second.  :func:`load_clips` splits recordings at jumps, movements that no
+    human can make, such as that from a T-pose in the first frame to the first step.  It leaves
+    out parts that are too short, and so the T-pose.
 
     Raises:
         CaptureError: the folder cannot be read or holds no recordings, or one of them cannot be

@@ -61,7 +61,9 @@ class Jumps:
 
 
 def find_jumps(legs: NDArray[np.float64]) -> Jumps:
-    """Find the jumps of joints at 30 Hz.
+    """Find the frames at 30 Hz in which joints jump: move as no human can.
+
+    Speeds, changes of velocity and the turn rate of the hips are compared with what people can do.
 
     Args:
         legs: (F, 8, 3) positions in metres of hip, knee, ankle and toe, left, then right.
@@ -124,7 +126,7 @@ class Parts:
 
 
 def sound_parts(recording: Recording, shortest: int) -> Parts:
-    """Cut a recording where it jumps.
+    """Cut a recording where it jumps; see :func:`find_jumps`.
 
     Args:
         recording: at any frame rate; frames are counted at this rate.

@@ -57,7 +57,7 @@ def load_clips(
 ) -> LoadedClips:
     """Read the clips of a manifest, cut to their usable frames and resampled.
 
-    Where the hips or legs jump (see ``capture.jumps``), a clip is split.
+    A clip is split where its hips or legs jump; see :func:`find_jumps`.
 
     Args:
         manifest: from :func:`read_manifest`, :func:`read_folder` or :func:`find_clips`.

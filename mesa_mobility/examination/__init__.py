@@ -2,8 +2,8 @@
 
 Lone people of the map walk through a door, round the corner of a corridor, turn round in a small
 space, stop at a point, and walk slowly; a small crowd leaves by a door. All of it takes seconds and
-gives the same figures each time. With it goes how well the map predicts clips that were left out,
-if that was measured when it was built.
+gives the same figures each time. If it was measured how well a map of some clips predicts the
+others, the examination judges that, too.
 """
 
 from mesa_mobility.examination.examining import examine, examined, with_findings

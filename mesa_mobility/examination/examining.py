@@ -38,8 +38,9 @@ def examine(
         progress: called as ``progress(stage, tests done, tests)``.
 
     Returns:
-        A finding for each test. That of the coverage is left out where nothing is known of it: the
-        recordings are needed, so a map that has failed it once keeps that.
+        A finding for each test. The one of the coverage is there only if the coverage is known:
+        from ``left_out``, or from the metadata of a map that has failed this test before. It
+        cannot be measured without the recordings.
 
     Raises:
         MobilityError: no model can be made with the map.

@@ -16,7 +16,7 @@ class Finding:
         measured: figures by name, ready for JSON; metres, seconds.
         expected: the threshold.
         passed: whether it was met.
-        helps: what to record where it was not.
+        helps: what to record if the threshold was not met.
     """
 
     test: str

@@ -52,8 +52,8 @@ def build_map(
         metadata: further entries for the map's metadata, such as the command.
         progress: called as ``progress(stage, done, total)``.
 
-    Where nobody stands in the recordings, or turns on the spot, that is borrowed from the map that
-    ships, and the metadata says so.
+    If nobody stands or turns on the spot in the recordings, these movements are borrowed from the
+    able-bodied map that comes with the package. The metadata says so.
 
     Raises:
         MapError: the recordings do not give a map, or one that traps people.

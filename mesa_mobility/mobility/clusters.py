@@ -45,9 +45,9 @@ class Clusters:
 
     Attributes:
         labels: (n,) int32; cluster of each pose, -1 where the pose is not in the graph.
-        centres: (k, 36) float32; features of the centre of each cluster: the pose chosen
-            by subtractive clustering, the mean for the standing cluster (number 0), which
-            is zero where nobody stands.
+        centres: (k, 36) float32; features of the centre of each cluster, the pose chosen
+            by subtractive clustering. Cluster 0 is the standing one: its centre is the mean
+            of its poses, or zero if nobody stands.
         mean_joints: (k, 9, 3) float32; mean pose, metres in the pelvis frame.
         sizes: (k,) int64; poses in each cluster, at least 1 but for the standing one.
         mean_speeds: (k,) float64; mean root speed, m/s.

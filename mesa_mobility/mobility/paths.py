@@ -72,12 +72,12 @@ class ReachableOptions:
         paths: (m, 15, 3) float32; x, y in metres and heading in radians every 3 frames
             from the third on, relative to the start; rows past the end are zero.
         path_clusters: (m, 15) int32; cluster of the pose at each sample.
-        sources: (m,) int32; pose in which the option starts, or its original; -1 where that is
-            borrowed from another map.
+        sources: (m,) int32; pose in which the option starts; of an edited copy, that of its
+            original; -1 if the option is borrowed from another map.
         jumps: (m, ``MOST_JUMPS``) int64; its transitions, ``frame * n + via`` for the pose ``via``
             of n whose step is taken in that frame; -1 for none.
-        edits: (m,) int16; number from 1 on of the edit that an option is a copy by, 0 for those
-            as recorded.
+        edits: (m,) int16; number, from 1 on, of the edit that made an option from a recorded one;
+            0 for recorded options.
     """
 
     offsets: NDArray[np.int64]

@@ -16,11 +16,12 @@ def abilities_of(map_: MobilityMap) -> dict[str, Any]:
     """What the options of a map let people do.
 
     Returns:
-        ``turn_on_the_spot_deg``: farthest turns to the left and to the right of a stander
-        within one option; ``first_step_m``: how far a stander gets in 1.5 s;
+        ``turn_on_the_spot_deg``: farthest turns to the left and to the right that somebody who
+        stands makes within one option; ``first_step_m``: how far they get in 1.5 s;
         ``side_step_m``: farthest steps to the left and to the right;
         ``clusters_that_stop_at_once``: share of clusters with an option that ends standing.
-        Of turns and steps, those count that start gently enough for the default preset.
+        Turns and side steps count only if they start gently enough for the default preset. For
+        ``first_step_m`` all options count.
     """
     ends, headings = map_.end_points, map_.end_headings
     standing = np.asarray(map_.options_of(map_.standing))

@@ -47,13 +47,15 @@ def prepare_recordings(
 ) -> PreparedRecordings:
     """Load the clips of a type, with their mirror images if the gait is alike on both sides.
 
-    Where none of them shows anybody standing, the manifest's clips of type "standing" are added.
+    If none of them shows anybody standing, the manifest's clips of type "standing" are added.
 
     Args:
         manifest: the clips.
         type_name: pedestrian type.
-        mirrored: whether mirror images are added; None to find out.
-        other_side: only mirror images: people whose gait differs on the other side.
+        mirrored: whether mirror images are added; None adds them if the gait is alike on both
+            sides.
+        other_side: use only mirror images. If the recorded people limp on the left, those of the
+            map limp on the right.
         progress: called as ``progress(done, total)`` after each clip.
 
     Raises:

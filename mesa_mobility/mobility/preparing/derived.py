@@ -32,7 +32,7 @@ class DerivedType:
         length: factor of all lengths.
         time: factor of all times; None for the one that gives the mean free speed.
         core_radius: of the body, metres.
-        body: where that comes from.
+        body: where the core radius comes from.
     """
 
     source: str

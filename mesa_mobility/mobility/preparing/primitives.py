@@ -56,7 +56,7 @@ class DifferentialDrive:
         acceleration: at most, m/s^2.
         braking: deceleration at most, m/s^2.
         turn_rate: at most, rad/s; on the spot as well.
-        lateral_acceleration: at most, m/s^2; the quicker, the wider the turn.
+        lateral_acceleration: at most, m/s^2; at a higher speed, turns are therefore wider.
     """
 
     fastest: float
@@ -71,7 +71,7 @@ class DifferentialDrive:
         return np.concatenate([[0.0, REVERSE], forwards])
 
     def reachable(self, speed: float, seconds: float) -> NDArray[np.int64]:
-        """Clusters whose speed it has so many seconds after ``speed``."""
+        """Clusters whose speed, m/s, can be reached from ``speed`` within these ``seconds``."""
         change = self.speeds() - speed
         # Slowing down backwards is an acceleration forwards; both are small.
         within = (change <= self.acceleration * seconds + 1e-9) & (

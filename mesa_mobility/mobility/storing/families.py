@@ -69,7 +69,7 @@ class OptionFamilies:
         options: ReachableOptions,
         metadata: Mapping[str, Any],
     ) -> OptionFamilies:
-        """Those of options; edited ones among them are left out.
+        """The families of these options; edited options are left out.
 
         Args:
             motion: (n, 3) motion from each pose to the next, ``PoseTable.step``.
@@ -124,7 +124,8 @@ class OptionFamilies:
         """The fields of the map.
 
         Args:
-            lender: as for ``assemble``.
+            lender: gives the map from which standing and turns on the spot are borrowed, if the
+                recordings lack them.
 
         Raises:
             MapError: the families do not fit together.
