@@ -76,14 +76,16 @@ def estimate(
     tried: Terms,
     reading: TracksOptions,
     *,
-    choices: Annotated[int, typer.Option(min=1, help="Most choices of a file.")] = 2500,
-    seed: Annotated[int, typer.Option(min=0, help="Of all that is drawn.")] = 1,
+    choices: Annotated[
+        int, typer.Option(min=1, help="Use at most this many choices of each file.")
+    ] = 2500,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random draws.")] = 1,
     as_json: AsJson = False,
     no_progress: NoProgress = False,
 ) -> None:
     """Estimate how much each behaviour counts in the choices of measured people.
 
-    With several files, weights from all others are also tried on each.
+    With several files, each is also tested with the weights estimated from the others.
     """
     from mesa_mobility.estimation import Sampling, estimate, leave_out, observe
     from mesa_mobility.floorplan import FloorPlan

@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 FAILED = 1
 
-app = typer.Typer(help="Many runs, kept in a store that can be gone on with.", no_args_is_help=True)
+app = typer.Typer(
+    help="Run many simulations and keep them in a store. An experiment can be resumed.",
+    no_args_is_help=True,
+)
 StoreAt = Annotated[str, typer.Argument(metavar="STORE", help="Folder or URL of the store.")]
 
 
@@ -44,16 +47,20 @@ def run(
         str | None,
         typer.Option(
             metavar="STORE",
-            help="Folder or URL; by default the file's name without .toml or .json.",
+            help="Folder or URL of the store; by default FILE without .toml or .json.",
         ),
     ] = None,
     workers: Annotated[
         int | None,
-        typer.Option(min=1, metavar="N", help="Processes (one for each processor)."),
+        typer.Option(
+            min=1, metavar="N", help="Processes side by side. By default one for each processor."
+        ),
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="Of a Dask scheduler, instead of processes."),
+        typer.Option(
+            metavar="ADDRESS", help="Address of a Dask scheduler to use instead of processes."
+        ),
     ] = None,
     settings: Settings = None,
     preset: PresetName = None,
@@ -62,7 +69,7 @@ def run(
     ] = False,
     no_progress: NoProgress = False,
 ) -> None:
-    """Run what is missing of an experiment.
+    """Do the runs of an experiment that its store does not have yet.
 
     Ends with status 1 if runs have failed or timed out.
     """

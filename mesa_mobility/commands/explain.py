@@ -30,22 +30,27 @@ SAID = 2
 def explain(
     run: RunDir,
     person: Annotated[int, typer.Option(min=0, help="Number of the person.")],
-    time: Annotated[float, typer.Option(help="Seconds; the movement under way then.")],
+    time: Annotated[
+        float,
+        typer.Option(
+            help="Time in seconds. The command explains the movement under way at that time."
+        ),
+    ],
     map_file: Annotated[
         Path | None,
         typer.Option(
             "--map",
-            help="The run's mobility map, where it was not the shipped one.",
+            help="The run's mobility map, if the run was made with --map.",
             parser=some_path,
             metavar="PATH",
         ),
     ] = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="One JSON object with all options.")
+        bool, typer.Option("--json", help="Print one JSON object with all options.")
     ] = False,
     no_progress: NoProgress = False,
 ) -> None:
-    """Why this, why not that: one decision of a run that was saved with `--record decisions`.
+    """Say why somebody took this option, in a run that was saved with `--record decisions`.
 
     The run is repeated up to the decision, and compared with what was saved.
     """

@@ -30,14 +30,19 @@ class Shown:
 
     people: Annotated[
         str | None,
-        typer.Option(metavar="1,5,7", help="Numbers of the people shown (everybody)."),
+        typer.Option(metavar="1,5,7", help="Numbers of the people to show. By default everybody."),
     ] = None
-    start: Annotated[float, typer.Option("--from", help="Seconds from which on.")] = 0.0
-    end: Annotated[float | None, typer.Option("--to", help="Seconds until when (the end).")] = None
+    start: Annotated[
+        float, typer.Option("--from", help="Time in seconds from which on the run is shown.")
+    ] = 0.0
+    end: Annotated[
+        float | None,
+        typer.Option("--to", help="Time in seconds until which it is shown. By default its end."),
+    ] = None
     poses: Annotated[
         Path | None,
         typer.Option(
-            help="Poses of the run's map (.poses.npz) where they do not ship.",
+            help="Poses of the run's map (.poses.npz), if the map does not come with the package.",
             parser=some_path,
             metavar="PATH",
         ),
@@ -65,7 +70,9 @@ def export(
     run: RunDir,
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", help="What to write.", parser=some_path, metavar="PATH"),
+        typer.Option(
+            "-o", "--output", help="File or folder to write.", parser=some_path, metavar="PATH"
+        ),
     ],
     shown: Shown,
     *,
@@ -74,15 +81,17 @@ def export(
         typer.Option(
             "--format",
             metavar="NAME",
-            help="By default what the end of PATH says; `mesa-mobility formats` lists formats.",
+            help="Format to write; `mesa-mobility formats` lists them. By default the suffix of "
+            "PATH decides.",
         ),
     ] = None,
     settings: FormatSettings = None,
     speed: Annotated[
-        float | None, typer.Option(help="Of a film: how many times as fast as it was.")
+        float | None, typer.Option(help="For a film: its speed, as a multiple of real time.")
     ] = None,
     at: Annotated[
-        str | None, typer.Option(metavar="0,10,20", help="Of a still: seconds of its panels.")
+        str | None,
+        typer.Option(metavar="0,10,20", help="For a still: the times in seconds of its panels."),
     ] = None,
     no_progress: NoProgress = False,
 ) -> None:

@@ -37,14 +37,16 @@ def plan(
             "--layer",
             metavar="LAYER=KIND",
             help="What a layer of a drawing holds: walkable, obstacle, gate or exit, and a name, "
-            "as 'A-DOOR=exit street'; repeatable.",
+            "such as 'A-DOOR=exit street'; repeatable.",
         ),
     ] = None,
     unit: Annotated[
         str | None, typer.Option(help="Unit of a drawing that does not say it: mm, cm, m, in, ft.")
     ] = None,
     settings: FormatSettings = None,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object instead of a table.")
+    ] = False,
 ) -> None:
     """Check a floor plan and say what it holds; -o writes it to another file.
 

@@ -22,7 +22,8 @@ def preset(
         typer.Option(
             "--out",
             "-o",
-            help="TOML file for the preset with the numbers set; it is named after the file.",
+            help="TOML file to write, with the preset and the numbers that --set changes. The "
+            "preset is named after the file.",
             parser=some_path,
             metavar="FILE",
         ),

@@ -16,9 +16,12 @@ if TYPE_CHECKING:
 class TracksOptions:
     """Unit and frame rate of measured tracks whose file does not tell them."""
 
-    unit: Annotated[str | None, typer.Option(help="m, cm or mm, if a file does not tell.")] = None
+    unit: Annotated[
+        str | None, typer.Option(help="Unit, m, cm or mm, of a file that does not tell it.")
+    ] = None
     frame_rate: Annotated[
-        float | None, typer.Option(metavar="N", help="Frames a second, if a file does not tell.")
+        float | None,
+        typer.Option(metavar="N", help="Frames a second of a file that does not tell them."),
     ] = None
 
     def read(self, file: Path) -> Trajectories:

@@ -39,12 +39,16 @@ def run(
     *,
     seconds: Annotated[
         float | None,
-        typer.Option(help="Simulated time at most; without it until everybody is out."),
+        typer.Option(
+            help="Stop after this simulated time in seconds. By default the run ends when "
+            "everybody has left, or when it stalls."
+        ),
     ] = None,
     population: Annotated[
         str | None,
         typer.Option(
-            help="Types of people: mixed, care_home, or such as 'able_bodied: 0.9, child: 0.1'."
+            help="Types of people: mixed, care_home, the name of a type, or shares such as "
+            "'able_bodied: 0.9, child: 0.1'."
         ),
     ] = None,
     out: Annotated[
@@ -59,7 +63,8 @@ def run(
         str | None,
         typer.Option(
             metavar="decisions",
-            help="Also write who has taken which option: export and replay show bodies by it.",
+            help="Also write which option each person took. `export` and `replay` need this to "
+            "show bodies, and `explain` needs it, too.",
         ),
     ] = None,
     as_json: AsJson = False,

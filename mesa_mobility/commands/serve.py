@@ -20,7 +20,7 @@ def serve(
     model: ModelName,
     options: ModelOptions,
     *,
-    rate: Annotated[int, typer.Option(help="Frames a second; a divisor of 30.")] = 30,
+    rate: Annotated[int, typer.Option(help="Frames to send a second; a divisor of 30.")] = 30,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port to listen on; 0 for any free one.")

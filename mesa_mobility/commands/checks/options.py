@@ -24,16 +24,18 @@ class CheckOptions:
     """How tests are run, and what is written of them."""
 
     seeds: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Runs of each test, seeds 1 to N.")
+        int,
+        typer.Option(min=1, metavar="N", help="Run each test N times, with the seeds 1 to N."),
     ] = 1
     jobs: Annotated[
-        int | None, typer.Option(min=1, help="Processes side by side (one for each processor).")
+        int | None,
+        typer.Option(min=1, help="Processes side by side. By default one for each processor."),
     ] = None
     preset: Annotated[
         str | None,
         typer.Option(
             metavar="NAME|FILE",
-            help="measured, paper or a TOML file, instead of the default preset.",
+            help="Preset to use instead of the default one: measured, paper or a TOML file.",
         ),
     ] = None
     numbers: Numbers = None
@@ -42,7 +44,8 @@ class CheckOptions:
         Path | None,
         typer.Option(
             "--report",
-            help="One HTML page with criteria, sources, figures, pictures, verdicts and versions.",
+            help="HTML page to write, with criteria, sources, figures, pictures, verdicts and "
+            "versions.",
             parser=some_path,
             metavar="FILE",
         ),

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 class Replays(CheckOptions):
     """How replays are run, and what is written of them."""
 
-    seeds: Annotated[int, typer.Option(min=1, metavar="N", help="Replays, seeds 1 to N.")] = 3
+    seeds: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Replay N times, with the seeds 1 to N.")
+    ] = 3
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,9 @@ class Windows:
     start: Annotated[
         int | None,
         typer.Option(
-            min=0, metavar="FRAME", help="Frame at which the replay begins (6 s before --from)."
+            min=0,
+            metavar="FRAME",
+            help="Frame at which the replay begins. By default 6 s before --from.",
         ),
     ] = None
     first: Annotated[
@@ -43,7 +47,8 @@ class Windows:
             "--from",
             min=0,
             metavar="FRAME",
-            help="First frame to measure (a sixth of the people have crossed the line).",
+            help="First frame to measure. By default the one at which a sixth of the people have "
+            "crossed the line.",
         ),
     ] = None
     last: Annotated[
@@ -52,21 +57,24 @@ class Windows:
             "--to",
             min=0,
             metavar="FRAME",
-            help="Last frame to measure (five sixths have crossed it).",
+            help="Last frame to measure. By default the one at which five sixths have crossed it.",
         ),
     ] = None
     area: Annotated[
         str | None,
         typer.Option(
             metavar="X,Y,X,Y|WKT",
-            help="Where people are measured: two corners, or a polygon (the floor, "
-            "without a tenth of all places at either end).",
+            help="Where people are measured: two corners, or a polygon. By default the part of "
+            "the floor that holds, along the direction of walking, the middle 80 % of all measured "
+            "places.",
         ),
     ] = None
     line: Annotated[
         str | None,
         typer.Option(
-            metavar="X,Y,X,Y", help="Both ends of a line to cross (the narrowest cut of the floor)."
+            metavar="X,Y,X,Y",
+            help="Both ends of the line whose crossings are counted. By default the narrowest cut "
+            "of the floor across the direction of walking.",
         ),
     ] = None
 
@@ -89,17 +97,18 @@ def validate_tracks(
     speeds: Annotated[
         str | None,
         typer.Option(
-            help="Free speeds of simulated people, as normal(1.55, 0.18); without it "
-            "those of their type."
+            help="Free speeds of simulated people, such as normal(1.55, 0.18). By default those of "
+            "their type."
         ),
     ] = None,
     *,
     options: Replays,
     out: OutFolder = None,
 ) -> None:
-    """Replay measured people, and compare both crowds in the same windows.
+    """Replay measured people, and compare the simulated with the measured crowd.
 
-    Ends with status 1 if a figure is not as measured.
+    Both are measured at the same times and places. Ends with status 1 if a figure misses its
+    criterion.
     """
     rules = options.rules()
     area = None if windows.area is None else _area(windows.area)

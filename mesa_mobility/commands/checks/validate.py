@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 OutFolder = Annotated[
     Path | None,
     typer.Option(
-        help="Folder for a picture of each and validation.json.",
+        help="Folder for validation.json and a picture of each experiment.",
         parser=some_path,
         metavar="PATH",
     ),
@@ -29,7 +29,8 @@ OutFolder = Annotated[
 @grouped
 def validate(
     names: Annotated[
-        list[str] | None, typer.Argument(metavar="[NAME]...", help="Experiments; all without.")
+        list[str] | None,
+        typer.Argument(metavar="[NAME]...", help="Experiments to run; by default all."),
     ] = None,
     *,
     options: CheckOptions,
@@ -37,7 +38,7 @@ def validate(
 ) -> None:
     """Compare crowds with measured ones: speeds, flows, densities, lanes, standing.
 
-    Ends with status 1 if a figure is not as measured.
+    Ends with status 1 if a figure misses its criterion.
     """
     from mesa_mobility.validation import chosen
 

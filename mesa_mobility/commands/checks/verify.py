@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @grouped
 def verify(
     ids: Annotated[
-        list[str] | None, typer.Argument(metavar="[ID]...", help="Tests to run; all without.")
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Tests to run; by default all.")
     ] = None,
     *,
     options: CheckOptions,

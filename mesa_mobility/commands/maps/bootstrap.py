@@ -39,21 +39,29 @@ def bootstrap(
     out: Annotated[
         Path, typer.Option(help="Folder for the maps.", parser=some_path, metavar="DIR")
     ],
-    maps: Annotated[int, typer.Option(min=2, metavar="B", help="How many maps.")] = 8,
-    seed: Annotated[int, typer.Option(min=0, help="Of the draws.")] = 1,
+    maps: Annotated[int, typer.Option(min=2, metavar="B", help="Number of maps.")] = 8,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the draws.")] = 1,
     type_name: Annotated[
-        str, typer.Option("--type", metavar="NAME", help="Pedestrian type: rows to take.")
+        str,
+        typer.Option(
+            "--type",
+            metavar="NAME",
+            help="Pedestrian type. Only rows of this type in the manifest are used.",
+        ),
     ] = "able_bodied",
     clusters: Annotated[
-        int | None, typer.Option(min=2, help="How many clusters of poses (one for 150).")
+        int | None,
+        typer.Option(
+            min=2, help="Number of clusters of poses. By default one for every 150 poses."
+        ),
     ] = None,
     as_json: AsJson = False,
     no_progress: NoProgress = False,
 ) -> None:
-    """Compute maps of clips drawn with replacement, as `map build` does of all clips.
+    """Draw clips with replacement, and build a map from each draw as `map build` does from all.
 
-    Maps that are there already are kept: an interrupted command goes on, and more maps can be
-    added. Ends with status 1 if the clips of a draw give no map.
+    Existing maps are kept. So an interrupted command can be repeated, and more maps can be added.
+    Ends with status 1 if the clips of a draw give no map.
     """
     from mesa_mobility.capture import find_clips
     from mesa_mobility.mobility import draw_clips, prepare_recordings

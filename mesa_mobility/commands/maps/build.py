@@ -50,10 +50,18 @@ class Wanted:
 
     type_name: Annotated[
         str | None,
-        typer.Option("--type", metavar="NAME", help="Pedestrian type: rows to take (able_bodied)."),
+        typer.Option(
+            "--type",
+            metavar="NAME",
+            help="Pedestrian type, by default able_bodied. Only rows of this type in the manifest "
+            "are used.",
+        ),
     ] = None
     clusters: Annotated[
-        int | None, typer.Option(min=2, help="How many clusters of poses (one for 150).")
+        int | None,
+        typer.Option(
+            min=2, help="Number of clusters of poses. By default one for every 150 poses."
+        ),
     ] = None
     mirrored: Annotated[
         bool | None,
@@ -64,28 +72,33 @@ class Wanted:
     ] = None
     other_side: Annotated[
         bool,
-        typer.Option("--other-side", help="Mirror images alone: a limp on the other leg."),
+        typer.Option(
+            "--other-side",
+            help="Use only mirror images, for people who limp on the other leg.",
+        ),
     ] = False
     derived: Annotated[
         str | None,
         typer.Option(
             "--derive",
             metavar="NAME",
-            help="A type of whom nobody is recorded. From recordings of others: child, "
-            "older_adult, frail_older_adult, cane, crutches or walking_frame; from none: "
-            "wheelchair_manual, wheelchair_powered or wheelchair_assisted.",
+            help="A type of which nobody is recorded. Made from recordings of others: child, "
+            "older_adult, frail_older_adult, cane, crutches or walking_frame. Made without "
+            "recordings: wheelchair_manual, wheelchair_powered or wheelchair_assisted.",
         ),
     ] = None
     name: Annotated[
         str | None,
-        typer.Option("--name", help="Name of the type in the map (as --type or --derive)."),
+        typer.Option(
+            "--name", help="Name of the type in the map. By default that of --type or --derive."
+        ),
     ] = None
     kept: Annotated[
         Options,
         typer.Option(
             "--options",
-            help="Store every option, or the recorded ones alone, each of which stands for a "
-            "distribution of edited ones: the same options from a smaller file.",
+            help="`stored` writes every option. `distribution` writes only recorded options, from "
+            "which edited ones are made on reading: the map is the same and the file smaller.",
         ),
     ] = Options.STORED
 

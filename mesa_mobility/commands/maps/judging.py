@@ -39,14 +39,16 @@ def coverage(
     sources: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RECORDING_OR_MANIFEST...", help="Recordings that the map has never seen."
+            metavar="RECORDING_OR_MANIFEST...",
+            help="Recordings that the map was not built from; with --leave-one-out, its own.",
         ),
     ],
     leave_out: Annotated[
         bool,
         typer.Option(
             "--leave-one-out",
-            help="The map's own recordings: compare each clip with a map of the others.",
+            help="The recordings are the map's own. Compare each clip with a map built from the "
+            "others.",
         ),
     ] = False,
     as_json: AsJson = False,

@@ -32,7 +32,7 @@ def poses(
     ] = None,
     no_progress: NoProgress = False,
 ) -> None:
-    """Write the poses of the recordings that a map's options go through."""
+    """Write the recorded poses that a map's options use."""
     from mesa_mobility.bodies import build_bank
     from mesa_mobility.bodies.bankfile import poses_path
     from mesa_mobility.mobility import MobilityMap

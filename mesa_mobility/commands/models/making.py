@@ -15,14 +15,17 @@ from mesa_mobility.commands.console import some_path
 from mesa_mobility.commands.models.behaviors import use_behaviors
 from mesa_mobility.errors import ModelError
 
-MODEL_HELP = "Name of a model; `mesa-mobility models` lists them. Or FILE.py, or FILE.py:NAME."
+MODEL_HELP = (
+    "Name of an installed model (`mesa-mobility models` lists them), FILE.py, FILE.py:NAME, or "
+    "module:NAME."
+)
 ModelName = Annotated[str, typer.Argument(metavar="MODEL", help=MODEL_HELP)]
 PresetName = Annotated[
     str | None,
     typer.Option(
         "--preset",
         metavar="NAME|FILE",
-        help="default, measured, paper or a TOML file; without it the model's own.",
+        help="default, measured, paper or a TOML file. By default the model's own.",
     ),
 ]
 Settings = Annotated[
@@ -38,7 +41,7 @@ Numbers = Annotated[
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
-        help="A number of a behaviour, as headway.time=0.6; repeatable. "
+        help="A number of a behaviour, such as headway.time=0.6; repeatable. "
         "`mesa-mobility preset` lists them.",
     ),
 ]
@@ -50,7 +53,9 @@ class ModelOptions:
 
     seed: Annotated[
         int | None,
-        typer.Option(min=0, help="Makes a run repeatable; by default one is drawn and printed."),
+        typer.Option(
+            min=0, help="Seed, which makes a run repeatable. By default one is drawn and printed."
+        ),
     ] = None
     settings: Settings = None
     behaviors: Annotated[

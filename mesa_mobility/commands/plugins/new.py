@@ -26,7 +26,9 @@ app = typer.Typer(
     help="Write the skeleton of a behaviour, a model or a package.", no_args_is_help=True
 )
 
-_Name = Annotated[str, typer.Argument(metavar="NAME", help="Such as keep_left, in lower case.")]
+_Name = Annotated[
+    str, typer.Argument(metavar="NAME", help="Name in lower case, such as keep_left.")
+]
 _Folder = Annotated[
     Path,
     typer.Option("--in", help="Folder to write to.", parser=some_path, metavar="PATH"),
