@@ -39,8 +39,9 @@ class Population:
     """Which types of people a crowd is made of, and in which shares.
 
     Attributes:
-        shares: share of each type, 0 to 1, adding up to 1. A type is the name of a map that ships,
-            or a ``PedestrianType``. Those whose share is 0 are left out.
+        shares: share of each type, 0 to 1, adding up to 1. A type is given as a
+            ``PedestrianType``, or as the name of a map that comes with the package. Types whose
+            share is 0 are left out.
         source: where the shares come from.
 
     Raises:
@@ -114,7 +115,8 @@ class Population:
 
         Each type gets its share of n, rounded up or down: the people are drawn at equal distances
         along the shares, from a random start (systematic sampling; W. G. Madow, Annals of
-        Mathematical Statistics 20, 1949). Of a single type nothing is drawn from the generator.
+        Mathematical Statistics 20, 1949). If there is a single type, nothing is drawn from the
+        generator.
         """
         if len(self.shares) == 1:
             return np.zeros(n, dtype=np.int64)
@@ -154,7 +156,7 @@ def presets() -> Mapping[str, Population]:
     """Populations by name; their ``source`` says where the shares come from.
 
     ``mixed`` is the public at large, ``care_home`` the residents, staff and visitors of a care
-    home, ``every_type`` has as many of each type that ships.
+    home, ``every_type`` has equal shares of all types that come with the package.
     """
     text = files("mesa_mobility").joinpath("data/populations.toml").read_text("utf-8")
     found = {}

@@ -36,14 +36,16 @@ class Source:
 
     Attributes:
         area: where they appear: a polygon or a line on the floor, shapely or WKT, metres.
-        rate: people a second, as a Poisson process from ``start`` on.
+        rate: people a second, as a Poisson process from ``start`` on. It ends only with ``until``
+            or ``number``.
         times: (k,) seconds at which they come, instead of a rate.
         start: seconds at which a rate begins.
-        until: seconds at which it ends, if ever.
+        until: seconds from which on nobody comes any more.
         number: most people.
 
     The other attributes are as ``PedestrianModel.add_pedestrians`` takes them: numbers or
-    distributions, no arrays. Of a population each hundred people together have its shares.
+    distributions, no arrays. Types are drawn for a hundred people at a time, so that each hundred
+    have the shares of the population.
 
     Raises:
         ModelError: neither a rate nor times, both, or one out of range; shares of a population that
