@@ -170,8 +170,11 @@ def report(
         ["measured", "", *(f"{m:.2f} ± {h:.2f}" for m, h in bands.values()), "200", ""]
     ]
     for each in settings():
-        rows = [done[json_text(each), seed] for seed in range(1, seeds + 1)
-                if (json_text(each), seed) in done]  # fmt: skip
+        rows = [
+            done[json_text(each), seed]
+            for seed in range(1, seeds + 1)
+            if (json_text(each), seed) in done
+        ]
         if not rows:
             continue
         medians = {name: float(np.median([_number(row[name]) for row in rows])) for name in names}

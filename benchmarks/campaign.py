@@ -55,14 +55,30 @@ SEED, PLAN_SEED = 10_000, 1_000_000
 """Of the first run, and of the first random plan; each one after it has the next."""
 
 KEPT = (
-    "pedestrians", "left_inside", "stalled", "overlaps", "wall_crossings", "off_floor",
-    "min_distance_m", "simulated_s", "egress_s", "fallback_time_share", "person_s",
-)  # fmt: skip
+    "pedestrians",
+    "left_inside",
+    "stalled",
+    "overlaps",
+    "wall_crossings",
+    "off_floor",
+    "min_distance_m",
+    "simulated_s",
+    "egress_s",
+    "fallback_time_share",
+    "person_s",
+)
 
 HEADS = (
-    "scenario", "runs", "people", "frozen or lost", "runs with any", "overlaps", "wall crossings",
-    "frames off the floor", "fallback, share of time",
-)  # fmt: skip
+    "scenario",
+    "runs",
+    "people",
+    "frozen or lost",
+    "runs with any",
+    "overlaps",
+    "wall crossings",
+    "frames off the floor",
+    "fallback, share of time",
+)
 
 COUNTED = ("pedestrians", "left_inside", "overlaps", "wall_crossings", "off_floor")
 
@@ -97,8 +113,17 @@ def report(rows: list[dict[str, Any]]) -> tuple[str, bool]:
         time_ = sum(row["person_s"] for row in good)
         share = sum(row["fallback_time_share"] * row["person_s"] for row in good) / (time_ or 1.0)
         stuck = sum(row["left_inside"] > 0 for row in good)
-        lines.append([name, len(mine), total["pedestrians"], total["left_inside"], stuck,
-                      *(total[key] for key in COUNTED[2:]), f"{share:.1%}"])  # fmt: skip
+        lines.append(
+            [
+                name,
+                len(mine),
+                total["pedestrians"],
+                total["left_inside"],
+                stuck,
+                *(total[key] for key in COUNTED[2:]),
+                f"{share:.1%}",
+            ]
+        )
         errors += [f"seed {row['seed']}: {row['error']}" for row in failed if name != "all"]
         wrong |= bool(failed or stuck or any(total[key] for key in COUNTED[1:]))
     return "\n\n".join([table(HEADS, lines), *errors]), wrong

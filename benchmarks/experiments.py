@@ -63,9 +63,14 @@ def overhead(place: Path, runs: int, people: int, workers: int) -> str:
     if place.exists():
         raise SystemExit(f"{place} is there: runs that it holds would not be timed")
     experiment = Experiment(
-        "doorway", {"door_width": WIDTHS}, replications=runs // len(WIDTHS), seed=1,
-        fixed={"pedestrians": people}, max_seconds=120, keep=("occupancy",),
-    )  # fmt: skip
+        "doorway",
+        {"door_width": WIDTHS},
+        replications=runs // len(WIDTHS),
+        seed=1,
+        fixed={"pedestrians": people},
+        max_seconds=120,
+        keep=("occupancy",),
+    )
     process = psutil.Process()
     memory: list[tuple[int, float]] = []
     marks: list[int] = []
@@ -76,10 +81,15 @@ def overhead(place: Path, runs: int, people: int, workers: int) -> str:
             marks.append(now.ended)
             print(f"{now.ended} of {now.total} runs, driver {memory[-1][1]:.0f} MB", flush=True)
 
-    with LocalCluster(
-        n_workers=workers, threads_per_worker=1, dashboard_address=None,
-        env={"NUMBA_NUM_THREADS": "1"},
-    ) as cluster, Client(cluster) as client:  # fmt: skip
+    with (
+        LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            dashboard_address=None,
+            env={"NUMBA_NUM_THREADS": "1"},
+        ) as cluster,
+        Client(cluster) as client,
+    ):
         # Imports and the map are loaded once a worker, whatever the number of runs.
         warm = place.with_name(f"{place.name}-warm")
         run_experiment(
@@ -100,18 +110,27 @@ def overhead(place: Path, runs: int, people: int, workers: int) -> str:
     size = sum(store.shards().values())
     message = len(pickle.dumps(tuple((experiment.point(0), k) for k in range(100)))) / 100
     rows = [
-        ("wall time beyond the runs' own", "10 %",
-         f"{(there - own) / own:.1%}: runs {own:,.0f} s, workers there for {there:,.0f} s"),
-        ("processor time beyond the runs' own, driver and scheduler included", "",
-         f"{(used - own_cpu) / own_cpu:.1%}: {sum(spent):,.0f} s of workers and {driver:,.0f} s "
-         f"for {own_cpu:,.0f} s of runs"),
-        ("memory of the driver, with the scheduler in it, since a tenth of the runs", "+50 MB",
-         f"{memory[-1][1] - first:+.1f} MB"),
+        (
+            "wall time beyond the runs' own",
+            "10 %",
+            f"{(there - own) / own:.1%}: runs {own:,.0f} s, workers there for {there:,.0f} s",
+        ),
+        (
+            "processor time beyond the runs' own, driver and scheduler included",
+            "",
+            f"{(used - own_cpu) / own_cpu:.1%}: {sum(spent):,.0f} s of workers and {driver:,.0f} s "
+            f"for {own_cpu:,.0f} s of runs",
+        ),
+        (
+            "memory of the driver, with the scheduler in it, since a tenth of the runs",
+            "+50 MB",
+            f"{memory[-1][1] - first:+.1f} MB",
+        ),
         ("files in the store", "200", f"{len(files)}, with {size / len(frame):.0f} bytes a row"),
         ("processor time of driver and scheduler", "", f"{1e3 * driver / len(frame):.1f} ms a run"),
         ("batches", "", f"{own / BATCH_SECONDS:.0f} of {BATCH_SECONDS:g} s"),
         ("message to a worker", "", f"{message:.0f} bytes a run"),
-    ]  # fmt: skip
+    ]
     told = f"{runs:,} runs of {people} people on {workers} workers. {machine()}"
     return f"{told}\n\n{table(('figure', 'required', 'measured'), rows)}"
 
@@ -160,13 +179,22 @@ def coverage(place: Path, repetitions: int) -> str:
         share = np.mean(held)
         hundreds = np.reshape(held[: repetitions // 100 * 100], (-1, 100)).sum(axis=1)
         within = int(np.sum((hundreds >= 92) & (hundreds <= 98)))
-        rows.append((
-            f"{asked} to {precision.tolerance:.0%}",
-            f"{min(counts)} to {max(counts)}, {np.median(counts):.0f}",
-            sum(held[:100]), f"{share:.1%}", f"{within} of {len(hundreds)}",
-        ))  # fmt: skip
-    heads = ("requested precision", "runs: range, median", "of the first 100", "of all",
-             "hundreds with 92 to 98")  # fmt: skip
+        rows.append(
+            (
+                f"{asked} to {precision.tolerance:.0%}",
+                f"{min(counts)} to {max(counts)}, {np.median(counts):.0f}",
+                sum(held[:100]),
+                f"{share:.1%}",
+                f"{within} of {len(hundreds)}",
+            )
+        )
+    heads = (
+        "requested precision",
+        "runs: range, median",
+        "of the first 100",
+        "of all",
+        "hundreds with 92 to 98",
+    )
     return f"{told}\n\n{table(heads, rows)}"
 
 

@@ -194,12 +194,24 @@ def side_by_side(results: list[dict[str, Any]]) -> str:
             [statistics.median(turn[k][key] for turn in each["runs"]) for k in range(len(PEERS))]
             for key in ("cpu_s", "person_s_per_cpu_s")
         )
-        rows.append((
-            TITLES.get(each["scenario"], each["scenario"]), f"{cpu[0]:.2f}", f"{cpu[1]:.3g}",
-            f"{statistics.median(each['ratio_cpu']):.1f}", f"{rate[0]:,.0f}", f"{rate[1]:,.0f}",
-        ))  # fmt: skip
-    heads = ("scenario", "CPU s here", "CPU s JuPedSim", "ratio",
-             "person-seconds per CPU-second here", "JuPedSim")  # fmt: skip
+        rows.append(
+            (
+                TITLES.get(each["scenario"], each["scenario"]),
+                f"{cpu[0]:.2f}",
+                f"{cpu[1]:.3g}",
+                f"{statistics.median(each['ratio_cpu']):.1f}",
+                f"{rate[0]:,.0f}",
+                f"{rate[1]:,.0f}",
+            )
+        )
+    heads = (
+        "scenario",
+        "CPU s here",
+        "CPU s JuPedSim",
+        "ratio",
+        "person-seconds per CPU-second here",
+        "JuPedSim",
+    )
     rounds = len(results[0]["runs"])
     told = f"Medians of {rounds} rounds; JuPedSim {version('jupedsim')}. {machine()}"
     return f"{told}\n\n{table(heads, rows)}"

@@ -20,9 +20,14 @@ from pathlib import Path
 from playwright.sync_api import Page, sync_playwright
 
 ARGUMENTS = (
-    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-vsync",
-    "--no-first-run", "--disable-background-networking", "--disable-component-update",
-)  # fmt: skip
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-vsync",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+)
 TICKS = os.sysconf("SC_CLK_TCK")
 
 COUNT = """async (seconds) => {

@@ -209,8 +209,9 @@ def draw(parts: dict[str, list[dict[str, Any]]], picture: Path) -> None:
         (*columns, ("options", "mean", "options per cluster (mean)")),
         strict=True,
     ):
-        axes.plot([run[key] for run in parts[part]],
-                  [run["us_per_person_s"] for run in parts[part]], "o-")  # fmt: skip
+        axes.plot(
+            [run[key] for run in parts[part]], [run["us_per_person_s"] for run in parts[part]], "o-"
+        )
         axes.set_xlabel(label)
         axes.grid(alpha=0.3)
     first = figure.axes[0]

@@ -70,9 +70,12 @@ def draw(run: Path, picture: Path, *, rate: int, speed_up: int, dpi: int) -> Non
         heading, radius = tracks.heading[rows], tracks.radii[tracks.person[rows]]
         nose = 1.7 * radius[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
         bodies.set(
-            widths=2 * radius, heights=2 * radius, angles=0 * radius,
-            offsets=centre, array=speed[rows],
-        )  # fmt: skip
+            widths=2 * radius,
+            heights=2 * radius,
+            angles=0 * radius,
+            offsets=centre,
+            array=speed[rows],
+        )
         strokes.set_segments(np.stack([centre, centre + nose], axis=1))
         return [strokes, bodies]
 

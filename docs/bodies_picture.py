@@ -35,8 +35,13 @@ def draw(run: str, picture: str) -> None:
             across = (body[:, 0] if along == 0 else -body[:, 1]) + APART * k
             for joint, parent in enumerate(PARENTS[1:].tolist(), start=1):
                 side = JOINTS[joint].split("_")[0]
-                axes.plot(across[[parent, joint]], body[[parent, joint], 2], linewidth=2,
-                          color=COLOURS.get(side, "#333333"), solid_capstyle="round")  # fmt: skip
+                axes.plot(
+                    across[[parent, joint]],
+                    body[[parent, joint], 2],
+                    linewidth=2,
+                    color=COLOURS.get(side, "#333333"),
+                    solid_capstyle="round",
+                )
         axes.axhline(0.0, color="#999999", linewidth=0.8)
         axes.set(aspect="equal", xticks=[], ylabel=f"from {label}\nz (m)", ylim=(-0.05, 1.85))
         axes.spines[["top", "right", "bottom"]].set_visible(False)

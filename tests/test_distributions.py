@@ -179,9 +179,22 @@ def test_texts(text, expected):
 
 @pytest.mark.parametrize(
     "text",
-    ["", "poisson(3)", "normal", "normal(1)", "normal(1,2,3,4,5)", "uniform(a,b)", "uniform(2,1)",
-     "(3)", "3)", "lognormal(3.44, 0.94", "normal(nan, 1)", "weibull(0, 1)", "gamma(1, -1)"],
-)  # fmt: skip
+    [
+        "",
+        "poisson(3)",
+        "normal",
+        "normal(1)",
+        "normal(1,2,3,4,5)",
+        "uniform(a,b)",
+        "uniform(2,1)",
+        "(3)",
+        "3)",
+        "lognormal(3.44, 0.94",
+        "normal(nan, 1)",
+        "weibull(0, 1)",
+        "gamma(1, -1)",
+    ],
+)
 def test_texts_that_are_none(text):
     with pytest.raises(ModelError, match="distribution") as refused:
         parse(text)

@@ -83,9 +83,12 @@ def asked_for() -> list[Requirement]:
 @pytest.mark.parametrize("system", ["linux", "darwin", "win32"])
 def test_constraints_have_one_allowed_version_of_each_dependency(python, system):
     where = {
-        "python_version": python, "python_full_version": f"{python}.7", "sys_platform": system,
-        "implementation_name": "cpython", "platform_python_implementation": "CPython",
-    }  # fmt: skip
+        "python_version": python,
+        "python_full_version": f"{python}.7",
+        "sys_platform": system,
+        "implementation_name": "cpython",
+        "platform_python_implementation": "CPython",
+    }
     pinned: dict[str, str] = {}
     for each in constraints():
         if each.marker is None or each.marker.evaluate(where):

@@ -46,7 +46,11 @@ def test_what_was_made_within_is_not_gone_through_again():
 def test_an_import_brings_only_what_it_needs(code, slow):
     script = f"import sys; {code}; print(sorted(set({slow.split()}) & set(sys.modules)))"
     done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120,
+        [sys.executable, "-c", script],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
         env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[1])},
-    )  # fmt: skip
+    )
     assert done.stdout == "[]\n"

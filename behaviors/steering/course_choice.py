@@ -185,9 +185,7 @@ def _people_ahead(
 
 
 @inner()
-def _somebody_comes(
-    x: float, y: float, ex: float, ey: float, away: float, around: _Around
-) -> bool:
+def _somebody_comes(x: float, y: float, ex: float, ey: float, away: float, around: _Around) -> bool:
     """Whether somebody in view, on this side of a target, wants to go the other way."""
     grid, ways = around.grid, around.ways
     first, last, low, high = cells_within(grid, x, y, COMING)

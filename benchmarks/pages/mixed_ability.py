@@ -69,11 +69,13 @@ def run(neck: str, kind: str, share: float, seed: int) -> dict[str, Any]:
     """People leave a room through a neck; the share of one type is given."""
     width, length = NECKS[neck]
     low, high, end = (ROOM - width) / 2, (ROOM + width) / 2, ROOM + length
-    floor = union_all([
-        box(0.0, 0.0, ROOM, ROOM),
-        box(ROOM, low, end, high),
-        box(end, 0.0, end + BEHIND, ROOM),
-    ])  # fmt: skip
+    floor = union_all(
+        [
+            box(0.0, 0.0, ROOM, ROOM),
+            box(ROOM, low, end, high),
+            box(end, 0.0, end + BEHIND, ROOM),
+        ]
+    )
     line = ((end + BEHIND, 0.0), (end + BEHIND, ROOM))
     plan = FloorPlan(floor, exits=[Exit("end", *line)])
     shares = {"able_bodied": 1.0 - share, kind: share} if kind else {"able_bodied": 1.0}
@@ -126,11 +128,16 @@ def results(rows: list[dict[str, Any]], seeds: int) -> str:
                 last, soon, late = interval(own, "egress_s")
                 # Where some seed leaves people inside, the column beside it says so.
                 time = "-" if np.isnan(last) else f"{last:.0f} ({soon:.0f} to {late:.0f})"
-                lines.append((
-                    f"{neck}, {width:g} m x {length:g} m", name, f"{100 * share:.0f} %",
-                    f"{flow_:.2f} ({low:.2f} to {high:.2f})", time,
-                    f"{sum(row['inside'] for row in own)} of {PEOPLE * len(own)}",
-                ))  # fmt: skip
+                lines.append(
+                    (
+                        f"{neck}, {width:g} m x {length:g} m",
+                        name,
+                        f"{100 * share:.0f} %",
+                        f"{flow_:.2f} ({low:.2f} to {high:.2f})",
+                        time,
+                        f"{sum(row['inside'] for row in own)} of {PEOPLE * len(own)}",
+                    )
+                )
     overlaps, through = (sum(row[name] for row in rows) for name in ("overlaps", "wall_crossings"))
     return (
         f"Seeds 1 to {seeds}; means over seeds, with 90 % intervals of the mean.\n\n"
@@ -150,11 +157,16 @@ def draw(rows: list[dict[str, Any]], picture: Path) -> None:
                     [interval(chosen(rows, neck, kind, share), name) for share in SHARES]
                 )
                 axes.errorbar(
-                    100 * np.array(SHARES), own[:, 0],
+                    100 * np.array(SHARES),
+                    own[:, 0],
                     yerr=np.abs(own[:, 1:] - own[:, :1]).T,
-                    color=colour, linestyle=style, marker="o", markersize=4, capsize=3,
+                    color=colour,
+                    linestyle=style,
+                    marker="o",
+                    markersize=4,
+                    capsize=3,
                     label=f"{words}, {neck}",
-                )  # fmt: skip
+                )
         axes.set_xlabel("share, %")
         axes.set_ylabel(label)
         axes.set_ylim(bottom=0.0)

@@ -39,8 +39,18 @@ print(imported - start, read - imported, made - read, time.perf_counter() - made
 
 def run(cache: str, out: str) -> tuple[float, float]:
     """Seconds and processor seconds of one command that runs the doorway and draws it."""
-    command = [sys.executable, "-m", "mesa_mobility", "run", "doorway", "--seed", "1",
-               "--no-progress", "--out", out]  # fmt: skip
+    command = [
+        sys.executable,
+        "-m",
+        "mesa_mobility",
+        "run",
+        "doorway",
+        "--seed",
+        "1",
+        "--no-progress",
+        "--out",
+        out,
+    ]
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
     subprocess.run(command, check=True, env=environment, stdout=subprocess.DEVNULL)
@@ -60,9 +70,13 @@ def main() -> None:
         later = [run(cache, f"{folder}/later")[0] for _ in range(REPEATS)]
         parts = []
         for _ in range(REPEATS):
-            done = subprocess.run([sys.executable, "-c", IMPORTS], check=True,
-                                  capture_output=True, text=True,
-                                  env={**os.environ, "NUMBA_CACHE_DIR": cache})  # fmt: skip
+            done = subprocess.run(
+                [sys.executable, "-c", IMPORTS],
+                check=True,
+                capture_output=True,
+                text=True,
+                env={**os.environ, "NUMBA_CACHE_DIR": cache},
+            )
             parts.append([float(each) for each in done.stdout.split()])
     columns = zip(*parts, strict=True)
     imported, read, made, simulated = (f"{statistics.median(each):.1f}" for each in columns)

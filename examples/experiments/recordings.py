@@ -46,9 +46,14 @@ def experiment(maps, crowds=CROWDS, replications=REPLICATIONS):
         for crowd in range(crowds)
     ]
     return Experiment(
-        f"{Path(__file__).resolve()}:Hall", Table(points), replications, seed=1, max_seconds=300,
-        time_limit=120, name="Recordings, people, chance",
-    )  # fmt: skip
+        f"{Path(__file__).resolve()}:Hall",
+        Table(points),
+        replications,
+        seed=1,
+        max_seconds=300,
+        time_limit=120,
+        name="Recordings, people, chance",
+    )
 
 
 def draw(frame, parts, path):
@@ -76,12 +81,16 @@ def main(folder, place, picture=None, **keywords):
     frame = store.frame()
     # Maps are what is independent here: runs and crowds of one map share its recordings.
     mean = mean_interval(frame.groupby("mobility_map").egress_s.mean())
-    print(f"mean egress time {mean.value:.2f} s (95 %: {mean.low:.2f} to {mean.high:.2f}), "
-          f"{store.status()['done']} runs")  # fmt: skip
+    print(
+        f"mean egress time {mean.value:.2f} s (95 %: {mean.low:.2f} to {mean.high:.2f}), "
+        f"{store.status()['done']} runs"
+    )
     for name, part in zip(["recordings", "people", "chance"], parts, strict=True):
         share = part.share
-        print(f"{name}: standard deviation {part.variance**0.5:.2f} s, share {share.value:.0%} "
-              f"({share.low:.0%} to {share.high:.0%})")  # fmt: skip
+        print(
+            f"{name}: standard deviation {part.variance**0.5:.2f} s, share {share.value:.0%} "
+            f"({share.low:.0%} to {share.high:.0%})"
+        )
     if picture is not None:
         draw(frame, parts, picture)
 

@@ -103,8 +103,11 @@ def test_khronos_finds_nothing_to_complain_about(run, plan, tmp_path):
     npm, node = shutil.which("npm"), shutil.which("node")
     if npm is None or node is None:
         pytest.skip("no npm, which Khronos' validator needs")
-    got = subprocess.run([npm, "install", "--prefix", tmp_path, "gltf-validator@2.0.0-dev.3.10"],
-                         capture_output=True, text=True)  # fmt: skip
+    got = subprocess.run(
+        [npm, "install", "--prefix", tmp_path, "gltf-validator@2.0.0-dev.3.10"],
+        capture_output=True,
+        text=True,
+    )
     if got.returncode != 0:
         pytest.skip(f"npm cannot install gltf-validator: {got.stderr.strip()[-200:]}")
     write_glb(walkers(run, Selection()), plan, tmp_path / "crowd.glb")
@@ -124,8 +127,13 @@ def test_a_bvh_file_reads_back_as_the_same_motion(run, tmp_path):
     assert again.frame_rate == 30
     positions = again.positions()
     plain = {name: j for j, name in enumerate(again.skeleton.names)}
-    ends = {"crown": "head", "left_wrist": "left_elbow", "left_toe": "left_ankle",
-            "right_wrist": "right_elbow", "right_toe": "right_ankle"}  # fmt: skip
+    ends = {
+        "crown": "head",
+        "left_wrist": "left_elbow",
+        "left_toe": "left_ankle",
+        "right_wrist": "right_elbow",
+        "right_toe": "right_ankle",
+    }
     for j, joint in enumerate(JOINTS):
         number = again.skeleton.names.index(ends[joint] + ".end") if joint in ends else plain[joint]
         np.testing.assert_allclose(positions[:, number], motion.positions[:, j], atol=0.001)

@@ -19,9 +19,15 @@ from mesa_mobility.behaviors import (
 from tests.fixtures.records import me, option, options
 
 TERMS = [
-    Displacement, FacingDeviation, PreferredSpeed, PreferredVelocity, Stepping, TargetDistance,
-    VelocityChange, Sideways,
-]  # fmt: skip
+    Displacement,
+    FacingDeviation,
+    PreferredSpeed,
+    PreferredVelocity,
+    Stepping,
+    TargetDistance,
+    VelocityChange,
+    Sideways,
+]
 
 START = (0.25, 0.5)
 VELOCITY = (0.75, -0.5)

@@ -32,10 +32,19 @@ from mesa_mobility.plugins.registry import load_behavior
 from tests.fixtures.options import Ending, crowded, one_option
 
 TERMS = [
-    TargetDistance, FacingDeviation, Displacement, Interference, PreferredSpeed, PreferredVelocity,
-    Headway, RightOfWay, RoomAhead, Stepping, VelocityChange,
+    TargetDistance,
+    FacingDeviation,
+    Displacement,
+    Interference,
+    PreferredSpeed,
+    PreferredVelocity,
+    Headway,
+    RightOfWay,
+    RoomAhead,
+    Stepping,
+    VelocityChange,
     Sideways,
-]  # fmt: skip
+]
 
 
 def test_equation_one_by_hand():

@@ -58,9 +58,15 @@ def test_neighbours_of_others_do_not_count():
 
 @pytest.mark.parametrize(
     ("heading", "counts"),
-    [(0.0, True), (math.radians(89), True), (math.radians(91), False), (math.pi, False),
-     (math.radians(269), False), (math.radians(271), True)],
-)  # fmt: skip
+    [
+        (0.0, True),
+        (math.radians(89), True),
+        (math.radians(91), False),
+        (math.pi, False),
+        (math.radians(269), False),
+        (math.radians(271), True),
+    ],
+)
 def test_who_is_behind_the_facing_at_the_mobility_point_does_not_count(heading, counts):
     ending = Ending(heading=heading, displacement=1.5, duration=1.5)
     expected = ONE_E_FOLD if counts else 0.0

@@ -110,9 +110,10 @@ def test_who_is_at_its_target_has_no_line():
 def test_neighbours_add_up_and_those_of_others_do_not_count():
     alone = Chooser([Ending((0.6, 0.2))], target=GOAL)
     beset = Chooser(
-        [Ending((0.6, 0.2))] * 2, target=GOAL,
+        [Ending((0.6, 0.2))] * 2,
+        target=GOAL,
         neighbours=[oncoming(-3.0, 0.0), same_way(1.0, 0.0, 1.0)],
-    )  # fmt: skip
+    )
     costs = RightOfWay(**ROUND).cost(candidates(alone, beset, alone))
     assert costs == pytest.approx([0.0, 0.8, 0.8, 0.0])
 
@@ -120,9 +121,10 @@ def test_neighbours_add_up_and_those_of_others_do_not_count():
 def test_default_numbers_are_used():
     term = RightOfWay()
     halfway = one_option(
-        Ending((-1.0, (term.width - term.bias) / 2.0)), target=GOAL,
+        Ending((-1.0, (term.width - term.bias) / 2.0)),
+        target=GOAL,
         neighbours=[oncoming(-3.0, 0.0)],
-    )  # fmt: skip
+    )
     assert term.cost(halfway) == pytest.approx([0.5])
 
 

@@ -184,9 +184,16 @@ def test_the_worst_wall_of_any_batch(options):
         # The oracle measures speeds by the ground between start and end.
         start = options.points[k] - (options.displacements[k], 0.0)
         body = Body(
-            None, *start, 0.0, 0.0, 0.0, 0, options.cores[b],
-            target=tuple(start + way_to_target(options, b)), walls=walls_of(options, b),
-        )  # fmt: skip
+            None,
+            *start,
+            0.0,
+            0.0,
+            0.0,
+            0,
+            options.cores[b],
+            target=tuple(start + way_to_target(options, b)),
+            walls=walls_of(options, b),
+        )
         end = (*options.points[k], options.headings[k])
         if sure[k]:
             assert costs[k] == pytest.approx(of(body, end, options.durations[k], [], 1.0), abs=1e-6)

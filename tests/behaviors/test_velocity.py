@@ -57,8 +57,10 @@ def bound(x, y, radius, target, preferred, duration, start=(0.0, 0.0)):
 def test_numbers_worked_out_by_hand(point, start, target, preferred, duration, expected):
     shown = Chooser(
         [Ending(point, displacement=math.dist(point, start), duration=duration)],
-        target=target, preferred_speed=preferred, position=start,
-    )  # fmt: skip
+        target=target,
+        preferred_speed=preferred,
+        position=start,
+    )
     assert PreferredVelocity().cost(candidates(shown)) == pytest.approx([expected], abs=1e-12)
 
 
@@ -172,8 +174,9 @@ def test_bounds_hold_for_the_groups_of_the_map_that_ships(preferred):
 def test_changes_worked_out_by_hand(point, start, velocity, duration, expected):
     shown = Chooser(
         [Ending(point, displacement=math.dist(point, start), duration=duration)],
-        position=start, velocity=velocity,
-    )  # fmt: skip
+        position=start,
+        velocity=velocity,
+    )
     assert VelocityChange(turning=1.5).cost(candidates(shown)) == pytest.approx(
         [expected], abs=1e-12
     )

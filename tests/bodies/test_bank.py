@@ -68,8 +68,10 @@ def test_a_mirrored_pose_bends_the_other_arm(bank):
     np.testing.assert_allclose(turns[1, LEFT], np.eye(3), atol=1e-4)
     # Bending forward stays bending forward.
     np.testing.assert_allclose(turns[0, LEFT], turns[1, RIGHT], atol=1e-9)
-    assert bank.bearing(np.array([2, 3])).tolist() == [[True, True, False, False],
-                                                       [False, False, True, True]]  # fmt: skip
+    assert bank.bearing(np.array([2, 3])).tolist() == [
+        [True, True, False, False],
+        [False, False, True, True],
+    ]
 
 
 def test_later_poses_stay_within_their_clip(bank):

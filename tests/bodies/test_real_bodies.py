@@ -33,8 +33,9 @@ def walk() -> PedestrianModel:
 
 
 def recording_named(captures_dir, name: str) -> Recording:
-    found = load_clips(find_clips(captures_dir / "manifest.tsv"), pedestrian_type="able_bodied",
-                       mirrored=False)  # fmt: skip
+    found = load_clips(
+        find_clips(captures_dir / "manifest.tsv"), pedestrian_type="able_bodied", mirrored=False
+    )
     return next(each for each in found.recordings if each.name == name)
 
 
@@ -90,8 +91,9 @@ def test_feet_slide_far_more_without_being_held(walk, bank):
     rows = run.rows_of(0)
     track = np.column_stack([run.x[rows], run.y[rows], run.heading[rows]])
     movements = run.decisions.movements_of(0)
-    loose = quality(body_motion(bank, movements, run.frame[rows].astype(np.int64), track,
-                                planted=False))  # fmt: skip
+    loose = quality(
+        body_motion(bank, movements, run.frame[rows].astype(np.int64), track, planted=False)
+    )
     held = quality(run.poses(0))
     assert np.median(held.slides) < 0.2 * np.median(loose.slides)
 

@@ -67,9 +67,16 @@ def test_stairs_of_any_measures_are_read_again(risers, tread, well, landing, tur
     ground = Level(0, hall, exits=[Exit("out", (-30, 0), (-30, 1))])
     first = Level(1, hall, 0.17 * risers)
     stairs = Stairs.dog_leg(
-        "s", first, ground, ((1.1, 2.2 + wide), (1.1, 2.2)),
-        risers=risers, tread=tread, turn=turn, well=well, landing=landing,
-    )  # fmt: skip
+        "s",
+        first,
+        ground,
+        ((1.1, 2.2 + wide), (1.1, 2.2)),
+        risers=risers,
+        tread=tread,
+        turn=turn,
+        well=well,
+        landing=landing,
+    )
     building = Building([ground, first], [stairs])
     text = json.dumps(building.to_geojson())
     assert parts(Building.from_geojson(json.loads(text))) == parts(building)

@@ -55,7 +55,7 @@ def local(seed):
         ({"seeds": 0}, "seeds: each is 0, expected a whole number, 1 or more"),
         ({"executor": "threads"}, "executor is 'threads', expected serial, processes, dask"),
     ],
-)  # fmt: skip
+)
 def test_what_is_refused(changes, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = {
@@ -91,7 +91,7 @@ def test_what_is_refused(changes, said, tmp_path, monkeypatch):
         (lambda: Search(spread=2.0), "search: spread is 2.0, expected more than 0, at most 1"),
         (lambda: Search(max_seconds=0.0), "search: max_seconds is 0.0, expected seconds, or None"),
     ],
-)  # fmt: skip
+)
 def test_settings_out_of_range(make, said):
     with pytest.raises(ModelError) as no:
         make()
@@ -117,9 +117,11 @@ def test_a_store_is_of_one_calibration(tmp_path, change):
         "seeds": {"seeds": Seeds(held_out=2)},
         "search": {"search": Search(evaluations=4, spread=0.3, preset=ENGINE)},
         "data": {"data": {"seen": {"time": 2.0}}},
-        "preset": {"search": Search(evaluations=4, preset="paper"), "free": [
-            Free("headway.time", 0.2, 3.0, start=1.2)]},
-    }[change]  # fmt: skip
+        "preset": {
+            "search": Search(evaluations=4, preset="paper"),
+            "free": [Free("headway.time", 0.2, 3.0, start=1.2)],
+        },
+    }[change]
     names = {"data": "scenarios", "distances": "scenarios"}
     with pytest.raises(ModelError) as no:
         calibrate(**words | changed)

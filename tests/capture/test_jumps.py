@@ -105,9 +105,13 @@ def test_a_clip_is_split_at_its_jumps_and_says_so(write, walker_bvh):
     path = write("walk.bvh", shifted(walker_bvh(200), [60, 130], 1.0))
     loaded = load_clips(read_folder(path.parent))
     assert [r.name for r in loaded.recordings] == [
-        "walk[0:59]", "walk[0:59]~mirror", "walk[62:129]", "walk[62:129]~mirror",
-        "walk[132:200]", "walk[132:200]~mirror",
-    ]  # fmt: skip
+        "walk[0:59]",
+        "walk[0:59]~mirror",
+        "walk[62:129]",
+        "walk[62:129]~mirror",
+        "walk[132:200]",
+        "walk[132:200]~mirror",
+    ]
     assert [r.frames for r in loaded.recordings] == [59, 59, 67, 67, 68, 68]
     assert loaded.skipped == []
     assert loaded.split == [

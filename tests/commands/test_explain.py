@@ -25,9 +25,24 @@ def saved(tmp_path_factory):
     from mesa_mobility.cli import main
 
     folder = tmp_path_factory.mktemp("saved") / "run"
-    words = ["run", "doorway", "--seed", "3", "--seconds", "4", "--set", "pedestrians=20",
-             "--set", "pre_movement=uniform(0, 0.5)", "--behavior", "keep_distance=0.2",
-             "--record", "decisions", "--out", folder]  # fmt: skip
+    words = [
+        "run",
+        "doorway",
+        "--seed",
+        "3",
+        "--seconds",
+        "4",
+        "--set",
+        "pedestrians=20",
+        "--set",
+        "pre_movement=uniform(0, 0.5)",
+        "--behavior",
+        "keep_distance=0.2",
+        "--record",
+        "decisions",
+        "--out",
+        folder,
+    ]
     before, arguments = signal.getsignal(signal.SIGINT), sys.argv
     try:
         sys.argv = ["mesa-mobility", *map(str, words)]
@@ -81,13 +96,16 @@ def test_the_answer_is_that_of_the_decision_when_it_was_taken(command, saved, pe
     expected = {
         (int(parts.rows[o]), float(parts.share[o])): (
             live.candidates.points[k].tolist(),
-            None if live.verdicts[k] == FREE
-            else "wall" if live.verdicts[k] == WALL else int(live.blockers[k]),
+            None
+            if live.verdicts[k] == FREE
+            else "wall"
+            if live.verdicts[k] == WALL
+            else int(live.blockers[k]),
             (live.weights * live.costs[:, k]).tolist(),
             k == live.chosen,
         )
         for k, o in enumerate(live.candidates.options.tolist())
-    }  # fmt: skip
+    }
     for each in options:
         found = (each["ends_at"], each["in_the_way"], list(each["costs"].values()), each["taken"])
         assert found == expected[each["option"], each["share"]]
@@ -150,8 +168,12 @@ def test_a_summary_of_another_version_is_told(command, run_folder):
 
 @pytest.mark.parametrize(
     ("person", "seconds", "message"),
-    [(500, 1, "person 500: has taken no decision"), (7, 90, "got a time of 90 s"),
-     (7, -1, "got a time of -1 s"), (7, "nan", "got a time of nan s")],
-)  # fmt: skip
+    [
+        (500, 1, "person 500: has taken no decision"),
+        (7, 90, "got a time of 90 s"),
+        (7, -1, "got a time of -1 s"),
+        (7, "nan", "got a time of nan s"),
+    ],
+)
 def test_nobody_and_no_time_are_told(command, saved, person, seconds, message):
     assert message in refused(command, saved, "--person", person, f"--time={seconds}")

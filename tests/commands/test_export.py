@@ -25,8 +25,7 @@ def test_a_run_becomes_figures_films_and_stills(command, run_dir, tmp_path):
     assert (outcome.status, outcome.out) == (0, "")
     assert "2 people written" in outcome.err
     assert (tmp_path / "crowd.glb").read_bytes()[:4] == b"glTF"
-    outcome = command("export", run_dir, "-o", tmp_path / "bvh", "--format", "bvh",
-                      "--people", "1")  # fmt: skip
+    outcome = command("export", run_dir, "-o", tmp_path / "bvh", "--format", "bvh", "--people", "1")
     assert outcome.status == 0
     assert [each.name for each in (tmp_path / "bvh").iterdir()] == ["person_1.bvh"]
     outcome = command("export", run_dir, "-o", tmp_path / "crowd.html")

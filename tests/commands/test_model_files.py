@@ -23,9 +23,15 @@ def same_path(monkeypatch):
 
 @pytest.mark.parametrize(
     ("text", "expected"),
-    [("room.py", True), ("a/b c/room.py:Room", True), (r"C:\models\room.py:Room", True),
-     ("doorway", False), ("room.pyc", False), ("room:Room", False)],
-)  # fmt: skip
+    [
+        ("room.py", True),
+        ("a/b c/room.py:Room", True),
+        (r"C:\models\room.py:Room", True),
+        ("doorway", False),
+        ("room.pyc", False),
+        ("room:Room", False),
+    ],
+)
 def test_what_names_a_file(text, expected):
     assert is_model_file(text) is expected
 
@@ -50,18 +56,27 @@ def test_imported_models_do_not_count_and_neighbours_are_found(tmp_path):
     ("text", "name", "message"),
     [
         ("x = 1\n", "", "room.py: has no model, expected a subclass of PedestrianModel"),
-        (ROOM + "\n\nclass Hall(Room):\n    pass\n", "",
-         "room.py: has several models, expected room.py:NAME, one of Room, Hall"),
+        (
+            ROOM + "\n\nclass Hall(Room):\n    pass\n",
+            "",
+            "room.py: has several models, expected room.py:NAME, one of Room, Hall",
+        ),
         (ROOM, ":Rom", "room.py: has no model 'Rom', did you mean 'Room'?; it has Room"),
         ("x = (\n", "", "room.py:1: cannot be loaded: SyntaxError: '(' was never closed"),
-        ("x = 1\nimport no_such_thing\n", "",
-         "room.py:2: cannot be loaded: ModuleNotFoundError: No module named 'no_such_thing'"),
-        ("def f():\n    1 / 0\n\n\nf()\n", "",
-         "room.py:2: cannot be loaded: ZeroDivisionError: division by zero"),
+        (
+            "x = 1\nimport no_such_thing\n",
+            "",
+            "room.py:2: cannot be loaded: ModuleNotFoundError: No module named 'no_such_thing'",
+        ),
+        (
+            "def f():\n    1 / 0\n\n\nf()\n",
+            "",
+            "room.py:2: cannot be loaded: ZeroDivisionError: division by zero",
+        ),
         ("raise ValueError('two\\nlines')\n", "", "room.py:1: cannot be loaded: ValueError: two"),
         ("raise SystemExit(3)\n", "", "room.py:1: cannot be loaded: SystemExit: 3"),
     ],
-)  # fmt: skip
+)
 def test_bad_model_files_give_the_same_line_in_every_command(
     tmp_path, monkeypatch, command, text, name, message
 ):
@@ -117,8 +132,21 @@ def test_a_model_in_a_file_runs_with_its_own_parameters(tmp_path, command):
         "        self.add_pedestrians([(1 + i, 2) for i in range(people)])\n"
     )
     file, out = tmp_path / "own_room.py", tmp_path / "out"
-    done = command("run", file, "--set", "people=3", "--seconds", 1, "--out", out, "--json",
-                   "--record", "decisions", "--seed", 4)  # fmt: skip
+    done = command(
+        "run",
+        file,
+        "--set",
+        "people=3",
+        "--seconds",
+        1,
+        "--out",
+        out,
+        "--json",
+        "--record",
+        "decisions",
+        "--seed",
+        4,
+    )
     assert done.status == 0, done.err
     summary = json.loads(done.out.splitlines()[-1])
     said = {"model": str(file), "pedestrians": 3, "preset": "default", "parameters": {"people": 3}}

@@ -32,9 +32,14 @@ def test_what_a_plan_holds(command, tmp_path):
     (tmp_path / "room.wkt").write_text(WKT)
     done = command("plan", str(tmp_path / "room.wkt"), "--json")
     assert json.loads(done.out) == {
-        "name": "", "size_m": [6.0, 4.0], "free_area_m2": 23.0, "exits": {"street": 2.0},
-        "gates": {}, "obstacles": 1, "zones": [],
-    }  # fmt: skip
+        "name": "",
+        "size_m": [6.0, 4.0],
+        "free_area_m2": 23.0,
+        "exits": {"street": 2.0},
+        "gates": {},
+        "obstacles": 1,
+        "zones": [],
+    }
     assert "street (2.00 m)" in command("plan", str(tmp_path / "room.wkt")).out
 
 

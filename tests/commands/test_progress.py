@@ -49,9 +49,22 @@ def test_lines_come_at_least_every_ten_seconds():
 
 @pytest.mark.parametrize(
     "words",
-    ["run", "verify", "validate", "experiment run", "map build", "map bootstrap", "map coverage",
-     "map poses", "animate", "render", "replay", "explain", "validate tracks"],
-)  # fmt: skip
+    [
+        "run",
+        "verify",
+        "validate",
+        "experiment run",
+        "map build",
+        "map bootstrap",
+        "map coverage",
+        "map poses",
+        "animate",
+        "render",
+        "replay",
+        "explain",
+        "validate tracks",
+    ],
+)
 def test_every_long_command_can_be_silent(words):
     command = typer.main.get_command(app)
     for word in [words] if words in command.commands else words.split():

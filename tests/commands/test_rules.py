@@ -22,8 +22,11 @@ def test_preset_lists_numbers_and_writes_them(command, mine):
     answer = json.loads(told.out.splitlines()[-1])
     assert answer["preset"] == "mine"
     assert answer["numbers"]["headway.time"] == {
-        "value": 0.9, "unit": "s", "bounds": "more than 0 s", "source": "mine.toml",
-    }  # fmt: skip
+        "value": 0.9,
+        "unit": "s",
+        "bounds": "more than 0 s",
+        "source": "mine.toml",
+    }
     assert answer["numbers"]["right_of_way.weight"]["source"] == "command line"
     rules = PRESETS["default"].with_parameters({"headway.time": 0.9})
     assert read_preset(mine).parameters() == rules.parameters()
@@ -77,9 +80,26 @@ def test_a_model_without_behaviours_refuses_their_numbers(command, plugins):
 
 @pytest.mark.thorough
 def test_run_says_and_repeats_what_was_set(command, mine, tmp_path):
-    words = ["run", "doorway", "--seed", 3, "--seconds", 3, "--set", "pedestrians=6", "--record",
-             "decisions", "--behavior", "keep_distance=0.2", "--preset", mine,
-             "--set", "keep_distance.distance=1.1", "--set", "right_of_way.width=0.5"]  # fmt: skip
+    words = [
+        "run",
+        "doorway",
+        "--seed",
+        3,
+        "--seconds",
+        3,
+        "--set",
+        "pedestrians=6",
+        "--record",
+        "decisions",
+        "--behavior",
+        "keep_distance=0.2",
+        "--preset",
+        mine,
+        "--set",
+        "keep_distance.distance=1.1",
+        "--set",
+        "right_of_way.width=0.5",
+    ]
     outcome = command(*words, "--out", tmp_path / "run", "--json")
     assert outcome.status == 0, outcome.err
     summary = json.loads(outcome.out.splitlines()[-1])
@@ -102,9 +122,17 @@ def test_numbers_change_what_verification_measures(command, mine, tmp_path):
     onwards = {"target_distance", "preferred_velocity", "facing_deviation"}
     without = [f"{name}.weight=0" for name in PRESETS["default"].terms if name in onwards]
     slow = command(
-        "verify", "rimea-01", "--jobs", 1, "--json", "--preset", mine, "--report", page,
+        "verify",
+        "rimea-01",
+        "--jobs",
+        1,
+        "--json",
+        "--preset",
+        mine,
+        "--report",
+        page,
         *(part for number in without for part in ("--set", number)),
-    )  # fmt: skip
+    )
     assert plain.status == 0
     answers = [json.loads(each.out.splitlines()[-1]) for each in (plain, slow)]
     assert [each["rimea-01"]["preset"] for each in answers] == ["default", "mine"]

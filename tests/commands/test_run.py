@@ -108,9 +108,20 @@ def test_settings_preset_map_and_seed_reach_the_model(command, tmp_path):
     map_file = tmp_path / "some.npz"
     map_file.touch()
     outcome = command(
-        "run", "corridor", "--set", "people=2", "--set", "note=a=b", "--preset", "paper",
-        "--map", map_file, "--seed", 7, "--json",
-    )  # fmt: skip
+        "run",
+        "corridor",
+        "--set",
+        "people=2",
+        "--set",
+        "note=a=b",
+        "--preset",
+        "paper",
+        "--map",
+        map_file,
+        "--seed",
+        7,
+        "--json",
+    )
     summary = last_line(outcome)
     expected = {"pedestrians": 2, "note": "a=b", "preset": "paper", "seed": 7}
     assert {key: summary[key] for key in expected} == expected
@@ -187,9 +198,16 @@ def test_an_output_folder_that_cannot_be_written_is_said_before_the_run(command,
 def test_control_c_writes_what_there_is(command, tmp_path):
     # Asked after 0.3 s, it stops at the next full second, with two left.
     outcome = command(
-        "run", "corridor", "--set", "interrupt_at=0.3", "--set", "pace=0.5", "--json",
-        "--out", tmp_path / "out",
-    )  # fmt: skip
+        "run",
+        "corridor",
+        "--set",
+        "interrupt_at=0.3",
+        "--set",
+        "pace=0.5",
+        "--json",
+        "--out",
+        tmp_path / "out",
+    )
     assert outcome.status == 130
     summary = last_line(outcome)
     assert (summary["interrupted"], summary["simulated_s"], summary["left_inside"]) == (
@@ -233,8 +251,11 @@ def test_the_module_is_the_command(tmp_path):
     environment = os.environ | {"PYTHONPATH": str(tmp_path / "site" / "corridors")}
     done = subprocess.run(
         [sys.executable, "-m", "mesa_mobility", "run", "corridor", "--seed", "5", "--json"],
-        capture_output=True, text=True, env=environment, timeout=60,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=60,
+    )
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout.splitlines()[-1])["egress_s"] == 2.1
 
@@ -244,12 +265,26 @@ def test_the_same_seed_gives_the_same_bytes_in_another_process(map_file, tmp_pat
     for name in ("first", "second"):
         done = subprocess.run(
             [
-                sys.executable, "-m", "mesa_mobility", "run", "doorway", "--map", map_file,
-                "--seed", "3", "--seconds", "6", "--set", "pedestrians=8", "--json",
-                "--out", tmp_path / name,
+                sys.executable,
+                "-m",
+                "mesa_mobility",
+                "run",
+                "doorway",
+                "--map",
+                map_file,
+                "--seed",
+                "3",
+                "--seconds",
+                "6",
+                "--set",
+                "pedestrians=8",
+                "--json",
+                "--out",
+                tmp_path / name,
             ],
-            capture_output=True, text=True,
-        )  # fmt: skip
+            capture_output=True,
+            text=True,
+        )
         assert done.returncode == 0, done.stderr
         summary = json.loads(done.stdout.splitlines()[-1])
         expected = {"model": "doorway", "pedestrians": 8, "overlaps": 0, "wall_crossings": 0}

@@ -20,8 +20,10 @@ REPOSITORY = Path(__file__).parents[2]
 def cli(*arguments, **environment):
     return subprocess.run(
         [sys.executable, "-m", "mesa_mobility", *map(str, arguments)],
-        capture_output=True, text=True, env=os.environ | environment,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        env=os.environ | environment,
+    )
 
 
 @pytest.mark.parametrize(
@@ -71,21 +73,34 @@ def test_surroundings_that_will_not_do(name, value):
 @pytest.mark.thorough
 def test_pictures_need_no_backend_and_the_summary_tells_where_all_comes_from(tmp_path):
     done = cli(
-        "run", "straight_walk", "--seconds", 0.2, "--set", "pedestrians=3", "--seed", 4,
-        "--out", tmp_path, MPLBACKEND="nonsense",
-    )  # fmt: skip
+        "run",
+        "straight_walk",
+        "--seconds",
+        0.2,
+        "--set",
+        "pedestrians=3",
+        "--seed",
+        4,
+        "--out",
+        tmp_path,
+        MPLBACKEND="nonsense",
+    )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "occupancy.png").stat().st_size > 1000
     summary = json.loads((tmp_path / "summary.json").read_text())
     digest = hashlib.sha256(shipped_map_path("able_bodied").read_bytes()).hexdigest()
     expected = {
         "parameters": {
-            "pedestrians": 3, "slowest": 0.9, "fastest": 1.5, "length": 40.0, "frames_per_step": 3,
+            "pedestrians": 3,
+            "slowest": 0.9,
+            "fastest": 1.5,
+            "length": 40.0,
+            "frames_per_step": 3,
             "population": None,
         },
         "maps": {"able_bodied": {"file": "able_bodied.npz", "sha256": digest}},
         "mesa_mobility": importlib.metadata.version("mesa-mobility"),
-    }  # fmt: skip
+    }
     assert {key: summary[key] for key in expected} == expected
     assert summary["versions"]["numpy"] == importlib.metadata.version("numpy")
     assert [(each["type"], each["people"]) for each in summary["by_type"]] == [("able_bodied", 3)]
@@ -119,9 +134,10 @@ def test_a_checkout_that_is_not_the_one_installed_has_its_models(tmp_path):
     """In the current folder Python finds its package first, without what an install brings."""
     for folder in ("mesa_mobility", "behaviors", "models"):
         shutil.copytree(
-            REPOSITORY / folder, tmp_path / folder,
+            REPOSITORY / folder,
+            tmp_path / folder,
             ignore=shutil.ignore_patterns("__pycache__", "*.npz", "*.png"),
-        )  # fmt: skip
+        )
     source = (
         "import sys, mesa_mobility\n"
         "sys.meta_path = [each for each in sys.meta_path if 'editable' not in repr(each)]\n"
@@ -161,7 +177,9 @@ def test_no_worker_more_than_threads_are_allowed(recordings, tmp_path):
     )
     arguments = ["map", "build", str(recordings), "-o", str(tmp_path / "m.npz"), "--clusters", "12"]
     done = subprocess.run(
-        [sys.executable, "-c", source, *arguments], capture_output=True, text=True,
+        [sys.executable, "-c", source, *arguments],
+        capture_output=True,
+        text=True,
         env=os.environ | {"NUMBA_NUM_THREADS": "1"},
-    )  # fmt: skip
+    )
     assert done.stdout.splitlines()[-1] == "0 {1}", done.stderr

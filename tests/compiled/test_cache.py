@@ -237,9 +237,10 @@ def test_a_full_disk(module, tmp_path):
     """No file may get longer than 0 bytes; names can be made."""
     done = subprocess.run(
         [sys.executable, "-c", FULL.format(folder=str(module.parent))],
-        capture_output=True, text=True,
+        capture_output=True,
+        text=True,
         env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "x"), "TMPDIR": str(tmp_path)},
-    )  # fmt: skip
+    )
     assert done.stdout == "8\n", done.stderr
     assert done.stderr == (
         "compiled code is not kept, and compiled at each start: no folder can be written\n"
@@ -251,9 +252,13 @@ RUN = ["-m", "mesa_mobility", "run", "straight_walk", "--seconds", "1", "--seed"
 
 def run(cache: Path, **keywords):
     return subprocess.Popen(
-        [sys.executable, *RUN], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        env=os.environ | {"NUMBA_CACHE_DIR": str(cache)} | keywords, start_new_session=True,
-    )  # fmt: skip
+        [sys.executable, *RUN],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(cache)} | keywords,
+        start_new_session=True,
+    )
 
 
 @pytest.mark.slow

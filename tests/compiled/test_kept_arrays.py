@@ -172,11 +172,21 @@ def rewritten(place, change):
 @pytest.mark.parametrize(
     "where",
     [
-        None, [], [0], [0, 5], ["0", [5, 2, 3]], [0, [5, 2, -3]], [0, [-5, 2, -3]],
-        [-128, [5, 2, 3]], [4, [5, 2, 3]], [0, [5, 2, 3.0]], [0, [10**9, 2, 3]], [0, [2**62, 4]],
+        None,
+        [],
+        [0],
+        [0, 5],
+        ["0", [5, 2, 3]],
+        [0, [5, 2, -3]],
+        [0, [-5, 2, -3]],
+        [-128, [5, 2, 3]],
+        [4, [5, 2, 3]],
+        [0, [5, 2, 3.0]],
+        [0, [10**9, 2, 3]],
+        [0, [2**62, 4]],
         [1 << 62, [5, 2, 3]],
     ],
-)  # fmt: skip
+)
 def test_arrays_that_lie_elsewhere_are_made_again(place, where):
     get()
     rewritten(place, lambda index: index["arrays"].update(floats=where))

@@ -168,26 +168,59 @@ def test_a_copy_goes_on_alike():
 @pytest.mark.parametrize(
     ("error", "match", "make"),
     [
-        (ModelError, "mobility_map and population", lambda model: PedestrianModel(
-            corridor(), mobility_map=strider(), population="able_bodied")),
-        (MapError, "no map named 'giraffe'", lambda model: PedestrianModel(
-            corridor(), population={"able_bodied": 0.5, "giraffe": 0.5})),
-        (ModelError, "add up to 0.9", lambda model: PedestrianModel(
-            corridor(), population={"able_bodied": 0.9})),
-        (ModelError, "no type 'child', expected one of 0.14, 0.35", lambda model:
-            model.add_pedestrians([(1, 1)], population="child")),
-        (ModelError, "type_index and population", lambda model:
-            model.add_pedestrians([(1, 1)], population={"0.14": 1.0}, type_index=0)),
-        (ModelError, "type_index and population", lambda model: model.add_source(
-            Source(area=box(0, 0, 3, 3), rate=1, population={"0.14": 1.0}, type_index=0))),
-        (ModelError, "type_index.*one for each", lambda model:
-            model.add_pedestrians([(1, 1)], type_index=[0, 1])),
-        (ModelError, "type_index.*1.5", lambda model:
-            model.add_pedestrians([(1, 1)], type_index=1.5)),
-        (ModelError, "type_index", lambda model:
-            model.add_pedestrians([(1, 1)], type_index=[[0], [0, 1]])),
+        (
+            ModelError,
+            "mobility_map and population",
+            lambda model: PedestrianModel(
+                corridor(), mobility_map=strider(), population="able_bodied"
+            ),
+        ),
+        (
+            MapError,
+            "no map named 'giraffe'",
+            lambda model: PedestrianModel(
+                corridor(), population={"able_bodied": 0.5, "giraffe": 0.5}
+            ),
+        ),
+        (
+            ModelError,
+            "add up to 0.9",
+            lambda model: PedestrianModel(corridor(), population={"able_bodied": 0.9}),
+        ),
+        (
+            ModelError,
+            "no type 'child', expected one of 0.14, 0.35",
+            lambda model: model.add_pedestrians([(1, 1)], population="child"),
+        ),
+        (
+            ModelError,
+            "type_index and population",
+            lambda model: model.add_pedestrians([(1, 1)], population={"0.14": 1.0}, type_index=0),
+        ),
+        (
+            ModelError,
+            "type_index and population",
+            lambda model: model.add_source(
+                Source(area=box(0, 0, 3, 3), rate=1, population={"0.14": 1.0}, type_index=0)
+            ),
+        ),
+        (
+            ModelError,
+            "type_index.*one for each",
+            lambda model: model.add_pedestrians([(1, 1)], type_index=[0, 1]),
+        ),
+        (
+            ModelError,
+            "type_index.*1.5",
+            lambda model: model.add_pedestrians([(1, 1)], type_index=1.5),
+        ),
+        (
+            ModelError,
+            "type_index",
+            lambda model: model.add_pedestrians([(1, 1)], type_index=[[0], [0, 1]]),
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be(error, match, make):
     model = PedestrianModel(corridor(), pedestrian_types=kinds(NARROW, WIDE), rng=1)
     with pytest.raises(error, match=match) as raised:

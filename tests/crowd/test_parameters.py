@@ -128,8 +128,11 @@ def test_rules_of_a_block_replace_the_default_preset_and_end_with_it():
             innermost = made()
     outside = made()
     assert [each.preset for each in (inside, other, innermost, outside)] == [
-        "mine", "paper", "default", "default",
-    ]  # fmt: skip
+        "mine",
+        "paper",
+        "default",
+        "default",
+    ]
     assert (inside.rules.durations, inside.rules.terms["headway"]) == ((12,), 1.0)
     assert inside.parameters()["headway.weight"].value == 1.0
     assert other.rules == PRESETS["paper"]

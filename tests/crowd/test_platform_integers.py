@@ -35,9 +35,7 @@ def walk():
 @pytest.fixture
 def counted():
     """How many combinations of types functions of the hot path are compiled for."""
-    functions = (
-        decide, build_grid, *vars(target_search).values(), *vars(target_points).values()
-    )  # fmt: skip
+    functions = (decide, build_grid, *vars(target_search).values(), *vars(target_points).values())
     compiled = [each for each in functions if hasattr(each, "signatures")]
 
     def count():

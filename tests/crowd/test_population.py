@@ -19,8 +19,9 @@ def places(n: int, x: float = 1.0) -> np.ndarray:
 
 def test_added_where_they_were_put():
     model = model_of(corridor(), strider())
-    people = model.add_pedestrians([(1.0, 2.0), (3.5, 0.5)], headings=[0.25, -2.0],
-                                   preferred_speeds=[0.9, 1.5])  # fmt: skip
+    people = model.add_pedestrians(
+        [(1.0, 2.0), (3.5, 0.5)], headings=[0.25, -2.0], preferred_speeds=[0.9, 1.5]
+    )
     assert all(isinstance(person, Pedestrian) for person in people)
     assert [p.position.tolist() for p in people] == [[1.0, 2.0], [3.5, 0.5]]
     assert [p.heading for p in people] == [0.25, -2.0]

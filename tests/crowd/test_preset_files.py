@@ -102,7 +102,7 @@ def test_provenance_is_kept(file):
         (MINIMAL + "[provenance.data]\na = 'b'\n", "provenance: data, a 'b', expected a sha256"),
         (MINIMAL + "[provenance.figures]\na = inf\n", "provenance: figures, a inf, expected a fin"),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_with_a_file_is_one_line(text, said, file):
     file.write_text(text, encoding="utf-8")
     with pytest.raises(ModelError) as no:

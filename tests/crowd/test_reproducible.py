@@ -25,8 +25,14 @@ def digest(model) -> str:
 
 
 def run(rng, frames_per_step=3, preset="default") -> str:
-    model = Doorway(pedestrians=30, mobility_map=shipped_map(), preset=preset, record=True,
-                    frames_per_step=frames_per_step, rng=rng)  # fmt: skip
+    model = Doorway(
+        pedestrians=30,
+        mobility_map=shipped_map(),
+        preset=preset,
+        record=True,
+        frames_per_step=frames_per_step,
+        rng=rng,
+    )
     model.run(max_seconds=SECONDS)
     return digest(model)
 
@@ -83,8 +89,13 @@ def test_in_another_process():
 def test_recording_and_steps_change_nothing(frames_per_step, preset):
     # Frames that are not recorded need not be computed one by one.
     recorded = recorded_run(preset)
-    model = Doorway(pedestrians=30, mobility_map=shipped_map(), preset=preset,
-                    frames_per_step=frames_per_step, rng=11)  # fmt: skip
+    model = Doorway(
+        pedestrians=30,
+        mobility_map=shipped_map(),
+        preset=preset,
+        frames_per_step=frames_per_step,
+        rng=11,
+    )
     model.run(max_seconds=SECONDS)
     assert model.recorder is None
     for name in ("x", "y", "heading", "active_frames", "fallback_frames", "decisions"):

@@ -94,8 +94,12 @@ def test_set_values_reach_the_kernel():
     term.time = 3
     given = dict(zip(term.kernel.numbers, numbers_of(term, term.kernel), strict=True))
     assert given == {
-        "distance": 0.36, "time": 3.0, "width": 0.35, "softness": 0.15, "beyond": 1.0,
-    }  # fmt: skip
+        "distance": 0.36,
+        "time": 3.0,
+        "width": 0.35,
+        "softness": 0.15,
+        "beyond": 1.0,
+    }
     assert type(term.time) is float
 
 

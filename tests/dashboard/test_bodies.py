@@ -47,8 +47,10 @@ def test_people_are_told_by_their_types():
         for kind, of in zip(model.pedestrian_types, header["types"], strict=True)
     ]
     assert types == [
-        ("wheelchair_manual", "wheelchair", False), ("cane", "cane", True), ("child", "", True)
-    ]  # fmt: skip
+        ("wheelchair_manual", "wheelchair", False),
+        ("cane", "cane", True),
+        ("child", "", True),
+    ]
     now = bodies.now()
     np.testing.assert_array_equal(now[:, 0], model.crowd.type_index[model.rows])
     assert not now[now[:, 0] == 0, 1:].any()

@@ -89,8 +89,10 @@ def test_the_view_outlasts_another_size_and_another_tab(tab):
 def test_keys_play_move_zoom_and_deselect(tab):
     page = tab.page
     # While a model is made, Play is off, and the first button that is on gets the focus.
-    tab.wait("() => [...document.querySelectorAll('.mm-time button')].some("
-             "(b) => /play/i.test(b.innerText) && !b.disabled)")  # fmt: skip
+    tab.wait(
+        "() => [...document.querySelectorAll('.mm-time button')].some("
+        "(b) => /play/i.test(b.innerText) && !b.disabled)"
+    )
     page.locator("body").press("Tab")
     tab.expect(page.get_by_text("Skip to the crowd")).to_be_focused()
     page.keyboard.press("Enter")

@@ -124,10 +124,18 @@ class Monkey:
 
     def act(self):
         kinds = {
-            self.click_person: 6, self.click_floor: 3, self.drag: 3, self.wheel: 3, self.key: 4,
-            self.press_button: 5, self.type: 2, self.switch: 1, self.turn: 1,
-            self.change_model: 1, self.type_a_huge_crowd: 1,
-        }  # fmt: skip
+            self.click_person: 6,
+            self.click_floor: 3,
+            self.drag: 3,
+            self.wheel: 3,
+            self.key: 4,
+            self.press_button: 5,
+            self.type: 2,
+            self.switch: 1,
+            self.turn: 1,
+            self.change_model: 1,
+            self.type_a_huge_crowd: 1,
+        }
         self.rng.choices(list(kinds), list(kinds.values()))[0]()
 
     def on_canvas(self):

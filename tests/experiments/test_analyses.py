@@ -90,8 +90,10 @@ def test_sobol_indices_of_the_ishigami_function(tmp_path):
     v13 = b**2 * math.pi**8 * (1 / 18 - 1 / 50)
     v = v1 + v2 + v13
     for name, first, total in (
-        ("x1", v1 / v, (v1 + v13) / v), ("x2", v2 / v, v2 / v), ("x3", 0.0, v13 / v)
-    ):  # fmt: skip
+        ("x1", v1 / v, (v1 + v13) / v),
+        ("x2", v2 / v, v2 / v),
+        ("x3", 0.0, v13 / v),
+    ):
         assert found[name]["first"] == pytest.approx(first, abs=0.05)
         assert found[name]["total"] == pytest.approx(total, abs=0.05)
         assert 0 < found[name]["total_conf"] < 0.1
@@ -125,9 +127,11 @@ def test_analyses_need_all_points(tmp_path):
 
 def test_the_report_needs_no_other_file_and_has_all_of_it(tmp_path):
     experiment = Experiment(
-        MODELS + "Quick", {"x": [0.0, 1.0], "end": ["well", "raise"]}, replications=3,
+        MODELS + "Quick",
+        {"x": [0.0, 1.0], "end": ["well", "raise"]},
+        replications=3,
         name="Two <ends>",
-    )  # fmt: skip
+    )
     store = run_experiment(experiment, tmp_path / "s", executor="serial")
     text = write_report(store).read_text(encoding="utf-8")
     assert "<h1>Two &lt;ends&gt;</h1>" in text
@@ -162,9 +166,12 @@ def test_runs_keep_occupancy_and_trajectories_where_they_are_asked_to(tmp_path):
     from mesa_mobility.results import read_parquet
 
     experiment = Experiment(
-        "straight_walk", {"pedestrians": 2}, fixed={"length": 6.0}, max_seconds=20,
+        "straight_walk",
+        {"pedestrians": 2},
+        fixed={"length": 6.0},
+        max_seconds=20,
         keep=["occupancy", "trajectories"],
-    )  # fmt: skip
+    )
     store = run_experiment(experiment, tmp_path / "s", executor="serial")
     [row] = store.frame(series=True).to_dict("records")
     assert row["occupancy"][0] == 2

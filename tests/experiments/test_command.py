@@ -83,12 +83,15 @@ def test_bad_input_is_one_line(command, arguments, message):
 
 def test_ctrl_c_keeps_what_has_ended(file, tmp_path):
     # Half of the runs do not end, however slow the machine is.
-    file.write_text(FILE.replace('end = "slow"', f'mark = "{tmp_path / "mark"}"')
-                    + 'end = ["well", "wait"]\n')  # fmt: skip
+    file.write_text(
+        FILE.replace('end = "slow"', f'mark = "{tmp_path / "mark"}"') + 'end = ["well", "wait"]\n'
+    )
     started = subprocess.Popen(
         [sys.executable, "-m", "mesa_mobility", "experiment", "run", str(file), "--workers", "1"],
-        env=os.environ | {"PYTHONPATH": str(ROOT)}, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     store = tmp_path / "quick"
     wait_for(lambda: list(store.glob("runs/*.parquet")))
     started.send_signal(signal.SIGINT)
@@ -124,9 +127,14 @@ def scheduler(tmp_path):
         words = line.replace("8786", str(port)).replace("head", "127.0.0.1").split()
         extra = ["--host", "127.0.0.1", "--no-dashboard"] if words[1] == "scheduler" else []
         processes.append(
-            subprocess.Popen(words + extra, env=environment, cwd=tmp_path,
-                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        )  # fmt: skip
+            subprocess.Popen(
+                words + extra,
+                env=environment,
+                cwd=tmp_path,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+        )
     yield f"tcp://127.0.0.1:{port}", processes
     for process in processes:
         process.terminate()
@@ -135,11 +143,21 @@ def scheduler(tmp_path):
 
 def on_scheduler(file, address):
     return subprocess.Popen(
-        [sys.executable, "-m", "mesa_mobility", "experiment", "run", str(file),
-         "--scheduler", address],
-        env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "mesa_mobility",
+            "experiment",
+            "run",
+            str(file),
+            "--scheduler",
+            address,
+        ],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
 
 
 def test_the_how_to_s_commands_for_several_machines_work(file, scheduler, tmp_path):
@@ -166,8 +184,11 @@ def test_a_scheduler_that_is_killed(file, scheduler, tmp_path):
     assert 0 < len(had) < 300
     again = subprocess.run(
         [sys.executable, "-m", "mesa_mobility", "experiment", "run", str(file), "--workers", "2"],
-        env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=180,
-    )  # fmt: skip
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=180,
+    )
     assert again.returncode == 0, again.stderr
     frame = open_store(store).frame()
     assert len(frame) == frame.run.nunique() == 300
@@ -178,8 +199,9 @@ def test_a_scheduler_that_is_killed(file, scheduler, tmp_path):
 def test_two_workers_on_an_empty_cache(tmp_path):
     """One compiles, the other waits; the cache is whole, and the next process compiles nothing."""
     file = tmp_path / "doorway.toml"
-    file.write_text('model = "doorway"\nreplications = 4\nmax_seconds = 5\n'
-                    "[fixed]\npedestrians = 3\n")  # fmt: skip
+    file.write_text(
+        'model = "doorway"\nreplications = 4\nmax_seconds = 5\n[fixed]\npedestrians = 3\n'
+    )
     cache = tmp_path / "cache"
     environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
     arguments = [sys.executable, "-m", "mesa_mobility", "experiment", "run", str(file)]
@@ -194,8 +216,10 @@ def test_two_workers_on_an_empty_cache(tmp_path):
     kept = {path: path.stat().st_mtime_ns for path in cache.rglob("*.nbc")}
     again = subprocess.run(
         [*arguments, "--workers", "1", "--store", str(tmp_path / "again")],
-        env=environment, capture_output=True, text=True,
-    )  # fmt: skip
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
     assert again.returncode == 0, again.stderr
     assert {path: path.stat().st_mtime_ns for path in cache.rglob("*.nbc")} == kept
     assert "damaged" not in done.stderr + again.stderr

@@ -144,9 +144,10 @@ def test_a_folder_that_cannot_be_read_is_one_line(store, monkeypatch):
 )
 def test_figures_that_nobody_has_do_not_cost_a_thousand_runs(figure, message, tmp_path):
     experiment = Experiment(
-        MODELS + "Emptying", replications="auto",
+        MODELS + "Emptying",
+        replications="auto",
         precision=Precision((figure,), least=3, occupancy=None),
-    )  # fmt: skip
+    )
     with pytest.raises(ModelError, match=message):
         run_experiment(experiment, tmp_path / "s", executor="serial")
     assert open_store(tmp_path / "s").status()["done"] == 3

@@ -20,19 +20,30 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "experiments" / "doorway.toml
 NUMBERS = st.floats(0.001, 1e6)
 NAMES = st.text("abcdefgh_", min_size=1, max_size=6)
 PRECISIONS = st.builds(
-    Precision, st.lists(st.sampled_from(["mean egress_s", "p95 y", "p5 y"]), min_size=1,
-                        max_size=3),
-    st.floats(0.001, 0.5), st.floats(0.5, 0.999), st.integers(2, 30), st.integers(200, 999),
+    Precision,
+    st.lists(st.sampled_from(["mean egress_s", "p95 y", "p5 y"]), min_size=1, max_size=3),
+    st.floats(0.001, 0.5),
+    st.floats(0.5, 0.999),
+    st.integers(2, 30),
+    st.integers(200, 999),
     st.none() | st.builds(OccupancyConvergence, st.floats(0.001, 0.5), st.integers(1, 20)),
-)  # fmt: skip
+)
 EXPERIMENTS = st.builds(
-    Experiment, NAMES,
-    st.builds(Grid, st.dictionaries(NAMES, st.lists(NUMBERS, min_size=1, max_size=3, unique=True),
-                                    max_size=3)),
-    st.integers(1, 99) | st.just("auto"), st.integers(0, 2**64), st.just({}),
-    st.none() | NUMBERS, st.none() | NUMBERS, st.sampled_from([(), ("occupancy",)]), PRECISIONS,
+    Experiment,
+    NAMES,
+    st.builds(
+        Grid,
+        st.dictionaries(NAMES, st.lists(NUMBERS, min_size=1, max_size=3, unique=True), max_size=3),
+    ),
+    st.integers(1, 99) | st.just("auto"),
+    st.integers(0, 2**64),
+    st.just({}),
+    st.none() | NUMBERS,
+    st.none() | NUMBERS,
+    st.sampled_from([(), ("occupancy",)]),
+    PRECISIONS,
     st.text(),
-)  # fmt: skip
+)
 
 
 @given(EXPERIMENTS)
@@ -49,8 +60,10 @@ def test_the_example_is_200_runs_of_the_doorway():
 
 
 def test_a_model_file_is_looked_for_beside_the_experiment(tmp_path):
-    (tmp_path / "e.toml").write_text('model = "room.py:Room"\n[latin_hypercube]\npoints = 3\n'
-                                     "[latin_hypercube.between]\nwidth = [0.8, 1.2]\n")  # fmt: skip
+    (tmp_path / "e.toml").write_text(
+        'model = "room.py:Room"\n[latin_hypercube]\npoints = 3\n'
+        "[latin_hypercube.between]\nwidth = [0.8, 1.2]\n"
+    )
     experiment = read_experiment(tmp_path / "e.toml")
     assert experiment.model == str(tmp_path / "room.py:Room")
     assert len(experiment.design) == 3

@@ -62,8 +62,10 @@ def test_whole_bounds_give_whole_numbers_with_both_ends(low, width, seed):
 def test_sizes_of_the_designs_for_sensitivity():
     pytest.importorskip("SALib", reason="needs the extra sensitivity")
     bounds = {"a": (0.0, 1.0), "b": (2.0, 3.0), "c": (1, 5)}
-    for design, size in ((SaltelliSamples(bounds, samples=16), 16 * 5),
-                         (MorrisTrajectories(bounds, trajectories=6), 6 * 4)):  # fmt: skip
+    for design, size in (
+        (SaltelliSamples(bounds, samples=16), 16 * 5),
+        (MorrisTrajectories(bounds, trajectories=6), 6 * 4),
+    ):
         assert len(design) == size == len([design[k] for k in range(len(design))])
         assert all(2.0 <= design[k]["b"] <= 3.0 for k in range(size))
 

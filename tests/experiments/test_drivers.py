@@ -44,10 +44,19 @@ def driver(tmp_path, store, executor, fixed=SLOW, parameters=X, **keywords):
     script = tmp_path / "driver.py"
     script.write_text(DRIVER)
     return subprocess.Popen(
-        [sys.executable, str(script), str(store), executor, json.dumps(parameters),
-         json.dumps(fixed)],
-        env=os.environ | {"PYTHONPATH": str(ROOT)}, stderr=subprocess.PIPE, text=True, **keywords,
-    )  # fmt: skip
+        [
+            sys.executable,
+            str(script),
+            str(store),
+            executor,
+            json.dumps(parameters),
+            json.dumps(fixed),
+        ],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+        **keywords,
+    )
 
 
 def wait_until(condition):
@@ -176,17 +185,27 @@ def test_a_disk_without_room_is_one_line_and_nothing_finished_is_lost(slow_rows,
     assert rows(store) == rows(slow_rows)
 
 
-UNGUARDED = "\n".join(line.removeprefix("    ") for line in DRIVER.splitlines()
-                      if "__main__" not in line)  # fmt: skip
+UNGUARDED = "\n".join(
+    line.removeprefix("    ") for line in DRIVER.splitlines() if "__main__" not in line
+)
 
 
 def test_a_script_without_a_guard_is_told_so(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
     done = subprocess.run(
-        [sys.executable, str(script), str(tmp_path / "s"), "processes", json.dumps(X),
-         json.dumps(SLOW)],
-        env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
+        [
+            sys.executable,
+            str(script),
+            str(tmp_path / "s"),
+            "processes",
+            json.dumps(X),
+            json.dumps(SLOW),
+        ],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert done.returncode == 1
     assert "its script calls run_experiment when it is imported" in done.stderr.splitlines()[-1]

@@ -75,9 +75,11 @@ def test_the_shares_of_a_population_known_by_name():
     model = SimpleNamespace(pedestrian_types=kinds, preset="paper")
     found = inputs_of(model, parameters(Peopled), {})
     assert found == {
-        "map of a": "made by the model", "map of b": "made by the model", "preset": "paper",
+        "map of a": "made by the model",
+        "map of b": "made by the model",
+        "preset": "paper",
         "population": f"care_home ({Population.of('care_home')})",
-    }  # fmt: skip
+    }
 
 
 def test_a_plan_that_has_changed_is_refused(plans, tmp_path):

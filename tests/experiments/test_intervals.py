@@ -91,8 +91,10 @@ def test_a_point_is_known_once_all_that_is_asked_for_is():
     assert not assess(precision, 20, {}, []).enough
     both = Precision(("mean egress_s", "p95 egress_s"), tolerance=0.1)
     assert assess(both, 20, {"egress_s": values}, [[1, 0]] * 20).met == {
-        "mean egress_s": True, "p95 egress_s": False, "occupancy": True
-    }  # fmt: skip
+        "mean egress_s": True,
+        "p95 egress_s": False,
+        "occupancy": True,
+    }
 
 
 def test_the_interval_of_a_mean_that_ended_the_runs_is_the_one_asked_for():

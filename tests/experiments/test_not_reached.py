@@ -59,9 +59,10 @@ def test_a_quantile_between_the_last_reached_and_the_first_not_reached_is_not_gi
 
 
 @given(
-    st.lists(st.integers(0, 10**6), min_size=1, max_size=60), st.integers(0, 30),
+    st.lists(st.integers(0, 10**6), min_size=1, max_size=60),
+    st.integers(0, 30),
     st.floats(0.01, 0.99),
-)  # fmt: skip
+)
 def test_later_than_all_others_means_as_late_as_one_likes(reached, stalled, q):
     """A quantile that is given is the same wherever the late ones lie; else it moves with them."""
     values = np.array([float(each) for each in reached] + [INF] * stalled)
@@ -84,7 +85,7 @@ def test_what_counts_as_not_reached():
         mean_time_inside_s=[8.0, NAN, 7.0, NAN, 5.0],
         mean_speed_mps=[1.0, 1.1, 0.4, NAN, 9.0],
         wall_s=[2.0, 2.0, 3.0, 4.0, 1.0],
-    )  # fmt: skip
+    )
     assert observed(rows, "egress_s").tolist()[:4] == [10.0, INF, INF, INF]
     assert observed(rows, "mean_time_inside_s").tolist()[:4] == [8.0, INF, INF, INF]
     # A crowd that stalls has walked at some speed until then, and has taken time to compute.
@@ -92,8 +93,10 @@ def test_what_counts_as_not_reached():
     assert observed(rows, "wall_s").tolist()[:4] == [2.0, 2.0, 3.0, INF]
     assert all(np.isnan(observed(rows, name)[4]) for name in rows if name != "status")
     assert [is_time(name) for name in ("egress_s", "flow_per_s", "mean_speed_mps")] == [
-        True, False, False
-    ]  # fmt: skip
+        True,
+        False,
+        False,
+    ]
 
 
 def test_of_what_is_no_time_no_percentile_is_given_where_one_is_lacking():
@@ -134,9 +137,13 @@ def test_the_curve_is_not_known_where_a_run_has_timed_out():
 def partly(tmp_path_factory):
     """30 runs without stalls, and 30 of which some stall and some time out."""
     experiment = Experiment(
-        MODEL, {"stalling": [0.0, 0.2]}, replications=30, seed=2, time_limit=0.03,
+        MODEL,
+        {"stalling": [0.0, 0.2]},
+        replications=30,
+        seed=2,
+        time_limit=0.03,
         fixed={"slow": 0.1},
-    )  # fmt: skip
+    )
     place = tmp_path_factory.mktemp("partly") / "s"
     return run_experiment(experiment, place, executor="serial")
 

@@ -76,9 +76,12 @@ def test_only_whole_rounds_are_looked_at(tmp_path):
 
 def test_points_of_which_every_run_fails_end_after_the_least(tmp_path):
     experiment = Experiment(
-        MODELS + "Quick", {"end": ["well", "raise"]}, replications="auto", seed=1,
+        MODELS + "Quick",
+        {"end": ["well", "raise"]},
+        replications="auto",
+        seed=1,
         precision=Precision(("mean y",), 0.5, least=4, most=30, occupancy=None),
-    )  # fmt: skip
+    )
     store = run_experiment(experiment, tmp_path / "s", executor="serial")
     frame = store.frame()
     assert len(frame[frame.end == "raise"]) == 4

@@ -117,8 +117,9 @@ def test_only_what_is_added_is_run(serial, rows, tmp_path):
     after = store.frame().set_index("run").began
     assert (after[before.index] == before).all()
     more = quick(4, parameters={"x": [0.0, 1.5, 2.0, 3.0]})
-    run_experiment(more, tmp_path / "s", executor="serial",
-                   progress=lambda now: ended.append(now.total))  # fmt: skip
+    run_experiment(
+        more, tmp_path / "s", executor="serial", progress=lambda now: ended.append(now.total)
+    )
     assert ended[-1] == 4
     assert store.status()["done"] == 16
     assert store.status()["missing"] == 0

@@ -180,8 +180,9 @@ def test_a_map_of_earlier_runs_that_has_changed_is_refused(tmp_path):
 
 
 def test_numbers_and_text_of_one_figure_do_not_depend_on_files():
-    rows = [{"run": f"r-{k}", "status": "done", "y": y}
-            for k, y in enumerate([1.0, 1e20, "none", True])]  # fmt: skip
+    rows = [
+        {"run": f"r-{k}", "status": "done", "y": y} for k, y in enumerate([1.0, 1e20, "none", True])
+    ]
     together = table_of(rows, {})["y"].to_pylist()
     assert together == ["1.0", "1e+20", "none", "True"]
     for cut in (1, 2, 3):

@@ -44,12 +44,22 @@ def nested(rng, maps, crowds, runs, deviations):
 
 def test_two_maps_two_crowds_two_runs_by_hand():
     # Mean squares 128, 16 and 2: variances (128 - 16) / 4, (16 - 2) / 2 and 2.
-    rows = [(1, 1, 1), (1, 1, 3), (1, 2, 5), (1, 2, 7), (2, 3, 9), (2, 3, 11), (2, 4, 13),
-            (2, 4, 15)]  # fmt: skip
+    rows = [
+        (1, 1, 1),
+        (1, 1, 3),
+        (1, 2, 5),
+        (1, 2, 7),
+        (2, 3, 9),
+        (2, 3, 11),
+        (2, 4, 13),
+        (2, 4, 15),
+    ]
     found = variance_components(Rows(rows), "y", ["map", "people"])
     assert [(each.source, each.groups) for each in found] == [
-        ("map", 2), ("people", 4), ("chance", 8)
-    ]  # fmt: skip
+        ("map", 2),
+        ("people", 4),
+        ("chance", 8),
+    ]
     assert [each.variance for each in found] == pytest.approx([28, 7, 2])
     assert [each.share.value for each in found] == pytest.approx([28 / 37, 7 / 37, 2 / 37])
     for each in found:
@@ -80,12 +90,14 @@ def test_groups_of_unequal_size_have_the_textbook_s_coefficients():
     within = sum(sum(k**2 for k in of) / sum(of) for of in sizes)
     cells = sum(k**2 for of in sizes for k in of)
     assert _expected(groups) == pytest.approx(
-        np.array([
-            [n - sum(m**2 for m in by_map) / n, within - cells / n, 3 - 1],
-            [0, n - within, 6 - 3],
-            [0, 0, n - 6],
-        ])
-    )  # fmt: skip
+        np.array(
+            [
+                [n - sum(m**2 for m in by_map) / n, within - cells / n, 3 - 1],
+                [0, n - within, 6 - 3],
+                [0, 0, n - 6],
+            ]
+        )
+    )
 
 
 def test_nothing_but_chance_has_no_other_share():

@@ -155,17 +155,23 @@ def test_rooms_that_share_a_wall_are_one_floor(tmp_path):
     ("draw", "message"),
     [
         (lambda s: line(s, (0, 0), (5, 0), "walkable"), r"an outline is open at \("),
-        (lambda s: s.add_3dface([(0, 0), (1, 0), (1, 1)], dxfattribs={"layer": "walkable"}),
-         r"3DFACE #\w+ on layer walkable: expected lines, polylines"),
+        (
+            lambda s: s.add_3dface([(0, 0), (1, 0), (1, 1)], dxfattribs={"layer": "walkable"}),
+            r"3DFACE #\w+ on layer walkable: expected lines, polylines",
+        ),
         (lambda s: outline(s, [(0, 0), (4, 4), (4, 0), (0, 4)], "walkable"), "not valid: Self-in"),
         (lambda s: outline(s, [(0, 0), (6e9, 0), (6, 4), (0, 4)], "walkable"), "up to 6e"),
-        (lambda s: (room(s), outline(s, [(6, 0), (6, 1), (6, 1.2)], "exit b", close=False)),
-         "exit must have two points, found 3"),
-        (lambda s: (room(s), outline(s, [(9, 9), (12, 9), (12, 12)], "walkable")),
-         "walkable must be a Polygon, found MultiPolygon"),
+        (
+            lambda s: (room(s), outline(s, [(6, 0), (6, 1), (6, 1.2)], "exit b", close=False)),
+            "exit must have two points, found 3",
+        ),
+        (
+            lambda s: (room(s), outline(s, [(9, 9), (12, 9), (12, 12)], "walkable")),
+            "walkable must be a Polygon, found MultiPolygon",
+        ),
         (lambda s: None, "has no layer of kind walkable; it has drawings on none"),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_is_said_in_one_line(tmp_path, draw, message):
     path = drawn(tmp_path / "bad.dxf", draw)
     with pytest.raises(FloorPlanError, match=message) as found:

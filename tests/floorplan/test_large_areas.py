@@ -89,9 +89,12 @@ def test_walls_within_reach_are_listed_however_large_cells_are(seed, side):
 def test_steps_through_walls_are_counted_on_floors_of_any_size(side):
     track = np.column_stack([np.linspace(9.0, 11.0, 21), np.full(21, 10.0)])
     run = Trajectories(
-        frame=np.arange(21), person=np.zeros(21, np.int32), x=track[:, 0], y=track[:, 1],
+        frame=np.arange(21),
+        person=np.zeros(21, np.int32),
+        x=track[:, 0],
+        y=track[:, 1],
         heading=np.zeros(21),
-    )  # fmt: skip
+    )
     edge = [[0, 0, side, 0], [side, 0, side, side], [side, side, 0, side], [0, side, 0, 0]]
     assert check_safety(run, edge).wall_crossings == 0
     assert check_safety(run, [*edge, [10.05, 5, 10.05, 15]]).wall_crossings == 1

@@ -20,8 +20,22 @@ JSON = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner),
     max_leaves=12,
 )
-NAMES = ["do", "id", "person", "people", "to", "stay", "velocity", "seconds", "opening",
-         "positions", "exits", "speed", "type", "heading"]  # fmt: skip
+NAMES = [
+    "do",
+    "id",
+    "person",
+    "people",
+    "to",
+    "stay",
+    "velocity",
+    "seconds",
+    "opening",
+    "positions",
+    "exits",
+    "speed",
+    "type",
+    "heading",
+]
 VERBS = ["walk", "steer", "release", "leave", "wait", "open", "close", "add", "pause", "resume"]
 
 

@@ -21,9 +21,13 @@ def frames(draw):
     columns = [draw(arrays.arrays(np.float64, n, elements=FINITE)) for _ in COLUMNS]
     person = draw(arrays.arrays(np.int32, n, elements=st.integers(0, 2**31 - 1)))
     return Frame(
-        draw(st.integers(0, 2**64 - 1)), draw(st.integers(0, 2**31 - 1)), draw(FINITE),
-        draw(st.booleans()), person, *columns,
-    )  # fmt: skip
+        draw(st.integers(0, 2**64 - 1)),
+        draw(st.integers(0, 2**31 - 1)),
+        draw(FINITE),
+        draw(st.booleans()),
+        person,
+        *columns,
+    )
 
 
 @given(frames(), st.booleans())
@@ -39,15 +43,37 @@ def test_either_form_is_read_back_to_the_last_bit(frame, binary):
 
 def test_the_binary_form_is_the_documented_one():
     frame = Frame(
-        5, 90, 1.5, True, np.array([3, 8], dtype=np.int32), np.array([0.5, 1.0]),
-        np.array([2.0, 3.0]), np.array([0.25, -1.0]), np.array([1.25, 0.0]), np.array([0.0, -1.0]),
-    )  # fmt: skip
+        5,
+        90,
+        1.5,
+        True,
+        np.array([3, 8], dtype=np.int32),
+        np.array([0.5, 1.0]),
+        np.array([2.0, 3.0]),
+        np.array([0.25, -1.0]),
+        np.array([1.25, 0.0]),
+        np.array([0.0, -1.0]),
+    )
     expected = b"MMLF" + bytes.fromhex(
-        "0100" "0100" "5a000000" "02000000" "0500000000000000" "000000000000f83f"
-        "000000000000e03f" "000000000000f03f" "0000000000000040" "0000000000000840"
-        "000000000000d03f" "000000000000f0bf" "000000000000f43f" "0000000000000000"
-        "0000000000000000" "000000000000f0bf" "03000000" "08000000"
-    )  # fmt: skip
+        "0100"
+        "0100"
+        "5a000000"
+        "02000000"
+        "0500000000000000"
+        "000000000000f83f"
+        "000000000000e03f"
+        "000000000000f03f"
+        "0000000000000040"
+        "0000000000000840"
+        "000000000000d03f"
+        "000000000000f0bf"
+        "000000000000f43f"
+        "0000000000000000"
+        "0000000000000000"
+        "000000000000f0bf"
+        "03000000"
+        "08000000"
+    )
     assert frame.to_bytes() == expected
     assert len(expected) == 32 + 44 * 2
 
@@ -56,9 +82,18 @@ def test_the_json_form_has_a_list_for_each_column():
     one = [np.array([value]) for value in (0.1, 0.2, 0.3, 0.4, 0.5)]
     frame = Frame(1, 2, 3.0, False, np.array([7], dtype=np.int32), *one)
     assert json.loads(frame.to_json()) == {
-        "type": "frame", "number": 1, "frame": 2, "sent": 3.0, "paused": False, "person": [7],
-        "x": [0.1], "y": [0.2], "heading": [0.3], "vx": [0.4], "vy": [0.5],
-    }  # fmt: skip
+        "type": "frame",
+        "number": 1,
+        "frame": 2,
+        "sent": 3.0,
+        "paused": False,
+        "person": [7],
+        "x": [0.1],
+        "y": [0.2],
+        "heading": [0.3],
+        "vx": [0.4],
+        "vy": [0.5],
+    }
 
 
 @given(st.binary(max_size=200) | st.text(max_size=200))
@@ -88,8 +123,18 @@ def test_a_frame_that_is_cut_or_longer_is_refused(frame, data):
     ],
 )
 def test_a_json_frame_with_other_values_is_refused(changes, message):
-    values = {"type": "frame", "number": 1, "frame": 2, "sent": 3.0, "paused": False,
-              "person": [7], "x": [0.1], "y": [0.2], "heading": [0.3], "vx": [0.4],
-              "vy": [0.5]}  # fmt: skip
+    values = {
+        "type": "frame",
+        "number": 1,
+        "frame": 2,
+        "sent": 3.0,
+        "paused": False,
+        "person": [7],
+        "x": [0.1],
+        "y": [0.2],
+        "heading": [0.3],
+        "vx": [0.4],
+        "vy": [0.5],
+    }
     with pytest.raises(LiveError, match=message):
         read_frame(json.dumps(values | changes))

@@ -69,8 +69,10 @@ def test_a_client_is_first_told_the_full_state(served):
         assert scene["type"] == "scene"
         assert (scene["protocol"], scene["rate"]) == (1, 30)
         assert scene["people"] == {
-            "person": [0, 1, 2], "type": ["made by hand"] * 3, "core_radius": [0.15] * 3,
-        }  # fmt: skip
+            "person": [0, 1, 2],
+            "type": ["made by hand"] * 3,
+            "core_radius": [0.15] * 3,
+        }
         kinds = [each["properties"]["kind"] for each in scene["plan"]["features"]]
         assert kinds == ["walkable", "exit"]
         assert len(client.frame()) == 3
@@ -107,9 +109,10 @@ def test_answers_have_the_commands_number(served):
     with served.client("json") as client:
         assert client.tell("resume", id=17) == {"type": "done", "id": 17}
         assert client.tell("open", opening="west", id="x") == {
-            "type": "error", "id": "x",
+            "type": "error",
+            "id": "x",
             "error": "there is no gate or exit 'west'; there are 'east'",
-        }  # fmt: skip
+        }
 
 
 @pytest.mark.parametrize("token", [None, "", "wrong", "%ff%00"])
@@ -163,15 +166,25 @@ def status_of(port, *lines):
     return ""
 
 
-HANDSHAKE = ["Connection: Upgrade", "Upgrade: websocket", "Sec-WebSocket-Version: 13",
-             "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA=="]  # fmt: skip
+HANDSHAKE = [
+    "Connection: Upgrade",
+    "Upgrade: websocket",
+    "Sec-WebSocket-Version: 13",
+    "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==",
+]
 
 
 @pytest.mark.parametrize(
     ("host", "expected"),
-    [("127.0.0.1:{0}", "101"), ("localhost", "101"), ("evil.example", "403"),
-     ("192.168.1.5:{0}", "403"), ("", "403"), ("[", "403")],
-)  # fmt: skip
+    [
+        ("127.0.0.1:{0}", "101"),
+        ("localhost", "101"),
+        ("evil.example", "403"),
+        ("192.168.1.5:{0}", "403"),
+        ("", "403"),
+        ("[", "403"),
+    ],
+)
 def test_the_server_answers_by_its_own_names_alone(served, host, expected):
     path = served.address().partition(str(served.port))[2]
     given = f"Host: {host.format(served.port)}"
@@ -203,9 +216,19 @@ def test_garbage_on_the_port_is_told_on_one_line_and_the_run_goes_on(served, gar
 
 @pytest.mark.parametrize(
     "garbage",
-    ["", "{", "[]", '"walk"', "{}", '{"do": "fly"}', "[" * 20_000, '{"id": 1e999}', "é\0ü",
-     b"\x00\x01\x02"],
-)  # fmt: skip
+    [
+        "",
+        "{",
+        "[]",
+        '"walk"',
+        "{}",
+        '{"do": "fly"}',
+        "[" * 20_000,
+        '{"id": 1e999}',
+        "é\0ü",
+        b"\x00\x01\x02",
+    ],
+)
 def test_garbage_from_a_client_is_refused_on_one_line_and_the_run_goes_on(served, garbage):
     with served.client() as client:
         answer = client.send(garbage)

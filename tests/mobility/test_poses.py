@@ -11,18 +11,31 @@ from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import pose_table
 
 NAMES = (
-    "Hips", "LeftUpLeg", "LeftLeg", "LeftFoot", "LeftToeBase",
-    "RightUpLeg", "RightLeg", "RightFoot", "RightToeBase",
-)  # fmt: skip
+    "Hips",
+    "LeftUpLeg",
+    "LeftLeg",
+    "LeftFoot",
+    "LeftToeBase",
+    "RightUpLeg",
+    "RightLeg",
+    "RightFoot",
+    "RightToeBase",
+)
 PARENTS = np.array([-1, 0, 1, 2, 3, 0, 5, 6, 7])
 # File axes: y up, x to the left, z forwards.
 OFFSETS = np.array(
     [
         [0, 0, 0],
-        [0.1, 0, 0], [0, -0.4, 0], [0, -0.4, 0], [0, 0, 0.15],
-        [-0.1, 0, 0], [0, -0.4, 0], [0, -0.4, 0], [0, 0, 0.15],
+        [0.1, 0, 0],
+        [0, -0.4, 0],
+        [0, -0.4, 0],
+        [0, 0, 0.15],
+        [-0.1, 0, 0],
+        [0, -0.4, 0],
+        [0, -0.4, 0],
+        [0, 0, 0.15],
     ]
-)  # fmt: skip
+)
 UP = Rotation.from_matrix([[0, 0, 1], [1, 0, 0], [0, 1, 0]])  # file (x, y, z) -> world (z, x, y)
 
 
@@ -47,9 +60,11 @@ def straight(frames=60, speed=1.2, heading=0.0, origin=(0.0, 0.0)):
     s = np.arange(frames) / 30 * speed
     swing = 0.4 * np.sin(2 * np.pi * np.arange(frames) / 30)
     return walker(
-        origin[0] + s * np.cos(heading), origin[1] + s * np.sin(heading), np.full(frames, heading),
+        origin[0] + s * np.cos(heading),
+        origin[1] + s * np.sin(heading),
+        np.full(frames, heading),
         swing,
-    )  # fmt: skip
+    )
 
 
 def test_a_straight_walk_steps_four_centimetres_a_frame():

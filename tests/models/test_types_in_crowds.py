@@ -13,9 +13,15 @@ from tests.fixtures.speeds import normal_within
 
 WHEELCHAIRS = ("wheelchair_manual", "wheelchair_powered", "wheelchair_assisted")
 OTHERS = (
-    "child", "older_adult", "slow", "limping_left", "limping_right", "cane", "crutches",
+    "child",
+    "older_adult",
+    "slow",
+    "limping_left",
+    "limping_right",
+    "cane",
+    "crutches",
     "walking_frame",
-)  # fmt: skip
+)
 
 # Metres; 10 m of room in front of the door, 8 m behind it.
 ROOM, WALL, END = 10.0, 0.2, 18.2
@@ -131,16 +137,22 @@ def test_people_with_walking_frames_do_not_wedge_each_other_in(width, seed):
 
 FREE_SPEEDS = {
     # Weidmann (1993), and the same at the Froude number of a child of 1.25 m.
-    "able_bodied": (1.34, 0.26), "child": (1.13, 0.22),
+    "able_bodied": (1.34, 0.26),
+    "child": (1.13, 0.22),
     # 27 people of 50 to 84 years (BMClab).
     "older_adult": (1.23, 0.20),
     # Boyce, Shields and Silcock (1999).
-    "cane": (0.81, 0.38), "crutches": (0.94, 0.30), "walking_frame": (0.57, 0.29),
-    "wheelchair_manual": (0.69, 0.35), "wheelchair_powered": (0.89, 0.22),
+    "cane": (0.81, 0.38),
+    "crutches": (0.94, 0.30),
+    "walking_frame": (0.57, 0.29),
+    "wheelchair_manual": (0.69, 0.35),
+    "wheelchair_powered": (0.89, 0.22),
     "wheelchair_assisted": (1.30, 0.34),
     # The steady walk recorded, with the relative deviation of Weidmann's adults.
-    "slow": (0.57, 0.11), "limping_left": (0.57, 0.11), "limping_right": (0.57, 0.11),
-}  # fmt: skip
+    "slow": (0.57, 0.11),
+    "limping_left": (0.57, 0.11),
+    "limping_right": (0.57, 0.11),
+}
 
 FASTEST = {"walking_frame": 1.23, "wheelchair_manual": 1.4, "wheelchair_assisted": 2.0}
 """What options reach where it bounds the speeds, m/s."""

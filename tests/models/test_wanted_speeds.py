@@ -8,9 +8,19 @@ from mesa_mobility import Exit, FloorPlan, PedestrianModel, PedestrianType, Spee
 from mesa_mobility.results import Trajectories, crossings
 
 TYPES = (
-    "able_bodied", "child", "older_adult", "slow", "limping_left", "limping_right", "cane",
-    "crutches", "walking_frame", "wheelchair_manual", "wheelchair_powered", "wheelchair_assisted",
-)  # fmt: skip
+    "able_bodied",
+    "child",
+    "older_adult",
+    "slow",
+    "limping_left",
+    "limping_right",
+    "cane",
+    "crutches",
+    "walking_frame",
+    "wheelchair_manual",
+    "wheelchair_powered",
+    "wheelchair_assisted",
+)
 SLOWEST = 0.05
 
 

@@ -61,8 +61,16 @@ def squares(install, tmp_path):
 def test_what_ships_is_registered_like_any_plug_in():
     assert list(PLANS.usable()) == ["dxf", "geojson", "wkt"]
     assert set(OUTPUTS.usable()) == {
-        "bvh", "film", "glb", "html", "juelich", "jupedsim", "parquet", "picture", "usd",
-    }  # fmt: skip
+        "bvh",
+        "film",
+        "glb",
+        "html",
+        "juelich",
+        "jupedsim",
+        "parquet",
+        "picture",
+        "usd",
+    }
     assert PLANS.suffixes(WRITE) == [".geojson", ".json"]
     assert PLANS.usual(READ) == [".dxf", ".geojson", ".wkt"]
     assert PLANS.broken() == OUTPUTS.broken() == []

@@ -8,10 +8,19 @@ __all__ = ["install", "plugins"]
 
 SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium", "mixed_evacuation"}
 SHIPPED_BEHAVIORS = {
-    "target_distance", "facing_deviation", "displacement", "interference", "preferred_speed",
-    "preferred_velocity", "headway", "right_of_way", "stepping", "room_ahead",
-    "velocity_change", "sideways",
-}  # fmt: skip
+    "target_distance",
+    "facing_deviation",
+    "displacement",
+    "interference",
+    "preferred_speed",
+    "preferred_velocity",
+    "headway",
+    "right_of_way",
+    "stepping",
+    "room_ahead",
+    "velocity_change",
+    "sideways",
+}
 
 
 def test_what_ships_is_registered_like_any_plug_in():

@@ -97,8 +97,10 @@ def test_off_the_floor_is_counted_only_with_a_floor(walk):
 @given(st.integers(0, 2**31), st.integers(1, 12))
 def test_places_off_the_floor_are_those_of_each_person(seed, people):
     rng = np.random.default_rng(seed)
-    tracks = {p: (int(rng.integers(4)), rng.uniform(-1, 5, (int(rng.integers(1, 6)), 2)).tolist())
-              for p in range(people)}  # fmt: skip
+    tracks = {
+        p: (int(rng.integers(4)), rng.uniform(-1, 5, (int(rng.integers(1, 6)), 2)).tolist())
+        for p in range(people)
+    }
     end = max(first + len(track) - 1 for first, track in tracks.values())
     there = [p for p, (first, track) in tracks.items() if first + len(track) - 1 == end]
     stay = [p for p in there if rng.random() < 0.5]

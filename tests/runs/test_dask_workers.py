@@ -9,9 +9,12 @@ def test_workers_that_come_later_are_counted(monkeypatch):
     from mesa_mobility.runs import dask_workers
 
     monkeypatch.setattr(dask_workers, "_COUNT_AGAIN", 0.0)
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
-    ) as cluster, distributed.Client(cluster) as client:  # fmt: skip
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
         workers = dask_workers.DaskWorkers(client)
         assert workers.count == 1
         cluster.scale(3)

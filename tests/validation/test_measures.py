@@ -12,9 +12,12 @@ def run(speed_at) -> dict:
     density = np.repeat(np.arange(0.375, 5.2, 0.25), 50)
     along = np.array([speed_at(each) for each in density])
     return {
-        "density": density, "along": along, "mean_speed": 1.0, "mean_density": 1.0,
+        "density": density,
+        "along": along,
+        "mean_speed": 1.0,
+        "mean_density": 1.0,
         "fallback_time_share": 0.0,
-    }  # fmt: skip
+    }
 
 
 def unmet(verdict) -> list[str]:
@@ -129,6 +132,6 @@ def test_people_who_move_as_recorded_pass():
         ),
         ({"start": {"first_second": np.full(20, 1.04)}}, "first second from standing m"),
     ],
-)  # fmt: skip
+)
 def test_each_way_of_moving_is_judged_on_its_own(changes, wrong):
     assert unmet(motion.judge([moving(**changes)])) == [wrong]

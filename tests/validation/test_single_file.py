@@ -15,9 +15,7 @@ def runs(faster: dict[float, float] | None = None, upto: float = 3.0) -> list[di
     for at, times in (faster or {}).items():
         speed[np.isclose(density, at)] *= times
     kept = density < upto
-    found = {
-        "density": np.repeat(density[kept] + 0.01, 100), "along": np.repeat(speed[kept], 100)
-    }  # fmt: skip
+    found = {"density": np.repeat(density[kept] + 0.01, 100), "along": np.repeat(speed[kept], 100)}
     nobody = {"density": np.empty(0), "along": np.empty(0)}
     return [found, *[nobody] * (len(single_file.EXPERIMENT.cases) - 1)]
 
@@ -36,9 +34,16 @@ def test_people_as_fast_as_measured_pass():
 
 @pytest.mark.parametrize(
     ("density", "times", "met"),
-    [(1.9, 1.45, True), (1.9, 1.55, False), (2.3, 0.55, True), (2.3, 0.45, False),
-     (2.5, 0.0, False), (2.7, 0.0, True), (2.7, 12.0, False)],
-)  # fmt: skip
+    [
+        (1.9, 1.45, True),
+        (1.9, 1.55, False),
+        (2.3, 0.55, True),
+        (2.3, 0.45, False),
+        (2.5, 0.0, False),
+        (2.7, 0.0, True),
+        (2.7, 12.0, False),
+    ],
+)
 def test_dense_bins_are_near_the_mean_and_denser_ones_in_the_range(density, times, met):
     verdict = single_file.judge([runs({density: times})])
     assert unmet(verdict) == ([] if met else [f"dense: v at {density}/m"])

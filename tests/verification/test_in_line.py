@@ -26,9 +26,12 @@ def test_an_end_costs_its_metres_from_the_line(x, y):
 
 
 @given(
-    st.floats(-6.0, 6.0), st.floats(-4.0, 4.0), st.floats(0.0, 1.0),
-    st.floats(-math.pi, math.pi), st.floats(0.0, 1.0),
-)  # fmt: skip
+    st.floats(-6.0, 6.0),
+    st.floats(-4.0, 4.0),
+    st.floats(0.0, 1.0),
+    st.floats(-math.pi, math.pi),
+    st.floats(0.0, 1.0),
+)
 def test_no_option_of_a_group_costs_less_than_its_bound(x, y, radius, angle, out):
     term = InLine(OVAL)
     least = term.bound.function(options(x, y, radius), term)

@@ -49,9 +49,12 @@ def test_counterflow_fails_out_of_order_and_when_people_are_stuck(runs):
 
 def necks(flow: tuple[float, float], peak: tuple[int, int], through: tuple = (150, 150)) -> dict:
     return {
-        "left_inside": 0, "flow_per_s": list(flow), "peak": list(peak), "top_10": list(peak),
+        "left_inside": 0,
+        "flow_per_s": list(flow),
+        "peak": list(peak),
+        "top_10": list(peak),
         "through": list(through),
-    }  # fmt: skip
+    }
 
 
 def test_the_jam_is_before_the_first_neck():

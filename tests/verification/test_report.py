@@ -24,9 +24,14 @@ def tracks(people, frames):
 
 
 def outcome(verdict, **keywords):
-    given = {"measured": {"travel time s": 30.25, "overlaps": 0}, "failed": [], "reported": [],
-             "seeds": [1, 2], "per_seed": [],
-             "safety": {"overlaps": 0, "wall_crossings": 0}}  # fmt: skip
+    given = {
+        "measured": {"travel time s": 30.25, "overlaps": 0},
+        "failed": [],
+        "reported": [],
+        "seeds": [1, 2],
+        "per_seed": [],
+        "safety": {"overlaps": 0, "wall_crossings": 0},
+    }
     return Outcome(verdict, **{**given, **keywords})
 
 

@@ -47,8 +47,11 @@ def taken(model, people) -> list[str]:
 def test_walk_and_queue_are_weighed(queue, expected):
     choice = QuickestExit()
     model = model_of(hall(), [strider(), statues()], target_choice=choice)
-    model.add_pedestrians([(0.5 + 0.4 * (k // 14), 0.3 + 0.4 * (k % 14)) for k in range(queue)],
-                          exits=["left"], type_index=1)  # fmt: skip
+    model.add_pedestrians(
+        [(0.5 + 0.4 * (k // 14), 0.3 + 0.4 * (k % 14)) for k in range(queue)],
+        exits=["left"],
+        type_index=1,
+    )
     person = put(model, 8.0, 3.0, preferred_speeds=[1.0])
     assert heads_for(choice, [person]) == [expected]
 
@@ -56,8 +59,11 @@ def test_walk_and_queue_are_weighed(queue, expected):
 def test_those_behind_do_not_count():
     choice = QuickestExit()
     model = model_of(hall(), [strider(), statues()], target_choice=choice)
-    model.add_pedestrians([(9.0 + 0.4 * (k // 14), 0.3 + 0.4 * (k % 14)) for k in range(30)],
-                          exits=["left"], type_index=1)  # fmt: skip
+    model.add_pedestrians(
+        [(9.0 + 0.4 * (k // 14), 0.3 + 0.4 * (k % 14)) for k in range(30)],
+        exits=["left"],
+        type_index=1,
+    )
     assert heads_for(choice, [put(model, 8.0, 3.0, preferred_speeds=[1.0])]) == [0]
 
 
@@ -97,8 +103,9 @@ def test_a_jam_at_the_nearer_exit_sends_some_to_the_farther_one():
     near, far = Exit("near", (11, 10), (12, 10)), Exit("far", (16, 10), (17, 10))
     plan = FloorPlan(box(0, 0, 18, 10), exits=[near, far])
     model = model_of(plan, shipped_map(), target_choice=QuickestExit(), rng=3, frames_per_step=3)
-    people = model.add_pedestrians(plan.random_points(
-        80, model.rng, within=box(1, 1, 9, 9), spacing=0.45, clearance=0.3))  # fmt: skip
+    people = model.add_pedestrians(
+        plan.random_points(80, model.rng, within=box(1, 1, 9, 9), spacing=0.45, clearance=0.3)
+    )
     model.run(max_seconds=120)
     assert model.inside == 0
     share = taken(model, people).count("near") / 80
@@ -269,11 +276,16 @@ def test_with_no_exit_open_people_wait_for_one(choice):
 
 @pytest.mark.parametrize(
     "make",
-    [lambda: QuickestExit(interval=0.0), lambda: QuickestExit(patience=1.0),
-     lambda: FamiliarExit("left"), lambda: FamiliarExit(affiliation=-1.0),
-     lambda: FamiliarExit(scale=math.inf), lambda: SocialInfluence(influence=math.nan),
-     lambda: SocialInfluence(sight=0.0)],
-)  # fmt: skip
+    [
+        lambda: QuickestExit(interval=0.0),
+        lambda: QuickestExit(patience=1.0),
+        lambda: FamiliarExit("left"),
+        lambda: FamiliarExit(affiliation=-1.0),
+        lambda: FamiliarExit(scale=math.inf),
+        lambda: SocialInfluence(influence=math.nan),
+        lambda: SocialInfluence(sight=0.0),
+    ],
+)
 def test_parameters_out_of_range(make):
     with pytest.raises(ModelError):
         make()

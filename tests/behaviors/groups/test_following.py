@@ -62,8 +62,9 @@ def test_a_bunch_follows_round_a_wall_stands_and_leaves_by_the_leaders_exit():
     following = Following()
     plan = rooms()
     model = led(plan, following, rng=1)
-    guide = put(model, 5.0, 4.0, route=[Visit((12.0, 4.0), stay=16.0)], exits=["far"],
-                preferred_speeds=1.0)  # fmt: skip
+    guide = put(
+        model, 5.0, 4.0, route=[Visit((12.0, 4.0), stay=16.0)], exits=["far"], preferred_speeds=1.0
+    )
     people = model.add_pedestrians([(1 + 0.8 * i, 2 + k) for i in range(2) for k in range(5)])
     following.follow(people, guide)
     model.run(max_seconds=22)

@@ -24,8 +24,10 @@ def wishes(model, people):
 
 def test_everybody_at_the_pace_of_the_slowest():
     model = model_of(corridor(), strider())
-    people = [put(model, 2.0, 0.5 + k, preferred_speeds=[v], group="family")
-              for k, v in enumerate((1.4, 0.8, 1.2))]  # fmt: skip
+    people = [
+        put(model, 2.0, 0.5 + k, preferred_speeds=[v], group="family")
+        for k, v in enumerate((1.4, 0.8, 1.2))
+    ]
     alone = put(model, 4.0, 2.0, preferred_speeds=[1.5])
     other = put(model, 4.0, 3.0, preferred_speeds=[1.1], group="other")
     model.step()
@@ -47,8 +49,10 @@ def test_everybody_at_the_pace_of_the_slowest():
 )
 def test_those_ahead_slow_down_and_those_behind_hurry(x, expected):
     model = model_of(corridor(), strider())
-    people = [put(model, at, 1.0 + k, preferred_speeds=[v], group=1)
-              for k, (at, v) in enumerate(zip(x, (1.4, 0.8, 1.2), strict=True))]  # fmt: skip
+    people = [
+        put(model, at, 1.0 + k, preferred_speeds=[v], group=1)
+        for k, (at, v) in enumerate(zip(x, (1.4, 0.8, 1.2), strict=True))
+    ]
     model.step()
     assert wishes(model, people) == pytest.approx(expected)
 
@@ -68,9 +72,11 @@ def test_four_fast_ones_and_a_slow_one_arrive_together():
         model = model_of(plan, shipped_map(), rng=2, frames_per_step=3)
         slow = [(4.0 + 0.8 * (k // 5), 0.4 + 0.8 * (k % 5)) for k in range(10)]
         model.add_pedestrians(slow, preferred_speeds=0.5, group="group 2" if group else None)
-        first = model.add_pedestrians([(1.0 + 0.7 * (k // 2), 1.4 + 0.9 * (k % 2))
-                                       for k in range(4)],
-                                      preferred_speeds=1.25, group=group)  # fmt: skip
+        first = model.add_pedestrians(
+            [(1.0 + 0.7 * (k // 2), 1.4 + 0.9 * (k % 2)) for k in range(4)],
+            preferred_speeds=1.25,
+            group=group,
+        )
         first += model.add_pedestrians([(0.5, 1.8)], preferred_speeds=0.5, group=group)
         model.run(max_seconds=150)
         assert model.inside == 0
@@ -86,8 +92,11 @@ def test_groups_pass_a_narrow_door_that_their_first_members_reach_long_before():
     plan = FloorPlan(floor, exits=[Exit("out", (14, 0), (14, 6))])
     model = model_of(plan, shipped_map(), rng=5, frames_per_step=3)
     for number in range(6):
-        model.add_pedestrians([(7.0 - 6.0 * k / 4, 0.5 + 0.9 * number + 0.1 * k) for k in range(5)],
-                              preferred_speeds=[1.4, 1.3, 1.2, 1.1, 0.6], group=number)  # fmt: skip
+        model.add_pedestrians(
+            [(7.0 - 6.0 * k / 4, 0.5 + 0.9 * number + 0.1 * k) for k in range(5)],
+            preferred_speeds=[1.4, 1.3, 1.2, 1.1, 0.6],
+            group=number,
+        )
     model.run(max_seconds=300)
     assert model.inside == 0
 

@@ -26,9 +26,11 @@ def walk(size, places, *, width=6.0, speed=1.22, abreast=True):
     rows = model.recorder.arrays()
     last = min(int(rows["frame"][rows["person"] == k].max()) for k in range(size))
     tracks = np.array(
-        [[rows[axis][(rows["person"] == k) & (rows["frame"] <= last)] for axis in "xy"]
-         for k in range(size)]
-    )  # fmt: skip
+        [
+            [rows[axis][(rows["person"] == k) & (rows["frame"] <= last)] for axis in "xy"]
+            for k in range(size)
+        ]
+    )
     middle = tracks[:, 0].mean(axis=0)
     tracks = tracks[:, :, (middle > 12.0) & (middle < 32.0)]
     return tracks[np.argsort(tracks[:, 1].mean(axis=1))]
@@ -115,8 +117,9 @@ def test_groups_pass_a_door():
     model = model_of(plan, shipped_map(), rng=2, frames_per_step=3)
     model.add_tactic(WalkingAbreast())
     for number in range(6):
-        model.add_pedestrians([(6.0 - 0.7 * k, 0.5 + number) for k in range(2 + number % 2)],
-                              group=number)  # fmt: skip
+        model.add_pedestrians(
+            [(6.0 - 0.7 * k, 0.5 + number) for k in range(2 + number % 2)], group=number
+        )
     model.run(max_seconds=60)
     assert model.inside == 0
     rows = model.recorder.arrays()

@@ -125,9 +125,10 @@ def test_where_the_margin_leaves_no_way_people_pass_within_it():
 def test_routes_by_gates_and_wide_bodies_go_round_too():
     plan = hall(gates=[Gate("line", (15, 0), (15, 12))])
     model = model_of(
-        plan, [strider(), strider(core_radius=0.35)],
+        plan,
+        [strider(), strider(core_radius=0.35)],
         target_choice=Hazards([Hazard(box(9, 2, 11, 12))], margin=0.5),
-    )  # fmt: skip
+    )
     walker = put(model, 4.0, 8.0, route=["line"], exits=["east"])
     wheelchair = put(model, 6.0, 8.0, exits=["east"], type_index=1)
     for person in (walker, wheelchair):

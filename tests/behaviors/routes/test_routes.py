@@ -39,8 +39,11 @@ def crowd_places(n):
 )
 def test_walk_and_queue_are_weighed(queue, expected):
     model = model_of(two_corridors(0.0), [strider(), statues()], target_choice=CongestionRouting())
-    model.add_pedestrians([(6.5 + 0.45 * (k // 4), 0.4 + 0.4 * (k % 4)) for k in range(queue)],
-                          route=["low"], type_index=1)  # fmt: skip
+    model.add_pedestrians(
+        [(6.5 + 0.45 * (k // 4), 0.4 + 0.4 * (k % 4)) for k in range(queue)],
+        route=["low"],
+        type_index=1,
+    )
     person = put(model, 3.0, 4.0, preferred_speeds=[1.0])
     assert person.route == (expected,)
 
@@ -58,13 +61,19 @@ def test_as_many_take_either_of_two_equal_corridors():
 def test_people_think_again_and_go_through_without_turning_back():
     choice = CongestionRouting(interval=0.2)
     model = model_of(
-        two_corridors(0.0), [shipped_map(), statues()], rng=3, frames_per_step=3,
+        two_corridors(0.0),
+        [shipped_map(), statues()],
+        rng=3,
+        frames_per_step=3,
         target_choice=choice,
-    )  # fmt: skip
+    )
     people = model.add_pedestrians([(1.0, 1.0), (1.0, 2.0)], type_index=0)
     assert [person.route for person in people] == [("low",)] * 2
-    model.add_pedestrians([(6.5 + 0.45 * (k // 4), 0.4 + 0.4 * (k % 4)) for k in range(28)],
-                          route=["low"], type_index=1)  # fmt: skip
+    model.add_pedestrians(
+        [(6.5 + 0.45 * (k // 4), 0.4 + 0.4 * (k % 4)) for k in range(28)],
+        route=["low"],
+        type_index=1,
+    )
     model.run(max_seconds=3)
     assert [person.route for person in people] == [("high",)] * 2
     model.run(max_seconds=40)
@@ -124,8 +133,13 @@ def test_signs_are_seen_by_those_who_face_them_with_no_wall_between():
 
 def test_signs_that_lead_nowhere_are_refused():
     with pytest.raises(FloorPlanError, match="no gate or exit 'middle'"):
-        put(model_of(two_corridors(), strider(),
-                     target_choice=Signs([Sign((6, 4), 0.0, ["middle"])])), 2.0, 2.0)  # fmt: skip
+        put(
+            model_of(
+                two_corridors(), strider(), target_choice=Signs([Sign((6, 4), 0.0, ["middle"])])
+            ),
+            2.0,
+            2.0,
+        )
     for wrong, text in (
         ({"gates": "low"}, "expected a list"),
         ({"facing": math.nan}, "facing nan, expected"),

@@ -89,10 +89,8 @@ def by_definition(crowd, order, plan, i, speed):
     seen = [
         other
         for other in others
-        if not walls.intersects(
-            shapely.LineString([(px, py), (px + other[0], py + other[1])])
-        )
-    ]  # fmt: skip
+        if not walls.intersects(shapely.LineString([(px, py), (px + other[0], py + other[1])]))
+    ]
     best = (math.inf, 0.0, 1.0)
     for share in (1.0, 0.7):
         for step in range(13):

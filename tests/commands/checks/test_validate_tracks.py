@@ -70,9 +70,25 @@ def test_a_crowd_is_replayed_and_compared(command, files, tmp_path):
     tracks, plan = files
     out, page = tmp_path / "out", tmp_path / "page.html"
     outcome = command(
-        "validate", "tracks", tracks, "--plan", plan, "--seeds", 2, "--jobs", 1, "--json",
-        "--speeds", 1.0, "--set", "headway.time=0.5", "--out", out, "--report", page,
-    )  # fmt: skip
+        "validate",
+        "tracks",
+        tracks,
+        "--plan",
+        plan,
+        "--seeds",
+        2,
+        "--jobs",
+        1,
+        "--json",
+        "--speeds",
+        1.0,
+        "--set",
+        "headway.time=0.5",
+        "--out",
+        out,
+        "--report",
+        page,
+    )
     answer = json.loads(outcome.out.splitlines()[-1])["run"]
     assert outcome.status == (0 if answer["passed"] else 1)
     assert answer["passed"] == (not answer["failed"])

@@ -69,6 +69,9 @@ def test_what_fails_is_said_with_what_helps(command, map_file, monkeypatch):
     answer = last_line(outcome)
     assert answer["warnings"] == [said]
     assert answer["examination"]["door"] == {
-        "what": "alone", "in_time": 3, "expected": "all 21 in time", "passed": False,
+        "what": "alone",
+        "in_time": 3,
+        "expected": "all 21 in time",
+        "passed": False,
         "helps": "add side steps",
-    }  # fmt: skip
+    }

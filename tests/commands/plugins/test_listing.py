@@ -53,8 +53,11 @@ def test_help_imports_nothing_slow():
     )
     done = subprocess.run(
         [sys.executable, "-c", script],
-        capture_output=True, text=True, timeout=60, env=os.environ | {"COLUMNS": "100"},
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env=os.environ | {"COLUMNS": "100"},
+    )
     assert done.stdout.splitlines()[-1] == "[]"
     assert "--set" in done.stdout
 

@@ -22,9 +22,7 @@ def names(folder):
 def test_what_is_written(command, tmp_path):
     assert command("new", "behavior", "keep_left", "--in", tmp_path).status == 0
     assert command("new", "model", "my_room", "--in", tmp_path).status == 0
-    assert names(tmp_path) == [
-        "keep_left.py", "my_room.py", "test_keep_left.py", "test_my_room.py"
-    ]  # fmt: skip
+    assert names(tmp_path) == ["keep_left.py", "my_room.py", "test_keep_left.py", "test_my_room.py"]
     assert "class KeepLeft(CostTerm):" in (tmp_path / "keep_left.py").read_text()
     assert "@" not in (tmp_path / "test_my_room.py").read_text()
 
@@ -32,9 +30,14 @@ def test_what_is_written(command, tmp_path):
 def test_a_package(command, tmp_path):
     assert command("new", "package", "seaside", "--in", tmp_path).status == 0
     assert names(tmp_path / "seaside") == [
-        "README.md", "pyproject.toml", "seaside/__init__.py", "seaside/seaside_room.py",
-        "seaside/seaside_term.py", "tests/test_seaside_room.py", "tests/test_seaside_term.py",
-    ]  # fmt: skip
+        "README.md",
+        "pyproject.toml",
+        "seaside/__init__.py",
+        "seaside/seaside_room.py",
+        "seaside/seaside_term.py",
+        "tests/test_seaside_room.py",
+        "tests/test_seaside_term.py",
+    ]
     project = tomllib.loads((tmp_path / "seaside" / "pyproject.toml").read_text())
     entries = project["project"]["entry-points"]
     assert entries["mesa_mobility.behaviors"] == {"seaside_term": "seaside:SeasideTerm"}
@@ -61,8 +64,11 @@ def test_its_own_tests_pass(command, tmp_path, kind):
     path = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(folder)],
-        capture_output=True, text=True, cwd=folder, env={**os.environ, "PYTHONPATH": path},
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": path},
+    )
     assert done.returncode == 0, done.stdout
     assert "passed" in done.stdout
 
@@ -77,12 +83,15 @@ def test_behaviors_for_one_run():
     assert model.target_choice.name == "quickest_exit"
 
 
-@pytest.mark.parametrize(("text", "message"), [
-    ("headwy", "unknown behavior 'headwy', did you mean 'headway'"),
-    ("headway=much", "--behavior headway=much: weight 'much', expected a number"),
-    ("headway=nan", "expected a finite number"),
-    ("walk_together=1", "has no weight, expected walk_together alone"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("headwy", "unknown behavior 'headwy', did you mean 'headway'"),
+        ("headway=much", "--behavior headway=much: weight 'much', expected a number"),
+        ("headway=nan", "expected a finite number"),
+        ("walk_together=1", "has no weight, expected walk_together alone"),
+    ],
+)
 def test_behaviors_that_are_refused(text, message):
     with pytest.raises(ModelError, match=message):
         use_behaviors(PedestrianModel(corridor(), mobility_map=strider()), [text])
@@ -91,8 +100,18 @@ def test_behaviors_that_are_refused(text, message):
 @pytest.mark.slow
 def test_the_command_uses_them(command):
     outcome = command(
-        "run", "doorway", "--set", "pedestrians=5", "--seed", 1, "--seconds", 2, "--json",
-        "--behavior", "preferred_speed=0.5", "--no-progress",
-    )  # fmt: skip
+        "run",
+        "doorway",
+        "--set",
+        "pedestrians=5",
+        "--seed",
+        1,
+        "--seconds",
+        2,
+        "--json",
+        "--behavior",
+        "preferred_speed=0.5",
+        "--no-progress",
+    )
     assert outcome.status == 0
     assert json.loads(outcome.out.splitlines()[-1])["behaviors"] == ["preferred_speed=0.5"]

@@ -41,9 +41,19 @@ def test_it_is_listed(command):
 @pytest.mark.usefixtures("extras")
 def test_it_runs(command, tmp_path):
     outcome = command(
-        "run", "clinic", "--seed", 1, "--set", "pedestrians=12", "--behavior", "keep_left=0.5",
-        "--out", tmp_path / "out", "--json", "--no-progress",
-    )  # fmt: skip
+        "run",
+        "clinic",
+        "--seed",
+        1,
+        "--set",
+        "pedestrians=12",
+        "--behavior",
+        "keep_left=0.5",
+        "--out",
+        tmp_path / "out",
+        "--json",
+        "--no-progress",
+    )
     assert outcome.status == 0, outcome.err
     summary = json.loads(outcome.out.splitlines()[-1])
     assert (summary["left_inside"], summary["overlaps"]) == (0, 0)
@@ -59,8 +69,11 @@ def test_its_own_tests_pass():
     path = os.pathsep.join([str(FOLDER), *filter(None, [os.environ.get("PYTHONPATH")])])
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(FOLDER)],
-        capture_output=True, text=True, cwd=FOLDER, env={**os.environ, "PYTHONPATH": path},
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        cwd=FOLDER,
+        env={**os.environ, "PYTHONPATH": path},
+    )
     assert done.returncode == 0, done.stdout
 
 
@@ -72,8 +85,15 @@ def test_its_formats_are_used_from_the_command_line(command, tmp_path):
     (tmp_path / "hall.rooms").write_text(
         "room 0 0 600 400\nroom 600 100 900 300\ndoor the street 900 100 900 300\n"
     )
-    plan = command("plan", tmp_path / "hall.rooms", "--set", "scale=0.01", "--json",
-                   "-o", tmp_path / "hall.geojson")  # fmt: skip
+    plan = command(
+        "plan",
+        tmp_path / "hall.rooms",
+        "--set",
+        "scale=0.01",
+        "--json",
+        "-o",
+        tmp_path / "hall.geojson",
+    )
     assert plan.status == 0, plan.err
     assert json.loads(plan.out)["free_area_m2"] == 30.0
     assert json.loads(plan.out)["exits"] == {"the street": 2.0}

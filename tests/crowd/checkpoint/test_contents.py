@@ -38,8 +38,13 @@ class Counting(Tactic):
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
     """A checkpoint of six people, one of whom has left, and 100 records' room."""
-    model = PedestrianModel(corridor(length=6.0), mobility_map=wanderer(5, options=30), rng=1,
-                            preset=ENGINE, record=True)  # fmt: skip
+    model = PedestrianModel(
+        corridor(length=6.0),
+        mobility_map=wanderer(5, options=30),
+        rng=1,
+        preset=ENGINE,
+        record=True,
+    )
     model.add_pedestrians([(1.0, 1.0), (2.0, 2.0), (3.0, 3.0), (4.0, 1.0), (2.5, 1.0), (1.0, 3.0)])
     model.tactics.append(Counting())
     advance(model, 40)
@@ -103,23 +108,26 @@ def test_rows_of_people_who_are_not_there(saved, tmp_path, row):
         load(tmp_path / "f")
 
 
-@pytest.mark.parametrize(("field", "value", "text"), [
-    ("option", 10**6, r"records, option\[0\]: got 1000000"),
-    ("option", -1, "pedestrian 0: (to_x|cluster|spacing|knots)"),
-    ("cluster", 64, r"cluster\[0\]: got 64"),
-    ("destination", -2, r"destination\[0\]: got -2"),
-    ("type_index", 1, r"type_index\[0\]: got 1"),
-    ("knots", 7, "pedestrian 0: knots is 7"),
-    ("spacing", 0, r"spacing\[0\]: got 0"),
-    ("end", 2**30, "pedestrian 0: end is"),
-    ("gone", 1, "pedestrian 0: gone is 1"),
-    ("x", np.nan, r"records, x\[0\]: got nan, expected a number, finite"),
-    ("x", 3.5, r"pedestrian 0: x is 3\.5, expected what its movement says"),
-    ("to_y", 1e308, r"to_y\[0\]: got 1e\+308"),
-    ("vx", 3.0, r"pedestrian 0: vx is 3\.0"),
-    ("core", 0.3, r"pedestrian 0: core is 0\.3"),
-    ("active", False, "present: expected all who are active"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("field", "value", "text"),
+    [
+        ("option", 10**6, r"records, option\[0\]: got 1000000"),
+        ("option", -1, "pedestrian 0: (to_x|cluster|spacing|knots)"),
+        ("cluster", 64, r"cluster\[0\]: got 64"),
+        ("destination", -2, r"destination\[0\]: got -2"),
+        ("type_index", 1, r"type_index\[0\]: got 1"),
+        ("knots", 7, "pedestrian 0: knots is 7"),
+        ("spacing", 0, r"spacing\[0\]: got 0"),
+        ("end", 2**30, "pedestrian 0: end is"),
+        ("gone", 1, "pedestrian 0: gone is 1"),
+        ("x", np.nan, r"records, x\[0\]: got nan, expected a number, finite"),
+        ("x", 3.5, r"pedestrian 0: x is 3\.5, expected what its movement says"),
+        ("to_y", 1e308, r"to_y\[0\]: got 1e\+308"),
+        ("vx", 3.0, r"pedestrian 0: vx is 3\.0"),
+        ("core", 0.3, r"pedestrian 0: core is 0\.3"),
+        ("active", False, "present: expected all who are active"),
+    ],
+)
 def test_one_number_of_a_person(saved, tmp_path, field, value, text):
     change_array(saved, tmp_path / "f", ("population", "records"), put(field, 0, value))
     with pytest.raises(ModelError, match=text) as caught:
@@ -127,14 +135,21 @@ def test_one_number_of_a_person(saved, tmp_path, field, value, text):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(("names", "change", "text"), [
-    (("population", "agenda"), put("journey", 0, 3), r"agenda, journey\[0\]: got 3"),
-    (("population", "agenda"), put("speed", 0, np.inf), r"agenda, speed\[0\]: got inf"),
-    (("population", "records"), lambda a: a[:-1], r"records: shape \(5,\), expected \(6\)"),
-    (("population", "present"), lambda a: a.astype("f8"), "present: got dtype..float64.."),
-    (("recorder", "x"), put("", 7, 1e3), "recorder, row .*: is more than 0.41 m from the frame"),
-    (("recorder", "x"), lambda a: a[:-1], r"recorder, (x|y): shape"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("names", "change", "text"),
+    [
+        (("population", "agenda"), put("journey", 0, 3), r"agenda, journey\[0\]: got 3"),
+        (("population", "agenda"), put("speed", 0, np.inf), r"agenda, speed\[0\]: got inf"),
+        (("population", "records"), lambda a: a[:-1], r"records: shape \(5,\), expected \(6\)"),
+        (("population", "present"), lambda a: a.astype("f8"), "present: got dtype..float64.."),
+        (
+            ("recorder", "x"),
+            put("", 7, 1e3),
+            "recorder, row .*: is more than 0.41 m from the frame",
+        ),
+        (("recorder", "x"), lambda a: a[:-1], r"recorder, (x|y): shape"),
+    ],
+)
 def test_one_number_of_a_part(saved, tmp_path, names, change, text):
     change_array(saved, tmp_path / "f", names, change)
     with pytest.raises(ModelError, match=text):
@@ -166,19 +181,24 @@ def overlap(content):
     content["people"]["unique_ids"][0] = content["people"]["unique_ids"][1]
 
 
-@pytest.mark.parametrize(("change", "text"), [
-    (weigh, "behaviour 'target_distance': weight of 'target_distance': got nan"),
-    (hide, "behaviour 'target_distance': state, is_for: expected the name of an attribute"),
-    (lambda c: behaviour(c, "tactics", "counting")[0].__setitem__(1, "7"),
-     r"behaviour 'counting': no state of it, after the member 'calls' \(TypeError"),
-    (overlap, "people, number of different unique_ids"),
-    (lambda c: c["own"].update(run=5), "own, run: expected the name of an attribute"),
-    (lambda c: c["own"].update(frame=5), "own, frame: expected attributes that all models"),
-    (lambda c: c["parts"]["$"][1].pop(), "parts: missing"),
-    (lambda c: c.update(x=1), "checkpoint: unknown 'x'"),
-    (lambda c: c["counters"]["$"][1][0].__setitem__(1, -1), "counters, frame: got -1"),
-    (lambda c: c["arguments"].update(frames_per_step=2**62), "frames_per_step: got"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (weigh, "behaviour 'target_distance': weight of 'target_distance': got nan"),
+        (hide, "behaviour 'target_distance': state, is_for: expected the name of an attribute"),
+        (
+            lambda c: behaviour(c, "tactics", "counting")[0].__setitem__(1, "7"),
+            r"behaviour 'counting': no state of it, after the member 'calls' \(TypeError",
+        ),
+        (overlap, "people, number of different unique_ids"),
+        (lambda c: c["own"].update(run=5), "own, run: expected the name of an attribute"),
+        (lambda c: c["own"].update(frame=5), "own, frame: expected attributes that all models"),
+        (lambda c: c["parts"]["$"][1].pop(), "parts: missing"),
+        (lambda c: c.update(x=1), "checkpoint: unknown 'x'"),
+        (lambda c: c["counters"]["$"][1][0].__setitem__(1, -1), "counters, frame: got -1"),
+        (lambda c: c["arguments"].update(frames_per_step=2**62), "frames_per_step: got"),
+    ],
+)
 def test_one_value_of_the_text(saved, tmp_path, change, text):
     change_text(saved, tmp_path / "f", change)
     with pytest.raises(ModelError, match=text) as caught:

@@ -170,16 +170,21 @@ def test_other_ways_are_refused(way):
 def test_copies_live_on_without_the_model():
     """In a process of its own: were memory to be spoilt, it would be that one's."""
     done = subprocess.run(
-        [sys.executable, "-c",
-         "import copy, gc\n"
-         "from mesa_mobility.models import Auditorium\n"
-         "model = Auditorium(rng=1)\n"
-         "for _ in range(12):\n"
-         "    for _ in range(20): model.step()\n"
-         "    model = copy.deepcopy(model); gc.collect()\n"
-         "other = Auditorium(rng=1)\n"
-         "for _ in range(240): other.step()\n"
-         "assert (model.crowd.records == other.crowd.records).all()\n"],
-        capture_output=True, text=True, timeout=300,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-c",
+            "import copy, gc\n"
+            "from mesa_mobility.models import Auditorium\n"
+            "model = Auditorium(rng=1)\n"
+            "for _ in range(12):\n"
+            "    for _ in range(20): model.step()\n"
+            "    model = copy.deepcopy(model); gc.collect()\n"
+            "other = Auditorium(rng=1)\n"
+            "for _ in range(240): other.step()\n"
+            "assert (model.crowd.records == other.crowd.records).all()\n",
+        ],
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
     assert done.returncode == 0, done.stderr

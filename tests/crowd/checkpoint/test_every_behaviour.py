@@ -105,9 +105,13 @@ def test_people_who_are_under_command_go_on_as_well(tmp_path):
 
 @pytest.mark.parametrize(
     "name",
-    ["mesa_mobility.__main__:Steering", "mesa_mobility.live.nowhere:Steering", "os:getcwd",
-     "mesa_mobility.live.order_tactics:follow_orders"],
-)  # fmt: skip
+    [
+        "mesa_mobility.__main__:Steering",
+        "mesa_mobility.live.nowhere:Steering",
+        "os:getcwd",
+        "mesa_mobility.live.order_tactics:follow_orders",
+    ],
+)
 def test_nothing_but_behaviours_of_the_package_is_looked_for(name):
     from mesa_mobility.crowd.checkpoint.behaviours import _shipped
 

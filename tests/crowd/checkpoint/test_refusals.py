@@ -96,13 +96,16 @@ def changed(path, change):
             archive.writestr(name, data)
 
 
-@pytest.mark.parametrize(("change", "text"), [
-    (lambda c: c.update(format_version=99), "format version 99, expected 1"),
-    (lambda c: c.update(model="somewhere:Else"), "a checkpoint of somewhere:Else"),
-    (lambda c: c.update(map_sha256=["0"]), "its mobility maps are others"),
-    (lambda c: c.pop("parts"), "checkpoint: missing 'parts', expected the members"),
-    (lambda c: c["own"].update(x={"$": ["code", "1+1"]}), "not one of a checkpoint"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda c: c.update(format_version=99), "format version 99, expected 1"),
+        (lambda c: c.update(model="somewhere:Else"), "a checkpoint of somewhere:Else"),
+        (lambda c: c.update(map_sha256=["0"]), "its mobility maps are others"),
+        (lambda c: c.pop("parts"), "checkpoint: missing 'parts', expected the members"),
+        (lambda c: c["own"].update(x={"$": ["code", "1+1"]}), "not one of a checkpoint"),
+    ],
+)
 def test_files_that_do_not_fit(tmp_path, change, text):
     made = model()
     made.step()
@@ -171,10 +174,18 @@ def test_values_come_back_as_they_were(value):
 def test_objects_come_back_as_they_were():
     rng = np.random.default_rng(5)
     there = [
-        np.arange(6.0).reshape(2, 3), np.float32(0.1), {1, 2}, box(0, 0, 1, 0.1),
-        Normal(1.0, 0.2), Source(area=box(0, 0, 1, 1), times=[1.0, 2.0]), float("nan"),
-        float("-inf"), rng, bool, float,
-    ]  # fmt: skip
+        np.arange(6.0).reshape(2, 3),
+        np.float32(0.1),
+        {1, 2},
+        box(0, 0, 1, 0.1),
+        Normal(1.0, 0.2),
+        Source(area=box(0, 0, 1, 1), times=[1.0, 2.0]),
+        float("nan"),
+        float("-inf"),
+        rng,
+        bool,
+        float,
+    ]
     packer = Packer([])
     found = Unpacker(packer.arrays, {}).unpack(packer.pack(there, "there"))
     assert (found[0] == there[0]).all()

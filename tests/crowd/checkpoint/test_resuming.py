@@ -138,10 +138,15 @@ def test_a_term_that_only_the_user_can_make(tmp_path):
     assert [term.weight for term in again.terms] == [term.weight for term in model.terms]
 
 
-@pytest.mark.parametrize("scenario", [
-    pytest.param("Doorway(pedestrians=40, rng=4, record=True), 3.0", id="doorway"),
-    pytest.param("Auditorium(rng=1, record=True), 30.0", id="auditorium", marks=pytest.mark.slow),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "scenario",
+    [
+        pytest.param("Doorway(pedestrians=40, rng=4, record=True), 3.0", id="doorway"),
+        pytest.param(
+            "Auditorium(rng=1, record=True), 30.0", id="auditorium", marks=pytest.mark.slow
+        ),
+    ],
+)
 @pytest.mark.slow
 def test_in_another_process(tmp_path, scenario):
     digest = textwrap.dedent(

@@ -105,8 +105,9 @@ def test_alone_each_walks_as_if_no_other_type_were_listed():
 
 def test_a_wide_body_is_led_another_way_and_a_narrow_one_is_not():
     # A way of 4 m through a door of 0.6 m, and one of some 12 m round through one of 1 m.
-    floor = union_all([box(0, 0, 6, 10), box(6, 1.7, 6.2, 2.3), box(6, 8, 6.2, 9),
-                       box(6.2, 0, 12, 10)])  # fmt: skip
+    floor = union_all(
+        [box(0, 0, 6, 10), box(6, 1.7, 6.2, 2.3), box(6, 8, 6.2, 9), box(6.2, 0, 12, 10)]
+    )
     doors = [Gate("narrow", (6.1, 1.7), (6.1, 2.3)), Gate("wide", (6.1, 8), (6.1, 9))]
     plan = FloorPlan(floor, exits=[Exit("out", (12, 1), (12, 3))], gates=doors)
     model = mixed(plan, 0.14, 0.35)
@@ -151,9 +152,17 @@ def test_routes_are_searched_for_bodies_that_are_there(monkeypatch):
 @pytest.mark.parametrize(
     ("core", "width", "fits"),
     # A body needs its own width, and routes some centimetres more.
-    [(0.14, 0.28, False), (0.14, 0.35, True), (0.25, 0.49, False), (0.25, 0.55, True),
-     (0.35, 0.69, False), (0.35, 0.75, True), (0.45, 0.89, False), (0.45, 0.95, True)],
-)  # fmt: skip
+    [
+        (0.14, 0.28, False),
+        (0.14, 0.35, True),
+        (0.25, 0.49, False),
+        (0.25, 0.55, True),
+        (0.35, 0.69, False),
+        (0.35, 0.75, True),
+        (0.45, 0.89, False),
+        (0.45, 0.95, True),
+    ],
+)
 def test_gaps_are_those_that_the_body_fits_through(core, width, fits):
     model = mixed(neck(width), 0.14, core)
     if not fits:

@@ -184,9 +184,14 @@ def test_who_is_hindered():
 @pytest.mark.parametrize(
     ("ahead", "target", "since", "waits"),
     # They are at 0, walk along x, and have not got on since 0 s; it is 10 s.
-    [((1.5, 0.5), 20.0, 9.0, True), ((2.1, 0.0), 20.0, 9.0, False), ((-0.5, 0.0), 20.0, 9.0, False),
-     ((1.5, 0.5), -20.0, 9.0, False), ((1.5, 0.5), 20.0, 7.5, False)],
-)  # fmt: skip
+    [
+        ((1.5, 0.5), 20.0, 9.0, True),
+        ((2.1, 0.0), 20.0, 9.0, False),
+        ((-0.5, 0.0), 20.0, 9.0, False),
+        ((1.5, 0.5), -20.0, 9.0, False),
+        ((1.5, 0.5), 20.0, 7.5, False),
+    ],
+)
 def test_nobody_is_hindered_in_a_jam_that_moves_on(ahead, target, since, waits):
     crowd = crowd_of(5.0, 4.0)
     crowd.x[1], crowd.y[1] = ahead

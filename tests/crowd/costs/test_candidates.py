@@ -198,8 +198,12 @@ def test_pairs_of_options_and_neighbours():
     one_by = Chooser([Ending()], neighbours=[((3, 0), (0, 0))])
     rows, neighbours = candidates(crowded, alone, one_by).pairs()
     assert list(zip(rows.tolist(), neighbours.tolist(), strict=True)) == [
-        (0, 0), (0, 1), (1, 0), (1, 1), (3, 2),
-    ]  # fmt: skip
+        (0, 0),
+        (0, 1),
+        (1, 0),
+        (1, 1),
+        (3, 2),
+    ]
 
 
 def test_pairs_without_neighbours():

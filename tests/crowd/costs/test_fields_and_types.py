@@ -172,9 +172,13 @@ def test_weights_by_type(term):
         same = wanderer(5, options=60)
         types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
         model = PedestrianModel(
-            corridor(), pedestrian_types=types, preset=ENGINE, rng=1, fields={"mood": float},
+            corridor(),
+            pedestrian_types=types,
+            preset=ENGINE,
+            rng=1,
+            fields={"mood": float},
             record=True,
-        )  # fmt: skip
+        )
         made = term(weights.pop("weight", 0.0))
         made.weight_by_type = weights
         model.terms.append(made)
@@ -184,9 +188,11 @@ def test_weights_by_type(term):
 
     paths = {}
     for name, weights in (
-        ("none", {}), ("all", {"weight": 20.0}), ("child", {"child": 20.0}),
+        ("none", {}),
+        ("all", {"weight": 20.0}),
+        ("child", {"child": 20.0}),
         ("adult", {"weight": 20.0, "child": 0.0}),
-    ):  # fmt: skip
+    ):
         model = model_with(**weights)
         model.run(max_seconds=2.0)
         rows = model.recorder.arrays()
@@ -220,15 +226,20 @@ def test_terms_by_type(term):
         same = wanderer(5, options=60)
         types = [PedestrianType(mobility_map=same, name=name) for name in ("adult", "child")]
         model = PedestrianModel(
-            corridor(), pedestrian_types=types, preset=ENGINE, rng=1, fields={"mood": float},
+            corridor(),
+            pedestrian_types=types,
+            preset=ENGINE,
+            rng=1,
+            fields={"mood": float},
             record=True,
-        )  # fmt: skip
+        )
         model.terms += terms
         for kind in (0, 1):
             model.add_pedestrians(
                 [(2.0 + 0.7 * k, 1.0 + kind) for k in range(3)],
-                type_index=kind, fields={"mood": [1.0] * 3},
-            )  # fmt: skip
+                type_index=kind,
+                fields={"mood": [1.0] * 3},
+            )
         model.run(max_seconds=2.0)
         return model, tracks(model)
 

@@ -52,16 +52,25 @@ def _of_options(options, p):
 def scene():
     """An option of 1.5 m in 0.5 s, somebody who walks, one neighbour, and one wall."""
     made = one_option(
-        Ending((3.0, 4.0), math.pi / 2, 1.5, 0.5), target=(9.0, 8.0), position=(2.0, 1.0),
-        preferred_speed=1.25, velocity=(0.75, -0.5), core=0.2, walls=[(0.0, 5.0, 6.0, 7.0)],
+        Ending((3.0, 4.0), math.pi / 2, 1.5, 0.5),
+        target=(9.0, 8.0),
+        position=(2.0, 1.0),
+        preferred_speed=1.25,
+        velocity=(0.75, -0.5),
+        core=0.2,
+        walls=[(0.0, 5.0, 6.0, 7.0)],
         neighbours=[((2.5, 3.5), (-1.0, 0.25), (0.6, 0.8), 1.75)],
-    )  # fmt: skip
+    )
     return replace(
         made,
-        facings=np.array([0.3]), types=np.array([2]), groups=np.array([4]),
-        neighbour_facings=np.array([0.7]), neighbour_types=np.array([1]),
-        neighbour_groups=np.array([5]), neighbour_cores=np.array([0.25]),
-    )  # fmt: skip
+        facings=np.array([0.3]),
+        types=np.array([2]),
+        groups=np.array([4]),
+        neighbour_facings=np.array([0.7]),
+        neighbour_types=np.array([1]),
+        neighbour_groups=np.array([5]),
+        neighbour_cores=np.array([0.25]),
+    )
 
 
 VALUES = [

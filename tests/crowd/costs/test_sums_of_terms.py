@@ -93,8 +93,14 @@ def test_all_terms_in_numpy_give_the_same_trajectories():
 
 
 def of_the_default() -> list[CostTerm]:
-    return [TargetDistance(1.0), FacingDeviation(0.5), PreferredVelocity(2.0),
-            Interference(1.0), Headway(2.0), RightOfWay(3.0)]  # fmt: skip
+    return [
+        TargetDistance(1.0),
+        FacingDeviation(0.5),
+        PreferredVelocity(2.0),
+        Interference(1.0),
+        Headway(2.0),
+        RightOfWay(3.0),
+    ]
 
 
 @cache
@@ -112,9 +118,15 @@ def test_terms_of_the_default_give_the_same_trajectories_in_numpy(place, twin):
 
 
 def that_look_ahead() -> list[CostTerm]:
-    return [TargetDistance(1.0), FacingDeviation(0.5), PreferredVelocity(2.0),
-            Interference(1.0), VelocityChange(1.0), RoomAhead(3.0),
-            KeepOff(0.5)]  # fmt: skip
+    return [
+        TargetDistance(1.0),
+        FacingDeviation(0.5),
+        PreferredVelocity(2.0),
+        Interference(1.0),
+        VelocityChange(1.0),
+        RoomAhead(3.0),
+        KeepOff(0.5),
+    ]
 
 
 def walk_ahead(terms: list[CostTerm]) -> bytes:
@@ -150,8 +162,14 @@ class SameInterference(Interference):
 
 def test_costs_add_up():
     # A term twice at half its weight is the term once.
-    terms = [TargetDistance(0.5), FacingDeviation(0.5), SameDistance(0.5), PreferredSpeed(2.0),
-             Interference(0.5), SameInterference(0.5)]  # fmt: skip
+    terms = [
+        TargetDistance(0.5),
+        FacingDeviation(0.5),
+        SameDistance(0.5),
+        PreferredSpeed(2.0),
+        Interference(0.5),
+        SameInterference(0.5),
+    ]
     assert walk(two_doors(), shipped_map(), terms) == our_walk()
 
 

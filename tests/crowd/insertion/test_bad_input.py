@@ -25,19 +25,26 @@ def refuses(error, match, call):
 
 @pytest.mark.parametrize("frames", [0, -3])
 def test_frames_per_step(frames):
-    refuses(ModelError, f"frames_per_step.*{frames}",
-            lambda: model_of(corridor(), strider(), frames_per_step=frames))  # fmt: skip
+    refuses(
+        ModelError,
+        f"frames_per_step.*{frames}",
+        lambda: model_of(corridor(), strider(), frames_per_step=frames),
+    )
 
 
 def test_a_map_and_types_at_once():
     kinds = [PedestrianType(mobility_map=strider())]
-    refuses(ModelError, "both", lambda: PedestrianModel(
-        corridor(), mobility_map=strider(), pedestrian_types=kinds))  # fmt: skip
+    refuses(
+        ModelError,
+        "both",
+        lambda: PedestrianModel(corridor(), mobility_map=strider(), pedestrian_types=kinds),
+    )
 
 
 def test_no_types_at_all():
-    refuses(ModelError, "pedestrian_types",
-            lambda: PedestrianModel(corridor(), pedestrian_types=[]))  # fmt: skip
+    refuses(
+        ModelError, "pedestrian_types", lambda: PedestrianModel(corridor(), pedestrian_types=[])
+    )
 
 
 def test_a_map_file_that_is_not_there(tmp_path):
@@ -55,8 +62,7 @@ def test_a_map_file_that_is_none(tmp_path):
     "place", [(-1.0, 2.0), (21.0, 2.0), (5.0, 4.5), (math.nan, 2.0), (5.0, math.inf)]
 )
 def test_places_off_the_floor(model, place):
-    refuses(ModelError, "pedestrian 1 .*floor",
-            lambda: model.add_pedestrians([(1.0, 1.0), place]))  # fmt: skip
+    refuses(ModelError, "pedestrian 1 .*floor", lambda: model.add_pedestrians([(1.0, 1.0), place]))
     assert model.inside == 0
 
 
@@ -79,8 +85,11 @@ def test_columns_of_other_lengths_or_not_finite(model, name, values):
 
 @pytest.mark.parametrize("speed", [0.0, -1.2])
 def test_preferred_speeds_that_nobody_can_have(model, speed):
-    refuses(ModelError, "preferred_speeds",
-            lambda: model.add_pedestrians([(1, 1)], preferred_speeds=[speed]))  # fmt: skip
+    refuses(
+        ModelError,
+        "preferred_speeds",
+        lambda: model.add_pedestrians([(1, 1)], preferred_speeds=[speed]),
+    )
 
 
 def test_people_refused_leave_no_trace(model):
@@ -97,22 +106,34 @@ def test_people_refused_leave_no_trace(model):
 
 
 def test_exits_that_there_are_not(model):
-    refuses(FloorPlanError, "'north'.*'east'",
-            lambda: model.add_pedestrians([(1, 1)], exits=["north"]))  # fmt: skip
+    refuses(
+        FloorPlanError, "'north'.*'east'", lambda: model.add_pedestrians([(1, 1)], exits=["north"])
+    )
     refuses(FloorPlanError, "exit", lambda: model.add_pedestrians([(1, 1)], exits=[]))
-    refuses(ModelError, r"exits: got 'east'.*\['east'\]",
-            lambda: model.add_pedestrians([(1, 1)], exits="east"))  # fmt: skip
+    refuses(
+        ModelError,
+        r"exits: got 'east'.*\['east'\]",
+        lambda: model.add_pedestrians([(1, 1)], exits="east"),
+    )
 
 
 def test_places_from_where_no_exit_can_be_reached(model):
     # A cabin with a slit of 0.2 m, too narrow for anybody.
-    for x0, y0, x1, y1 in ((4, 1, 6, 1.2), (4, 3, 6, 3.2), (4, 1, 4.2, 3.2), (5.8, 1, 6, 1.9),
-                           (5.8, 2.1, 6, 3.2)):  # fmt: skip
+    for x0, y0, x1, y1 in (
+        (4, 1, 6, 1.2),
+        (4, 3, 6, 3.2),
+        (4, 1, 4.2, 3.2),
+        (5.8, 1, 6, 1.9),
+        (5.8, 2.1, 6, 3.2),
+    ):
         model.floor_plan.add_obstacle(box(x0, y0, x1, y1))
     for close in (lambda: None, lambda: model.floor_plan.close_gate("east")):
         close()
-        refuses(FloorPlanError, r"1 of 2 people.*any exit.*\(5.00, 2.00\)",
-                lambda: model.add_pedestrians([(1, 1), (5, 2)]))  # fmt: skip
+        refuses(
+            FloorPlanError,
+            r"1 of 2 people.*any exit.*\(5.00, 2.00\)",
+            lambda: model.add_pedestrians([(1, 1), (5, 2)]),
+        )
     assert model.inside == 0
 
 
@@ -125,5 +146,8 @@ def test_types_that_there_are_not(model, kind):
 
 def test_more_people_than_fit(model):
     rng = np.random.default_rng(0)
-    refuses(FloorPlanError, "room for [0-9]+ of 2000", lambda: model.floor_plan.random_points(
-        2000, rng, spacing=0.5, clearance=0.3))  # fmt: skip
+    refuses(
+        FloorPlanError,
+        "room for [0-9]+ of 2000",
+        lambda: model.floor_plan.random_points(2000, rng, spacing=0.5, clearance=0.3),
+    )

@@ -44,8 +44,14 @@ def test_where_they_appear_they_are_recorded_before_they_move():
 
 
 def test_a_rate_is_a_poisson_process():
-    model = model_of(corridor(length=30.0, width=8.0), strider(), rng=4, record=False,
-                     preset="paper", frames_per_step=30)  # fmt: skip
+    model = model_of(
+        corridor(length=30.0, width=8.0),
+        strider(),
+        rng=4,
+        record=False,
+        preset="paper",
+        frames_per_step=30,
+    )
     inflow = model.add_source(Source(area=box(1, 1, 6, 7), rate=2.0))
     counts = []
     for _ in range(300):
@@ -119,8 +125,16 @@ def test_a_run_is_not_over_while_somebody_is_to_come():
 
 def test_people_of_a_source_get_what_added_people_get():
     model = model_of(corridor(both_ends=True), strider(), rng=3)
-    model.add_source(Source(area=WEST, times=[0.0, 0.0], exits=["east"], group="tour",
-                            preferred_speeds=Uniform(0.8, 1.0), pre_movement=2.0))  # fmt: skip
+    model.add_source(
+        Source(
+            area=WEST,
+            times=[0.0, 0.0],
+            exits=["east"],
+            group="tour",
+            preferred_speeds=Uniform(0.8, 1.0),
+            pre_movement=2.0,
+        )
+    )
     advance(model, 1)
     for person in model.agents:
         assert 0.8 <= person.preferred_speed <= 1.0
@@ -132,8 +146,9 @@ def test_people_of_a_source_get_what_added_people_get():
 def test_trajectories_do_not_depend_on_the_length_of_a_step():
     found = []
     for frames_per_step in (1, 3, 7):
-        model = model_of(corridor(length=8.0), shipped_map(), rng=6,
-                         frames_per_step=frames_per_step)  # fmt: skip
+        model = model_of(
+            corridor(length=8.0), shipped_map(), rng=6, frames_per_step=frames_per_step
+        )
         model.add_source(Source(area=box(0.5, 0.5, 2.0, 3.5), rate=4.0, until=9.0))
         while model.frame < 336:
             model.step()
@@ -200,16 +215,34 @@ def test_nobody_appears_beside_a_person_crossing_the_exit():
 
 @pytest.mark.parametrize(
     "keywords",
-    [{}, {"rate": 1.0, "times": [1.0]}, {"rate": 0.0}, {"rate": np.inf}, {"times": [-1.0]},
-     {"times": "soon"}, {"times": [[1.0]]}, {"rate": 1.0, "start": 5.0, "until": 4.0},
-     {"rate": 1.0, "number": -1}, {"rate": 1.0, "number": 1.5}, {"rate": 1e300},
-     {"rate": np.nan}, {"rate": "many"}, {"rate": 1.0, "number": 10**30}, {"times": [1e300]},
-     {"times": [np.nan]}, {"rate": 1.0, "start": 1e300}, {"rate": 1.0, "start": "now"},
-     {"rate": 1.0, "until": np.nan}, {"rate": 1.0, "preferred_speeds": 1e300},
-     {"rate": 1.0, "preferred_speeds": -1.0}, {"rate": 1.0, "preferred_speeds": [1.0]},
-     {"rate": 1.0, "pre_movement": -1.0}, {"rate": 1.0, "pre_movement": np.nan},
-     {"rate": 1.0, "pre_movement": 1e300}],
-)  # fmt: skip
+    [
+        {},
+        {"rate": 1.0, "times": [1.0]},
+        {"rate": 0.0},
+        {"rate": np.inf},
+        {"times": [-1.0]},
+        {"times": "soon"},
+        {"times": [[1.0]]},
+        {"rate": 1.0, "start": 5.0, "until": 4.0},
+        {"rate": 1.0, "number": -1},
+        {"rate": 1.0, "number": 1.5},
+        {"rate": 1e300},
+        {"rate": np.nan},
+        {"rate": "many"},
+        {"rate": 1.0, "number": 10**30},
+        {"times": [1e300]},
+        {"times": [np.nan]},
+        {"rate": 1.0, "start": 1e300},
+        {"rate": 1.0, "start": "now"},
+        {"rate": 1.0, "until": np.nan},
+        {"rate": 1.0, "preferred_speeds": 1e300},
+        {"rate": 1.0, "preferred_speeds": -1.0},
+        {"rate": 1.0, "preferred_speeds": [1.0]},
+        {"rate": 1.0, "pre_movement": -1.0},
+        {"rate": 1.0, "pre_movement": np.nan},
+        {"rate": 1.0, "pre_movement": 1e300},
+    ],
+)
 def test_sources_that_cannot_be(keywords):
     with pytest.raises(ModelError, match="source") as refused:
         Source(area=WEST, **keywords)

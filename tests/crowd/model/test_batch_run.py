@@ -66,8 +66,9 @@ def test_data_collected_along_the_way():
 
 
 def test_preset_is_a_parameter_like_any_other():
-    rows = batch(StraightWalk, {"pedestrians": 2, "length": 6.0, "preset": ["default", "paper"]},
-                 [1])  # fmt: skip
+    rows = batch(
+        StraightWalk, {"pedestrians": 2, "length": 6.0, "preset": ["default", "paper"]}, [1]
+    )
     speed = {row["preset"]: row["elapsed"] for row in rows}
     # Without speeds of their own everybody walks as fast as the map goes.
     assert speed["paper"] < speed["default"]

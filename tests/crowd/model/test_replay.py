@@ -264,5 +264,11 @@ def test_poses_of_the_shipped_map_fit_the_velocities():
     assert (off <= everywhere.min(axis=1) + ALIKE + 1e-12).all()
     assert found[0] == capability.standing
     # Several poses fit a walker's speed, so the phase of the gait is drawn.
-    assert len(np.unique(capability.clusters_at(np.tile([1.3, 0.0], (200, 1)),
-                                                np.random.default_rng(2)))) > 1  # fmt: skip
+    assert (
+        len(
+            np.unique(
+                capability.clusters_at(np.tile([1.3, 0.0], (200, 1)), np.random.default_rng(2))
+            )
+        )
+        > 1
+    )

@@ -49,13 +49,20 @@ def test_a_published_mean_and_deviation():
 
 SHIPPED = {
     # Weidmann's adults, scaled to the steady walk that was recorded where no source states a speed.
-    "able_bodied": (1.339, 1.339 * 0.26 / 1.34), "slow": (0.572, 0.572 * 0.26 / 1.34),
-    "limping_left": (0.573, 0.573 * 0.26 / 1.34), "limping_right": (0.573, 0.573 * 0.26 / 1.34),
-    "child": (1.13, 0.22), "older_adult": (1.23, 0.20), "wheelchair_powered": (0.89, 0.22),
+    "able_bodied": (1.339, 1.339 * 0.26 / 1.34),
+    "slow": (0.572, 0.572 * 0.26 / 1.34),
+    "limping_left": (0.573, 0.573 * 0.26 / 1.34),
+    "limping_right": (0.573, 0.573 * 0.26 / 1.34),
+    "child": (1.13, 0.22),
+    "older_adult": (1.23, 0.20),
+    "wheelchair_powered": (0.89, 0.22),
     # Boyce, Shields and Silcock 1999.
-    "cane": (0.81, 0.38), "crutches": (0.94, 0.30), "walking_frame": (0.57, 0.29),
-    "wheelchair_manual": (0.69, 0.35), "wheelchair_assisted": (1.30, 0.34),
-}  # fmt: skip
+    "cane": (0.81, 0.38),
+    "crutches": (0.94, 0.30),
+    "walking_frame": (0.57, 0.29),
+    "wheelchair_manual": (0.69, 0.35),
+    "wheelchair_assisted": (1.30, 0.34),
+}
 FASTEST_OPTIONS = {"walking_frame": 1.2322, "wheelchair_manual": 1.4, "wheelchair_assisted": 2.0}
 """Where they are slower than 0.66 / 0.26 deviations above the mean, m/s."""
 

@@ -143,15 +143,18 @@ def test_a_copy_has_fields_of_its_own():
     assert copied.crowd.fields["visits"].max() == 3
 
 
-@pytest.mark.parametrize(("fields", "text"), [
-    ({"mood": str}, "field 'mood': got <class 'str'>, expected bool, int or float"),
-    ({"speed": float}, "people have 'speed' already"),
-    ({"stepped": float, "step": bool}, "people have 'step' already"),
-    ({"a b": int}, "got 'a b', expected a name"),
-    ({"group": int}, "people have 'group' already"),
-    ({"type": int}, "people have 'type' already"),
-    (["mood"], "expected a type for each name"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("fields", "text"),
+    [
+        ({"mood": str}, "field 'mood': got <class 'str'>, expected bool, int or float"),
+        ({"speed": float}, "people have 'speed' already"),
+        ({"stepped": float, "step": bool}, "people have 'step' already"),
+        ({"a b": int}, "got 'a b', expected a name"),
+        ({"group": int}, "people have 'group' already"),
+        ({"type": int}, "people have 'type' already"),
+        (["mood"], "expected a type for each name"),
+    ],
+)
 def test_declarations_that_are_refused(fields, text):
     with pytest.raises(ModelError, match=text):
         model_of(corridor(), strider(), fields=fields)

@@ -39,8 +39,10 @@ def test_the_standing_cluster_is_that_of_the_type(whole):
 
 def test_people_of_different_sizes_keep_their_own_distances():
     plan = FloorPlan(box(0, 0, 6, 6), exits=[Exit("east", (6, 2.5), (6, 3.5))])
-    kinds = [PedestrianType(mobility_map=wanderer(k), core_radius=r, name=str(k))
-             for k, r in ((3, 0.125), (4, 0.25))]  # fmt: skip
+    kinds = [
+        PedestrianType(mobility_map=wanderer(k), core_radius=r, name=str(k))
+        for k, r in ((3, 0.125), (4, 0.25))
+    ]
     model = PedestrianModel(plan, pedestrian_types=kinds, record=True, rng=1)
     places = plan.random_points(16, model.rng, spacing=0.6, clearance=0.35)
     small = model.add_pedestrians(places[:8])
@@ -62,7 +64,6 @@ def test_people_of_different_sizes_keep_their_own_distances():
 
 
 def test_types_have_speeds_of_their_own():
-    kinds = [PedestrianType(mobility_map=strider(), preferred_speed=m)
-             for m in (0.8, 1.6)]  # fmt: skip
+    kinds = [PedestrianType(mobility_map=strider(), preferred_speed=m) for m in (0.8, 1.6)]
     model = PedestrianModel(corridor(), pedestrian_types=kinds)
     assert [put(model, 1.0, 1.0 + k, type_index=k).preferred_speed for k in (0, 1)] == [0.8, 1.6]

@@ -75,8 +75,12 @@ def test_bodies_keep_clear_of_each_other(ahead, aside, metres, in_parts):
 
 def test_cores_of_different_types_add_up(in_parts):
     thin, stout = make_map([[stand()]], core_radius=0.1), make_map([[stand()]], core_radius=0.4)
-    for blocker, ahead, metres in ((1, 1.252, 1.0), (1, 1.248, 0.5), (2, 1.552, 1.0),
-                                   (2, 1.548, 0.5)):  # fmt: skip
+    for blocker, ahead, metres in (
+        (1, 1.252, 1.0),
+        (1, 1.248, 0.5),
+        (2, 1.552, 1.0),
+        (2, 1.548, 0.5),
+    ):
         model = farthest(corridor(), [strider(), thin, stout], in_parts)
         put(model, 5.0 + ahead, 2.0, type_index=blocker)
         assert commits_to(model, put(model, 5.0, 2.0)) == pytest.approx(metres, abs=1e-6)
@@ -135,8 +139,11 @@ def test_preferred_speed_decides_between_slow_and_fast(whole):
 def test_interference_turns_away_from_a_neighbour(side):
     left, right = (straight(1.5, 45, towards=t, to=0) for t in (0.5, -0.5))
     # The left one is a hair nearer to the target when nobody is about.
-    model = model_of(corridor(), [make_map([[stand(), left, right]]), statues()],
-                     behaviors=[TargetDistance(), Interference()])  # fmt: skip
+    model = model_of(
+        corridor(),
+        [make_map([[stand(), left, right]]), statues()],
+        behaviors=[TargetDistance(), Interference()],
+    )
     put(model, 5.0 + 1.4, 2.0 + side * 1.0, type_index=1)
     person = put(model, 5.0, 2.0)
     advance(model, 45)
@@ -147,8 +154,11 @@ def test_neighbours_behind_the_mobility_point_do_not_interfere():
     # The left option ends 0.45 m past a neighbour that stands 0.3 m beside its path, 0.54 m from
     # it; the right one 0.6 m short of a neighbour. Only the latter is ahead at the end.
     left, right = (straight(1.5, 45, towards=t, turn=t, to=0) for t in (0.5, -0.5))
-    model = model_of(corridor(), [make_map([[stand(), left, right]]), statues()],
-                     behaviors=[Interference(), Displacement(0.01)])  # fmt: skip
+    model = model_of(
+        corridor(),
+        [make_map([[stand(), left, right]]), statues()],
+        behaviors=[Interference(), Displacement(0.01)],
+    )
     for along, towards in ((1.05, 0.5), (2.1, -0.5)):
         aside = 0.302 if along < 1.5 else 0.0
         x = 5.0 + along * math.cos(towards) - aside * math.sin(towards)

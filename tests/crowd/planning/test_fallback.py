@@ -100,8 +100,12 @@ def test_turning_away_from_the_wall_lets_the_person_walk_off(cornered):
 
 def test_shares_of_decisions_and_of_time(onward, whole):
     # One falls back thrice in a row (12 frames), another strides on (12 frames, one decision).
-    model = model_of(corridor(length=40.0), [onward, make_map([[straight(0.5, 12, to=0)]])],
-                     behaviors=[Displacement()], preset=whole)  # fmt: skip
+    model = model_of(
+        corridor(length=40.0),
+        [onward, make_map([[straight(0.5, 12, to=0)]])],
+        behaviors=[Displacement()],
+        preset=whole,
+    )
     model.floor_plan.add_obstacle(box(6.3, 0.5, 6.4, 3.5))
     stuck, walker = put(model, 6.0, 2.0), put(model, 20.0, 2.0, type_index=1)
     advance(model, 12)

@@ -18,11 +18,12 @@ from tests.fixtures.scenes import advance, core_of, corridor, model_of, put
 def floor_with_doors() -> FloorPlan:
     """Two rooms with two doors between them and an exit at either end."""
     return FloorPlan(
-        shapely.union_all([box(0, 0, 8, 8), box(8.2, 0, 16.2, 8), *(
-            box(8, y, 8.2, y + 1.4) for y in (1.3, 5.3))]),
+        shapely.union_all(
+            [box(0, 0, 8, 8), box(8.2, 0, 16.2, 8), *(box(8, y, 8.2, y + 1.4) for y in (1.3, 5.3))]
+        ),
         exits=[Exit("west", (0, 3), (0, 5)), Exit("east", (16.2, 3), (16.2, 5))],
         gates=[Gate("low", (8.1, 1.3), (8.1, 2.7)), Gate("high", (8.1, 5.3), (8.1, 6.7))],
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("place", [(5.0, 2.0), (5.0, 0.2), (0.2, 0.2), (19.8, 2.0)])

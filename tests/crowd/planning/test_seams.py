@@ -46,9 +46,14 @@ def test_nobody_is_lost_doubled_or_walks_through_others_or_walls():
     assert (places[later[changes], 0] > 6.0).all()
     whole = room_with_corridor(0.9)
     walked = Trajectories(
-        tracks.frame, tracks.person, places[:, 0], tracks.y, tracks.heading,
-        core_radius=tracks.radii, inside_at_end=[],
-    )  # fmt: skip
+        tracks.frame,
+        tracks.person,
+        places[:, 0],
+        tracks.y,
+        tracks.heading,
+        core_radius=tracks.radii,
+        inside_at_end=[],
+    )
     assert check_safety(walked, whole.walls, whole.free).passed
 
 

@@ -48,8 +48,9 @@ def test_somebody_on_a_long_way_does_not_stall():
 
 
 def test_nor_where_somebody_else_has_no_way_out():
-    plan = FloorPlan(box(0, 0, 120, 4), exits=[Exit("east", (120, 0), (120, 4)),
-                                               Exit("west", (0, 0), (0, 4))])  # fmt: skip
+    plan = FloorPlan(
+        box(0, 0, 120, 4), exits=[Exit("east", (120, 0), (120, 4)), Exit("west", (0, 0), (0, 4))]
+    )
     plan.close_gate("west")
     model = model_of(plan, [strider(), statues()], frames_per_step=3)
     walker = put(model, 1.0, 1.0, preferred_speeds=[1.25], exits=["east"])

@@ -72,8 +72,9 @@ def test_preferred_speeds_drawn_from_a_distribution():
 def test_somebody_who_stands_for_long_is_walked_round_and_unhurt():
     model = model_of(corridor(width=2.5), shipped_map(), rng=3, frames_per_step=3)
     model.add_pedestrians([(6.0, 0.6), (6.0, 1.25), (6.3, 1.9)], pre_movement=[20.0, 25.0, 1e5])
-    places = model.floor_plan.random_points(12, model.rng, spacing=0.7, clearance=0.3,
-                                            within=corridor(4.0, 2.5).walkable)  # fmt: skip
+    places = model.floor_plan.random_points(
+        12, model.rng, spacing=0.7, clearance=0.3, within=corridor(4.0, 2.5).walkable
+    )
     model.add_pedestrians(places)
     model.run(max_seconds=60)
     assert model.inside == 1

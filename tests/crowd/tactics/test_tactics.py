@@ -51,19 +51,31 @@ def test_those_of_the_presets():
     ]
     assert [name for name in default if name in needed] == needed
     everything = [
-        "corner_spreading", "visits", "speed_zones", "speed_rules", "giving_way",
-        "waiting", "speed_compensation", "anticipation", "speed_adaptation",
+        "corner_spreading",
+        "visits",
+        "speed_zones",
+        "speed_rules",
+        "giving_way",
+        "waiting",
+        "speed_compensation",
+        "anticipation",
+        "speed_adaptation",
         "stepping_off",
-    ]  # fmt: skip
+    ]
     assert names(model_of(corridor(), strider(), preset=ENGINE)) == everything
 
 
 def test_those_of_the_scene_come_around_those_of_a_preset_unless_it_names_their_place():
     mine = replace(PRESETS["paper"], tactics=("giving_way", "stepping_off", "anticipation"))
     assert names(model_of(corridor(), strider(), preset=mine)) == [
-        "visits", "speed_zones", "speed_rules", "giving_way", "stepping_off", "anticipation",
+        "visits",
+        "speed_zones",
+        "speed_rules",
+        "giving_way",
+        "stepping_off",
+        "anticipation",
         "waiting",
-    ]  # fmt: skip
+    ]
 
 
 def test_they_apply_in_order_and_may_be_taken_out():
@@ -121,15 +133,18 @@ def test_a_preset_of_ones_own_is_saved_with_the_figures():
     assert Preset(**rules) == mine
 
 
-@pytest.mark.parametrize(("changed", "text"), [
-    ({"name": ""}, "preset: name ''"),
-    ({"durations": ()}, r"durations \(\), expected frames"),
-    ({"durations": (12, 0.5)}, "durations"),
-    ({"terms": {"headway": float("nan")}}, "for the name of each a finite number"),
-    ({"tactics": "visits"}, "tactics 'visits', expected names of registered tactics"),
-    ({"tactics": ("visits", 1)}, "expected names of registered tactics"),
-    ({"shares": ((1.0,),)}, "share 1.0, expected 0 or more and less than 1"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("changed", "text"),
+    [
+        ({"name": ""}, "preset: name ''"),
+        ({"durations": ()}, r"durations \(\), expected frames"),
+        ({"durations": (12, 0.5)}, "durations"),
+        ({"terms": {"headway": float("nan")}}, "for the name of each a finite number"),
+        ({"tactics": "visits"}, "tactics 'visits', expected names of registered tactics"),
+        ({"tactics": ("visits", 1)}, "expected names of registered tactics"),
+        ({"shares": ((1.0,),)}, "share 1.0, expected 0 or more and less than 1"),
+    ],
+)
 def test_presets_that_are_refused(changed, text):
     with pytest.raises(ModelError, match=text):
         replace(PRESETS["default"], **changed)

@@ -84,8 +84,9 @@ def test_people_decide_in_rising_order_of_the_distance_given():
     # As under `nearest first`, but the choice says that who is farther right is nearer. All go as
     # far as there is room, which the one in front makes if it decides first.
     choice = ToPoint((99.0, 2.0))
-    model = model_of(corridor(both_ends=True), strider(), behaviors=[TargetDistance()],
-                     target_choice=choice)  # fmt: skip
+    model = model_of(
+        corridor(both_ends=True), strider(), behaviors=[TargetDistance()], target_choice=choice
+    )
     model.add_pedestrians([(6.0, 2.0), (6.5, 2.0)], headings=0.0, preferred_speeds=1.25)
     advance(model, 45)
     assert sorted(p.position[0] for p in model.agents) == pytest.approx([7.875, 8.375])

@@ -152,9 +152,9 @@ def test_others_walk_round_somebody_who_waits_and_it_stays_in_its_place():
 
 
 @pytest.mark.parametrize(
-    "keywords", [{}, {"seconds": 1.0, "until": bool}, {"seconds": -1.0}, {"seconds": np.inf},
-                 {"until": 5.0}],
-)  # fmt: skip
+    "keywords",
+    [{}, {"seconds": 1.0, "until": bool}, {"seconds": -1.0}, {"seconds": np.inf}, {"until": 5.0}],
+)
 def test_waits_that_cannot_be(keywords):
     model = model_of(corridor(), strider())
     person = put(model, 2.0, 2.0)

@@ -44,8 +44,12 @@ def test_models_are_found_without_executing_their_files(folder):
     (folder / "other.txt").write_text(PLAIN)
     (folder / "odd.py").write_bytes(b"\xff\xfe")
     assert offered_models() == [
-        "broken.py", "room.py", "two.py:Narrow", "two.py:Narrower", "two.py:Other",
-    ]  # fmt: skip
+        "broken.py",
+        "room.py",
+        "two.py:Narrow",
+        "two.py:Narrower",
+        "two.py:Other",
+    ]
     assert not touched.exists()
 
 

@@ -95,9 +95,17 @@ def test_another_name_gets_nothing(local, host, path):
 
 @pytest.mark.parametrize(
     "origin",
-    ["http://evil.example", "https://evil.example:{0}", "null", "http://localhost:1", "file://",
-     "http://localhost.evil.example:{0}", "http://[", "http://127.0.0.1:{0}"],
-)  # fmt: skip
+    [
+        "http://evil.example",
+        "https://evil.example:{0}",
+        "null",
+        "http://localhost:1",
+        "file://",
+        "http://localhost.evil.example:{0}",
+        "http://[",
+        "http://127.0.0.1:{0}",
+    ],
+)
 def test_a_page_of_another_site_gets_neither_page_nor_socket(local, origin):
     origin = origin.format(local)
     assert ask(local, Origin=origin)[0] == 403
@@ -141,9 +149,17 @@ NO_TOKEN = (
 
 
 @pytest.mark.parametrize(
-    "path", ["/", "/readyz", "/?token=", "/?token=x", "/static/main-vuetify.js", "/nowhere",
-             f"{CDN}requirejs@2.3.6/require.js"],
-)  # fmt: skip
+    "path",
+    [
+        "/",
+        "/readyz",
+        "/?token=",
+        "/?token=x",
+        "/static/main-vuetify.js",
+        "/nowhere",
+        f"{CDN}requirejs@2.3.6/require.js",
+    ],
+)
 def test_nothing_is_answered_without_the_token(anywhere, path):
     port = port_of(anywhere)
     for told in ({}, {"Cookie": f"mesa-mobility-{port}=x"}, {"Authorization": f"Bearer {TOKEN}"}):
@@ -189,12 +205,25 @@ def test_the_way_without_the_token_stays_on_this_server(network, path):
 
 @pytest.mark.parametrize(
     "path",
-    ["/readyz", "/resourcez", "/nowhere", "/nowhere/at/all", "/jupyter/api/kernels/k-1", "/static",
-     "/_solara/api/evict/k-1", f"{CDN}@widgetti/vue3-something", f"{CDN}requirejs@2.3.6",
-     f"{CDN}@widgetti/solara-vuetify-app@10.1.1/dist", f"{CDN}../cdn/requirejs@2.3.6/require.js",
-     f"{CDN}requirejs@2.3.6/%2e%2e/%2e%2e/%2e%2e/%2e%2e/pyvenv.cfg", f"{CDN}", f"{CDN}/etc/passwd",
-     f"{CDN}requirejs@2.3.6/%00", f"{CDN}requirejs@2.3.6/{'x' * 5000}"],
-)  # fmt: skip
+    [
+        "/readyz",
+        "/resourcez",
+        "/nowhere",
+        "/nowhere/at/all",
+        "/jupyter/api/kernels/k-1",
+        "/static",
+        "/_solara/api/evict/k-1",
+        f"{CDN}@widgetti/vue3-something",
+        f"{CDN}requirejs@2.3.6",
+        f"{CDN}@widgetti/solara-vuetify-app@10.1.1/dist",
+        f"{CDN}../cdn/requirejs@2.3.6/require.js",
+        f"{CDN}requirejs@2.3.6/%2e%2e/%2e%2e/%2e%2e/%2e%2e/pyvenv.cfg",
+        f"{CDN}",
+        f"{CDN}/etc/passwd",
+        f"{CDN}requirejs@2.3.6/%00",
+        f"{CDN}requirejs@2.3.6/{'x' * 5000}",
+    ],
+)
 @pytest.mark.parametrize("method", ["GET", "HEAD", "POST", "PUT"])
 def test_what_the_page_does_not_need_is_not_found(local, path, method):
     status, headers, text = ask(local, path, method=method, Origin=f"http://localhost:{local}")
@@ -228,8 +257,13 @@ def test_the_framework_is_not_asked_for_libraries_that_are_not_here(tmp_path):
     headers = [(b"host", b"localhost"), (b"authorization", f"Bearer {TOKEN}".encode())]
     for path in ("main.js", "lib/main.js", "../secret", "x/../../secret", "..\\secret", "", "."):
         answers = []
-        scope = {"type": "http", "method": "GET", "path": CDN + path, "query_string": b"",
-                 "headers": headers}  # fmt: skip
+        scope = {
+            "type": "http",
+            "method": "GET",
+            "path": CDN + path,
+            "query_string": b"",
+            "headers": headers,
+        }
         asyncio.run(guard(scope, None, send))
         assert answers[:1] == [404]
     guard = Guard(app, "127.0.0.1", 8765, TOKEN, tmp_path)
@@ -270,9 +304,17 @@ def test_250_connections_that_hold_back_their_request_are_closed_and_the_page_is
 
 @pytest.mark.parametrize(
     ("host", "expected"),
-    [("127.0.0.1", True), ("127.0.0.9", True), ("::1", True), ("localhost", True),
-     ("0.0.0.0", False), ("::", False), ("192.168.1.5", False), ("myhost", False)],
-)  # fmt: skip
+    [
+        ("127.0.0.1", True),
+        ("127.0.0.9", True),
+        ("::1", True),
+        ("localhost", True),
+        ("0.0.0.0", False),
+        ("::", False),
+        ("192.168.1.5", False),
+        ("myhost", False),
+    ],
+)
 def test_which_addresses_only_this_machine_reaches(host, expected):
     assert is_loopback(host) is expected
 

@@ -26,8 +26,9 @@ def test_every_wall_lies_in_one_box(count: int) -> None:
             wall = walls[numbers[block, lane]].reshape(2, 2)
             found.append(int(numbers[block, lane]))
             assert (wall.min(axis=0), wall.max(axis=0)) == (
-                pytest.approx([x - wide, y - high]), pytest.approx([x + wide, y + high]),
-            )  # fmt: skip
+                pytest.approx([x - wide, y - high]),
+                pytest.approx([x + wide, y + high]),
+            )
             if outer:
                 cx, cy, half, tall = boxes[block // 8, :, block % 8]
                 assert (np.abs(wall - [cx, cy]) <= [half + 1e-9, tall + 1e-9]).all()

@@ -16,16 +16,32 @@ from mesa_mobility.mobility.standing.ways_back import check_ways_back
 FOLDER = Path(str(files("mesa_mobility.maps")))
 
 NAMES = (
-    "able_bodied", "child", "older_adult", "slow", "limping_left", "limping_right", "cane",
-    "crutches", "walking_frame", "wheelchair_manual", "wheelchair_powered", "wheelchair_assisted",
-)  # fmt: skip
+    "able_bodied",
+    "child",
+    "older_adult",
+    "slow",
+    "limping_left",
+    "limping_right",
+    "cane",
+    "crutches",
+    "walking_frame",
+    "wheelchair_manual",
+    "wheelchair_powered",
+    "wheelchair_assisted",
+)
 
 # Radii of the cores in metres, and free speeds of the sources in m/s.
 BODIES = {"child": 0.128, "crutches": 0.22, "walking_frame": 0.2}
 SPEEDS = {
-    "child": 1.13, "older_adult": 1.23, "cane": 0.81, "crutches": 0.94, "walking_frame": 0.57,
-    "wheelchair_manual": 0.69, "wheelchair_powered": 0.89, "wheelchair_assisted": 1.30,
-}  # fmt: skip
+    "child": 1.13,
+    "older_adult": 1.23,
+    "cane": 0.81,
+    "crutches": 0.94,
+    "walking_frame": 0.57,
+    "wheelchair_manual": 0.69,
+    "wheelchair_powered": 0.89,
+    "wheelchair_assisted": 1.30,
+}
 
 
 def test_twelve_maps_ship_in_at_most_20_megabytes():
@@ -35,9 +51,12 @@ def test_twelve_maps_ship_in_at_most_20_megabytes():
 
 def test_the_readme_has_their_sums():
     listed = dict(
-        re.findall(r"^\| `(\w+)\.npz` \|.*\| `([0-9a-f]{64})` \|$",
-                   (FOLDER / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
-    )  # fmt: skip
+        re.findall(
+            r"^\| `(\w+)\.npz` \|.*\| `([0-9a-f]{64})` \|$",
+            (FOLDER / "README.md").read_text(encoding="utf-8"),
+            re.MULTILINE,
+        )
+    )
     assert listed == {
         name: hashlib.sha256(shipped_map_path(name).read_bytes()).hexdigest() for name in NAMES
     }

@@ -21,9 +21,17 @@ from mesa_mobility.mobility.edits import EDITS, STRIDES, TURNS_DEG
 from tests.fixtures.poses import random_poses
 
 ARRAYS = (
-    "offsets", "durations", "costs", "path_offsets", "paths", "path_clusters", "mean_poses",
-    "centres", "sizes", "mean_speeds",
-)  # fmt: skip
+    "offsets",
+    "durations",
+    "costs",
+    "path_offsets",
+    "paths",
+    "path_clusters",
+    "mean_poses",
+    "centres",
+    "sizes",
+    "mean_speeds",
+)
 
 MOTION_STEP = 2e-5
 
@@ -135,8 +143,10 @@ def test_spoilt_numbers_are_an_error_or_a_sound_map(built, tmp_path):
         names = [entry.filename.removesuffix(".npy") for entry in archive.infolist()]
     for name in names * 3:
         changed(
-            tmp_path / "sound.npz", tmp_path / "spoilt.npz", name,
+            tmp_path / "sound.npz",
+            tmp_path / "spoilt.npz",
+            name,
             lambda array: spoil(array).reshape(array.shape),
-        )  # fmt: skip
+        )
         with contextlib.suppress(MapError):
             assert MobilityMap.load(tmp_path / "spoilt.npz").n_options > 0

@@ -16,9 +16,17 @@ from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import MobilityMap
 
 ARRAYS = (
-    "offsets", "durations", "costs", "path_offsets", "paths", "path_clusters", "mean_poses",
-    "centres", "sizes", "mean_speeds",
-)  # fmt: skip
+    "offsets",
+    "durations",
+    "costs",
+    "path_offsets",
+    "paths",
+    "path_clusters",
+    "mean_poses",
+    "centres",
+    "sizes",
+    "mean_speeds",
+)
 
 
 @st.composite

@@ -200,8 +200,9 @@ def test_the_measured_crowd_may_have_a_view_of_its_own():
 def test_heads_are_smoothed_alike():
     frames = np.arange(200)
     sway = 0.05 * np.sin(2 * np.pi * frames / RATE)  # a cycle a second
-    run = Trajectories(frames, np.zeros(200, int), frames / RATE, sway, np.zeros(200),
-                       frame_rate=RATE)  # fmt: skip
+    run = Trajectories(
+        frames, np.zeros(200, int), frames / RATE, sway, np.zeros(200), frame_rate=RATE
+    )
     # A Gaussian of s seconds leaves exp(-(2 pi s)^2 / 2) of a sine of 1 Hz.
     left = smoothed(run, 0.3).y[50:150]
     assert np.abs(left).max() == pytest.approx(0.05 * np.exp(-((0.6 * np.pi) ** 2) / 2), rel=0.05)

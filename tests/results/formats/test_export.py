@@ -31,9 +31,13 @@ def run(two_leave_one_stays):
 
 # Of two_leave_one_stays: persons 0 and 2 walk on at 1.1 m and 1.5 m a frame, person 1 is inside.
 BEYOND = [
-    (3, 0, 11.2, 2.0), (4, 0, 12.3, 2.0), (5, 0, 13.4, 2.0),
-    (5, 2, 12.0, 2.0), (6, 2, 13.5, 2.0), (7, 2, 15.0, 2.0),
-]  # fmt: skip
+    (3, 0, 11.2, 2.0),
+    (4, 0, 12.3, 2.0),
+    (5, 0, 13.4, 2.0),
+    (5, 2, 12.0, 2.0),
+    (6, 2, 13.5, 2.0),
+    (7, 2, 15.0, 2.0),
+]
 
 
 def exported(run):
@@ -116,8 +120,13 @@ def test_jupedsim_database_has_what_its_viewer_asks_for(room, tmp_path):
     finally:
         connection.close()
     assert metadata == {
-        "version": "2", "fps": "30.0", "xmin": "1.0", "xmax": "2.0", "ymin": "0.5", "ymax": "3.5",
-    }  # fmt: skip
+        "version": "2",
+        "fps": "30.0",
+        "xmin": "1.0",
+        "xmax": "2.0",
+        "ymin": "0.5",
+        "ymax": "3.5",
+    }
     # A frame without anybody is a frame too.
     assert [frame for frame, _ in frames] == [0, 1, 2]
     # The same in every process: a checksum of the text.

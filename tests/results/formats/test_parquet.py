@@ -47,9 +47,12 @@ def test_other_programs_find_columns_units_and_compression(two_leave_one_stays, 
     file = pq.ParquetFile(tmp_path / "run.parquet")
     schema = file.schema_arrow
     assert [(field.name, str(field.type)) for field in schema] == [
-        ("frame", "int32"), ("person", "int32"), ("x", "double"), ("y", "double"),
+        ("frame", "int32"),
+        ("person", "int32"),
+        ("x", "double"),
+        ("y", "double"),
         ("heading", "double"),
-    ]  # fmt: skip
+    ]
     metadata = json.loads(schema.metadata[b"mesa_mobility"])
     content = (tmp_path / "run.parquet").read_bytes()
     zeros = content.replace(metadata["sha256"].encode(), b"0" * 64)

@@ -58,9 +58,11 @@ def test_people_inside_count_as_later_than_all_others(walk):
     tracks = {k: (0, [(0.1 * t, 1.0 + k) for t in range(k + 1)]) for k in range(28)}
     tracks |= {k: (0, [(0.0, 1.0 + k)] * 40) for k in (28, 29)}
     crowd = walk(
-        tracks, frame_rate=1.0, inside_at_end=np.array([28, 29]),
+        tracks,
+        frame_rate=1.0,
+        inside_at_end=np.array([28, 29]),
         person_data={"type": np.array(["all"] * 30)},
-    )  # fmt: skip
+    )
     [row] = by_type(crowd).to_dict("records")
     assert (row["people"], row["left"]) == (30, 28)
     # The 95th percentile lies between the 28th and the 29th, who has not left.
@@ -92,8 +94,9 @@ def test_a_data_frame_with_all_of_it(three):
     assert frame.columns.tolist() == ["frame", "person", "x", "y", "heading", *DATA]
     assert len(frame) == 14
     assert frame.groupby("type", observed=True)["person"].nunique().to_dict() == {
-        "adult": 1, "child": 2
-    }  # fmt: skip
+        "adult": 1,
+        "child": 2,
+    }
     assert (frame["age"].to_numpy() == DATA["age"][frame["person"]]).all()
     assert frame["type"].cat.categories.tolist() == ["adult", "child"]
 

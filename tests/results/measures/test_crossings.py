@@ -34,8 +34,12 @@ def test_flow_in_windows(three):
     assert three.duration == 10.0
     assert flow_over_time(found, 10.0, window=4.0) == [[2.0, 0.5], [6.0, 0.25]]
     assert flow_over_time(found, 10.0, window=5.0, direction=-1) == [[2.5, 0.2], [7.5, 0.2]]
-    assert flow_over_time(found, 10.0, window=2.5) == [[1.25, 0.0], [3.75, 0.8], [6.25, 0.4],
-                                                       [8.75, 0.0]]  # fmt: skip
+    assert flow_over_time(found, 10.0, window=2.5) == [
+        [1.25, 0.0],
+        [3.75, 0.8],
+        [6.25, 0.4],
+        [8.75, 0.0],
+    ]
     assert flow_over_time(found, 10.0, window=20.0) == []
 
 
@@ -48,8 +52,10 @@ def test_lines_that_nobody_crosses(three):
 @pytest.mark.parametrize("direction", [0, 2, "left"])
 def test_other_directions_are_refused(three, direction):
     found = crossings(three, *LINE)
-    for measure in (lambda: passed_by(found, direction),
-                    lambda: flow_over_time(found, 10.0, direction=direction)):  # fmt: skip
+    for measure in (
+        lambda: passed_by(found, direction),
+        lambda: flow_over_time(found, 10.0, direction=direction),
+    ):
         with pytest.raises(ResultsError, match="direction"):
             measure()
 

@@ -10,9 +10,15 @@ from mesa_mobility.results import lateral_sway
 
 
 def walker(
-    seconds=20.0, amplitude=0.03, stride=0.9, direction=0.0, drift=0.0, speed=1.3, wander=0.0,
+    seconds=20.0,
+    amplitude=0.03,
+    stride=0.9,
+    direction=0.0,
+    drift=0.0,
+    speed=1.3,
+    wander=0.0,
     rate=30.0,
-):  # fmt: skip
+):
     """Sways like a sine of the given amplitude; drifts off like a parabola, wanders at 0.2 Hz."""
     t = np.arange(round(seconds * rate)) / rate
     along = speed * t

@@ -9,8 +9,12 @@ from mesa_mobility.results import Trajectories, departures, egress_time, occupan
 def test_occupancy_of_two_who_leave_and_one_who_stays(two_leave_one_stays):
     assert occupancy(two_leave_one_stays, every=1.0) == [[0.0, 2], [1.0, 2], [2.0, 1]]
     assert occupancy(two_leave_one_stays, every=0.5) == [
-        [0.0, 2], [0.5, 3], [1.0, 2], [1.5, 2], [2.0, 1],
-    ]  # fmt: skip
+        [0.0, 2],
+        [0.5, 3],
+        [1.0, 2],
+        [1.5, 2],
+        [2.0, 1],
+    ]
 
 
 def test_occupancy_goes_on_over_an_empty_floor(walk):

@@ -30,9 +30,14 @@ def corner(lone: dict | None = None, crowd: dict | None = None) -> list[dict]:
     """Lone people on the shortest way, and a crowd as measured: 1.75/m2, 0.867 m/s, 3.64 1/s."""
     walkers = {"detours": np.full(24, 1.05), "left_inside": 0, **(lone or {})}
     measured = {
-        "density": 1.8, "speed": 0.85, "flow": 3.6, "inner_speed": 0.8, "outer_speed": 0.9,
-        "inner_share": 0.5, **(crowd or {}),
-    }  # fmt: skip
+        "density": 1.8,
+        "speed": 0.85,
+        "flow": 3.6,
+        "inner_speed": 0.8,
+        "outer_speed": 0.9,
+        "inner_share": 0.5,
+        **(crowd or {}),
+    }
     return [walkers, measured]
 
 
@@ -43,8 +48,10 @@ def test_corners_as_measured_pass():
 @pytest.mark.parametrize(
     ("changes", "wrong"),
     [
-        ({"lone": {"detours": np.array([1.0] * 22 + [1.4] * 2)}},
-         "alone: way over the shortest one, p95"),
+        (
+            {"lone": {"detours": np.array([1.0] * 22 + [1.4] * 2)}},
+            "alone: way over the shortest one, p95",
+        ),
         ({"lone": {"left_inside": 1}}, "alone: left inside"),
         ({"crowd": {"density": 1.3}}, "condition of crowd before the corner: density 1/m2"),
         ({"crowd": {"flow": 3.1}}, "condition of crowd before the corner: flow 1/s"),
@@ -56,7 +63,7 @@ def test_corners_as_measured_pass():
         ({"crowd": {"inner_share": 0.75}}, "crowd: share of people in the inner half"),
         ({"crowd": {"inner_share": None}}, "crowd: share of people in the inner half"),
     ],
-)  # fmt: skip
+)
 def test_each_figure_of_a_corner_is_judged_on_its_own(changes, wrong):
     assert unmet(corners.judge([corner(**changes)])) == [wrong]
 
@@ -102,12 +109,14 @@ def test_people_who_are_few_or_walk_or_are_far_do_not_wait():
         ({"breadth": np.full(20, 0.5)}, ["breadth over length of the queue, p90"]),
         (
             {"breadth": np.empty(0), "waiting": np.empty(0, dtype=int)},
-            ["condition of the counter: most people who wait",
-             "breadth over length of the queue, p90"],
+            [
+                "condition of the counter: most people who wait",
+                "breadth over length of the queue, p90",
+            ],
         ),
         ({"left_inside": 2}, ["left inside"]),
     ],
-)  # fmt: skip
+)
 def test_a_queue_is_told_from_a_cloud(change, wrong):
     run = {"breadth": np.full(20, 0.05), "waiting": np.full(20, 5), "left_inside": 0, **change}
     assert unmet(counter.judge([[run]])) == wrong

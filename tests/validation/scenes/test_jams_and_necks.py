@@ -34,10 +34,13 @@ def test_jams_as_measured_pass():
         ("0.9", {"flow": None}, ["exit of 0.9 m: flow"]),
         ("1", {"speed": 1.3}, ["exit of 1 m: speed"]),
         ("1", {"speed": 0.05}, ["exit of 1 m: speed"]),
-        ("1", {"density": None}, ["condition of an exit of 1 m: density of a jam",
-                                  "exit of 1 m: speed"]),
+        (
+            "1",
+            {"density": None},
+            ["condition of an exit of 1 m: density of a jam", "exit of 1 m: speed"],
+        ),
     ],
-)  # fmt: skip
+)
 def test_each_exit_is_judged_on_its_own(width, change, wrong):
     found = unmet(jams.judge([jammed(**{width: change})]))
     assert [each.rpartition(" ")[0] for each in found] == wrong
@@ -46,9 +49,12 @@ def test_each_exit_is_judged_on_its_own(width, change, wrong):
 def necks(**changes) -> list[dict]:
     """Necks as measured: 6.07 1/s at 2.4 m to 13.82 1/s at 5.0 m."""
     measured = {
-        "2.4": (6.07, 5.57), "3": (7.17, 5.07), "3.6": (8.96, 4.83), "4.4": (10.87, 4.02),
+        "2.4": (6.07, 5.57),
+        "3": (7.17, 5.07),
+        "3.6": (8.96, 4.83),
+        "4.4": (10.87, 4.02),
         "5": (13.82, 4.09),
-    }  # fmt: skip
+    }
     runs = {
         width: {"flow": flow, "density": density, "start_density": 2.99}
         for width, (flow, density) in measured.items()

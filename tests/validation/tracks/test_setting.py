@@ -87,8 +87,10 @@ def figures(tracks: Trajectories) -> dict:
     columns = ("frame", "person", "x", "y", "heading")
     return {
         "tracks": {name: getattr(tracks, name) for name in columns},
-        "frame_rate": tracks.frame_rate, "moved_m": 0.03, "late": 1,
-    }  # fmt: skip
+        "frame_rate": tracks.frame_rate,
+        "moved_m": 0.03,
+        "late": 1,
+    }
 
 
 def test_a_crowd_is_judged_by_ratios_to_the_measured_one(read):

@@ -106,8 +106,10 @@ def test_nobody_leaves_before_the_last_gate(exits):
 
 def test_after_the_last_gate_the_exits_given_count():
     model = model_of(hall(both_ends=True), shipped_map(), rng=3, frames_per_step=3)
-    people = [put(model, 10.0, 1.0 + k, route=["b"], exits=[name])
-              for k, name in enumerate(("left", "right"))]  # fmt: skip
+    people = [
+        put(model, 10.0, 1.0 + k, route=["b"], exits=[name])
+        for k, name in enumerate(("left", "right"))
+    ]
     model.run(max_seconds=60)
     assert model.inside == 0
     rows = model.recorder.arrays()
