@@ -196,8 +196,8 @@ class Sources(Sequence[Inflow], Saved):
 
     @property
     def endless(self) -> bool:
-        """Whether people come for ever."""
-        return any(inflow.source.endless for inflow in self._inflows)
+        """Whether people are to come who go round for ever, or people come for ever."""
+        return any(each.source.endless and not each.finished for each in self._inflows)
 
     def add(self, source: Source, frame: int, rng: np.random.Generator) -> Inflow:
         """Let people in from ``frame`` on; ``PedestrianModel.add_source`` says what is refused."""

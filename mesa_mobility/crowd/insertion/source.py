@@ -121,8 +121,9 @@ class Source:
 
     @property
     def endless(self) -> bool:
-        """Whether people come for ever."""
-        return self.rate is not None and self.until > LATEST and self.number is None
+        """Whether people come for ever, or go round for ever."""
+        unlimited = self.rate is not None and self.until > LATEST and self.number is None
+        return self.loop or unlimited
 
     def newcomers(self, type_index: int | None) -> Newcomers:
         """The newcomers of one type."""

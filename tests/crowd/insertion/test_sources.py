@@ -301,3 +301,12 @@ def test_people_who_come_for_ever_want_an_end():
     model.add_source(Source(area=WEST, rate=1.0))
     with pytest.raises(ModelError, match="max_seconds"):
         model.run()
+
+
+@pytest.mark.parametrize("comes", [{"times": [1.0]}, {"rate": 1.0, "number": 2}])
+def test_people_who_are_to_come_and_go_round_for_ever_want_an_end(comes):
+    exits, gates = [Exit("east", (20, 0), (20, 4))], [Gate("middle", (10, 0), (10, 4))]
+    model = model_of(FloorPlan(box(0, 0, 20, 4), exits=exits, gates=gates), strider())
+    model.add_source(Source(area=WEST, route=["middle"], loop=True, **comes))
+    with pytest.raises(ModelError, match="max_seconds"):
+        model.run()
