@@ -45,11 +45,11 @@ class _WatchOne(Watch):
 
 
 def decision_frame(trajectories: Trajectories, person: int, seconds: float) -> int:
-    """Frame of the decision by which somebody moves at a time.
+    """Frame of the decision that a person follows ``seconds`` after the start of the run.
 
     Raises:
-        ResultsError: decisions were not recorded, there is no such person, or it is not inside at
-            that time.
+        ResultsError: decisions were not recorded, the person has taken none, or the time is before
+            their first decision or after their last frame.
     """
     decisions = _recorded(trajectories)
     rows = decisions.rows_of(person)
