@@ -23,10 +23,12 @@ NEVER = np.iinfo(np.int64).max
 
 
 class Movements(NamedTuple):
-    """What one person does: its decisions in order of time.
+    """What one person does: their decisions in order of time.
 
-    Fields: ``starts`` (d,) frames; ``options`` (d,) rows of the type's map, negative for the
-    fallback; ``shares`` (d,) of the option's ground that it covers.
+    Attributes:
+        starts: (d,) frames in which the movements begin.
+        options: (d,) rows of the type's map, negative for the fallback.
+        shares: (d,) the part of each option's length that the person walks, 0 to 1.
     """
 
     starts: NDArray[np.int64]
@@ -100,7 +102,7 @@ def stretches(bank: PoseBank, movements: Movements, first: int) -> Stretches:
     Args:
         bank: poses of the person's type.
         movements: what the person does.
-        first: frame; it stands until its first movement.
+        first: frame; the person stands until their first movement.
     """
     begins, poses, strides = _stretches(bank, movements)
     until = np.append(np.diff(movements.starts), NEVER)
@@ -116,16 +118,16 @@ def stretches(bank: PoseBank, movements: Movements, first: int) -> Stretches:
 def stretch_of_each(
     bank: PoseBank, movements: Movements, phases: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_], NDArray[np.float64]]:
-    """Of several people, each with one movement under way: the stretch that each is in.
+    """The stretch that each of several people is in, who have one movement under way each.
 
     Args:
         bank: poses of their type.
         movements: one movement for each person.
-        phases: (n,) frames since it began.
+        phases: (n,) frames since the movement began.
 
     Returns:
-        (n,) frames since the stretch began, (n,) number of the pose then, (n,) whether it moves,
-        (n,) factor of its strides.
+        (n,) frames since the stretch began, (n,) number of the pose then, (n,) whether the person
+        moves, (n,) factor of the recorded strides.
     """
     begins, poses, strides = _stretches(bank, movements)
     begins, poses, strides = begins[1:], poses[1:], strides[1:]
@@ -165,7 +167,7 @@ def _stretches(
 
 
 def _moving(movements: Movements) -> NDArray[np.bool_]:
-    """(d + 1,) whether the person moves before its first decision and after each of them.
+    """(d + 1,) whether the person moves before their first decision, and after each decision.
 
     An option shortened to nothing stands and turns on the spot.
     """

@@ -68,7 +68,7 @@ class PointRoutes:
 
         Returns:
             (n, 2) targets, metres, and (n,) lengths of the routes, metres. Somebody without a way
-            gets its own position, and inf.
+            gets their own position, and inf.
         """
         to_go = self._lengths_to(place)
         points, lengths = positions.copy(), np.full(len(positions), np.inf)

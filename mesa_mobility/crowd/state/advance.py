@@ -69,7 +69,7 @@ def move(
 
 @internal()
 def next_event(i: int, frame: int, state: CrowdState) -> int:
-    """Frame in which pedestrian i leaves, or in which its movement ends if it stays."""
+    """Frame in which pedestrian i leaves, or in which their movement ends if they stay."""
     gone: int = state.gone[i]
     return gone if gone > frame else state.end[i]
 
@@ -83,7 +83,7 @@ def _move(
     state: CrowdState,
     sorted_out: NDArray[np.int64],
 ) -> tuple[int, int, float, int, int]:
-    """Write to ``sorted_out`` those who stay, and backwards from its end those who have left.
+    """Write to ``sorted_out`` those who stay, and backwards from the end those who have left.
 
     Returns both numbers, and the other fields of ``Moved``.
     """

@@ -39,7 +39,7 @@ def lone_walker(
         seed: of the run.
         length: of the corridor, metres.
         speed: preferred speed, m/s.
-        measured_from: x where its speed begins to be measured, metres.
+        measured_from: x where the person's speed begins to be measured, metres.
         measured_to: x where that ends.
     """
     model = crowd_model(corridor_plan(length), seed)
