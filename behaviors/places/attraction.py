@@ -168,6 +168,6 @@ class Attractions(Tactic):
             return False
         try:
             model.population.send(row, exits, [visit, *stops], model.frame)
-        except FloorPlanError:  # no room for its body there, or no way
+        except FloorPlanError:  # no room for their body there, or no way
             return False
         return True

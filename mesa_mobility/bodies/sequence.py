@@ -39,10 +39,12 @@ class Movements(NamedTuple):
 class Sequence(NamedTuple):
     """The poses of one person in successive frames.
 
-    Fields: ``numbers`` (n,) of the bank's poses; ``joins`` (j,) places in it at which another
-    stretch of a recording begins; ``before`` (j,) number of the pose that would have come there
-    otherwise; ``strides`` (n,) factor of the recorded strides; ``own`` (n,) decision, -1 before the
-    first.
+    Attributes:
+        numbers: (n,) numbers of the bank's poses.
+        joins: (j,) indices in ``numbers`` at which another stretch of a recording begins.
+        before: (j,) number of the pose that would have come there without the join.
+        strides: (n,) factor of the recorded strides.
+        own: (n,) index of the decision that the person follows, -1 before the first.
     """
 
     numbers: NDArray[np.int64]
@@ -84,9 +86,12 @@ def pose_sequence(bank: PoseBank, frames: NDArray[np.int64], movements: Movement
 class Stretches(NamedTuple):
     """The stretches of recordings that one person goes through, in the order of time.
 
-    Fields: ``frames`` (s,) at which each begins; ``poses`` (s,) numbers of the bank's poses then;
-    ``moving`` (s,) whether the later poses of the clip follow; ``strides`` (s,) factor of the
-    recorded strides; ``own`` (s,) decision, -1 before the first.
+    Attributes:
+        frames: (s,) frames in which the stretches begin.
+        poses: (s,) number of the bank's pose with which each begins.
+        moving: (s,) whether the later poses of the clip follow.
+        strides: (s,) factor of the recorded strides.
+        own: (s,) index of the decision that the person follows, -1 before the first.
     """
 
     frames: NDArray[np.int64]

@@ -30,7 +30,7 @@ class Trajectories(Tracks):
 
     Attributes:
         frame: (n,) int32, frame number, 0 at the start of the run.
-        person: (n,) int32, identity of the person, 0 or more, the same in all its frames.
+        person: (n,) int32, number of the person, 0 or more, the same in all of their frames.
         x: (n,) float64, metres.
         y: (n,) float64, metres, growing upwards in the plan.
         heading: (n,) float64, radians, facing direction, 0 = +x, counter-clockwise.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mesa_mobility.results.decisions import Decisions
 
 _NEEDED = ("model", "preset", "seed", "parameters", "maps")
-"""What a summary must have to repeat its run."""
+"""Entries that a run's summary must have to repeat the run."""
 
 
 @dataclass(eq=False)
@@ -84,7 +84,7 @@ def repeat_decision(
 
     Args:
         found: the run, with its decisions.
-        name: its folder, for errors.
+        name: folder of the run, for errors.
         person: number of the person.
         frame: of the decision.
         map_file: the mobility map that the run used, if it was not the model's own.
@@ -94,8 +94,8 @@ def repeat_decision(
         The model, just after that decision, and the decision with all its options.
 
     Raises:
-        ResultsError: the summary lacks what it takes, or the run does not repeat itself: other
-            maps, other decisions or other positions up to this frame.
+        ResultsError: the summary lacks an entry that is needed, or the run does not repeat itself:
+            other maps, other decisions or other positions up to this frame.
         ModelError: there is no such model or behaviour any more.
     """
     model = _make(found.summary, name, map_file)
@@ -195,7 +195,7 @@ def _compare(found: Run, name: Path, again: Trajectories, frame: int) -> None:
 
 
 def _other(summary: Mapping[str, Any]) -> str:
-    """That a run does not repeat itself, with the versions that differ."""
+    """Text that says that a run does not repeat itself, and which versions differ."""
     here = origin_of({}, None)
     was = {"mesa_mobility": summary.get("mesa_mobility"), **summary.get("versions", {})}
     now = {"mesa_mobility": here["mesa_mobility"], **here["versions"]}

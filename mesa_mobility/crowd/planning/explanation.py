@@ -105,7 +105,7 @@ def weigh(
     terms: Sequence[CostTerm],
     types: Sequence[str],
 ) -> Explanation:
-    """Costs of the options of the pedestrian in ``row``, before collision tests."""
+    """The costs of the options of the pedestrian in ``row``, without verdicts (see ``judge``)."""
     crowd = outlook.crowd
     candidates = make_candidates(np.array([row], dtype=np.int64), outlook)
     n, kind = len(candidates), crowd.type_index[row]
@@ -130,7 +130,7 @@ def weigh(
 
 
 def judge(weighed: Explanation, outlook: Outlook) -> Explanation:
-    """The same with verdicts, against walls and everybody's committed movement."""
+    """The explanation with verdicts on the options, against walls and everybody's movements."""
     table, crowd, _, around, rules, _ = outlook
     row = weighed.pedestrian
     options = weighed.candidates.options + rules.first_option[crowd.type_index[row]]

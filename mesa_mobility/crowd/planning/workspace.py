@@ -80,7 +80,7 @@ class DecisionContext(NamedTuple):
         barriers: walls that do not touch the body, in the pedestrian's coordinates.
         stay: the group to test first, or -1.
         neighbours: number of columns of ``Neighbours.others``.
-        foremost: number of its first columns, who are likely to cost most.
+        foremost: number of the first of these columns, people who are likely to cost most.
         exits_from: metres to the nearest open exit.
         has_negative_pairs: whether pair or wall terms may be negative, so that every option needs
             them.

@@ -21,9 +21,12 @@ LONG_AFTER = np.iinfo(np.int64).max
 class Moved(NamedTuple):
     """The result of advancing the crowd by some frames.
 
-    Fields: rows of those who ``stay`` and of those who have left (``gone``), both ascending; sum of
-    everybody's mean ``speeds``, m/s; number of people in the fallback (``fallen``); ``next`` frame
-    in which a movement of those who stay ends, or one of them leaves.
+    Attributes:
+        stay: rows of those who stay, ascending.
+        gone: rows of those who have left, ascending.
+        speeds: sum of everybody's mean speeds, m/s.
+        fallen: number of people in the fallback.
+        next: next frame in which a movement of those who stay ends, or one of them leaves.
     """
 
     stay: NDArray[np.int64]

@@ -151,7 +151,8 @@ class Session(Engine):
     def select_beside(self, by: int, shown: int | None = None) -> None:
         """Select the person inside with the next higher number, or the next lower one.
 
-        The first follows the last; with nobody selected it begins there.
+        The first follows the last. If nobody is selected, higher numbers begin with the first, and
+        lower ones with the last.
 
         Args:
             by: 1 for higher, -1 for lower numbers.

@@ -22,7 +22,7 @@ FASTEST = 1.85
 
 
 def corridor_plan(length: float, width: float = WIDTH) -> FloorPlan:
-    """From x = 0 to `length`, y = 0 to `width`, open at its right end."""
+    """A corridor from x = 0 to `length` and y = 0 to `width`, open at the right end."""
     return FloorPlan(
         box(0.0, 0.0, length, width), exits=[Exit("end", (length, 0.0), (length, width))]
     )
