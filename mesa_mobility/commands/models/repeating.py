@@ -27,7 +27,7 @@ _NEEDED = ("model", "preset", "seed", "parameters", "maps")
 
 @dataclass(eq=False)
 class _WatchOne(Watch):
-    """Keeps the decision of one frame, however many follow in the same step.
+    """Keeps the decision of one frame, even if others follow in the same step.
 
     Attributes:
         frame: of the decision.

@@ -43,7 +43,7 @@ class Replay:
 
     Attributes:
         frame: frame of the model at which the replay began.
-        from_frame: the same moment in the tracks.
+        from_frame: frame of the tracks at that moment.
         frame_rate: of the tracks, frames a second.
         persons: (n,) numbers, in the tracks, of the people who were there at the start.
         rows: (n,) their rows in the model.

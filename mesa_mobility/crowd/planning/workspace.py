@@ -166,7 +166,7 @@ class Workspace(NamedTuple):
         unsure: rows of people left to the exact test.
         blocks: people close and walls at each level of time; groups that certainly hit something.
         walls: walls in reach.
-        barriers: the same in the pedestrian's coordinates.
+        barriers: walls in reach in the pedestrian's coordinates.
         bounds: lower bound of the cost of each group.
         opened: groups and options that the search has opened.
         path: one path.
