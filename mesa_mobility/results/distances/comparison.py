@@ -31,10 +31,10 @@ class Envelope:
     """What several seeds give: quantiles 0.05, 0.5 and 0.95 over the seeds that have a value.
 
     Attributes:
-        low: number or (n,) curve.
-        middle: likewise.
-        high: likewise.
-        seeds: runs.
+        low: lower end, a number or (n,) curve.
+        middle: median, a number or (n,) curve.
+        high: upper end, a number or (n,) curve.
+        seeds: number of runs.
     """
 
     low: FloatArray
