@@ -37,20 +37,23 @@ def _headway(option: Option, me: Me, other: Other, p: "Headway") -> float:
 class Headway(CompiledTerm):
     """Keeps a distance from people ahead that grows with speed.
 
-    Sum over neighbours ahead of how much faster an option is than the room to them allows:
-    h(v - (d - l) / T) x 1.5 where it is positive: d is how far ahead of the mobility point the
-    neighbour will be by then at constant velocity, v the speed of the option, l the distance that
-    people keep when they stand, T the time gap when they walk.  In metres over the paper's 1.5 s.
-    Ahead is where one faces there or, for an option that covers no ground, where one's target is:
-    nobody makes room by looking elsewhere.
-    h is Huber's loss (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 s) of an excess
-    e up to s, ``softness``, and e - s / 2 beyond.  If all costs were linear, their sum would be
-    least at a kink, and a small change of the room ahead would take people from one kink to
-    another: from the speed that it allows to the one that they prefer.
-    A neighbour straight ahead counts in full, one ``width`` to the side not at all.  The speed
-    that room ahead allows is that of Tordeux, Chraibi and Seyfried's collision-free speed model
-    (Traffic and Granular Flow '15); equation (2) alone lets people stand as close as their bodies
-    are wide.
+    The cost is a sum over neighbours ahead. Each counts by how much faster an option is than the
+    room to the neighbour allows: e = v - (d - l) / T, where this is positive. v is the speed of the
+    option. d is how far ahead of the mobility point the neighbour will be when the option ends, at
+    constant velocity. l is the distance that people keep when they stand, and T the time gap when
+    they walk. Ahead is where one faces at the mobility point or, for an option that covers no
+    ground, where one's target is: nobody makes room by looking elsewhere.
+
+    The cost of a neighbour is 1.5 h(e), in metres over the 1.5 s of the paper. h is Huber's loss
+    (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 s) for e up to s, ``softness``,
+    and e - s / 2 beyond. If all costs were linear, their sum would be least at a kink. A small
+    change of the room ahead would then take people from one kink to another: from the speed that
+    the room allows to the speed that they prefer.
+
+    A neighbour straight ahead counts in full, one ``width`` to the side not at all. The speed that
+    the room ahead allows is that of the collision-free speed model of Tordeux, Chraibi and Seyfried
+    (Traffic and Granular Flow '15). Equation (2) of the paper alone lets people stand as close as
+    their bodies are wide.
 
     Args:
         weight: factor in the sum.

@@ -33,24 +33,24 @@ def _right_of_way(option: Option, me: Me, other: Other, p: "RightOfWay") -> floa
 class RightOfWay(CompiledTerm):
     """Makes way for people who have priority.
 
-    Sum over neighbours of how far a mobility point is in the way of somebody who has priority.
-    Oncoming people, whose way is at more than 120 degrees to one's own, have it, so that both
-    make way, and people who have less far to go have it over those right beside them, so that two
-    who want the same gap do not both block it.  The cost is 1 on the line from an oncoming
-    neighbour to its target, ``beside`` on that of one who goes the same way, and falls to 0 at
-    ``width`` from it.
-    Oncoming people are passed on the right: on the wrong side the cost reaches ``2 bias`` farther
-    and its top lies ``bias`` from the line.  How far ahead of an oncoming person a point is does
-    not count: it is a reason to step aside, not to stay back.
+    The cost is the sum over neighbours who have priority of how far a mobility point is in their
+    way. Oncoming people have priority, so that both make way: those whose way is at more than 120
+    degrees to one's own. People who have less far to go have priority over those right beside them,
+    so that two who want the same gap do not both block it. The cost is 1 on the line from an
+    oncoming neighbour to their target, ``beside`` on the line of a neighbour who goes the same way,
+    and falls to 0 at ``width`` from the line. Oncoming people are passed on the right: on the wrong
+    side the cost reaches ``2 bias`` farther, and it is greatest at ``bias`` from the line. How far
+    ahead of an oncoming person a point is does not count: this term is a reason to step aside, not
+    to stay back.
 
-    Lanes of people who walk the same way come about by it.  That people make way
-    sidewards, and rather to one side, is measured by Moussaid et al., Proc. R. Soc. B 276 (2009).
+    By this term people who walk the same way form lanes. Moussaid et al., Proc. R. Soc. B 276
+    (2009), measured that people make way sidewards, and rather to one side.
 
     Args:
         weight: factor in the sum.
         width: metres between the middles of two people who pass with room.
         bias: metres; negative where people pass on the left.
-        ahead: metres ahead of a neighbour of the same way that belong to it.
+        ahead: metres ahead of a neighbour who goes the same way that count as their way.
         beside: what being in the way of a neighbour of the same way costs.
 
     Raises:

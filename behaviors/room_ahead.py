@@ -41,15 +41,16 @@ def _room_ahead(option: Option, me: Me, wall: Wall, p: "RoomAhead") -> float:
 class RoomAhead(CompiledTerm):
     """Prefers options after which one can walk on in the direction faced.
 
-    (1 - r / l) (1 - b / c) of the worst wall, as far as r is less than l and b less than c: r is
-    how far a body that walks straight on from the mobility point, the way it faces, gets before
-    its core, of radius c, touches the line of the wall, and l what it covers in ``time`` at the
-    speed of the option, at least ``least``.  b is how far beside the end of the wall that way
-    passes, 0 if it crosses the wall: the more of the core misses the wall, the less the wall
-    counts, or people would not find into gaps little wider than they are.  An option that covers no
-    ground is judged by the way to the target, wherever one faces: people who turn on the spot in a
-    narrow door would else stay as they are, since halfway they face its jamb.
-    ``option_kernel`` says which walls are looked at.
+    The cost is (1 - r / l) (1 - b / c) of the worst wall, where r is less than l and b less than c.
+    r is how far a body gets that walks straight on from the mobility point, the way it faces,
+    before its core, of radius c, touches the line of the wall. l is what the body covers in
+    ``time`` at the speed of the option, at least ``least``. b is how far beside the end of the wall
+    this way passes, 0 if it crosses the wall. The more of the core misses the wall, the less the
+    wall counts: otherwise people would not find into gaps little wider than they are.
+
+    An option that covers no ground is judged by the way to the target, wherever one faces.
+    Otherwise people who turn on the spot in a narrow door would stay as they are, since halfway
+    they face the jamb of the door. ``option_kernel`` says which walls are looked at.
 
     Without this term people end movements beside a wall and facing it, in states from which every
     next movement but standing hits the wall: the inevitable collision states of motion planning

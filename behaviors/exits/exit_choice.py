@@ -83,7 +83,7 @@ class ExitChoice(TargetChoice):
         return self._chosen[pedestrians]
 
     def forget(self, pedestrian: int) -> None:
-        """Let the person in a row of the crowd choose again at its next decision."""
+        """Let the person in a row of the crowd choose again at their next decision."""
         self._make_room(np.array([pedestrian]))
         self._chosen[pedestrian] = UNDECIDED
 

@@ -19,12 +19,13 @@ class FamiliarExit(RandomUtility):
     """People leave by an exit that they know, unless another is much nearer.
 
     Place affiliation (Sime 1985, Environment and Behavior 17: 697-724): an exit that somebody
-    knows, mostly the one by which it came, is worth ``affiliation`` metres of route. An exit that
-    is not known is taken if it is nearer by more than that, tastes aside. The value depends on the
-    place and has to be calibrated; the default is 15 m.
+    knows, mostly the one by which they came, is worth ``affiliation`` metres of route. Apart from
+    personal taste (see ``RandomUtility``), people take an unknown exit only if it is nearer by more
+    than that. The value depends on the place and has to be calibrated; the default is 15 m.
 
     Args:
-        familiar: names of the exits that people know by default; ``know`` sets others.
+        familiar: names of the exits that people know by default; ``know`` sets others. Unknown
+            names raise ModelError when people first choose.
         affiliation: what a known exit is worth, metres.
         scale: of people's tastes, metres.
         interval: mean seconds between two choices.

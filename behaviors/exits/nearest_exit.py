@@ -4,7 +4,7 @@ from mesa_mobility import Deciding, TargetChoice, Targets
 
 
 class NearestExit(TargetChoice):
-    """Everybody heads for the nearest of the exits it may leave by, along the shortest route."""
+    """Everybody heads for the nearest exit that they may leave by, along the shortest route."""
 
     name = "nearest_exit"
 

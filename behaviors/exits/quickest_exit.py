@@ -18,14 +18,14 @@ def people_a_second(width: ArrayLike) -> NDArray[np.float64]:
 
 
 class QuickestExit(ExitChoice):
-    """Everybody heads for the exit that it expects to have passed first.
+    """Everybody heads for the exit through which they expect to get soonest.
 
-    The time expected is that of the walk, at one's own speed, and that of the people to pass
-    before: those heading for the exit who are nearer to it, over the flow through it (Ehtamo,
-    Heliovaara, Korhonen and Hostikka 2010, Advances in Complex Systems 13: 113-134). People change
-    their mind for a gain of more than ``patience`` of the time that they expect to need in all,
-    since they first chose an exit: who has queued for a minute does not leave the queue for a
-    second. They think again every ``interval`` seconds on average.
+    The time expected is that of the walk, at one's own speed, plus that of the people who pass
+    before: the number of those who head for the exit and are nearer to it, over the flow through it
+    (Ehtamo, Heliovaara, Korhonen and Hostikka 2010, Advances in Complex Systems 13: 113-134).
+    People change their mind for a gain of more than ``patience`` of the time that they expect to
+    need in all, counted from when they first chose an exit: somebody who has queued for a minute
+    does not leave the queue for a second. They think again every ``interval`` seconds on average.
 
     The flow is 2.23 w - 0.155 people a second through a width of w metres, the fit to published
     bottleneck experiments of 0.7 to 3 m, and 0.5 at least.

@@ -18,9 +18,9 @@ from mesa_mobility.schema import Array, Kind
 class RandomUtility(ExitChoice):
     """Everybody takes the exit of the greatest utility, in metres of way.
 
-    The utility of an exit is minus the way to it, plus what ``bonus`` says, plus a taste of one's
-    own for it: Gumbel distributed and drawn once for each person and exit, so that the shares of
-    the exits are those of a multinomial logit model with scale ``scale`` and nobody wavers.
+    The utility of an exit is minus the way to it, plus what ``bonus`` says, plus the person's taste
+    for it. Tastes are Gumbel distributed, and drawn once for each person and exit: so nobody
+    wavers, and the shares of the exits are those of a multinomial logit model with scale ``scale``.
 
     Args:
         scale: of the tastes, metres; with 0 everybody chooses alike.

@@ -19,10 +19,11 @@ from mesa_mobility.schema import Array, Kind, Several, Whole
 # Metres between two places of a leader's trail, and the number of them that is kept.
 _STEP, _PLACES = 0.25, 400
 
-# Persons/m2 of a bunch behind its leader.
+# Persons/m2 of a bunch behind a leader.
 _DENSITY = 1.0
 
-# Seconds within which somebody closes up to its leader, and the speed below which it stands, m/s.
+# Seconds within which somebody closes up to their leader, and the speed below which they stand,
+# m/s.
 _CLOSES_UP, _STANDS = 2.0, 0.15
 
 # Metres from a place of the trail at which somebody goes on to the next ones.
@@ -36,15 +37,15 @@ _CLEARANCE = 0.2
 
 
 class Following(Tactic):
-    """People walk behind a leader, at its speed, and leave by the exit by which it has left.
+    """People walk behind a leader, at the leader's speed, and leave by the leader's exit.
 
-    Followers who see their leader close up to ``distance``, and then walk as fast as it does. The
-    others walk along its trail. Nobody walks faster than it prefers, so that a leader who hurries
-    loses its people. Behind one leader people are a bunch: the k-th keeps as far away as a
-    half circle with k people, one to each m2, reaches. A leader may follow another.
+    Followers who see their leader close up to ``distance``, and then walk as fast as the leader.
+    The others walk along the leader's trail. Nobody walks faster than they prefer, so a leader who
+    hurries loses their followers. Behind one leader people are a bunch: the k-th keeps as far away
+    as a half circle with k people, one to each m2, reaches. A leader may follow another.
 
-    People who walk behind somebody match its speed, rather than keep a certain distance (Rio, Rhea
-    and Warren 2014, Journal of Vision 14(2): 4).
+    People who walk behind somebody match that person's speed, rather than keep a certain distance
+    (Rio, Rhea and Warren 2014, Journal of Vision 14(2): 4).
 
     Args:
         distance: metres, between their middles, to which people close up.
@@ -80,14 +81,14 @@ class Following(Tactic):
             TopologicalSorter({row: [ahead] for row, ahead in self._leaders.items()}).prepare()
         except CycleError as error:
             raise ContentError(
-                f"_leaders: pedestrian {error.args[1][0]} would follow itself"
+                f"_leaders: pedestrian {error.args[1][0]} would follow themselves"
             ) from error
 
     def follow(self, people: Iterable[Pedestrian], leader: Pedestrian | None) -> None:
         """Let people follow a leader from their next decision on, or nobody any more.
 
         Raises:
-            ModelError: somebody would follow itself, if by way of others.
+            ModelError: somebody would follow themselves, directly or by way of others.
         """
         rows = [person.row for person in people]
         if leader is None:
@@ -98,7 +99,8 @@ class Following(Tactic):
         while ahead is not None:
             if ahead in rows:
                 raise ModelError(
-                    f"{self.name}: pedestrian {ahead} would follow itself, expected another leader"
+                    f"{self.name}: pedestrian {ahead} would follow themselves, "
+                    "expected another leader"
                 )
             ahead = self._leaders.get(ahead)
         self._leaders.update(dict.fromkeys(rows, leader.row))
@@ -160,14 +162,14 @@ class Following(Tactic):
             if name is not None and self._model.crowd.active[row]:
                 try:
                     people.send(row, [name], (), frame)
-                except FloorPlanError:  # too narrow for it: it leaves as it would have
+                except FloorPlanError:  # too narrow for them: they leave as they would have
                     continue
         self._trails.pop(leader, None)
 
     def _on_the_trail(
         self, deciding: Deciding, here: NDArray[np.float64], leader: int, clearance: float
     ) -> tuple[NDArray[np.float64], float] | None:
-        """The last place of a leader's trail that is in view, and the metres to its end."""
+        """The last place of a leader's trail that is in view, and the metres to the trail's end."""
         trail = self._trails[leader]
         starts = np.tile(here, (len(trail), 1))
         # Beside a corner nothing is in view with room to spare.
@@ -185,7 +187,7 @@ class Following(Tactic):
         return trail[last], away + float(to_go[seen[-1]])
 
     def _distances(self, rows: NDArray[np.int64], leads: NDArray[np.int64]) -> NDArray[np.float64]:
-        """(n,) metres that each of those in ``rows`` keeps from its leader."""
+        """(n,) metres that each person in ``rows`` keeps from their leader."""
         crowd = self._model.crowd
         followers = np.array([row for row in self._leaders if crowd.active[row]])
         whose = np.array([self._leaders[row] for row in followers.tolist()])

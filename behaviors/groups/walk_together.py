@@ -9,7 +9,7 @@ LEAST_SHARE = 0.2
 
 
 class WalkTogether(SpeedRule):
-    """Members of a group walk at the pace of its slowest and do not run away from one another.
+    """Members of a group walk at the pace of the slowest and do not run away from one another.
 
     Members ahead of their group's middle by more than h metres of route slow down, to a fifth of
     the group's pace at 2 h. They never stop, so that nobody waits in a door and blocks the others.

@@ -13,7 +13,7 @@ from mesa_mobility.floorplan import lines_of_sight
 # Largest group that walks in one row; those of larger ones are seen to fall apart.
 _MOST = 4
 
-# Metres beyond which a member has been left behind, or is on a way of its own.
+# Metres beyond which a member has been left behind, or is on a way of their own.
 _NEAR = 4.0
 
 # Speed below which somebody sets off, or is held up and takes any way on, m/s.
@@ -22,23 +22,23 @@ _WALKS = 0.4
 # Seconds ahead to which members are taken to walk on as they do.
 _SOON = 0.4
 
-# Metres within which somebody gets to its place in the row, and the most by which it turns aside,
-# radians.
+# Metres within which somebody gets to their place in the row, and the most by which they turn
+# aside, radians.
 _WITHIN, _TURN = 1.5, 0.5
 
-# Seconds within which a member behind or ahead gets to its place, and the shares of its pace
-# between which it does so.
+# Seconds within which a member behind or ahead gets to their place, and the shares of their pace
+# between which they do so.
 _CATCHES_UP, _LEAST, _FASTEST = 1.5, 0.5, 1.3
 
 
 class WalkingAbreast(Tactic):
     """Members of groups of two to four walk side by side, slower than alone.
 
-    Each aims at a place in a row at right angles to its way, about the middle of those members who
-    are near and in view and go to the same place. Those in the middle walk a little behind, so that
-    threes form a V and fours a U. Who is held up, or has a wall in its way, walks as if alone. The
-    group is slower than its slowest member by ``slower`` for each further one. Larger groups walk
-    as before.
+    Each aims at a place in a row at right angles to their way, about the middle of those members
+    who are near and in view and go to the same place. Those in the middle walk a little behind, so
+    that threes form a V and fours a U. Members who are held up, or have a wall in their way, walk
+    as if alone. The group is slower than its slowest member by ``slower`` for each further one.
+    Larger groups walk as without this behaviour.
 
     Moussaid, Perozo, Garnier, Helbing and Theraulaz (2010, PLoS ONE 5: e10047) found groups of N
     to walk at 1.26 - 0.04 N m/s where there is room, and to bend into a V or a U.

@@ -26,7 +26,7 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.schema import Array, Kind, Several, Whole
 
-# Metres from its place within which somebody counts as one who looks.
+# Metres from an attraction's place within which somebody counts as one who looks.
 _LOOKS = 0.5
 
 
@@ -79,13 +79,14 @@ class Attraction:
 class Attractions(Tactic):
     """Some of those who pass a shop window or a screen stop to look, and then go on.
 
-    Each person has one chance at each attraction: when it first walks within ``distance`` of it,
-    with no wall between. It then visits the place and goes on with its route. The odds that it
-    stops grow in proportion to the number of those who look already. That others' interest draws
-    people to attractions is the social influence of Kwak, Jo, Luttinen and Kosonen (2014,
-    Transportation Research Procedia 2: 612-617). Of those who passed one person looking up 4 %
-    stopped, and 40 % where 15 did (Milgram, Bickman and Berkowitz 1969, Journal of Personality and
-    Social Psychology 13: 79-82): with no share and an influence of 1/24 they are 4 and 38.5 %.
+    Each person has one chance to stop at each attraction: when they first walk within ``distance``
+    of it, with no wall between. Those who stop visit the place and then go on with their route. The
+    odds of stopping grow in proportion to the number of people who look already. That others'
+    interest draws people to attractions is the social influence of Kwak, Jo, Luttinen and Kosonen
+    (2014, Transportation Research Procedia 2: 612-617). Of those who passed one person looking up
+    4 % stopped, and 40 % of those who passed 15 (Milgram, Bickman and Berkowitz 1969, Journal of
+    Personality and Social Psychology 13: 79-82). A ``share`` of 0 and an ``influence`` of 1/24 give
+    4 and 38.5 %.
 
     People whose route goes round for ever do not stop.
 
@@ -131,7 +132,7 @@ class Attractions(Tactic):
         return sum(bool(stands(row)) for row in rows[near].tolist())
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
-        """Send some of those who notice an attraction there; it counts from their next decision."""
+        """Send some of those who notice an attraction there, from their next decision on."""
         rows = deciding.pedestrians
         if desired.newcomers or not self.attractions:
             return
@@ -158,7 +159,7 @@ class Attractions(Tactic):
                     self._stopped[number].append(int(rows[k]))
 
     def _send(self, row: int, visit: Visit) -> bool:
-        """Whether somebody can be sent to a place before the rest of its route, and is."""
+        """Send somebody to a place before the rest of their route; whether that is possible."""
         model, agenda = self._model, self._model.crowd.agenda
         number, crossed = int(agenda["journey"][row]), int(agenda["crossed"][row])
         stops = model.journeys.stops(number)[crossed:]
@@ -167,6 +168,6 @@ class Attractions(Tactic):
             return False
         try:
             model.population.send(row, exits, [visit, *stops], model.frame)
-        except FloorPlanError:  # no room for its body there, or no way
+        except FloorPlanError:  # no room for their body there, or no way
             return False
         return True

@@ -33,11 +33,11 @@ _SERVED, _CLOSEST = 0.25, 0.5
 # Core radius of those whose spacing a counter gives, metres.
 _CORE = 0.14
 
-# Seconds in which somebody gets to its place, and its least speed on the last steps, m/s.
+# Seconds in which somebody gets to their place, and their least speed on the last steps, m/s.
 _GETS_THERE, _LEAST = 1.0, 0.4
 
-# Metres from the end of the line at which somebody joins it, from its own place in it at which it
-# stands, and from which it moves up again.
+# Metres from the end of the line at which somebody joins it; from their place in the line at which
+# they stand; and from which they move up again.
 _JOINS, _STANDS, _MOVES_UP = 1.0, 0.15, 0.3
 
 
@@ -111,7 +111,8 @@ class Queueing(Tactic):
     """People who are to be served line up before their counter, in the order in which they come.
 
     They join the line within a metre of its end, face along it while they stand, and move up as
-    those before them do. The first steps up to the counter, is served and goes on with its route.
+    those before them do. The first in line steps up to the counter, is served, and goes on with
+    their route.
     Those who stand in the line count as waiting.
 
     Args:

@@ -17,9 +17,9 @@ class FamiliarRoutes(RouteChoice):
     """Many people leave by the way by which they came; the others take the shortest way.
 
     In a fire people moved towards what they knew (Sime 1985, Environment and Behavior 17: 697-724).
-    How many do so depends on the place, and
-    ``share`` has to be calibrated. The exits by which people may leave are as before; who is to
-    leave by the exit that it knows gets ``exits``, or ``FamiliarExit`` in place of this.
+    How many do so depends on the place, and ``share`` has to be calibrated. This behaviour does not
+    change the exits by which people may leave. For people who leave by the exit that they know, set
+    their ``exits``, or use ``FamiliarExit`` in place of this behaviour.
 
     Args:
         came: names of the gates by which people have come in, in order; ``know`` sets others.

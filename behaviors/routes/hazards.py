@@ -32,13 +32,14 @@ _SIDES = 4
 class Hazard:
     """An area that nobody wants to enter, such as smoke, and that may grow.
 
-    Its edge advances at the same speed everywhere, through walls, too: ``within`` keeps it in.
+    The edge of the area advances at the same speed everywhere, and through walls, too. ``within``
+    keeps the hazard in a room.
 
     Attributes:
-        area: where it begins: a shapely Polygon or Point, metres, or (x, y).
-        speed: at which its edge advances, m/s.
-        begins: simulated seconds at which it begins.
-        within: a shapely Polygon, metres, that it does not leave, such as a room.
+        area: where the hazard begins: a shapely Polygon or Point, metres, or (x, y).
+        speed: at which the edge advances, m/s.
+        begins: simulated seconds at which the hazard begins.
+        within: a shapely Polygon, metres, that the hazard does not leave, such as a room.
 
     Raises:
         ModelError: an area that is none, or a speed or time out of range.
@@ -175,7 +176,7 @@ class _Floor:
     """The floor without the zone of the hazards.
 
     Attributes:
-        clear: it, or None if nothing is left of it.
+        clear: this floor, or None if nothing is left of it.
     """
 
     def __init__(self, plan: FloorPlan, zone: BaseGeometry) -> None:

@@ -257,7 +257,7 @@ def _animate(
     times: int,
     first: int,
 ) -> None:
-    """Channels of one person: pelvis, joints, and when it is there."""
+    """Channels of one person: pelvis, joints, and when they are there."""
     n = len(walker.motion)
     begin = walker.first - first
     span = [begin / FRAME_RATE, (begin + n - 1) / FRAME_RATE]
@@ -300,7 +300,7 @@ def _show(
     pelvis: int,
     there: tuple[int, int],
 ) -> None:
-    """A person has its size while it is there, and none before and after."""
+    """A person has their size while they are there, and size 0 before and after."""
     full = [walker.motion.scale] * 3
     keys = [(0, [0.0] * 3)] if there[0] > 0 else []
     keys += [(there[0], full), (there[1], [0.0] * 3)]

@@ -1,4 +1,7 @@
-"""Figures of people and what they hold or sit in, near and far, for the three-dimensional view."""
+"""Figures of people and of what they hold or sit in, for the three-dimensional view.
+
+Each is there with much detail, for people near the viewer, and with little, for those far away.
+"""
 
 from __future__ import annotations
 
@@ -31,9 +34,9 @@ _WHEELS = {"near": 12, "far": 6}
 
 
 def jointed_figures() -> dict[str, Figure]:
-    """People and what they hold, in the pose of the neutral skeleton, the pelvis at the origin.
+    """People and what they hold, by name, in the pose of the neutral skeleton.
 
-    Names end with the level of detail: ``person_near``, ``cane_far``.
+    The pelvis is at the origin. Names end with the level of detail: ``person_near``, ``cane_far``.
     """
     found = {"person_near": human_figure(NEAR_AROUND), "person_far": distant_figure()}
     for level, around in _BARS.items():
@@ -42,9 +45,10 @@ def jointed_figures() -> dict[str, Figure]:
 
 
 def rigid_figures() -> dict[str, Figure]:
-    """Figures that move as a whole and stand on the floor at the origin.
+    """Figures that move as a whole and stand on the floor at the origin, by name.
 
-    ``seated_near`` in ``wheelchair_near``, the far ones, and ``person_pawn``: somebody without
+    Names are ``seated_near`` and ``seated_far``, a person who sits in a wheelchair;
+    ``wheelchair_near`` and ``wheelchair_far``, that wheelchair; ``person_pawn``, a person without
     limbs.
     """
     people = {"near": human_figure(NEAR_AROUND), "far": distant_figure()}
@@ -66,7 +70,7 @@ def _sitting() -> BodyMotion:
 
 
 def _seated(figure: Figure) -> Figure:
-    """A figure as its joints move it when somebody sits in a wheelchair at the origin."""
+    """A figure in the pose of somebody who sits in a wheelchair at the origin."""
     motion = _sitting()
     turns = matrices(motion.rotations[0])[figure.joints]
     away = figure.vertices[:, None] - rest_positions()[figure.joints]

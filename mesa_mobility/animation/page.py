@@ -217,10 +217,10 @@ def _course(
     first: int,
     last: int,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], str | None]:
-    """(s, 5) stretches and (d, 3) decisions of a person, and the digest of its map if known.
+    """(s, 5) stretches and (d, 3) decisions of a person, and the digest of their map if known.
 
-    A stretch is frame, pose, whether it moves, stride in thousandths, decision; a decision is
-    frame, option, share. Frames are differences of successive rows.
+    A stretch is frame, pose, whether the person moves, stride in thousandths, decision; a decision
+    is frame, option, share. Frames are differences of successive rows.
     """
     none = np.zeros((0, 5), dtype=np.int64), np.zeros((0, 3), dtype=np.int64)
     if decisions is None:

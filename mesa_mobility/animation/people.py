@@ -19,13 +19,13 @@ from mesa_mobility.results.tracks import Tracks
 
 @dataclass(frozen=True)
 class Walker:
-    """One person and its body in those frames that are shown.
+    """One person and their body in those frames that are shown.
 
     Attributes:
-        person: its number.
+        person: number of the person.
         first: first frame of ``motion``.
-        motion: its body in successive frames.
-        type_name: its pedestrian type, where the run tells it.
+        motion: the person's body in successive frames.
+        type_name: the person's pedestrian type; empty if the run does not tell it.
     """
 
     person: int
@@ -60,7 +60,7 @@ def walkers(
     Args:
         trajectories: a run with its decisions.
         selection: whom and when.
-        bank: poses of their type; by default those that ship for its map.
+        bank: poses of their type; by default those that ship for the map.
 
     Raises:
         ResultsError: nobody to show, or no decisions.

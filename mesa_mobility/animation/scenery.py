@@ -28,8 +28,13 @@ _SQUARE = np.array([[0, 1, 2], [0, 2, 3]])
 class Surface(NamedTuple):
     """A mesh in one colour.
 
-    Fields: ``name``; ``vertices`` (v, 3) metres, z up; ``normals`` (v, 3); ``triangles`` (t, 3);
-    ``colour`` as hexadecimal digits; ``both_sides``, whether it is seen from behind too.
+    Attributes:
+        name: of the mesh.
+        vertices: (v, 3) metres, z up.
+        normals: (v, 3) at the vertices.
+        triangles: (t, 3) vertices of each triangle.
+        colour: as hexadecimal digits.
+        both_sides: whether the mesh is seen from behind, too.
     """
 
     name: str

@@ -53,7 +53,7 @@ def write_usd(
 ) -> None:
     """Write an OpenUSD file: metres, z up, 30 time codes a second, which count the run's frames.
 
-    Person 5 is ``/world/person_5``, visible while it is there.
+    Person 5 is ``/world/person_5``, visible while they are there.
 
     Args:
         people: those shown.

@@ -1,4 +1,4 @@
-"""A person's body in motion: joint positions and orientations along its track."""
+"""A person's body in motion: joint positions and orientations along their track."""
 
 from __future__ import annotations
 

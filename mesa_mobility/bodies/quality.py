@@ -19,9 +19,12 @@ LEAST_STANCE = 4
 class BodyQuality(NamedTuple):
     """Figures of a body's motion.
 
-    Fields: ``slides`` (steps,) metres that a foot slides over the floor while it bears on it, each
-    time it does; ``depths`` (n, 2) metres by which each sole is below the floor; ``jumps`` (n - 1,)
-    greatest angle, in radians, by which a joint turns against its parent from frame to frame.
+    Attributes:
+        slides: (steps,) metres that a foot slides over the floor while it bears on the floor, for
+            each time that it does.
+        depths: (n, 2) metres by which each sole is below the floor.
+        jumps: (n - 1,) greatest angle by which a joint turns against its parent from one frame to
+            the next, radians.
     """
 
     slides: NDArray[np.float64]

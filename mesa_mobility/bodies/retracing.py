@@ -34,10 +34,12 @@ Progress = Callable[[str, int, int], None]
 class Retraced(NamedTuple):
     """A map's options with the poses behind them.
 
-    Fields: ``poses``; ``labels`` (n,) cluster of each pose, -1 for none; ``chains`` (m, 4, 2) the
-    recorded stretches that make up each option of the map, in order: the frame of the path at which
-    each begins, and its pose there, -1 for none; ``strides`` (m,) factor by which an edit has
-    scaled the strides, 1 for options as recorded.
+    Attributes:
+        poses: the n poses of the recordings.
+        labels: (n,) cluster of each pose, -1 for none.
+        chains: (m, 4, 2) the recorded stretches that make up each option of the map, in order: the
+            frame of the path at which a stretch begins, and its pose there, -1 for none.
+        strides: (m,) factor by which an edit has scaled the strides, 1 for options as recorded.
     """
 
     poses: PoseTable

@@ -23,10 +23,12 @@ NEVER = np.iinfo(np.int64).max
 
 
 class Movements(NamedTuple):
-    """What one person does: its decisions in order of time.
+    """What one person does: their decisions in order of time.
 
-    Fields: ``starts`` (d,) frames; ``options`` (d,) rows of the type's map, negative for the
-    fallback; ``shares`` (d,) of the option's ground that it covers.
+    Attributes:
+        starts: (d,) frames in which the movements begin.
+        options: (d,) rows of the type's map, negative for the fallback.
+        shares: (d,) the part of each option's length that the person walks, 0 to 1.
     """
 
     starts: NDArray[np.int64]
@@ -37,10 +39,12 @@ class Movements(NamedTuple):
 class Sequence(NamedTuple):
     """The poses of one person in successive frames.
 
-    Fields: ``numbers`` (n,) of the bank's poses; ``joins`` (j,) places in it at which another
-    stretch of a recording begins; ``before`` (j,) number of the pose that would have come there
-    otherwise; ``strides`` (n,) factor of the recorded strides; ``own`` (n,) decision, -1 before the
-    first.
+    Attributes:
+        numbers: (n,) numbers of the bank's poses.
+        joins: (j,) indices in ``numbers`` at which another stretch of a recording begins.
+        before: (j,) number of the pose that would have come there without the join.
+        strides: (n,) factor of the recorded strides.
+        own: (n,) index of the decision that the person follows, -1 before the first.
     """
 
     numbers: NDArray[np.int64]
@@ -82,9 +86,12 @@ def pose_sequence(bank: PoseBank, frames: NDArray[np.int64], movements: Movement
 class Stretches(NamedTuple):
     """The stretches of recordings that one person goes through, in the order of time.
 
-    Fields: ``frames`` (s,) at which each begins; ``poses`` (s,) numbers of the bank's poses then;
-    ``moving`` (s,) whether the later poses of the clip follow; ``strides`` (s,) factor of the
-    recorded strides; ``own`` (s,) decision, -1 before the first.
+    Attributes:
+        frames: (s,) frames in which the stretches begin.
+        poses: (s,) number of the bank's pose with which each begins.
+        moving: (s,) whether the later poses of the clip follow.
+        strides: (s,) factor of the recorded strides.
+        own: (s,) index of the decision that the person follows, -1 before the first.
     """
 
     frames: NDArray[np.int64]
@@ -100,7 +107,7 @@ def stretches(bank: PoseBank, movements: Movements, first: int) -> Stretches:
     Args:
         bank: poses of the person's type.
         movements: what the person does.
-        first: frame; it stands until its first movement.
+        first: frame; the person stands until their first movement.
     """
     begins, poses, strides = _stretches(bank, movements)
     until = np.append(np.diff(movements.starts), NEVER)
@@ -116,16 +123,16 @@ def stretches(bank: PoseBank, movements: Movements, first: int) -> Stretches:
 def stretch_of_each(
     bank: PoseBank, movements: Movements, phases: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_], NDArray[np.float64]]:
-    """Of several people, each with one movement under way: the stretch that each is in.
+    """The stretch that each of several people is in, who have one movement under way each.
 
     Args:
         bank: poses of their type.
         movements: one movement for each person.
-        phases: (n,) frames since it began.
+        phases: (n,) frames since the movement began.
 
     Returns:
-        (n,) frames since the stretch began, (n,) number of the pose then, (n,) whether it moves,
-        (n,) factor of its strides.
+        (n,) frames since the stretch began, (n,) number of the pose then, (n,) whether the person
+        moves, (n,) factor of the recorded strides.
     """
     begins, poses, strides = _stretches(bank, movements)
     begins, poses, strides = begins[1:], poses[1:], strides[1:]
@@ -165,7 +172,7 @@ def _stretches(
 
 
 def _moving(movements: Movements) -> NDArray[np.bool_]:
-    """(d + 1,) whether the person moves before its first decision and after each of them.
+    """(d + 1,) whether the person moves before their first decision, and after each decision.
 
     An option shortened to nothing stands and turns on the spot.
     """

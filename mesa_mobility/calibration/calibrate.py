@@ -133,7 +133,7 @@ def _prepare(folder: Folder, task: Task) -> str:
 
     Raises:
         ModelError: the store is of another calibration.
-        ResultsError: it is damaged, or cannot be written.
+        ResultsError: the store is damaged, or cannot be written.
     """
     said = json.loads(json.dumps(task.definition()))
     folder.make("")

@@ -25,9 +25,9 @@ def judged(
 
     Args:
         task: the calibration.
-        runs: its runs.
+        runs: the runs of this calibration.
         found: the numbers found, by name.
-        last_seeds: those of the last generation.
+        last_seeds: seeds of the last generation.
     """
     sets = [task.start, dict(found)]
     seen, unseen = task.names(held_out=False), task.names(held_out=True)

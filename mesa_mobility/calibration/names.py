@@ -25,10 +25,10 @@ def name_of(function: Any, what: str) -> str:
 
     Args:
         function: a function or class of a module, or a ``functools.partial`` of one.
-        what: it is, for errors.
+        what: what the function is, for errors.
 
     Raises:
-        ModelError: it cannot be found by a name, or has arguments that are not plain.
+        ModelError: the function cannot be found by a name, or has arguments that are not plain.
     """
     inner, arguments, keywords = function, [], {}
     if isinstance(function, partial):

@@ -23,10 +23,10 @@ class Generation:
     """One generation of the search.
 
     Attributes:
-        numbers: the sets that were tried, values by name.
-        costs: of each, small is good.
+        numbers: the sets of numbers that were tried, each as values by name.
+        costs: cost of each set; small is good.
         failed: how many sets had a run that failed.
-        middle: of the distribution after it.
+        middle: middle of the distribution after this generation, values by name.
     """
 
     numbers: Sequence[dict[str, float]]
@@ -44,10 +44,10 @@ class Figure:
             that the search has not had) or "held-out data" (the same seeds).
         scenario: name of the scenario; empty for what the search makes small, over all of them.
         distance: name of the distance.
-        start: mean over the seeds at the start, with its interval.
-        found: the same of the numbers found.
-        change: of the difference, found less start, seed by seed.
-        failed: runs of either that failed, which do not count.
+        start: mean distance over the seeds with the numbers at the start, with its interval.
+        found: mean distance over the seeds with the numbers found, with its interval.
+        change: mean of the difference, found less start, seed by seed, with its interval.
+        failed: runs with either set of numbers that failed; they do not count.
     """
 
     part: str

@@ -25,7 +25,7 @@ def write_report(found: Calibrated, task: Task, path: str | os.PathLike[str]) ->
         path: of the page.
 
     Raises:
-        ResultsError: it cannot be written.
+        ResultsError: the page cannot be written.
     """
     page = Page(f"Calibration of the preset {task.preset.name}")
     tried = sum(len(each.numbers) for each in found.history)

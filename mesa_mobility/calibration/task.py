@@ -35,7 +35,7 @@ class Compared:
         measures: text of the measured data.
         distances: the distances.
         functions: JSON of the text of each distance's function by the distance's name.
-        held_out: whether the search does not see it.
+        held_out: whether the scenario is kept from the search, to check its result.
     """
 
     simulates: str
@@ -50,11 +50,11 @@ class Task:
     """A calibration.
 
     Attributes:
-        scenarios: by name.
-        free: the free numbers, each with its bounds and start.
+        scenarios: what is simulated and compared, by the scenario's name.
+        free: the free numbers, which the search may change, each with its bounds and start.
         seeds: of the runs.
-        search: how it searches.
-        preset: where it starts.
+        search: settings of the search.
+        preset: values of all numbers that are not free.
         files: sha256 of the files with measured data, by name.
     """
 
@@ -66,16 +66,16 @@ class Task:
     files: Mapping[str, str]
 
     def names(self, *, held_out: bool) -> list[str]:
-        """The scenarios that the search sees, or those that it does not."""
+        """Names of the held-out scenarios, which the search does not see, or of the others."""
         return [name for name, each in self.scenarios.items() if each.held_out == held_out]
 
     @property
     def start(self) -> dict[str, float]:
-        """The free numbers at first."""
+        """The value of each free number at which the search starts, by name."""
         return {each.name: float(each.start or 0.0) for each in self.free}
 
     def definition(self) -> dict[str, Any]:
-        """What a store keeps: all that results depend on but the number of evaluations."""
+        """What a store keeps: all that results depend on, except the number of evaluations."""
         return {
             "scenarios": {
                 name: {

@@ -81,7 +81,7 @@ def resample(recording: Recording, frame_rate: float = 30.0) -> Recording:
 
 
 def scale(recording: Recording, length: float = 1.0, time: float = 1.0) -> Recording:
-    """The same movement by a smaller or larger body, and slower or quicker.
+    """The movement of a recording as of a smaller or larger body, and slower or quicker.
 
     Lengths of the skeleton and of the root's path are multiplied by ``length``, times by ``time``;
     joint angles and the frame rate stay.  ``time = sqrt(length)`` keeps the Froude number.

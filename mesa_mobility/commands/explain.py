@@ -1,4 +1,4 @@
-"""`mesa-mobility explain`: why somebody moved as it did in a saved run."""
+"""`mesa-mobility explain`: why somebody moved as they did in a saved run."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ def _read(path: Path, key: str, dtypes: Mapping[str, np.dtype[Any]]) -> Arrays:
 
     Raises:
         FileNotFoundError: there is no such file.
-        Exception: it is damaged or of another key.
+        Exception: the file is damaged or of another key.
     """
     memory = np.asarray(np.load(path, mmap_mode="c", allow_pickle=False))
     if memory.dtype != np.uint8 or memory.ndim != 1:

@@ -189,7 +189,7 @@ class Dynamics(Saved):
         return Moment(self._model.frame, self._model.rng)
 
     def explain(self, row: int) -> Explanation:
-        """The decision of the person in ``row`` if it decided now, before all others."""
+        """The decision of the person in ``row`` if they decided now, before all others."""
         scene, model = self._scene, self._model
         self.bind()
         names = [each.name for each in scene.types]

@@ -138,21 +138,21 @@ _MAKING = ("__init__", "__post_init__", "bind", "restore")
 class Plugin(ABC):
     """What all behaviours have in common: a name, settings, and three hooks to override.
 
-    A setting is a parameter of the constructor with a ``Range``, and the attribute of its name::
+    A setting is a parameter of the constructor with a ``Range``, and the attribute of this name::
 
         def __init__(self, time: Annotated[float, Range(0.1, 10, "s")] = 1.2) -> None:
             self.time = time
 
-    It is checked whenever it is set. Once a behaviour is made, it takes on no other attributes than
-    it has, its class annotates, or it gets in ``bind``; names that begin with _ are free.
+    A setting is checked whenever it is set. Once a behaviour is made, it takes on no new attributes
+    except those that its class annotates, those that ``bind`` sets, and names that begin with _.
 
     Attributes:
         name: unique name, as it is registered and shown.
         saved: the attributes that a checkpoint holds beside the settings, and what each of them is,
             in the words of ``mesa_mobility.schema``:
             ``{"_lines": Several(Whole(below="people"))}``.
-            A checkpoint with others is refused. None, by default, for all attributes, which are
-            only compared with those of a fresh object.
+            A checkpoint with other attributes is refused. By default None: a checkpoint holds all
+            attributes, and they are only compared with those of a fresh object.
     """
 
     name: ClassVar[str]

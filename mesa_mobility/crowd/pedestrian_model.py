@@ -34,29 +34,31 @@ class PedestrianModel(CrowdModel):
     ``add_pedestrians``.
 
     Args:
-        floor_plan: where people walk, a ``FloorPlan`` or a ``Building``. In a building, positions
-            are places in the plane of its sheets: see its ``places`` and ``true_places``.
+        floor_plan: where people walk, a ``FloorPlan`` or a ``Building``. A building is drawn as
+            several sheets side by side in one plane, and positions are coordinates in that plane:
+            see its ``places`` and ``true_places``.
         preset: "default", "measured", "paper", a TOML file, or rules of one's own.
-        mobility_map: a map, its file, or None for the able-bodied one that ships; stands
-            for a single pedestrian type with default speeds.
+        mobility_map: a mobility map or its file; by default the able-bodied map that ships.
+            Everybody then has the same type, with the map's preferred speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.
-        population: the shares of types that people are drawn from, instead of either: a
-            ``Population``, shares by type, or a text such as "mixed" (see ``Population.of``).
+        population: the shares of types that people are drawn from, instead of ``mobility_map`` and
+            ``pedestrian_types``: a ``Population``, shares by type, or a text such as "mixed" (see
+            ``Population.of``).
         behaviors: cost terms instead of the preset's.
         target_choice: where people go; by default everybody leaves by the nearest exit.
         pedestrian_class: class of the agents, ``Pedestrian`` or one derived from it.
-        fields: type (bool, int or float) of each number that every person has in addition, by
-            name; agents, behaviours and results see them.
+        fields: further numbers that each person has: the type (bool, int or float) of each, by
+            name. Agents, behaviours and results see them.
         frames_per_step: frames that one ``step()`` advances; 3 are 0.1 s.
-        record: keep every frame in ``recorder``; "decisions" also keeps who has taken which option
-            in ``decisions``, from which bodies are drawn.
+        record: keep every frame in ``recorder``; "decisions" also keeps in ``decisions`` who has
+            taken which option. The animation needs these to show bodies.
         rng: seed, also as text, or NumPy generator.
 
     Attributes:
         preset: name of the preset.
         rules: the preset, with the numbers that were given to the model.
         numbers: where the numbers of its behaviours come from; see ``parameters``.
-        floor_plan: the floor plan; that of all sheets of a building.
+        floor_plan: the floor plan; for a building, one plan with all of its sheets.
         building: the building, if it has several levels, otherwise None.
         space: Mesa's continuous space with everybody inside.
         crowd: the crowd's arrays; see ``Crowd``.
@@ -67,16 +69,19 @@ class PedestrianModel(CrowdModel):
         journeys: the routes of people who cross gates and visit places in order.
         speed_rules: behaviours that change preferred speeds; the preset's rule for groups is added
             with the first group. May be changed at run time.
-        tactics: the steps from a target to what somebody wants of its next movement, in order; may
+        tactics: the steps from a target to what people want of their next movement, in order; may
             be removed, replaced and added to at run time.
         terms: the cost terms; may be added to, removed and re-weighted at run time.
         frame: frames since the start.
-        time: ``elapsed``, and between two steps the time of Mesa's events, seconds.
+        elapsed: simulated seconds since the start.
+        inside: number of people inside.
+        time: Mesa's clock, seconds. After a step it equals ``elapsed``; while an event of Mesa runs
+            between two steps, it is the event's time.
         blocked: people who have stood for a minute although they want to move, without a reason: a
             ``person``, ``since`` when, and the ``ring`` of people that they belong to.
-        stalled: whether for a minute nobody has left and people have come no nearer to an exit, or
-            everybody who wants to move is among ``blocked``; ``stall_reason`` says why, and
-            ``go_on`` and ``run`` give it another minute.
+        stalled: whether the run has stalled. It stalls if for a minute nobody has left and people
+            have come no nearer to an exit (on average), or if everybody who wants to move is in
+            ``blocked``. ``stall_reason`` says why. ``go_on`` and ``run`` wait another minute.
         watch: set to a ``Watch`` to keep the decisions of one pedestrian as they are taken.
         events_at_first: events that Mesa itself has scheduled.
         framework_attributes: names of the attributes that this class has made.
@@ -118,7 +123,7 @@ class PedestrianModel(CrowdModel):
     summary = summary
 
     def person_data(self) -> dict[str, ArrayLike]:
-        """What trajectories say of each person besides their place; models may add to it.
+        """Further data of each person for trajectories, by name; models may add to them.
 
         Returns:
             (n,) ``type`` and ``group``, names, of everybody who has ever been in the model, by row.
@@ -173,7 +178,7 @@ class PedestrianModel(CrowdModel):
         """Add a tactic behind the one that it names in ``after``, or else at the end.
 
         Raises:
-            ModelError: it is no tactic, such as the class of one.
+            ModelError: ``tactic`` is no tactic, for instance a class and not an object.
         """
         check_behaviours("add_tactic", [tactic], Tactic)
         names = [each.name for each in self.tactics]
@@ -190,7 +195,8 @@ class PedestrianModel(CrowdModel):
             path: the file.
             plugins: behaviours that the model had, and that are neither installed nor made by its
                 constructor.
-            arguments: constructor's arguments that the file cannot hold, such as a mobility map.
+            arguments: arguments for the constructor that the file cannot hold, such as a mobility
+                map.
 
         Raises:
             ModelError: a file that cannot be read or is another model's, other mobility maps, or

@@ -29,7 +29,7 @@ from mesa_mobility.schema import MOST, Either, Kind, Members, Several, Text, Who
 
 
 class Population(Saved):
-    """A model's people; each keeps its row of the crowd's arrays for ever.
+    """A model's people; each keeps their row of the crowd's arrays for ever.
 
     Args:
         scene: the floor and what people can do on it.
@@ -109,7 +109,7 @@ class Population(Saved):
         return self._scene.crowd.core[: self.count].copy()
 
     def cluster_of(self, row: int) -> int:
-        """Cluster, in the map of its type, of the pose in which a person's movement ends."""
+        """Cluster of the pose in which a person's movement ends, in the map of their type."""
         crowd, first_cluster = self._scene.crowd, self._scene.repertoire.first_cluster
         return int(crowd.cluster[row]) - int(first_cluster[crowd.type_index[row]])
 
@@ -154,7 +154,7 @@ class Population(Saved):
         Args:
             rows: (n,) their rows.
             targets: (n, 2) metres.
-            headings: (n,) radians; by default everybody faces its target.
+            headings: (n,) radians; by default everybody faces their target.
             model: the model.
 
         Returns:
@@ -177,7 +177,10 @@ class Population(Saved):
         return people
 
     def part(self, moved: Moved) -> None:
-        """Note who has stayed and who has left; Mesa's registers follow at the end of the step."""
+        """Record who is still inside and who has left.
+
+        Mesa's lists of agents are updated at the end of the step.
+        """
         self.present = moved.stay
         if len(moved.gone):
             self.departed.add(moved.gone)
@@ -190,9 +193,9 @@ class Population(Saved):
         self.take_out_inactive()
 
     def take_out_inactive(self) -> None:
-        """Remove people who have left from Mesa's registers.
+        """Remove people who have left from Mesa's lists of agents.
 
-        Later ones take their indices in its space; ``look_over`` writes the positions anew.
+        People behind them move up in Mesa's space; ``look_over`` writes the positions anew.
         """
         if len(self.present) == len(self.rows):
             return
@@ -224,10 +227,10 @@ class Population(Saved):
     def first_free(
         self, places: NDArray[np.float64], type_index: int, new: Newcomers, frame: int
     ) -> NDArray[np.float64] | None:
-        """(2,) the first of (n, 2) places at which somebody of this type can come in, or None.
+        """(2,) the first of (n, 2) places at which somebody of this type can come in now, or None.
 
-        Doors that have closed and obstacles that have been added since may leave no room there, or
-        no way out.
+        Doors that have been closed since the places were chosen, and new obstacles, may leave no
+        room there, or no way out.
         """
         scene, width = self._scene, self._scene.types[type_index].half_width
         destination, _ = scene.journeys.start(new.exits, new.route, new.loop, type_index)
@@ -265,6 +268,12 @@ class Population(Saved):
     def send(self, row: int, exits: Sequence[str] | None, route: Route, frame: int) -> None:
         """Send somebody along a route and out by one of these exits.
 
+        Args:
+            row: of the person.
+            exits: names of the exits; None for all exits.
+            route: the gates that they cross before, and the places that they visit.
+            frame: now.
+
         Raises:
             ModelError: the person has left, or a route that is no list of gates and visits.
             FloorPlanError: an unknown exit or gate, a place without room, or no way there.
@@ -283,7 +292,7 @@ class Population(Saved):
         agenda["checked"][row], agenda["nearest"][row] = frame, np.inf
 
     def exits(self, row: int) -> tuple[str, ...]:
-        """Names of the exits by which somebody may leave; none if it goes round for ever."""
+        """Names of the exits by which somebody may leave; none if they go round for ever."""
         crowd, journey = self._scene.crowd, int(self._scene.crowd.agenda["journey"][row])
         if journey:
             return self._scene.journeys.exits(journey)
@@ -304,7 +313,7 @@ class Population(Saved):
         )[0]
 
     def join(self, row: int, group: str | int | None) -> None:
-        """Let somebody join a group, or leave its own.
+        """Let somebody join a group, or leave their own if ``group`` is None.
 
         Raises:
             ModelError: the person has left, or a group that is neither name nor number.
@@ -319,7 +328,7 @@ class Population(Saved):
             raise ModelError(f"pedestrian {row}: has left, expected somebody inside")
 
     def _group_number(self, group: str | int | None) -> int:
-        """Number of a group, which is new if its name is; 0 for none."""
+        """Number of a group, a new one for a new name; 0 for None."""
         if group is None:
             return 0
         if group not in self.groups:

@@ -35,7 +35,7 @@ class Scene:
         environment: walls and routes.
         journeys: the routes of people who cross gates in order.
         crowd: a record for each person.
-        reach: metres from a person within which its movements, body included, end.
+        reach: metres from a person within which their movements, body included, end.
         strips: the strips of the plan's seams, as in ``Twins``.
     """
 

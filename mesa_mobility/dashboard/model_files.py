@@ -36,7 +36,7 @@ def load_offered(text: str) -> type:
     """The class of an offered model; its file is executed, once as long as it stays the same.
 
     Raises:
-        ModelError: it is not offered, or its file has an error.
+        ModelError: the model is not offered, or its file has an error.
     """
     if text not in offered_models():
         raise ModelError(f"{text}: expected a model of a file in {offered.FOLDER}")

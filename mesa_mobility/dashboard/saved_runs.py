@@ -36,7 +36,7 @@ def replay_of(name: str) -> str:
     """The page that plays an offered run.
 
     Raises:
-        ResultsError: it is not offered, damaged, or too large to be shown inside another page.
+        ResultsError: the run is not offered, damaged, or too large to show inside another page.
         FloorPlanError: its floor plan is damaged.
     """
     if name not in offered_runs():

@@ -24,7 +24,7 @@ class Constant(Distribution):
     """Always the same value.
 
     Raises:
-        ModelError: it is not finite.
+        ModelError: the value is not finite.
     """
 
     value: float

@@ -15,13 +15,14 @@ class Measures:
     """Measures of choices.
 
     Attributes:
-        nats: negative log-likelihood a choice of the observed end among options drawn uniformly,
-            the same for all models; choices without an option near enough count as uniform ones.
-        uniform: the same where all options are as likely.
-        energy: energy score of end points, metres: that of the predicted distribution of ends,
-            over all choices (Gneiting and Raftery, JASA 102 (2007) 359-378).
-        choices: their number.
-        matched: those with an option near enough.
+        nats: negative log-likelihood, per choice, of the observed end among options that are drawn
+            uniformly and are the same for all models. Choices without an option near enough to the
+            end count as if all options were equally likely.
+        uniform: negative log-likelihood per choice if all options were equally likely.
+        energy: energy score of the predicted distribution of end points, mean over all choices,
+            metres (Gneiting and Raftery, JASA 102 (2007) 359-378).
+        choices: number of choices.
+        matched: number of choices with an option near enough to the end.
     """
 
     nats: float

@@ -20,17 +20,17 @@ DOOR, CORRIDOR = 0.9, 1.2
 """Least widths in metres: a door and a corridor of a flat."""
 
 SLACK_S, SLACK = 15.0, 3.0
-"""Seconds that people may take besides so many times those of the straight way. Of the maps that
-ship, people take at most 8 s besides the straight way."""
+"""Seconds that people may take beyond the time of the straight way, and the factor by which that
+time counts. People of the maps that ship take at most 8 s more than the straight way takes."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """Somebody of a map, with its type's median preferred speed.
+    """A person with whom a map is examined: one of its type, with the median preferred speed.
 
     Attributes:
         kind: the pedestrian type.
-        speed: m/s.
+        speed: preferred speed, m/s.
     """
 
     kind: PedestrianType
@@ -38,7 +38,7 @@ class Subject:
 
     @classmethod
     def of(cls, map_: MobilityMap) -> Subject:
-        """The subject of a map."""
+        """A person of the map's type who walks at the median preferred speed of the map."""
         # Under examination: its models need not warn that it has not been examined.
         kind = PedestrianType(mobility_map=with_verdict(map_, {}))
         speed = kind.preferred_speed
@@ -61,7 +61,7 @@ class Subject:
         return max(CORRIDOR, 2.0 * self.radius + BESIDE)
 
     def limit(self, way: float, speed: float | None = None) -> float:
-        """Seconds for a way of so many metres, at its own speed or another, m/s."""
+        """Most seconds that a way of so many metres may take, at their own ``speed`` or another."""
         return SLACK_S + SLACK * way / (speed or self.speed)
 
     def model(self, plan: FloorPlan, seed: int = 0) -> PedestrianModel:
@@ -87,8 +87,15 @@ class Subject:
     def times(
         self, plan: FloorPlan, starts: Sequence[tuple[tuple[float, float], float, float]]
     ) -> list[float | None]:
-        """Seconds until somebody alone has left, from each (place, heading, way in metres); None
-        where they have not in time."""
+        """Seconds until somebody alone has left, for each start.
+
+        Args:
+            plan: the floor.
+            starts: place (x, y) in metres, heading in radians, and length of the way out in metres.
+
+        Returns:
+            Seconds for each start; None where the person has not left within ``limit``.
+        """
         found: list[float | None] = []
         for place, heading, way in starts:
             model = self.alone(plan, place, heading)

@@ -16,11 +16,15 @@ ROOM, LEG, DEAD_END = 6.0, 6.0, 4.0
 """Metres: side of the room, each leg of the corridor, depth of the dead end."""
 
 ASIDE = (0.4, 1.2)
-"""Metres beside the jamb at which people stand who have missed the door."""
+"""Metres from the jamb at which people start who have missed the door."""
 
 
 def door(subject: Subject) -> Finding:
-    """From before a door, and from the wall on both sides of it, facing all ways."""
+    """Test whether somebody alone gets through a door in time.
+
+    They start in front of the door, and at the wall to either side of it. There they face the wall
+    (straight, and 0.4 rad to either side) or one way along it.
+    """
     half, wall = subject.door / 2, ROOM - subject.radius - 0.02
     plan = FloorPlan(
         box(0.0, 0.0, ROOM, ROOM),
@@ -42,7 +46,7 @@ def door(subject: Subject) -> Finding:
 
 
 def corner(subject: Subject) -> Finding:
-    """Round a corner of 90 degrees to the left and to the right."""
+    """Test whether somebody alone gets round a corner of 90 degrees, left and right, in time."""
     width, times = subject.corridor, []
     inner = LEG - width
     for side in (1.0, -1.0):
@@ -62,7 +66,11 @@ def corner(subject: Subject) -> Finding:
 
 
 def turn(subject: Subject) -> Finding:
-    """Out of a dead end, from facing its end and its sides."""
+    """Test whether somebody alone gets out of a dead end in time.
+
+    They start at its closed end and face that end (straight, and 0.3 rad to either side) or one of
+    the sides. The test is passed if they leave in time from all of these headings.
+    """
     width = subject.corridor
     plan = FloorPlan(
         box(0.0, 0.0, DEAD_END, width), exits=[Exit("end", (DEAD_END, 0.0), (DEAD_END, width))]
@@ -78,7 +86,11 @@ def turn(subject: Subject) -> Finding:
 
 
 def _all_in_time(times: Sequence[float | None]) -> dict[str, Any]:
-    """What is measured, expected and found of people who all should arrive."""
+    """``measured``, ``expected`` and ``passed`` of a ``Finding`` that everybody arrives in time.
+
+    Args:
+        times: seconds until each person arrived; None for those who did not in time.
+    """
     arrived = [each for each in times if each is not None]
     return {
         "measured": {

@@ -182,7 +182,10 @@ class Assessment:
 
 
 def check_figure(figure: Any) -> None:
-    """Raise ModelError unless a figure is the mean or a percentile of a column."""
+    """Raise ModelError unless ``figure`` reads like "mean egress_s" or "p95 egress_s".
+
+    Percentiles are p1 to p99. Whether the column exists is not checked.
+    """
     if not (isinstance(figure, str) and _FIGURE.fullmatch(figure)):
         raise ModelError(
             f'figure {figure!r}: expected one such as "mean egress_s" or "p95 egress_s"'

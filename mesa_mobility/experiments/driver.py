@@ -61,11 +61,11 @@ class Progress:
     """How far an experiment has come.
 
     Attributes:
-        total: runs to do now, those that were there before left out.
-        ended: of them.
+        total: number of runs to do now, without those that were there before.
+        ended: number of these runs that have ended.
         statuses: number of ended runs by status.
         runs_s: seconds that the ended runs took, on all workers together.
-        address: of a page of the executor's own, or nothing.
+        address: of the page on which the executor shows its work; empty if it has none.
     """
 
     total: int = 0

@@ -126,7 +126,7 @@ def model_class(model: type | str) -> type:
     """The class of a model.
 
     Raises:
-        ModelError: it cannot be found, or loaded.
+        ModelError: the model cannot be found, or not be loaded.
     """
     return model if isinstance(model, type) else find_model(model)
 

@@ -21,8 +21,8 @@ class Estimate:
         low: lower end of the interval.
         high: upper end of the interval; either is infinite where it lies among the runs that have
             not reached the figure.
-        runs: runs that the estimate is of.
-        not_reached: of them, those that have no value.
+        runs: number of runs from which the estimate is made.
+        not_reached: number of these runs that have no value.
         beyond: the greatest value reached, where the estimate lies among those not reached.
     """
 

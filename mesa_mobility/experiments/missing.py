@@ -27,7 +27,7 @@ def missing_runs(experiment: Experiment, store: Store) -> tuple[int, Runs]:
 
     Args:
         experiment: with the points and replications asked for.
-        store: of it, which need not have been made yet.
+        store: of the experiment; it need not exist yet.
     """
     there = store.folder.exists(DEFINITION)
     points = range(len(experiment.design))

@@ -31,7 +31,8 @@ class VarianceComponent:
 
     Attributes:
         source: the parameter, or "chance".
-        groups: values of it that runs have; of chance, the runs.
+        groups: how many different values of the parameter the runs have, counted anew in each group
+            of the level above; for chance, how many runs.
         variance: estimate, at least 0, in the square of the figure's unit.
         share: of the sum of all variances, with its interval.
     """
@@ -47,13 +48,13 @@ def variance_components(
 ) -> list[VarianceComponent]:
     """Which share of the variance of a figure comes from which parameter, and from chance.
 
-    Runs are nested: each value of a level belongs to one value of the level above, as people who
-    were drawn anew for each map. The values are samples, and so are the effects: random-effects
-    analysis of variance, whose mean squares are set equal to their expectations, also where groups
-    differ in size (S. R. Searle, G. Casella and C. E. McCulloch, Variance Components, 1992,
-    chapter 5). An estimate below 0 counts as 0. Intervals of the shares are generalised
-    confidence intervals (S. Weerahandi, Journal of the American Statistical Association 88 (1993)
-    899-905), for normal effects.
+    Runs are nested: each value of a level belongs to one value of the level above, like people who
+    were drawn anew for each map. The values of a parameter are a sample of those that it could
+    have, so this is a random-effects analysis of variance. It sets the mean squares equal to their
+    expectations, also where groups differ in size (S. R. Searle, G. Casella and C. E. McCulloch,
+    Variance Components, 1992, chapter 5). An estimate below 0 counts as 0. Intervals of the shares
+    are generalised confidence intervals (S. Weerahandi, Journal of the American Statistical
+    Association 88 (1993) 899-905), for normal effects.
 
     Args:
         store: of the experiment; runs that have failed are left out, with a warning.

@@ -40,7 +40,7 @@ class Fields:
         """The value of a field.
 
         Raises:
-            LiveError: it is missing, and has no default.
+            LiveError: the field is missing, and has no default.
         """
         value = self._values.pop(name, default)
         if value is _MISSING:

@@ -21,7 +21,7 @@ PAUSED = 1
 """Flag of a frame of a model for which no time goes by."""
 
 COLUMNS = ("x", "y", "heading", "vx", "vy")
-"""What a frame says of each person, besides its number."""
+"""What a frame says of each person, besides the person's number."""
 
 BYTES_A_PERSON = 8 * len(COLUMNS) + 4
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.state.records import Crowd
 
 SECONDS_AHEAD = 2.0
-"""How far ahead of somebody others make way: what it covers in this time."""
+"""Others make way as far ahead of a steered person as they get in this time."""
 
 ROOM = 0.3
 """Metres between two bodies that pass each other."""
@@ -31,8 +31,8 @@ def step_aside(
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
     """Who steps aside, and where to.
 
-    Somebody in the way of a steered person, and not walking away from it as fast, steps to the side
-    on which it already is; somebody right in the middle to the steered person's left.
+    People in the way of a steered person, who do not walk away as fast, step to the side on which
+    they already are. Somebody right in the middle steps to the steered person's left.
 
     Args:
         rows: (n,) people who decide.

@@ -21,8 +21,8 @@ from mesa_mobility.live.point_routes import PointRoutes
 from mesa_mobility.schema import Kind
 
 AHEAD = 1.0
-"""Seconds ahead of its velocity at which somebody who is steered aims: near, so that movements are
-short and another velocity soon counts."""
+"""A steered person aims at where their velocity leads in so many seconds. It is little, so that
+movements are short and another velocity soon counts."""
 
 ARRIVED, AROUND = 0.3, 0.35
 """Metres from a place at which the first has arrived, and more for those who stand there."""
@@ -31,7 +31,7 @@ ARRIVED, AROUND = 0.3, 0.35
 def follow_orders(model: PedestrianModel) -> Orders:
     """The orders that a model's people follow; the tactics are added to the model's own.
 
-    A model that has them, such as one of a checkpoint, keeps them and its orders.
+    A model that has these tactics, such as one of a checkpoint, keeps them and its orders.
     """
     orders = _orders_of(model)
     names = [each.name for each in model.tactics]
@@ -54,7 +54,7 @@ class _OfOrders(Tactic):
     """A tactic that follows orders.
 
     Args:
-        orders: to the model's people; by default those of its other tactics.
+        orders: to the model's people; by default those of the model's other tactics.
     """
 
     _crowd: Crowd

@@ -102,7 +102,7 @@ class Orders(Saved):
         self.place[rows], self.stay[rows] = place, frames
 
     def steer(self, rows: NDArray[np.int64], velocity: tuple[float, float]) -> None:
-        """Let people walk with a velocity, m/s, until told otherwise; they stand if it is 0.
+        """Let people walk with a velocity, m/s, until told otherwise; at 0 they stand.
 
         Raises:
             LiveError: faster than anybody walks.
@@ -118,7 +118,7 @@ class Orders(Saved):
         self._begin(rows, FREE)
 
     def arrive(self, rows: NDArray[np.int64]) -> None:
-        """Let people stand who have come to their place; it is a wait like any other."""
+        """Let people who have come to their place stand there: a wait like any other."""
         self.does[rows] = STANDS
         until = self._model.frame + np.minimum(self.stay[rows], FOREVER - self._model.frame)
         wait_until(rows, until, self._model.crowd)

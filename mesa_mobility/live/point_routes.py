@@ -32,8 +32,13 @@ KEPT = 1000
 class _Nodes(NamedTuple):
     """Places where routes bend.
 
-    Fields: ``xy`` (n, 2) metres; ``start``, ``end`` (m,) nodes of each line between two in view of
-    each other, and ``length`` (m,), metres.
+    Two nodes in view of each other are joined by a line.
+
+    Attributes:
+        xy: (n, 2) metres.
+        start: (m,) first node of each line.
+        end: (m,) last node of each line.
+        length: (m,) of each line, metres.
     """
 
     xy: NDArray[np.float64]
@@ -68,7 +73,7 @@ class PointRoutes:
 
         Returns:
             (n, 2) targets, metres, and (n,) lengths of the routes, metres. Somebody without a way
-            gets its own position, and inf.
+            gets their own position, and inf.
         """
         to_go = self._lengths_to(place)
         points, lengths = positions.copy(), np.full(len(positions), np.inf)

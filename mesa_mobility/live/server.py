@@ -103,7 +103,7 @@ class LiveServer:
 
         Raises:
             MobilityError: a step of the model has failed.
-            Exception: the same, from a plug-in.
+            Exception: an error of a plug-in.
         """
         self._loop = asyncio.get_running_loop()
         self._fresh, self._ended = asyncio.Event(), self._loop.create_future()

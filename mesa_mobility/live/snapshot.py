@@ -33,7 +33,7 @@ class People:
         return len(self.type_index)
 
     def of(self, person: NDArray[np.int64], types: tuple[str, ...]) -> dict[str, Any]:
-        """The same of some people, ready for JSON."""
+        """Number, type and core radius of some people, ready for JSON."""
         return {
             "person": person.tolist(),
             "type": [types[k] for k in self.type_index[person].tolist()],
@@ -75,7 +75,7 @@ class Snapshot:
 
     @cached_property
     def scene(self) -> str:
-        """The full state but for the frame, for somebody who knows nothing."""
+        """The full state except the frame, for a client that knows nothing yet."""
         here = self.frame.person.astype(np.int64)
         values = {
             "type": "scene",

@@ -25,8 +25,18 @@ EDIT_CELL = (0.15, 0.15, np.deg2rad(20.0))
 
 
 class ClusterOptions(NamedTuple):
-    """Options of one cluster: index of duration, cell, cost, path and clusters along it, the pose
-    in which each starts, its transitions, and the number of its edit, 0 if there is none."""
+    """Options of one cluster, a row each.
+
+    Attributes:
+        layers: index of the duration.
+        cells: cell in which the option ends.
+        costs: cost of the option.
+        paths: the path.
+        path_clusters: clusters along the path.
+        sources: pose in which the option starts.
+        jumps: transitions of the option between recordings.
+        edits: number of the edit that has made the option, 0 for none.
+    """
 
     layers: NDArray[np.int64]
     cells: NDArray[np.int64]

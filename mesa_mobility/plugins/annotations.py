@@ -67,8 +67,8 @@ class ListOf:
     The behaviour keeps a list of its own.
 
     Attributes:
-        kind: class of its entries.
-        once: whether it is set when the behaviour is made, and never again; it is a tuple then.
+        kind: class of the entries.
+        once: whether the list is set when the behaviour is made, and never again, as a tuple.
     """
 
     kind: type

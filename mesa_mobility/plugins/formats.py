@@ -187,7 +187,7 @@ def _made(plugin: registry.Plugin, base: type[F]) -> F:
     """The format of an entry point.
 
     Raises:
-        ModelError: it cannot be loaded, or is no format of this kind.
+        ModelError: the entry point cannot be loaded, or is no format of this kind.
     """
     kind = plugin.load()
     suffixes = getattr(kind, "suffixes", ())

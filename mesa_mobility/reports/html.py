@@ -96,7 +96,7 @@ class Page:
         """Write the page, whole or not at all.
 
         Raises:
-            ResultsError: it cannot be written.
+            ResultsError: the page cannot be written.
         """
         title = escape(self._title)
         text = (

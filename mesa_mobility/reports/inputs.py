@@ -94,7 +94,7 @@ def digest_of(path: Path) -> str:
     """The sha256 of a file, read once while it does not change.
 
     Raises:
-        ResultsError: it cannot be read.
+        ResultsError: the file cannot be read.
     """
     try:
         now = path.stat()

@@ -34,7 +34,7 @@ def sha256_of(path: Path) -> str:
     """The sha256 of a file.
 
     Raises:
-        ResultsError: it cannot be read.
+        ResultsError: the file cannot be read.
     """
     try:
         with path.open("rb") as source:

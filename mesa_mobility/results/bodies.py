@@ -24,10 +24,10 @@ def body_of(
         trajectories: the run, with its decisions.
         person: who.
         frames: (k,) frames, whole or between two; by default all in which the person is there.
-        bank: poses of the person's type; by default those that ship for its map.
+        bank: poses of the person's type; by default those that ship for the type's map.
 
     Raises:
-        ResultsError: no decisions, nobody of that number, or a time at which it is not there.
+        ResultsError: no decisions, nobody of that number, or a time at which they are not there.
         MapError: no poses of the person's map ship, or the bank is of another map.
     """
     decisions = trajectories.decisions

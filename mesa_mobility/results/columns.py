@@ -132,7 +132,7 @@ def last_frame_of(given: int | None, frame: IntArray) -> int:
     """The last frame that was simulated; that of the last row where none is given.
 
     Raises:
-        ResultsError: it is before the last row, or more than 32 bits hold.
+        ResultsError: the frame given is before the last row, or more than 32 bits hold.
     """
     last = int(frame[-1]) if len(frame) else 0
     if given is None:

@@ -104,7 +104,10 @@ class Decisions:
         return self._by_person[first:last]
 
     def movements_of(self, person: int) -> Movements:
-        """What one person does, as bodies take it."""
+        """The decisions of one person in order of time, as ``mesa_mobility.bodies`` needs them.
+
+        They are empty for unknown people.
+        """
         from mesa_mobility.bodies import Movements
 
         rows = self.rows_of(person)

@@ -58,7 +58,8 @@ def check_writable(directory: str | os.PathLike[str], files: Sequence[str] = ())
         files: names of files that will be written to it; a folder may have none of them.
 
     Raises:
-        ResultsError: it is a file, or it cannot be created or written, or a file's name is taken.
+        ResultsError: the path is a file, the folder cannot be created or written, or a file's name
+            is taken.
     """
     folder = Path(directory)
     try:

@@ -160,7 +160,7 @@ def plot_occupancy(
     Args:
         occupancy: [[t, inside], ...], seconds and people.
         path: picture to write.
-        by_type: the same of each type of people, by name, drawn as thinner lines.
+        by_type: occupancy of each type of people, by name, drawn as thinner lines.
         reference: people inside at some times (s), drawn as points to compare with.
         reference_label: their label in the legend.
         title: first line of the picture.

@@ -29,8 +29,8 @@ CHUNK = 200_000
 
 @dataclass(frozen=True)
 class WallCrossing:
-    """A step of one person, from `frame` to the next, on which its position or the centre of a disc
-    of its body meets a wall segment."""
+    """A step of one person, from `frame` to the next, on which they meet a wall segment: their
+    position, or the centre of a disc of their body."""
 
     frame: int
     person: int
@@ -100,8 +100,10 @@ def check_safety(
 
 
 def _off_floor(trajectories: Trajectories, floor: BaseGeometry) -> int:
-    """Rows that lie off the floor, but for the last one of people who left: it lies beyond their
-    exit."""
+    """Number of rows that lie off the floor.
+
+    The last row of people who left does not count: it lies beyond their exit.
+    """
     ours = np.ones(len(trajectories.person), dtype=np.bool_)
     people, last = np.unique(trajectories.person[::-1], return_index=True)
     left = ~np.isin(people, trajectories.remaining)

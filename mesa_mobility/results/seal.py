@@ -44,7 +44,7 @@ def check_seal(path: Path) -> None:
 
     Raises:
         OSError: the file cannot be read.
-        ResultsError: it is not a Parquet file, has no seal, or does not match its seal.
+        ResultsError: the file is no Parquet file, has no seal, or does not match its seal.
     """
     with path.open("rb") as file:
         check_open(file, path)

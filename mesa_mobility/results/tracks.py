@@ -170,7 +170,7 @@ class Tracks:
         return start[same], end[same]
 
     def rows_of(self, person: int) -> NDArray[np.int64]:
-        """(k,) rows of one person, in the order of time; none if it does not appear."""
+        """(k,) rows of one person, in the order of time; none if they do not appear."""
         ordered = self.person[self.by_person]
         first, last = np.searchsorted(ordered, [person, person + 1])
         return self.by_person[first:last]
@@ -179,7 +179,7 @@ class Tracks:
         """The rows of some people alone, in the same frames.
 
         Args:
-            people: their numbers, or for each person whether it is one of them.
+            people: their numbers, or for each person whether they are one of them.
         """
         chosen = np.asarray(people)
         kept = np.zeros(len(self.radii), dtype=np.bool_)

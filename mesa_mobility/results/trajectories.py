@@ -30,7 +30,7 @@ class Trajectories(Tracks):
 
     Attributes:
         frame: (n,) int32, frame number, 0 at the start of the run.
-        person: (n,) int32, identity of the person, 0 or more, the same in all its frames.
+        person: (n,) int32, number of the person, 0 or more, the same in all of their frames.
         x: (n,) float64, metres.
         y: (n,) float64, metres, growing upwards in the plan.
         heading: (n,) float64, radians, facing direction, 0 = +x, counter-clockwise.
@@ -41,18 +41,22 @@ class Trajectories(Tracks):
             empty by then; None means the last row's frame.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
             everybody who has a row in it.
-        person_data: what is known of people besides, by name: (m,) texts or numbers, of person p
-            ``person_data[name][p]``. That of a model has ``type`` and ``group``, which is empty for
-            people without one.
-        fields: (n,) values of each field that the model declares for its people, by name. Those of
-            a building have ``z`` and ``level``, too.
-        decisions: who has taken which option, if that was recorded; bodies are drawn from it.
-        reading: how the file was read from which they come, and what is wrong with it.
+        person_data: further data of people, texts or numbers, by name. ``person_data[name]`` is
+            (m,); its entry p belongs to person p. A model gives ``type`` and ``group``. The group
+            is an empty text for people without one.
+        fields: (n,) values of each field that the model declares for its people, by name.
+            Trajectories from a building also have the fields ``z`` and ``level`` (see
+            ``Building.true_places``).
+        decisions: the movement option that each person took in each decision; None if not
+            recorded. The animation shows bodies in the recorded poses of these options.
+        reading: how the source file was read, and what is wrong with it; None if these
+            trajectories come from no file.
 
     Raises:
         ResultsError: columns of unequal length, values that are not finite, a person twice in
             one frame, a negative frame or person, a radius that is missing or not positive,
-            a person inside at the end without a row in the last frame.
+            a person inside at the end without a row in the last frame; a frame rate that is not
+            positive, a last frame before the last row, or person data that do not fit the people.
     """
 
     @classmethod
@@ -61,11 +65,10 @@ class Trajectories(Tracks):
 
         Args:
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
-                and of fields, if any),
-                ``frame_rate`` (1/s), ``core_radii`` ((people,) metres), ``elapsed`` (s) and
-                ``rows`` (the people inside now); ``person_data()``, where it has it; a
-                ``building`` with ``true_places``, where it has several levels. Its
-                decisions are taken too if it records them.
+                and of fields, if any), ``frame_rate`` (1/s), ``core_radii`` ((people,) metres),
+                ``elapsed`` (s) and ``rows`` (the people inside now). It may also have
+                ``person_data()`` and, for several levels, a ``building`` with ``true_places``. If
+                it has recorded ``decisions``, the trajectories have them, too.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -114,8 +117,8 @@ class Trajectories(Tracks):
 
         Args:
             path: the file.
-            unit: of its coordinates: ``"m"``, ``"cm"`` or ``"mm"``. By default the file's own if it
-                says so, otherwise that in which spacing and speeds are most like people's.
+            unit: of the coordinates: ``"m"``, ``"cm"`` or ``"mm"``. By default the unit that the
+                file names, otherwise the one in which spacing and speeds are most like people's.
             frame_rate: frames a second, if the file does not say so. By default the usual rate,
                 such as 16 or 25, at which steps are as long as is usual for their frequency.
 

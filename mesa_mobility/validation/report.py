@@ -29,7 +29,7 @@ def write_report(
         rules: that models followed instead of the default preset.
 
     Raises:
-        ResultsError: it cannot be written.
+        ResultsError: the page cannot be written.
     """
     page = Page("Validation of mesa-mobility")
     passed = [verdicts[each.name].passed for each in experiments]

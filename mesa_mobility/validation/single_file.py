@@ -26,8 +26,15 @@ NEAR = 0.5, 1.5
 
 
 def judge(runs: Runs) -> Verdict:
-    """Three quarters of the bins lie within the measured range; dense ones are there, and each is
-    near the measured mean."""
+    """Judge the median speed in each density bin.
+
+    At least three quarters of the bins of ``CASES`` lie between the least and the greatest speed
+    measured. All dense bins exist. Up to ``NEAR_MEAN_TO``, their median is 0.5 to 1.5 times the
+    measured mean; above, it lies between the least and the greatest speed measured.
+
+    Args:
+        runs: for each seed, the figures of ``CASES`` and then those of ``DENSE``.
+    """
     sparse, dense = (
         single_file_bins([figures for row in runs for figures in part(row)])
         for part in (lambda row: row[: len(CASES)], lambda row: row)

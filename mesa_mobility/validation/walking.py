@@ -53,7 +53,7 @@ def free_walk(seed: int, *, people: int = PEOPLE) -> dict[str, Any]:
 
 
 def judge(runs: Runs) -> Verdict:
-    """Each at its own speed, and straight on."""
+    """Judge whether people alone walk straight on, at the speeds that they were given."""
     (walks,) = zip(*runs, strict=True)
     walked, assigned, turns, stride, sway = (
         np.concatenate([each[name] for each in walks])

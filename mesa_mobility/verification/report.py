@@ -37,7 +37,7 @@ def write_report(
         rules: that models followed instead of the default preset.
 
     Raises:
-        ResultsError: it cannot be written.
+        ResultsError: the page cannot be written.
     """
     page = Page("Verification of mesa-mobility")
     verdicts = [outcome.verdict for outcome in outcomes.values()]

@@ -86,7 +86,7 @@ class CheckOptions:
         """Make sure that the report can be written, before anything is run for it.
 
         Raises:
-            ResultsError: it cannot.
+            ResultsError: the report cannot be written.
         """
         from mesa_mobility.results import check_writable
 

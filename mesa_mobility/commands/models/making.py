@@ -79,7 +79,7 @@ class ModelOptions:
     ] = None
 
     def with_seed(self) -> ModelOptions:
-        """The same, with a seed: one is drawn where none was given."""
+        """These options with a seed, which is drawn if none was given."""
         return replace(self, seed=secrets.randbelow(2**31)) if self.seed is None else self
 
 
@@ -94,10 +94,10 @@ def create_model(
     """The model with its behaviours and numbers, and its own parameters with their values.
 
     Args:
-        kind: its class.
-        name: what the user calls it.
+        kind: class of the model.
+        name: what the user calls the model.
         options: of the command. Settings with a dot in the name are numbers of behaviours.
-        record: what the model records; a `PedestrianModel` does so even where its constructor does
+        record: what the model records. A `PedestrianModel` records it even if its constructor does
             not take ``record``.
         keywords: further arguments of the constructor.
 
@@ -179,7 +179,7 @@ def split_settings(settings: Iterable[str]) -> tuple[list[str], dict[str, str]]:
 
 
 def origin_of(given: dict[str, Any], simulation: Any) -> dict[str, Any]:
-    """All that repeating the run needs besides model, preset and seed."""
+    """What it takes to repeat a run, besides model, preset and seed."""
     from importlib.metadata import version
 
     from mesa_mobility._version import __version__

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from mesa_mobility.results.decisions import Decisions
 
 _NEEDED = ("model", "preset", "seed", "parameters", "maps")
-"""What a summary must have to repeat its run."""
+"""Entries that a run's summary must have to repeat the run."""
 
 
 @dataclass(eq=False)
 class _WatchOne(Watch):
-    """Keeps the decision of one frame, however many follow in the same step.
+    """Keeps the decision of one frame, even if others follow in the same step.
 
     Attributes:
         frame: of the decision.
@@ -45,11 +45,11 @@ class _WatchOne(Watch):
 
 
 def decision_frame(trajectories: Trajectories, person: int, seconds: float) -> int:
-    """Frame of the decision by which somebody moves at a time.
+    """Frame of the decision that a person follows ``seconds`` after the start of the run.
 
     Raises:
-        ResultsError: decisions were not recorded, there is no such person, or it is not inside at
-            that time.
+        ResultsError: decisions were not recorded, the person has taken none, or the time is before
+            their first decision or after their last frame.
     """
     decisions = _recorded(trajectories)
     rows = decisions.rows_of(person)
@@ -84,7 +84,7 @@ def repeat_decision(
 
     Args:
         found: the run, with its decisions.
-        name: its folder, for errors.
+        name: folder of the run, for errors.
         person: number of the person.
         frame: of the decision.
         map_file: the mobility map that the run used, if it was not the model's own.
@@ -94,8 +94,8 @@ def repeat_decision(
         The model, just after that decision, and the decision with all its options.
 
     Raises:
-        ResultsError: the summary lacks what it takes, or the run does not repeat itself: other
-            maps, other decisions or other positions up to this frame.
+        ResultsError: the summary lacks an entry that is needed, or the run does not repeat itself:
+            other maps, other decisions or other positions up to this frame.
         ModelError: there is no such model or behaviour any more.
     """
     model = _make(found.summary, name, map_file)
@@ -195,7 +195,7 @@ def _compare(found: Run, name: Path, again: Trajectories, frame: int) -> None:
 
 
 def _other(summary: Mapping[str, Any]) -> str:
-    """That a run does not repeat itself, with the versions that differ."""
+    """Text that says that a run does not repeat itself, and which versions differ."""
     here = origin_of({}, None)
     was = {"mesa_mobility": summary.get("mesa_mobility"), **summary.get("versions", {})}
     now = {"mesa_mobility": here["mesa_mobility"], **here["versions"]}

@@ -14,7 +14,7 @@ from mesa_mobility.plugins import registry
 
 
 def behaviours_of(model: CrowdModel) -> dict[str, list[Plugin]]:
-    """A model's behaviours, by the names that they have in the file."""
+    """The behaviours of a model as lists, by the keys of these lists in a checkpoint."""
     return {
         "terms": list(model.terms),
         "speed_rules": list(model.speed_rules),

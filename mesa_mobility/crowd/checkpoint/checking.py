@@ -195,7 +195,7 @@ def check_collected(there: Mapping[str, Mapping[str, Any]], given: Any) -> None:
 
 
 def check_ids(people: Mapping[str, Any], inside: int) -> None:
-    """Raise ContentError unless everybody inside has a number of its own, up to the last one."""
+    """Raise ContentError unless everybody inside has a number of their own, up to the last one."""
     ids = people["unique_ids"]
     check(len(ids), Whole(inside, inside), "people, number of unique_ids")
     check(len(set(ids)), Whole(inside, inside), "people, number of different unique_ids")

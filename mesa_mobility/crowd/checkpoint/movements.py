@@ -108,7 +108,7 @@ def _along_option(people: Records) -> NDArray[np.bool_]:
 
 
 def _walked_on(people: Records, departed: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Those of the rows of people who have left who have a movement beyond the exit."""
+    """Rows of the people who have left and have a movement beyond the exit."""
     return departed[people["spacing"][departed] == WALKS_ON]
 
 

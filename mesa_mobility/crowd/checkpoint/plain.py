@@ -69,7 +69,7 @@ def set_bits(generator: np.random.Generator, state: Any) -> None:
     """Give a generator its state.
 
     Raises:
-        ContentError: it would read beyond its own numbers.
+        ContentError: with this state the generator would read beyond its own numbers.
         TypeError: not the state of such a generator; KeyError and ValueError likewise.
     """
     inner = state["state"]
@@ -84,8 +84,8 @@ class Packer:
     """Turns values into JSON and arrays.
 
     Args:
-        references: objects that are there before anything is unpacked, with the name by which a
-            value refers to each.
+        references: objects that exist before anything is unpacked, each with a name. Values that
+            contain such an object refer to it by that name.
 
     Attributes:
         arrays: the arrays, by the names that the JSON gives them.
@@ -100,7 +100,7 @@ class Packer:
 
         Args:
             value: anything.
-            where: what it is, for the error.
+            where: what the value is, for the error.
 
         Raises:
             NotPlain: the value cannot be saved.
@@ -167,11 +167,11 @@ class Packer:
 
 
 class Unpacker:
-    """Turns JSON and arrays into the values that they were.
+    """Restores the values that ``Packer`` has turned into JSON and arrays.
 
     Args:
         arrays: the arrays by name.
-        objects: what the names of ``Packer``'s references stand for now.
+        objects: the objects of this process, by the names that ``Packer`` gave to its references.
     """
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], objects: Mapping[Any, Any]) -> None:
@@ -181,14 +181,14 @@ class Unpacker:
 
     @property
     def left(self) -> list[str]:
-        """Names of the arrays that no value so far is made of."""
+        """Names of the arrays that no unpacked value has used so far."""
         return sorted(self._arrays.keys() - self._used)
 
     def unpack(self, value: Any) -> Any:
         """The value that ``Packer.pack`` was given.
 
         Raises:
-            ModelError: the value was not written by it.
+            ModelError: ``Packer.pack`` did not write this value.
         """
         if isinstance(value, list):
             return [self.unpack(each) for each in value]

@@ -105,13 +105,13 @@ def load_model(
     plugins: Iterable[Plugin],
     given: Mapping[str, Any],
 ) -> Model:
-    """The model of a checkpoint; see ``CrowdModel.load``.
+    """The model of a checkpoint; see ``PedestrianModel.load``.
 
     Args:
-        kind: the class, or one above it.
+        kind: class of the saved model, or one of its base classes.
         path: the file.
         plugins: behaviours that are neither installed nor made by the constructor.
-        given: constructor's arguments that the file cannot hold.
+        given: arguments for the constructor that the file cannot hold.
     """
     content, arrays = read_archive(path)
     try:

@@ -40,7 +40,7 @@ def near_walls(
     """Write walls within ``reach`` of (x, y): rows x1, y1, x2, y2, squared distance.
 
     Returns their number; ``found`` must have room for all walls and exits.
-    An exit that does not lead out for this person is a wall to it.
+    An exit that does not lead out for this person counts as a wall.
     """
     cx = min(max(int((x - around.x0) / around.size), 0), around.nx - 1)
     cy = min(max(int((y - around.y0) / around.size), 0), around.ny - 1)
@@ -142,11 +142,11 @@ def swept_collision(
     j: int,
     clearance: float,
 ) -> bool:
-    """Whether a path from ``frame`` on comes closer than ``clearance`` to pedestrian j's.
+    """Whether a path from ``frame`` on comes closer than ``clearance`` to the path of pedestrian j.
 
-    The path has ``segments`` pieces of ``spacing`` frames; ``gone`` is the frame at
-    which it has crossed an exit, or -1.  People beyond an exit still count.  Of two who both leave,
-    neither has to be able to stand until the other's movement ends.
+    The path has ``segments`` pieces of ``spacing`` frames. ``gone`` is the frame at which the path
+    has crossed an exit, or -1. People beyond an exit still count. Of two who both leave, neither
+    has to be able to stand until the other's movement ends.
     """
     my_end = frame + spacing * segments
     their_end, start, step = state.end[j], state.start[j], state.spacing[j]

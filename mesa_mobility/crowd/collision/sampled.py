@@ -33,9 +33,15 @@ _AHEAD = 4
 class Decider(NamedTuple):
     """Somebody who decides.
 
-    Fields: ``row`` in the crowd; ``kind`` index of the pedestrian type; ``x``, ``y`` metres; ``c``,
-    ``s`` cosine and sine of the heading; ``core`` radius, metres; ``record`` (9 + fields,) the same
-    as cost terms read it (see ``costs.layout``).
+    Attributes:
+        row: in the crowd.
+        kind: index of the pedestrian type.
+        x: metres.
+        y: metres.
+        c: cosine of the heading.
+        s: sine of the heading.
+        core: core radius, metres.
+        record: (9 + fields,) the person as cost terms read them (see ``costs.layout``).
     """
 
     row: int
@@ -51,11 +57,15 @@ class Decider(NamedTuple):
 class Close(NamedTuple):
     """People whose movement may come in the way.
 
-    Fields: ``who`` (n,) their rows in the crowd; ``known`` (2,) how many of them may come in the
-    way, and from which index on to the end are those who are too close already. In the deciding
-    pedestrian's coordinates, metres: ``sweeps`` (3, n and padding) x, y and radius of circles
-    around their remaining paths, the distance to keep included; ``ahead`` (n, 3, 16) x and y at the
-    sample times, and the distance that the cores keep.
+    Lengths are in metres, and places in the coordinates of the pedestrian who decides.
+
+    Attributes:
+        who: (n,) rows of these people in the crowd.
+        known: (2,) how many of the first ones may come in the way, and from which index on to the
+            end are those who are too close already.
+        sweeps: (3, n + padding) x, y and radius of circles around the people's remaining paths. The
+            radius includes the distance to keep.
+        ahead: (n, 3, 16) x and y at the sample times, and the distance that the cores keep.
     """
 
     known: NDArray[np.int64]

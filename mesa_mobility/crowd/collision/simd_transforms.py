@@ -51,7 +51,7 @@ def lanes_to_world(typingctx, lanes, group, ends, at, pose, seconds):
 
     ``lanes`` (groups, fields, 8), C-contiguous, with the fields x, y, ux, uy and speed first;
     ``ends`` (6, n), C-contiguous, gets x, y, ux, uy, the seconds that they all take and the speed;
-    ``pose`` is where the pedestrian stands, and cosine and sine of its heading.
+    ``pose`` is where the pedestrian stands, and cosine and sine of their heading.
     """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -107,8 +107,8 @@ def samples_to_ego(
         path: which one.
         first: sample that comes before now, 15 at most.
         share: how much of the way from there to the next one is behind, 0 to 1.
-        turn: cosine and sine of what the path is turned by.
-        place: where it begins, metres.
+        turn: cosine and sine of the angle by which the path is turned.
+        place: where the path begins, metres.
         to: C-contiguous; gets x from place ``at`` on and then y.
         at: place.
     """

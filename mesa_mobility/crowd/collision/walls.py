@@ -1,4 +1,4 @@
-"""Walls around a pedestrian in its own frame, and what comes near to them, several at once.
+"""Walls in the coordinates of a pedestrian, and what comes near to them, several at once.
 
 An option whose sample falls within a body's radius of a wall hits it; one whose samples all stay
 farther away than it can move between samples does not. Only what is left needs the exact test.
@@ -66,14 +66,14 @@ def walls_to_ego(
     radius: float,
     to: NDArray[np.float32],
 ) -> int:
-    """Write walls in the pedestrian's frame, but for those that it touches already.
+    """Write walls in the pedestrian's coordinates, except walls that their body touches already.
 
-    Of each only the part that matters is kept, so that single precision suffices.
+    Of each wall only the part that matters is kept, so that single precision suffices.
 
     Args:
         me: the pedestrian.
         walls: (w, 5) walls within reach, with squared distances.
-        farthest: reach of its options, metres.
+        farthest: reach of the pedestrian's options, metres.
         radius: distance to a wall at which a body touches it, metres.
         to: (5, n) is written.
 

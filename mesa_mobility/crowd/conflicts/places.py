@@ -69,8 +69,9 @@ def places_aside(
 ) -> NDArray[np.float64]:
     """The places at which somebody leaves the ways of others free, the nearest first.
 
-    Then those follow that lie farthest along the ways and aside of them: whoever has no room aside
-    leads on those whom they make way for.
+    Each person who stands at a place, or is about to, counts as ``TAKEN`` metres more. Then come
+    places that block a way, those farthest along the ways and farthest beside them first. A person
+    who finds no free place walks ahead of the people whom they make way for.
 
     Args:
         plan: the floor plan.
@@ -80,7 +81,8 @@ def places_aside(
         cores: (m,) their core radii, metres.
 
     Returns:
-        (k, 2) metres, at most ``TRIED``; their own place is one of them.
+        (k, 2) metres, at most ``TRIED``. Places that are worse than staying are left out. The
+        person's own place is the last one, unless ``TRIED`` others are better.
     """
     ends, can = _within_reach(plan, me)
     for way in ways:
@@ -116,13 +118,15 @@ def places_to_set_out(
     taken: NDArray[np.float64],
     cores: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """The places from which the way to its target passes walls with room, the nearest first.
+    """The places from which somebody's way to their target keeps clear of walls, nearest first.
 
-    Where there is none, those from which it passes them with the most of their ``ROOMS``.
+    The way keeps a share of the core radius and ``CLEAR`` from walls: the first of ``ROOMS`` that
+    some place allows. Each person who stands at a place, or is about to, counts as ``TAKEN``
+    metres more.
 
     Args:
         plan: the floor plan.
-        me: who goes there, since walls are in their way from where they are.
+        me: who goes to such a place, since walls are in their way from where they are.
         aims: gives the targets (n, 2) of places (n, 2), metres.
         taken: (m, 2) where others stand or are about to, metres.
         cores: (m,) their core radii, metres.
@@ -157,7 +161,7 @@ def _cost_of_others(
     taken: NDArray[np.float64],
     cores: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """(n,) metres that those who stand at (n, 2) places, or are about to, are worth."""
+    """(n,) metres that count for the people who stand at (n, 2) places, or are about to."""
     to = places[:, None] - taken
     cost: NDArray[np.float64] = TAKEN * (np.hypot(to[..., 0], to[..., 1]) < cores + me.core).sum(
         axis=1

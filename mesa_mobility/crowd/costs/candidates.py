@@ -184,7 +184,7 @@ class Candidates:
         return len(self.owner)
 
     def pairs(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """All pairs of an option and a neighbour of its owner.
+        """All pairs of an option and a neighbour of the person whose option it is.
 
         Returns:
             (r,) rows of options and (r,) rows of the neighbour arrays.  Sum a cost over pairs
@@ -202,7 +202,7 @@ class Candidates:
     ) -> NDArray[np.float64]:
         """(r, 2) position of each pair's neighbour when the option ends, metres.
 
-        The neighbour is taken to keep its velocity.
+        The neighbour is assumed to keep their velocity.
         """
         velocity = self.neighbour_velocities[neighbours]
         return self.neighbour_positions[neighbours] + velocity * self.durations[rows, None]

@@ -107,7 +107,7 @@ def numbers_of(term: CompiledTerm, kernel: CostKernel) -> list[Any]:
 
 
 def checked_numbers(term: CompiledTerm, kernel: CostKernel) -> NDArray[np.float64]:
-    """The same as an array, with a number that is not read at the end.
+    """The numbers of ``numbers_of`` as an array, with one more at the end that nothing reads.
 
     Raises:
         ModelError: an attribute that is no number.

@@ -42,10 +42,10 @@ def arguments_of(function: Callable[..., float], known: Sequence[str]) -> tuple[
 
     Args:
         function: the function.
-        known: what it may ask for.
+        known: arguments that the function may ask for.
 
     Raises:
-        ModelError: it asks for something else.
+        ModelError: the function asks for something else.
     """
     code = function.__code__
     names = code.co_varnames[: code.co_argcount]

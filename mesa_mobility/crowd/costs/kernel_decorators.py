@@ -39,9 +39,9 @@ def option_kernel(
       below it for any option of the group;
     - ``me``: the pedestrian (:class:`Me`);
     - ``wall``: a wall near (:class:`Wall`). The cost of an option is then that of its worst wall, 0
-      if there are none, and must not be negative. Walls, closed exits among them, are those no
-      farther from where the pedestrian is now than the farthest that its options lead, its core
-      radius and a centimetre;
+      if there are none, and must not be negative. A wall or a closed exit is near if its distance
+      from the pedestrian is at most the reach of their options, their core radius and a centimetre
+      together;
     - ``p``: the term. ``p.width`` is its attribute ``width``, a number.
 
     It must be compilable by Numba (``math``, no Python objects).

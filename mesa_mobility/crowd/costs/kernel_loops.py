@@ -1,7 +1,8 @@
-"""Source of the loops that kernels are compiled with.
+"""Python source of the loops that kernels are compiled with.
 
-Arrays of several rows come as their first number and the length of a row. What does not change in
-a loop is read before it: a compiler does not know that results are written elsewhere.
+A loop gets an array of several rows as a pointer to its first number, and the length of a row. What
+does not change in a loop is read before the loop: a compiler does not know that results are written
+elsewhere.
 """
 
 from __future__ import annotations
@@ -63,15 +64,15 @@ def {name}(n, ends, width, walls, row, own, at, numbers):
 """
 
 OPTION = "Option({})".format(", ".join(f"ends[{row} * width + k]" for row in range(6)))
-"""Option k in the source of a loop."""
+"""Python source of the expression that makes the ``Option`` number ``k`` in a loop."""
 
 
 def me_of(fields: Sequence[str], declared: Sequence[str]) -> str:
-    """The pedestrian in the source of a loop.
+    """Python source of the expression that makes the ``Me`` of the pedestrian in a loop.
 
     Args:
-        fields: those that are laid out for the kernel.
-        declared: those among them that the model declares.
+        fields: names of the fields that are laid out for the kernel.
+        declared: names of those among them that the model declares.
     """
     known = [f"own[{row}]" for row in range(9)]
     more = [_laid(name, fields, "own[at[{}]]") for name in (*KERNEL_FIELDS[1:], *declared)]
@@ -79,14 +80,20 @@ def me_of(fields: Sequence[str], declared: Sequence[str]) -> str:
 
 
 def other_of(fields: Sequence[str], declared: Sequence[str]) -> str:
-    """Neighbour a in the source of a loop; arguments as for ``me_of``."""
+    """Python source of the expression that makes the ``Other`` of neighbour number ``a`` in a loop.
+
+    Arguments as for ``me_of``.
+    """
     known = [f"others[{row} * row + a]" for row in range(7)]
     more = [_laid(name, fields, "others[at[{}] * row + a]") for name in (*KERNEL_FIELDS, *declared)]
     return f"Other({', '.join([*known, *more])})"
 
 
 def numbers_of(names: Sequence[str]) -> str:
-    """The numbers of the term in the source of a loop; 0 where the kernel reads none."""
+    """Python source of the expression that makes the term's ``Numbers`` in a loop.
+
+    It is 0 for a kernel that reads no numbers.
+    """
     given = ", ".join(f"numbers[{k}]" for k in range(len(names)))
     return f"Numbers({given})" if names else "0.0"
 

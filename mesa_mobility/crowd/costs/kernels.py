@@ -51,7 +51,7 @@ _ROWS = (FLOATS, _N)
 """An array of several rows: its first number, and the length of a row."""
 
 _PERSON = (FLOATS, INTS, FLOATS)
-"""The pedestrian, the rows of its fields, and the numbers of the term."""
+"""The pedestrian, the rows of their fields, and the numbers of the term."""
 
 
 class CostKernel:

@@ -13,12 +13,12 @@ class Option(NamedTuple):
     """One movement option.
 
     Attributes:
-        x: where it ends.
-        y: where it ends.
-        facing_x: unit vector of facing there.
-        facing_y: unit vector of facing there.
-        duration: how long it takes.
-        speed: speed; ``speed * duration`` is the displacement.
+        x: x of the end, metres.
+        y: y of the end, metres.
+        facing_x: x of the unit vector of facing at the end.
+        facing_y: y of the unit vector of facing at the end.
+        duration: seconds that the option takes.
+        speed: m/s; ``speed * duration`` is the displacement.
     """
 
     x: float
@@ -33,15 +33,15 @@ class Options(NamedTuple):
     """A group of similar movement options, for a lower bound of their costs.
 
     Attributes:
-        x: centre of their ends.
-        y: centre of their ends.
-        radius: no option ends farther from the centre.
-        facing_x: unit vector of their mean facing.
-        facing_y: unit vector of their mean facing.
-        turn: no option faces farther from it, radians.
-        duration: how long each of them takes.
-        slowest: the least of their speeds.
-        fastest: the greatest of their speeds.
+        x: x of a centre of the ends, metres.
+        y: y of a centre of the ends, metres.
+        radius: metres from the centre within which all options end.
+        facing_x: x of the unit vector of a mean facing at the ends.
+        facing_y: y of the unit vector of a mean facing at the ends.
+        turn: radians from this facing within which all options face.
+        duration: seconds that each option takes.
+        slowest: least speed of the options, m/s.
+        fastest: greatest speed of the options, m/s.
     """
 
     x: float
@@ -59,16 +59,16 @@ class Me(NamedTuple):
     """The pedestrian who decides.
 
     Attributes:
-        x: position.
-        y: position.
-        target_x: target.
-        target_y: target.
-        preferred_speed: preferred speed; 0 for somebody without a route.
-        vx: mean velocity of the movement that has just ended.
-        vy: mean velocity of the movement that has just ended.
-        core: core radius.
-        ahead: distance to the nearest neighbour on the side of the target, infinite without any.
-        heading: facing, counter-clockwise from +x.
+        x: x of the position, metres.
+        y: y of the position, metres.
+        target_x: x of the target, metres.
+        target_y: y of the target, metres.
+        preferred_speed: m/s; 0 for somebody without a route.
+        vx: x of the mean velocity of the movement that has just ended, m/s.
+        vy: y of the mean velocity of the movement that has just ended, m/s.
+        core: core radius, metres.
+        ahead: metres to the nearest neighbour on the side of the target, infinite without any.
+        heading: facing, radians, counter-clockwise from +x.
         type: index of the pedestrian type.
         group: number of the group, 0 for none.
     """
@@ -91,15 +91,15 @@ class Other(NamedTuple):
     """A neighbour of the pedestrian, at the moment of the decision.
 
     Attributes:
-        x: position.
-        y: position.
-        vx: mean velocity of the movement under way.
-        vy: mean velocity of the movement under way.
-        way_x: unit vector to the neighbour's target; 0 at the target.
-        way_y: unit vector to the neighbour's target; 0 at the target.
-        lead: by how much the neighbour's route is shorter than the pedestrian's.
-        core: core radius.
-        heading: facing, counter-clockwise from +x.
+        x: x of the position, metres.
+        y: y of the position, metres.
+        vx: x of the mean velocity of the movement under way, m/s.
+        vy: y of the mean velocity of the movement under way, m/s.
+        way_x: x of the unit vector to the neighbour's target; 0 at the target.
+        way_y: y of the unit vector to the neighbour's target; 0 at the target.
+        lead: metres by which the neighbour's route is shorter than the pedestrian's.
+        core: core radius, metres.
+        heading: facing, radians, counter-clockwise from +x.
         type: index of the pedestrian type.
         group: number of the group, 0 for none.
     """
@@ -121,10 +121,10 @@ class Wall(NamedTuple):
     """A wall or a closed exit: a straight line between two points.
 
     Attributes:
-        x1: one end.
-        y1: one end.
-        x2: the other end.
-        y2: the other end.
+        x1: x of one end, metres.
+        y1: y of one end, metres.
+        x2: x of the other end, metres.
+        y2: y of the other end, metres.
     """
 
     x1: float

@@ -33,16 +33,16 @@ class Inflow(Saved):
 
     Args:
         source: the source.
-        newcomers: people of each type, by its index.
-        entrances: where they come in, likewise.
-        population: whose shares they have, or None for those of ``source.type_index``.
+        newcomers: a description of the people of each type, by index of the type.
+        entrances: where people of each type come in, by index of the type.
+        population: the shares of types; None if everybody is of the type ``source.type_index``.
         frame: the current frame, before which nobody comes.
         rng: the model's generator.
 
     Attributes:
         source: the source.
-        arrived: people who have come, those held back included.
-        entered: those of them who have entered.
+        arrived: number of people who have come, those held back included.
+        entered: number of people who have entered.
     """
 
     saved: ClassVar[Mapping[str, Kind]] = {

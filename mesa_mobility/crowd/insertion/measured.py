@@ -141,7 +141,7 @@ def ways_out(
     exits: Sequence[str] | Mapping[int, Sequence[str]] | None,
     plan: FloorPlan,
 ) -> tuple[list[list[str]], IntArray]:
-    """By which exits people leave: lists of names, and (n,) the index of each person's list.
+    """The exits by which people leave: lists of names, and (n,) the index of each person's list.
 
     Args:
         track: the tracks.

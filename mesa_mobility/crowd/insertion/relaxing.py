@@ -17,7 +17,7 @@ SAME = 1e-9
 """Metres below which two places are one: their difference is too small to give a direction."""
 
 ROUNDS = 2000
-"""Rounds after which there is no room."""
+"""Rounds after which bodies are not moved any more."""
 
 GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 
@@ -27,8 +27,8 @@ def relaxed(
 ) -> NDArray[np.float64]:
     """Places near the given ones at which bodies overlap neither each other nor walls.
 
-    In each round everybody moves away from those who overlap them, by half of the overlap, and from
-    walls.
+    In each round everybody moves away from those who overlap them, by half of the overlap, and then
+    away from walls.
 
     Args:
         points: (n, 2) metres.
@@ -37,7 +37,9 @@ def relaxed(
         apart: whether bodies must not overlap each other.
 
     Returns:
-        (n, 2) metres; the last round's if there is no room.
+        (n, 2) metres. If there is no room after ``ROUNDS`` rounds, bodies may still overlap each
+        other or walls. No error is raised. Bodies that fit nowhere on the floor are not moved away
+        from walls at all.
     """
     places = np.array(points, dtype=np.float64)
     rooms = {radius: _room(plan, radius) for radius in np.unique(radii).tolist()}
@@ -79,7 +81,7 @@ def _leave_walls(
     room: shapely.Geometry,
     plan: FloorPlan,
 ) -> bool:
-    """Move people of one radius to the nearest room beside walls; whether anybody had none."""
+    """Move people of one radius to the nearest place clear of walls; whether anybody moved."""
     if room.is_empty or not len(people):
         return False
     own = places[people]
@@ -91,5 +93,8 @@ def _leave_walls(
 
 
 def _room(plan: FloorPlan, radius: float) -> shapely.Geometry:
-    """Possible centres of a body; a little less, since round corners have straight pieces."""
+    """Where the centre of a body of this radius may be.
+
+    The area is a little too small, since round corners are drawn with straight pieces.
+    """
     return plan.free.buffer(-radius * (1.0 + MARGIN) - MARGIN, quad_segs=32)

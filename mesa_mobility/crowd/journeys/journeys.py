@@ -1,8 +1,8 @@
 """Journeys: people cross gates and visit places in a given order, then leave or start over.
 
-Crossed gates are found when a pedestrian decides, from the path that it has just walked; a place is
-reached where it decides.  Between decisions nothing has to be checked, and people without a journey
-cost nothing.
+When a pedestrian decides, the gates that they have crossed are found from the path that they have
+just walked, and a place is reached if they decide at it. Between decisions nothing has to be
+checked, and people without a journey cost nothing.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Journeys(Saved):
 
     Attributes:
         crossed: gates that all people together have crossed so far, and places they have visited.
-        stays: who is at a place of its route.
+        stays: who is at a place of their route.
     """
 
     saved: ClassVar[Mapping[str, Kind]] = {
@@ -196,7 +196,7 @@ class Journeys(Saved):
         return self._known[number - 1].stops if number else ()
 
     def next_stop(self, row: int, crowd: Crowd) -> str | Visit | None:
-        """The gate or place to which somebody goes now, or at which it stays; None for exits."""
+        """The gate or place to which somebody goes now, or at which they stay; None for exits."""
         number, crossed = (int(crowd.agenda[name][row]) for name in ("journey", "crossed"))
         if not number:
             return None
@@ -205,7 +205,7 @@ class Journeys(Saved):
         return None if over else journey.stops[crossed % len(journey.stops)]
 
     def to_stay(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.bool_]:
-        """(n,) whether each in ``rows`` is bound for a place at which it stays, or is there."""
+        """(n,) whether each in ``rows`` is bound for a place at which they stay, or is there."""
         if not self._places:
             return np.zeros(len(rows), dtype=bool)
         found: NDArray[np.bool_] = self._to_stay[self._now(rows, crowd)]

@@ -21,8 +21,8 @@ from mesa_mobility.plugins.output import numbers_in
 class Visit:
     """A place that people visit on their way, and stay at for a time.
 
-    It stands in a ``route`` like the name of a gate. In an area everybody looks for a place of its
-    own; at a point those who find others there stand around it.
+    A visit stands in a ``route`` like the name of a gate. In an area everybody looks for a place of
+    their own; at a point those who find others there stand around it.
 
     Attributes:
         place: a point (x, y) in metres, or an area, a polygon (shapely or WKT).

@@ -12,16 +12,21 @@ from mesa_mobility.crowd.running.recorder import movements_under_way
 
 
 def decided(model: CrowdModel, since: int = 0) -> dict[str, NDArray[np.generic]] | None:
-    """The decisions from frame ``since`` on, see ``DecisionRecorder.arrays``; None if they are not
-    recorded."""
+    """The decisions from frame ``since`` on, as ``DecisionRecorder.arrays``.
+
+    None if the model does not record decisions.
+    """
     if model.decisions is None:
         return None
     return model.decisions.arrays(model._scene.repertoire, since)
 
 
 def under_way(model: CrowdModel) -> dict[str, NDArray[np.generic]]:
-    """What everybody inside is doing now: an entry for each of ``rows``, otherwise as
-    ``decided``."""
+    """The movement of everybody inside now, as arrays like those of ``decided``.
+
+    Entry k belongs to the person ``rows[k]`` of the model, and ``frame`` is when the movement
+    began. This works without recorded decisions, too.
+    """
     return movements_under_way(model.crowd, model.rows, model._scene.repertoire)
 
 
@@ -38,14 +43,13 @@ def explain(model: CrowdModel, row: int) -> Explanation:
 
 
 def blocked_by(model: CrowdModel, row: int) -> list[int]:
-    """The people of whom each is in the way of the one before, beginning with whoever is in the way
-    of the person in ``row``.
+    """A chain of people, each in the way of the one before; the first is in the way of ``row``.
 
-    Somebody is in the way of another if that one has made no progress for 5 s, and would hit them
-    first with what they would do alone (``wishes``). The chain ends with somebody who gets on, who
-    waits on purpose, or who has nobody in their way. If the people block each other in a ring, it
+    A is in the way of B if B has made no progress for 5 s, and would hit A first with the movement
+    that B would take alone (see ``wishes``). The chain ends with somebody who gets on, who waits on
+    purpose, or who has nobody in their way. If the people block each other in a ring, the chain
     ends with the first of them who comes up again: ``[4, 0]`` for the person in row 0 says that 0
-    and 4 block each other; ``[4, 7, 4]``, that 4 and 7 do, and 4 is in the way of 0.
+    and 4 block each other; ``[4, 7, 4]`` says that 4 and 7 do, and 4 is in the way of 0.
 
     Returns:
         Rows; none if the person gets on, waits or has nobody in their way.

@@ -43,7 +43,7 @@ class Replay:
 
     Attributes:
         frame: frame of the model at which the replay began.
-        from_frame: the same moment in the tracks.
+        from_frame: frame of the tracks at that moment.
         frame_rate: of the tracks, frames a second.
         persons: (n,) numbers, in the tracks, of the people who were there at the start.
         rows: (n,) their rows in the model.
@@ -100,7 +100,8 @@ def replay(
     stands and faces their target, unless the file has headings.
 
     Later arrivals come in at their recorded time and place, moving. If somebody is there, they come
-    in up to 0.5 m beside it, or wait. People who are off the floor come in where they reach it.
+    in up to 0.5 m beside that place, or wait. People who are off the floor come in where they reach
+    it.
 
     Bodies take more room than heads: people who would overlap others or walls are moved apart. A
     warning says by how much, and ``Replay.moved`` has it for each.

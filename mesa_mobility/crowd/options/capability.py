@@ -1,6 +1,6 @@
 """Capability: the movement options of a pedestrian type.
 
-The component through which a pedestrian consults its type's mobility map
+The component through which a pedestrian consults the mobility map of their type
 (section 6 of the paper: behaviour chooses among what capability offers).
 """
 

@@ -1,8 +1,9 @@
 """Groups of similar options, each with bounds that hold for all of its options.
 
-A cluster has some 600 options. They are put in groups of up to 8 with the same duration, similar
-ends and similar paths. A lower bound of the cost of all 8, and a circle around their positions at
-some times, mostly suffice to drop a group without testing its options.
+A cluster is a set of similar poses of a mobility map, and it has some 600 options: movements that
+begin in one of these poses. They are put in groups of up to 8 with the same duration, similar ends
+and similar paths. A lower bound of the cost of all 8, and a circle around their positions at some
+times, mostly suffice to drop a group without testing its options. These times are ``LEVELS``.
 """
 
 from __future__ import annotations
@@ -53,12 +54,12 @@ CLUSTER = np.dtype(
     ],
     align=True,
 )
-"""Extent of the options of a cluster.
+"""Bounds of the options of a cluster.
 
-Fields: ``first`` and ``last``, its groups from first to before last; ``stay``, the group with the
-option that turns least of those that cover no ground, or -1; ``whole``, least x and y, greatest x
-and y along all options; ``spans`` (4, levels), the same for the circles of its groups at each
-level; ``reach`` (levels,), the farthest that its options have led by then.
+Fields: ``first``, its first group; ``last``, the group after its last one; ``stay``, the group of
+the option that turns least among those that cover no ground, or -1; ``whole``, least x and y, and
+greatest x and y along all options, metres; ``spans`` (4, levels), the same for the circles of its
+groups at each level; ``reach`` (levels,), the farthest that its options have led by then, metres.
 """
 
 X, Y, RADIUS, UX, UY, TURN, DURATION, SLOWEST, FASTEST = range(9)
@@ -66,21 +67,26 @@ X, Y, RADIUS, UX, UY, TURN, DURATION, SLOWEST, FASTEST = range(9)
 
 
 LANE_FIELDS = 5 + 2 * len(LEVELS)
-"""Fields of ``OptionGroups.lanes``: x, y, ux, uy and speed at the end, x at the levels, y then."""
+"""Number of fields of an option in ``OptionGroups.lanes``: x, y, unit vector of the heading, and
+speed at the end; x at each level; y at each level."""
 
 AT_X, AT_Y = 5, 5 + len(LEVELS)
-"""First of these fields for the levels."""
+"""Fields of x and of y at the first level."""
 
 
 class OptionGroups(NamedTuple):
-    """Extent of the groups of a table.
+    """Bounds of the groups of options in an ``OptionTable``: what holds for all options of a group.
 
-    ``clusters``: records of ``CLUSTER``.  By group: ``first`` (groups + 1,) its first option;
-    ``ends`` (9, groups) x, y and radius of a circle around the ends, metres; unit vector of the
-    final heading and its tolerance, radians; duration, seconds; least and greatest speed, m/s;
-    ``at`` (levels, 3, groups and padding) x, y and radius of circles around the positions at the
-    levels; ``lanes`` (groups, 13, 8) fields of its options that the search reads, with the last
-    option repeated where there are fewer than 8.
+    Attributes:
+        clusters: (clusters,) records of ``CLUSTER``.
+        first: (groups + 1,) row of the first option of each group, then the number of options.
+        ends: (9, groups) with the rows ``X`` to ``FASTEST``: x, y and radius of a circle around the
+            final positions, metres; unit vector of the middle final heading, and the greatest
+            deviation from it, radians; duration, seconds; least and greatest speed, m/s.
+        at: (levels, 3, groups + padding) x, y and radius, metres, of a circle around the positions
+            at each of the times ``LEVELS``.
+        lanes: (groups, 13, 8) fields of each option, see ``LANE_FIELDS``. A group of fewer than 8
+            repeats its last option.
     """
 
     clusters: NDArray[np.void]

@@ -66,11 +66,16 @@ class OptionTable(NamedTuple):
     Clusters have consecutive numbers: those of capability k follow those of k - 1.  Options of a
     cluster are in groups of a few similar ones (see ``option_groups``).
 
-    Fields: ``offsets`` (clusters + 1,) and ``groups`` (groups,) first option of each; ``farthest``
-    (clusters,) reach of its options; ``options`` (n,) records of ``OPTION``; ``heading`` (n,) at
-    the end; ``path`` (n, 3, 16): x, y, heading at the samples from the start on, with the
-    end repeated.  Values are in single precision, as in the map: each decision reads them from
-    main memory.
+    Values are in single precision, as in the map: each decision reads them from main memory.
+
+    Attributes:
+        offsets: (clusters + 1,) first option of each cluster, then the number of options.
+        groups: (groups,) first option of each group.
+        farthest: (clusters,) greatest reach of the options of each cluster, metres.
+        options: (n,) records of ``OPTION``.
+        heading: (n,) heading at the end of each option, radians.
+        path: (n, 3, 16) x, y (metres) and heading (radians) at the samples from the start on. The
+            end is repeated.
     """
 
     offsets: NDArray[np.int64]
@@ -84,8 +89,10 @@ class OptionTable(NamedTuple):
 class Parts(NamedTuple):
     """Options of a map, whole or shortened.
 
-    Fields: ``rows`` (n,) rows of the map; ``share`` (n,) of the option's ground, and on foot of its
-    turn; ``clusters`` (n,) at the end.
+    Attributes:
+        rows: (n,) rows of the map.
+        share: (n,) the part of the option's length that is walked, and on foot of its turn, too.
+        clusters: (n,) cluster at the end of each.
     """
 
     rows: NDArray[np.int64]

@@ -105,7 +105,9 @@ class Pedestrian(ContinuousSpaceAgent):
     def __setattr__(self, name: str, value: Any) -> None:
         fields = _fields_of(self)
         if name == "row" and "row" in self.__dict__:
-            raise ModelError(f"pedestrian {self.row}: its row is the same for ever, got {value!r}")
+            raise ModelError(
+                f"pedestrian {self.row}: their row is the same for ever, got {value!r}"
+            )
         if name in fields:
             column = fields[name]
             column[self.row] = field_column(name, column.dtype, value, 1)[0]
@@ -186,9 +188,10 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def exits(self) -> tuple[str, ...]:
-        """Names of the exits by which the person may leave; none if it goes round for ever.
+        """Names of the exits by which the person may leave; none if they go round for ever.
 
-        New ones count from the next decision on, and end its route; None stands for all.
+        New exits count from the next decision on, and end the person's route. Set None for all
+        exits.
         """
         return self.model.population.exits(self.row)
 
@@ -198,7 +201,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def start_time(self) -> float:
-        """Simulated time in seconds at which the person sets off, after its pre-movement time."""
+        """Simulated time in seconds at which the person sets off, after their pre-movement time."""
         return float(self.model.crowd.agenda["sets_off"][self.row]) * FRAME_SECONDS
 
     def wait(
@@ -207,11 +210,11 @@ class Pedestrian(ContinuousSpaceAgent):
         """Let the person stop when the movement under way has ended, and wait.
 
         Args:
-            seconds: how long it waits, from now on.
+            seconds: how long the person waits, from now on.
             until: instead, a function that is called whenever the person could decide; the wait
                 ends when it returns true.
 
-        It walks on with its next decision, 0.4 s later at most.
+        The person walks on with their next decision, 0.4 s after the wait at most.
 
         Raises:
             ModelError: neither of them, both, a time out of range, or the person has left.
@@ -221,13 +224,13 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def waiting(self) -> bool:
-        """Whether the person waits: told to, at a place that it visits, held by a behaviour, or
-        before it sets off."""
+        """Whether the person waits: told to, at a place that they visit, held by a behaviour, or
+        before they set off."""
         return bool(waiting(np.array([self.row]), self.model.frame, self.model.crowd)[0])
 
     @property
     def group(self) -> str | int | None:
-        """The group that the person belongs to, if any; None leaves it."""
+        """The group that the person belongs to, or None; set None to let them leave it."""
         number = int(self.model.crowd.agenda["group"][self.row])
         return self.model.population.groups[number - 1] if number else None
 
@@ -237,10 +240,10 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def route(self) -> tuple[str | Visit, ...]:
-        """Names of the gates, and the places, on the person's journey, in order; none if it has no
+        """Names of the gates, and the places, on the person's journey, in order; empty without a
         journey.
 
-        A new one begins with the next decision, and ends at the exits that the person had.
+        A new route begins with the next decision, and ends at the exits that the person had.
         """
         return self.model.journeys.stops(int(self.model.crowd.agenda["journey"][self.row]))
 
@@ -250,14 +253,14 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def next_stop(self) -> str | Visit | None:
-        """The gate or place of its route to which the person goes, or at which it stays; None where
-        it goes to its exits."""
+        """The gate or place of their route to which the person goes, or at which they stay; None if
+        they go to their exits."""
         return self.model.journeys.next_stop(self.row, self.model.crowd)
 
     @property
     def gates_crossed(self) -> int:
-        """Gates that the person had crossed, and places that it had visited, when it last decided,
-        over all laps."""
+        """How many gates the person had crossed, and places they had visited, when they last
+        decided, over all laps."""
         return int(self.model.crowd.agenda["crossed"][self.row])
 
     @property
@@ -273,7 +276,7 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def capability(self) -> Capability:
-        """The component through which the person consults its type's mobility map."""
+        """The component through which the person consults the mobility map of their type."""
         return self.model.capabilities[int(self.model.crowd.type_index[self.row])]
 
     @property
@@ -297,7 +300,7 @@ class Pedestrian(ContinuousSpaceAgent):
         Feet are held where they bear on the floor, as far as the last 3 s tell.
 
         Args:
-            bank: poses of the person's type; by default those that ship for its map.
+            bank: poses of the person's type; by default those that ship for the type's map.
 
         Raises:
             ModelError: the model does not record decisions, or has taken no step.
@@ -309,7 +312,7 @@ class Pedestrian(ContinuousSpaceAgent):
         return body_now(self.model, self.row, digest, bank)
 
     def movement_options(self) -> Candidates:
-        """The person's movement options, were it to decide here and now."""
+        """The person's movement options if they decided here and now."""
         return self.model.candidates(np.array([self.row], dtype=np.int64))
 
     def remove(self) -> None:

@@ -84,7 +84,7 @@ def cheapest_free(
     """The cheapest option of a pedestrian that hits nothing.
 
     Args:
-        now: its decision.
+        now: the pedestrian's decision.
         approximate: whether bounds count marked neighbours only.
         scene: the frame.
         work: workspace, with the people around.

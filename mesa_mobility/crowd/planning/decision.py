@@ -46,9 +46,9 @@ def decide(
 ) -> int:
     """Decide for the pedestrians in ``rows``, one after the other, and commit them.
 
-    Costs see the crowd as it was when the frame began; collisions see what
-    those before have committed to.  Several threads may share the work: each takes the next
-    pedestrian, and waits for undecided predecessors within its search radius.
+    Costs see the crowd as it was when the frame began. Collision tests see the paths to which
+    pedestrians before have been committed. Several threads may share the work: each takes the next
+    pedestrian, and waits for undecided predecessors within that pedestrian's search radius.
 
     Args:
         rows: pedestrians, in the order in which they decide.
@@ -119,10 +119,10 @@ def _decide_one(
     bounded: bool,
     work: Workspace,
 ) -> bool:
-    """Decide for pedestrian i and commit it; False if a cost is not a number.
+    """Decide for pedestrian i and commit them to a path; False if a cost is not a number.
 
     Four stages: gather what is around, bound the costs of groups of options, search for the
-    cheapest option that hits nothing, and commit it.
+    cheapest option that hits nothing, and commit the pedestrian to it.
     """
     around = _gather(i, scene, work)
     left = _drop_blocked(around, scene, work)

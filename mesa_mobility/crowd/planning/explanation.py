@@ -1,4 +1,4 @@
-"""Why a pedestrian moves as it does: one decision, option by option.
+"""Why a pedestrian moves as they do: one decision, option by option.
 
 Costs come from the terms themselves and verdicts from the engine's own tests, so an explanation
 shows what the decision sees.
@@ -28,7 +28,7 @@ from mesa_mobility.crowd.state.twins import rows_seen
 from mesa_mobility.crowd.state.wishes import NOBODY
 
 FREE, WALL, PERSON = 0, 1, 2
-"""Verdicts on an option: it hits nothing, a wall, or a person."""
+"""Verdicts on an option: what it hits, nothing, a wall, or a person."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +37,12 @@ class Explanation:
 
     Attributes:
         pedestrian: row in the crowd.
-        frame: when it was or would be taken.
-        taken: whether it was taken; if not, it is the decision that would be taken.
-        cluster: cluster of the pose it decides from, in the map of its type.
-        candidates: its options, of a batch of one.
-        terms: names of the terms that people of its type have.
-        weights: (terms,) their factors in the sum.
+        frame: when the decision was or would be taken.
+        taken: whether the decision was taken; if not, it is the one that would be taken.
+        cluster: cluster of the pose from which the pedestrian decides, in the map of their type.
+        candidates: the pedestrian's options; a batch of one pedestrian.
+        terms: names of the terms that people of this type have.
+        weights: (terms,) factors of the terms in the sum.
         costs: (terms, n) cost of each option, without the weights.
         verdicts: (n,) ``FREE``, ``WALL`` or ``PERSON``.
         blockers: (n,) row of the person in the way, or -1.
@@ -50,8 +50,8 @@ class Explanation:
         knots: (n,) number of valid samples of each path; beyond them the end is repeated.
         neighbour_ends: (q, 2) ends of the neighbours' committed movements, metres.
         chosen: index of the option taken, or -1 for the fallback.
-        blocked_by: row of whom they would hit first with what they would do if nobody else were
-            there, or -1.
+        blocked_by: row of the person whom the pedestrian would hit first with the movement that
+            they would take if nobody else were there, or -1.
     """
 
     pedestrian: int
@@ -83,7 +83,7 @@ class Watch:
 
     Attributes:
         pedestrian: row in the crowd.
-        decision: its last decision since it was watched, if any.
+        decision: the pedestrian's last decision since this watch began, if any.
     """
 
     pedestrian: int
@@ -105,7 +105,7 @@ def weigh(
     terms: Sequence[CostTerm],
     types: Sequence[str],
 ) -> Explanation:
-    """Costs of the options of the pedestrian in ``row``, before collision tests."""
+    """The costs of the options of the pedestrian in ``row``, without verdicts (see ``judge``)."""
     crowd = outlook.crowd
     candidates = make_candidates(np.array([row], dtype=np.int64), outlook)
     n, kind = len(candidates), crowd.type_index[row]
@@ -130,7 +130,7 @@ def weigh(
 
 
 def judge(weighed: Explanation, outlook: Outlook) -> Explanation:
-    """The same with verdicts, against walls and everybody's committed movement."""
+    """The explanation with verdicts on the options, against walls and everybody's movements."""
     table, crowd, _, around, rules, _ = outlook
     row = weighed.pedestrian
     options = weighed.candidates.options + rules.first_option[crowd.type_index[row]]

@@ -35,9 +35,9 @@ def fall_back(
     standing: int,
     path: NDArray[np.float64],
 ) -> None:
-    """Commit pedestrian i to four frames straight towards its target, as far as nothing is hit.
+    """Commit pedestrian i to four frames straight towards their target, as far as nothing is hit.
 
-    It ends in the standing cluster.  ``path`` is workspace.
+    This movement ends in the standing cluster. ``path`` is workspace.
     """
     dx, dy = state.target_x[i] - state.x[i], state.target_y[i] - state.y[i]
     distance = math.hypot(dx, dy)

@@ -107,7 +107,7 @@ def stop_where_blocked(
 
 @kept()
 def _in_closed_exit(i: int, state: CrowdState, around: Surroundings) -> bool:
-    """Whether the body of pedestrian i is across an exit by which it may not leave."""
+    """Whether the body of pedestrian i is across an exit by which they may not leave."""
     for e in range(len(around.exits)):
         if not around.leads_out[state.destination[i], e] and _on_lines(
             i, around.exits[e : e + 1], state

@@ -1,6 +1,7 @@
 """The queue by which threads share the decisions of a frame.
 
-People decide in order, since each depends on the paths that its predecessors have committed to.
+People decide in order, since each decision depends on the paths to which people before are
+committed.
 Nothing beyond the search radius matters: two people farther apart, on every sheet on which they
 are seen, may decide in either order, or at once, with the same result to the last bit. So each
 thread takes the next pedestrian, and waits for undecided predecessors within that radius.

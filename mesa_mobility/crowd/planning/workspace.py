@@ -25,12 +25,12 @@ class Rules(NamedTuple):
 
     Attributes:
         search_radius: metres within which people may get in each other's way.
-        interaction_ranges: (types, types) metres within which somebody of a type counts in the
-            cost terms of somebody of another, by the type of who decides and that of the other:
-            whether a movement of each can bring them together.
+        interaction_ranges: (types, types) metres within which others count in the cost terms of
+            somebody who decides: the farthest from which a movement of each can bring them
+            together. Rows are the type of who decides, columns that of the other.
         hard_bodies: whether bodies may not overlap.
-        standing: by pedestrian type, its standing cluster.
-        first_option: by pedestrian type, its first row in the table.
+        standing: (types,) standing cluster of each pedestrian type.
+        first_option: (types,) first row of each pedestrian type in the table.
     """
 
     search_radius: float
@@ -71,16 +71,16 @@ class DecisionContext(NamedTuple):
 
     Attributes:
         me: the pedestrian.
-        first: the first group of its cluster.
+        first: the first group of the pedestrian's cluster.
         bounds: lower bound of the costs in each group from there on; inf where all options are
             certainly blocked.
-        lowest: the least of them.
+        lowest: the least of these bounds.
         walls: walls within reach, with squared distances.
         extra: weighted costs of the NumPy terms, or empty.
-        barriers: those that do not touch the body, in the pedestrian's coordinates.
+        barriers: walls that do not touch the body, in the pedestrian's coordinates.
         stay: the group to test first, or -1.
         neighbours: number of columns of ``Neighbours.others``.
-        foremost: number of its first columns, who are likely to cost most.
+        foremost: number of the first of these columns, people who are likely to cost most.
         exits_from: metres to the nearest open exit.
         has_negative_pairs: whether pair or wall terms may be negative, so that every option needs
             them.
@@ -139,9 +139,9 @@ class Opened(NamedTuple):
         lanes: ends of the 8 options of each group.
         lane_costs: their costs.
         rows: for each open option, its row in the table.
-        ends: its end.
-        costs: its cost without pair terms.
-        least: lower bound of its whole cost.
+        ends: the option's end.
+        costs: the option's cost without pair terms.
+        least: lower bound of the option's whole cost.
         approximate: whether the bound can still be raised by more neighbours.
         unwalled: whether the wall terms are left out of the cost so far.
     """
@@ -166,7 +166,7 @@ class Workspace(NamedTuple):
         unsure: rows of people left to the exact test.
         blocks: people close and walls at each level of time; groups that certainly hit something.
         walls: walls in reach.
-        barriers: the same in the pedestrian's coordinates.
+        barriers: walls in reach in the pedestrian's coordinates.
         bounds: lower bound of the cost of each group.
         opened: groups and options that the search has opened.
         path: one path.
@@ -183,7 +183,7 @@ class Workspace(NamedTuple):
 
 
 def make_neighbours(people: int, terms: int, fields: int) -> Neighbours:
-    """Arrays for numbers of people, of terms and of fields that terms take."""
+    """Arrays of ``Neighbours`` for at most so many people near; see ``make_workspace``."""
     return Neighbours(
         own=np.empty(FIELDS + fields),
         near=np.empty(people + LANES, np.int64),
@@ -201,8 +201,18 @@ def make_neighbours(people: int, terms: int, fields: int) -> Neighbours:
 def make_workspace(
     people: int, walls: int, options: int, groups: int, terms: int, fields: int
 ) -> Workspace:
-    """Arrays for given numbers of people, nearby walls, options, groups of a cluster, terms, and
-    fields that terms take."""
+    """Scratch arrays for one thread, of the greatest sizes that a decision needs.
+
+    A cluster is a set of similar poses; a group has up to 8 similar options of a cluster.
+
+    Args:
+        people: most people near somebody who decides.
+        walls: most walls and exits near them.
+        options: most options in a cluster.
+        groups: most groups in a cluster.
+        terms: number of cost terms.
+        fields: number of people's fields that terms read.
+    """
     lanes = LANES * groups
     return Workspace(
         neighbours=make_neighbours(people, terms, fields),

@@ -34,9 +34,12 @@ def ways_left(rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.float64]:
 class Snapshot(NamedTuple):
     """The people inside at one second.
 
-    Fields: ``second`` since the start; ``rows`` (n,) of the people inside, rising; ``places``
-    (3, n) x and y from ``origin`` (2,), metres, and the metres that each still has to go, infinite
-    without a way.
+    Attributes:
+        second: since the start.
+        rows: (n,) of the people inside, rising.
+        places: (3, n) x and y from ``origin``, metres, and the metres that each still has to go,
+            infinite without a way.
+        origin: (2,) x and y, metres.
     """
 
     second: int

@@ -104,10 +104,13 @@ class DecisionRecorder(Saved):
         )
 
     def arrays(self, repertoire: Repertoire, since: int = 0) -> dict[str, NDArray[np.generic]]:
-        """What was decided from frame ``since`` on, a row for each decision, in order.
+        """What was decided from frame ``since`` on, in order of time.
 
-        ``frame``; ``person``; ``type_index`` of the person's type; ``option``, a row of the type's
-        map, or -2 for the fallback; ``share`` of the option's ground that is covered.
+        Returns:
+            Arrays (n,) with an entry for each of n decisions: ``frame``; ``person``;
+            ``type_index`` of the person's type; ``option``, a row of the type's map, or -2 for the
+            fallback; ``share``, the part of the option's length that is walked, 0 to 1; less than 1
+            for shortened options.
         """
         names = ("frame", "person", "type_index", "option")
         columns = [np.concatenate(each) for each in zip(*_since(self._blocks, since), strict=True)]
@@ -118,7 +121,10 @@ class DecisionRecorder(Saved):
 def movements_under_way(
     crowd: Crowd, rows: NDArray[np.int64], repertoire: Repertoire
 ) -> dict[str, NDArray[np.generic]]:
-    """What the people in ``rows`` are doing, as ``DecisionRecorder.arrays`` has it of decisions."""
+    """What the people in ``rows`` are doing now, as arrays like ``DecisionRecorder.arrays``.
+
+    ``frame`` is when each movement began.
+    """
     found = {
         "frame": crowd.start[rows],
         "person": rows.astype(np.int32),
@@ -131,7 +137,7 @@ def movements_under_way(
 def _in_maps(
     found: dict[str, NDArray[Any]], repertoire: Repertoire
 ) -> dict[str, NDArray[np.generic]]:
-    """The same with rows of the types' maps for options, and the share of their ground."""
+    """These arrays with rows of the types' maps as options, and with the ``share`` of each."""
     option, share = found["option"].copy(), np.ones(len(found["option"]), dtype=np.float32)
     for number, capability in enumerate(repertoire.capabilities):
         own = (found["type_index"] == number) & (option >= 0)
@@ -142,14 +148,14 @@ def _in_maps(
 
 
 def _by_frame(columns: Iterable[NDArray[Any]]) -> list[tuple[NDArray[Any], ...]]:
-    """Columns, of which the first holds frames in order, as a block for each frame."""
+    """Columns as a block for each frame; the first column holds the frames, in order of time."""
     frames, *others = columns
     ends = np.flatnonzero(np.diff(frames)) + 1
     return list(zip(*(np.split(each, ends) for each in (frames, *others)), strict=True))
 
 
 def _since(blocks: list[tuple[NDArray[Any], ...]], frame: int) -> list[tuple[NDArray[Any], ...]]:
-    """Those of the blocks, in the order of time, that begin in ``frame`` or later."""
+    """The blocks that begin in ``frame`` or later; ``blocks`` are in order of time."""
     first = len(blocks)
     while first > 0 and (not len(blocks[first - 1][0]) or blocks[first - 1][0][0] >= frame):
         first -= 1

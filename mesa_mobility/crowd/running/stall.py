@@ -37,13 +37,14 @@ class StallWatch(Saved):
 
     Progress is how much nearer to their exits they are on average than at the last progress. People
     in a jam who change places, or step back and forth, make none: their route lengths add up to the
-    same. A single person on a long route counts by itself. After a change of route, progress is
-    measured along the new one.
+    same. A single person who comes much nearer also counts, so that nobody on a long route is
+    overlooked. After a change of route, progress is measured along the new one.
 
     A crowd of which nobody can move has stalled as well, once this watch has gone on for as long.
 
     Attributes:
-        ring: rows of people who are in each other's way, once it has stalled; empty if none are.
+        ring: rows of people who are in each other's way, once the run has stalled; empty if none
+            are.
     """
 
     saved: ClassVar[Mapping[str, Kind]] = {

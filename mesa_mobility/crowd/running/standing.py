@@ -161,8 +161,10 @@ class StandingWatch(Saved):
             self._moved = np.append(self._moved, never)
 
     def _who_stand(self, second: int, rows: NDArray[np.int64], model: World) -> NDArray[np.int64]:
-        """Those of ``rows``, who are where they were a minute ago, who have not walked meanwhile,
-        and beside whom nobody ahead has got on."""
+        """The people in ``rows`` who have not walked for a minute, and ahead of whom nobody got on.
+
+        All people in ``rows`` are where they were a minute ago.
+        """
         first = second - MINUTE
         left = rows[(self._moved[rows] == _NEVER) | (self._moved[rows] < first)]
         # The latest first: it is a reason for longest.

@@ -21,9 +21,12 @@ LONG_AFTER = np.iinfo(np.int64).max
 class Moved(NamedTuple):
     """The result of advancing the crowd by some frames.
 
-    Fields: rows of those who ``stay`` and of those who have left (``gone``), both ascending; sum of
-    everybody's mean ``speeds``, m/s; number of people in the fallback (``fallen``); ``next`` frame
-    in which a movement of those who stay ends, or one of them leaves.
+    Attributes:
+        stay: rows of those who stay, ascending.
+        gone: rows of those who have left, ascending.
+        speeds: sum of everybody's mean speeds, m/s.
+        fallen: number of people in the fallback.
+        next: next frame in which a movement of those who stay ends, or one of them leaves.
     """
 
     stay: NDArray[np.int64]
@@ -69,7 +72,7 @@ def move(
 
 @internal()
 def next_event(i: int, frame: int, state: CrowdState) -> int:
-    """Frame in which pedestrian i leaves, or in which its movement ends if it stays."""
+    """Frame in which pedestrian i leaves, or in which their movement ends if they stay."""
     gone: int = state.gone[i]
     return gone if gone > frame else state.end[i]
 
@@ -83,7 +86,7 @@ def _move(
     state: CrowdState,
     sorted_out: NDArray[np.int64],
 ) -> tuple[int, int, float, int, int]:
-    """Write to ``sorted_out`` those who stay, and backwards from its end those who have left.
+    """Write to ``sorted_out`` those who stay, and backwards from the end those who have left.
 
     Returns both numbers, and the other fields of ``Moved``.
     """

@@ -16,8 +16,11 @@ from mesa_mobility.crowd.state.records import Crowd, CrowdState
 class Aggregates(NamedTuple):
     """Sums over the people inside.
 
-    Fields: number of ``people``; sum of their ``speeds``, m/s, each the mean of the movement under
-    way; number of people with a route (``going``); number of people who wait (``awaited``).
+    Attributes:
+        people: number of people.
+        speeds: sum of their speeds, m/s, each the mean of the movement under way.
+        going: number of people with a route.
+        awaited: number of people who wait.
     """
 
     people: int

@@ -1,7 +1,8 @@
 """Waypoints of committed movements.
 
-A record keeps only a movement's start, its end and its option.  Waypoints between are computed from
-the option table, bit for bit as they were when they were tested.
+A path is a row of waypoints, joined by straight pieces. A record keeps only a movement's start, its
+end and its option. Waypoints between are computed from the option table, bit for bit as they were
+when they were tested.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ def waypoint(state: CrowdState, table: OptionTable, j: int, k: int) -> tuple[flo
 
 @internal()
 def facing_at_waypoint(state: CrowdState, table: OptionTable, j: int, k: int) -> float:
-    """Heading of pedestrian j at waypoint k of its movement, radians."""
+    """Heading of pedestrian j at waypoint k of their movement, radians."""
     if k >= state.knots[j] - 1:
         return float(state.to_heading[j])
     if k <= 0:
@@ -45,7 +46,7 @@ def facing_at_waypoint(state: CrowdState, table: OptionTable, j: int, k: int) ->
 
 @internal()
 def position_at(state: CrowdState, table: OptionTable, j: int, time: float) -> tuple[float, float]:
-    """Position of pedestrian j at a time in frames; it stands after its movement has ended."""
+    """Position of pedestrian j at a time in frames; they stand after their movement has ended."""
     last = state.knots[j] - 1
     u = (time - state.start[j]) / state.spacing[j]
     k = int(u)
@@ -59,7 +60,7 @@ def position_at(state: CrowdState, table: OptionTable, j: int, time: float) -> t
 
 @internal()
 def box_of(path: NDArray[np.float64], pieces: int) -> Box:
-    """The box around a path."""
+    """The box around the first ``pieces`` pieces of a path (3, n)."""
     x0 = x1 = path[0, 0]
     y0 = y1 = path[1, 0]
     for k in range(1, pieces + 1):
@@ -78,10 +79,12 @@ def to_world(
     state: CrowdState,
     path: NDArray[np.float64],
 ) -> int:
-    """Write option o of pedestrian i to ``path`` (3, 16) in world coordinates; returns the
-    number of its pieces.
+    """Write the path of option o, as pedestrian i would walk it from here, to ``path`` (3, 16).
 
-    ``c`` and ``s`` are cosine and sine of the pedestrian's heading.
+    Rows of ``path`` are x, y (metres) and heading (radians) at the samples. ``c`` and ``s`` are
+    cosine and sine of the pedestrian's heading.
+
+    Returns how many samples after the first belong to the option; the rest repeat its end.
     """
     x, y, heading = state.x[i], state.y[i], state.heading[i]
     own = table.path[o]
@@ -105,7 +108,11 @@ def commit(
     path: NDArray[np.float64],
     state: CrowdState,
 ) -> None:
-    """Commit pedestrian i to a path (3, n) in world coordinates."""
+    """Commit pedestrian i to the first ``pieces`` pieces of a path (3, n) in world coordinates.
+
+    Each piece takes ``spacing`` frames, from ``frame`` on. ``gone`` is the frame at which the path
+    has crossed an exit, or -1; ``cluster`` is that of its end.
+    """
     seconds = pieces * spacing * FRAME_SECONDS
     state.option[i] = option
     state.start[i], state.end[i], state.gone[i] = frame, frame + pieces * spacing, gone

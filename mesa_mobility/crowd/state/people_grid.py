@@ -32,13 +32,23 @@ before."""
 
 
 class Grid(NamedTuple):
-    """People by cell: cell c holds ``people[offsets[c]:offsets[c + 1]]``, in order of row.
+    """People by the square cells in which they are.
 
-    ``table`` has a column for each of them in the same order, to be read in sequence: (2, n) x and
-    y, which are also ``x`` and ``y``; in the grid of a frame (10, n), with velocity in m/s, unit
-    vector to the target (0, 0 at the target), route length in metres, and x, y and radius of a
-    circle around their path, the body included.  Beyond the last there is room to read 8 values.
-    ``size`` is the side of a cell, metres.
+    Attributes:
+        x0: least x of the grid, metres.
+        y0: least y of the grid, metres.
+        nx: number of cells along x.
+        ny: number of cells along y.
+        size: side of a cell, metres.
+        offsets: (nx * ny + 1,) cell c holds ``people[offsets[c]:offsets[c + 1]]``.
+        people: (n,) rows in the crowd, in each cell in rising order.
+        x: (n,) first row of ``table``, metres.
+        y: (n,) second row of ``table``, metres.
+        table: (2, n) x and y of the people, a column for each in the order of ``people``, to be
+            read in sequence. In the grid of a frame (10, n), with velocity in m/s, unit vector to
+            the target (0, 0 at the target), route length in metres, and x, y and radius of a circle
+            around their path, the body included. Beyond the last column there is room to read 8
+            values.
     """
 
     x0: float

@@ -1,10 +1,10 @@
 """The state of the crowd: one array with a record for each pedestrian.
 
-A pedestrian keeps its row for ever; rows of people who have left are inactive.  ``Pedestrian``
+A pedestrian keeps their row for ever; rows of people who have left are inactive.  ``Pedestrian``
 objects are views of a row.
 
 With one array of records, not an array for each field, a compiled function has seven arguments
-instead of two hundred, and what it reads of a person lies side by side.
+instead of two hundred, and the values that it reads of a person lie side by side.
 """
 
 from __future__ import annotations
@@ -122,16 +122,16 @@ AGENDA_FIELDS: dict[str, Array] = {
 }
 
 AGENDA = _record(AGENDA_FIELDS)
-"""Fields that are needed only when a pedestrian gets a target, apart to keep records small.
+"""Record of what is needed only when a pedestrian gets a target, apart to keep ``PERSON`` small.
 
-Fields: ``speed``, its unhindered preferred speed, m/s (``preferred`` in the record is that of
-its last decision); ``sets_off``, frame of its first decision; ``waits_until``,
-frame before which it does not walk; ``journey``, the number of its journey, 0 for none;
-``crossed``, gates of it that it has crossed up to frame ``checked``; ``group``, the
-number of its group, 0 for none; ``corner``, number of the next corner of its route;
-``nearest``, shortest route so far, metres, and ``since``,
-time of its last progress, s; ``desired_speed``, the preferred speed of its last decision, m/s, and
-``behind``, its accumulated distance error, metres.
+Fields: ``speed``, the unhindered preferred speed, m/s (``preferred`` in ``PERSON`` is that of the
+last decision); ``sets_off``, frame of the first decision; ``waits_until``, frame before which the
+person does not walk; ``journey``, number of their journey, 0 for none; ``crossed``, how many stops
+of the journey they have passed up to frame ``checked``; ``group``, number of their group, 0 for
+none; ``corner``, number of the next corner of their route; ``nearest``, shortest route so far,
+metres; ``since``, time of their last progress, s; ``desired_speed``, the preferred speed of the
+last decision, m/s; ``behind``, metres by which free walking has fallen short of that speed, below 0
+if they are ahead.
 """
 
 

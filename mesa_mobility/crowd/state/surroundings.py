@@ -18,9 +18,17 @@ CELL_SIZE = 1.0
 class Surroundings(NamedTuple):
     """Walls and exits, with a grid of nearby walls.
 
-    Fields: ``segments`` (w, 4) walls; ``x0``, ``y0``, ``nx``, ``ny``, ``size`` a grid of square
-    cells; ``offsets`` (nx * ny + 1,) and ``indices``: walls near each cell; ``exits`` (e, 4);
-    ``leads_out`` (destinations, e): whether people of a destination may leave there.
+    Attributes:
+        segments: (w, 4) x1, y1, x2, y2 of the walls, metres.
+        x0: least x of the grid, metres.
+        y0: least y of the grid, metres.
+        nx: number of cells along x.
+        ny: number of cells along y.
+        size: side of a cell, metres.
+        offsets: (nx * ny + 1,) the walls near cell i are ``indices[offsets[i]:offsets[i + 1]]``.
+        indices: rows of ``segments``.
+        exits: (e, 4) x1, y1, x2, y2 of the exits, metres.
+        leads_out: (destinations, e) whether people of a destination may leave there.
     """
 
     segments: NDArray[np.float64]

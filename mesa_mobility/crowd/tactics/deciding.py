@@ -22,8 +22,8 @@ class Desired:
     A tactic sets new arrays; those that it gets are not to be changed.
 
     Attributes:
-        points: (n, 2) where each wants to go, metres; at first its target.
-        speeds: (n,) how fast, m/s; at first its unhindered preferred speed.
+        points: (n, 2) where each wants to go, metres; at first their target.
+        speeds: (n,) how fast, m/s; at first their unhindered preferred speed.
         targets: what the target choice has given.
         newcomers: whether the pedestrians have only just been put on the floor, and get a target
             to face even if they are to wait.
@@ -83,7 +83,7 @@ class Deciding(NamedTuple):
 
     @property
     def waiting(self) -> NDArray[np.bool_]:
-        """(n,) whether each waits: told to, at a place that it visits, or held by a behaviour."""
+        """(n,) whether each waits: told to, at a place that they visit, or held by a behaviour."""
         return waiting(self.pedestrians, self.frame, self.inside.crowd)
 
     def hold(
@@ -92,8 +92,8 @@ class Deciding(NamedTuple):
         """Let some wait where they are until they decide again, 0.4 s later.
 
         As all who wait, they are never hindered, and count as people who stand, for others who look
-        ahead and for the test whether a run has stalled. A tactic that holds them at each decision
-        lets them wait for as long as it does.
+        ahead and for the test whether a run has stalled. They wait as long as a tactic holds them
+        at each of their decisions.
 
         Args:
             desired: what all of them want so far.

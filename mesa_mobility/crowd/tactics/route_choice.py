@@ -24,9 +24,9 @@ AGAIN = Array("f8", high=1e9, infinite=True)
 
 
 class RouteChoice(TargetChoice):
-    """A target choice that gives each person a path: the gates that it crosses before it leaves.
+    """A target choice that gives each person a path: the gates that they cross before they leave.
 
-    Subclasses set ``name`` and define ``routes``. Everybody chooses at its first decision, and
+    Subclasses set ``name`` and define ``routes``. Everybody chooses at their first decision, and
     again at random, every ``interval`` seconds on average. Between gates people take the shortest
     way. People with a route of their own keep it. An object of this class serves one model.
 
@@ -46,7 +46,7 @@ class RouteChoice(TargetChoice):
     _model: World
 
     def bind(self, model: World) -> None:
-        """Keep the model, whose people it sends."""
+        """Keep the model, whose people this choice sends."""
         self._model = model
 
     def members(self) -> Mapping[str, Kind]:

@@ -22,20 +22,23 @@ _NO_CORNERS = np.empty((0, 2), dtype=np.int64)
 
 
 class TargetChoice(Plugin):
-    """A behaviour that makes the target requests of section 6 of the paper.
+    """A behaviour that gives each deciding pedestrian a target.
 
-    Subclasses set ``name`` and define ``targets``.  A model has one target choice.
+    It answers the target requests of section 6 of the paper, "A Data-Driven Model of Pedestrian
+    Movement". Subclasses set ``name`` and define ``targets``. A model has one target choice.
     """
 
     @abstractmethod
     def targets(self, deciding: Deciding) -> Targets:
-        """Target of each deciding pedestrian, and the length of its remaining route.
+        """Target of each deciding pedestrian, and the length of their remaining route.
 
         Returns:
-            ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,) in metres; people
-            decide in rising order of distance, and those on the way to a visit slow down by it.
-            ``gates`` (n,) and ``corners`` (n, 2) are as ``site.targets`` gives them, or -1 and
-            None.
+            ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,) in metres. A
+            distance is inf where there is no way. People with smaller distances decide first.
+            People who come near the place of a visit slow down according to their distance. Copy
+            ``gates`` (n,) and ``corners`` (n, 2) from what ``deciding.site.targets`` gives. Without
+            it set all gates to -1, and ``corners`` to None. The model raises ModelError for other
+            values (see ``query_targets``).
         """
 
 

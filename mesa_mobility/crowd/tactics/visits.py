@@ -27,8 +27,8 @@ def slow_down(speeds: NDArray[np.float64], remaining: NDArray[np.float64]) -> ND
     """(n,) speeds from which people come to stand at the end of their way, m/s.
 
     At the constant deceleration v0 / ``STOPPING`` somebody at full speed v0 needs
-    v0 ``STOPPING`` / 2 to stand, and its speed is v0 times the square root of the share of this
-    stretch that remains.
+    v0 ``STOPPING`` / 2 to stand, and their speed is v0 times the square root of the share of
+    this stretch that remains.
 
     Args:
         speeds: (n,) full speeds, m/s.

@@ -13,8 +13,9 @@ from mesa_mobility.bodies.sequence import stretch_of_each
 from mesa_mobility.errors import MapError
 
 NUMBERS = 5
-"""Of each person: its type, frames since its stretch of a recording began, number of the pose then,
-whether it moves, factor of its strides; only the type where poses are not known."""
+"""Numbers of each person: type, frames since the present stretch of a recording began, number of
+the pose then, whether the person moves, factor of the recorded strides. Only the type counts where
+poses are not known."""
 
 
 class Bodies:
@@ -42,8 +43,8 @@ class Bodies:
     def bundle(self) -> str:
         """Figures and poses as ``viewer/bundle.js`` opens them.
 
-        The header has of each pedestrian type its bank of poses (-1 where they are not known) and
-        what its people hold or sit in.
+        For each pedestrian type, the header has the number of its bank of poses (-1 where they are
+        not known), and what people of the type hold or sit in.
         """
         header, arrays = figure_parts()
         header["types"] = [

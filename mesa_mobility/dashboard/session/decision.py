@@ -25,8 +25,9 @@ def described(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     Numbers of options are base64 float32, options in the order of the explanation's: ``costs``
     (terms, n) weighted, ``totals``, ``verdicts``, ``blockers``, ``ends`` (n, 2), ``durations``,
     ``speeds``, ``paths`` (n, 16, 2) and ``knots``. A neighbour is row, x, y, core radius, and x, y
-    of where its movement leads. ``lost`` says that there is no way to the target. ``blocked_by`` is
-    the row of whom they would hit first if they did what they would do alone, or -1.
+    of where their movement leads. ``lost`` says that there is no way to the target. ``blocked_by``
+    is the row of the person whom the pedestrian would hit first with the movement that they would
+    take alone, or -1.
     """
     row, crowd, candidates = explained.pedestrian, model.crowd, explained.candidates
     kind = model.pedestrian_types[int(crowd.type_index[row])]

@@ -23,9 +23,11 @@ WINDOW = 10.0
 
 
 def densities(model: PedestrianModel) -> NDArray[np.float64]:
-    """(n,) people within 1 m of each person inside, itself included, over that disc's area, 1/m2.
+    """(n,) density around each person inside, 1/m2: people within 1 m, themselves included.
 
-    Walls are not cut out of the disc: beside one the value is too low by up to a half.
+    The number of people is divided by the area of the disc.
+
+    Walls are not cut out of the disc: beside a wall the value is too low by up to a half.
     """
     if model.inside == 0:
         return np.empty(0)

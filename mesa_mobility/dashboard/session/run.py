@@ -26,7 +26,7 @@ class Run:
     """A model under way.
 
     Attributes:
-        recipe: how it was made.
+        recipe: how the model was made.
         model: the model.
         observer: collects the figures of the charts.
         plan: changes of the floor plan by clicks.
@@ -34,7 +34,7 @@ class Run:
         clock: when the next step is due.
         failed: whether a step has raised an error; no further step follows.
         hand: the steering of somebody with keys.
-        until_decision: whether it pauses when the watched person has decided.
+        until_decision: whether the run pauses when the watched person has decided.
         notices: the warnings that the model has given.
     """
 
@@ -117,7 +117,8 @@ class Run:
 class ByHand:
     """Steering of a model's people, one at a time.
 
-    A model gets the tactics for it when somebody is steered first; until then it is as it was made.
+    A model gets the tactics for steering when somebody is first steered. Until then it is as it was
+    made.
 
     Args:
         model: the model.
@@ -132,7 +133,7 @@ class ByHand:
         self._orders: Orders | None = None
 
     def steer(self, row: int, direction: tuple[float, float]) -> None:
-        """Let somebody walk in a direction at its preferred speed; it stands for (0, 0).
+        """Let somebody walk in a direction at their preferred speed, or stand for (0, 0).
 
         Whoever was steered before goes on as before. Nobody is steered who is not inside.
         """

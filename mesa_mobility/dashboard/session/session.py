@@ -16,7 +16,7 @@ from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.errors import ModelError
 
 AS_TAKEN, IF_NOW = "as taken", "if they decided now"
-"""The shown decision of the selected person: its last one, or the one that it would take now."""
+"""Which decision of the selected person is shown: their last, or one that they would take now."""
 
 
 NOBODY = -1
@@ -135,7 +135,7 @@ class Session(Engine):
         self._commands.put(command)
 
     def select(self, row: int, shown: int | None = None) -> None:
-        """Show the decisions of the person in ``row``; none if it is negative.
+        """Show the decisions of the person in ``row``; of nobody if ``row`` is negative.
 
         The page says so if the model never had such a person. For ``shown`` see `post`.
         """
@@ -151,7 +151,8 @@ class Session(Engine):
     def select_beside(self, by: int, shown: int | None = None) -> None:
         """Select the person inside with the next higher number, or the next lower one.
 
-        The first follows the last; with nobody selected it begins there.
+        The first follows the last. If nobody is selected, higher numbers begin with the first, and
+        lower ones with the last.
 
         Args:
             by: 1 for higher, -1 for lower numbers.
@@ -177,7 +178,7 @@ class Session(Engine):
     def steer(
         self, row: int, direction: tuple[float, float] | None, shown: int | None = None
     ) -> None:
-        """Let somebody walk in a direction at its preferred speed, and others make way.
+        """Let somebody walk in a direction at their preferred speed, and others make way.
 
         Args:
             row: the person.

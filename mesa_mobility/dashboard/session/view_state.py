@@ -147,7 +147,7 @@ class Shown:
         self.colouring = known.get(name, COLOURINGS["speed"])
 
     def mark(self, row: int) -> None:
-        """Select the person in ``row``, nobody if it is negative; no decision is shown yet."""
+        """Select the person in ``row``, nobody if ``row`` is negative; no decision is shown yet."""
         self.forget_decision()
         self.decision.set({})
         self.selected.set(row)

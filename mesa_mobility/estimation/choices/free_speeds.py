@@ -67,7 +67,17 @@ def _walk_freely(places: NDArray[np.float64], velocities: NDArray[np.float64]) -
 
 
 def nodes(distribution: Distribution | float, count: int) -> NDArray[np.float64]:
-    """(count,) speeds in m/s that stand for a distribution, each as likely as the others."""
+    """Speeds in m/s that represent a distribution, each of them equally likely.
+
+    Integrals over the free speed are sums over these nodes.
+
+    Args:
+        distribution: of free speeds, m/s; or the one speed that everybody has.
+        count: how many speeds represent a distribution.
+
+    Returns:
+        (count,) speeds; (1,) for a single speed.
+    """
     if not isinstance(distribution, Distribution):
         return np.array([distribution])
     return distribution.quantile((np.arange(count) + 0.5) / count)

@@ -1,4 +1,4 @@
-"""A model whose people stand where tracks put them, so that the engine sees what they saw."""
+"""A model whose people are where tracks put them, so that the engine sees what they saw."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ class Stage:
         speeds: NDArray[np.float64],
         frames: int,
     ) -> None:
-        """Put people where they were, as the only ones, walking on as they did.
+        """Replace everybody in the crowd by these people. Each walks straight on.
 
         Args:
-            places: (m, 2) metres.
-            velocities: (m, 2) of the movement that has just ended, m/s.
-            destinations: (m,) numbers of their exits.
+            places: (m, 2) metres. Places off the floor are moved to the nearest point on it.
+            velocities: (m, 2) of the movement that has just ended, m/s, which they keep.
+            destinations: (m,) the engine's numbers of their exits, as ``destinations`` gives them.
             speeds: (m,) preferred speeds, m/s.
-            frames: for how long others are taken to walk on.
+            frames: number of frames for which each of them is assumed to walk on.
         """
         crowd, m = self.scene.crowd, len(places)
         if m > len(crowd.x):
@@ -95,7 +95,7 @@ class Stage:
         crowd.heading[rows] = crowd.from_heading[rows] = crowd.to_heading[rows] = heading
 
     def aim(self, rows: NDArray[np.int64], speeds: NDArray[np.float64]) -> None:
-        """Set what people want who prefer ``speeds`` (n,), m/s, when alone."""
+        """Set what the people in ``rows`` (n,) want, who prefer ``speeds`` (n,) m/s when alone."""
         crowd, model = self.scene.crowd, self.model
         crowd.agenda["speed"][rows] = speeds
         inside = np.flatnonzero(crowd.active).astype(np.int64)
@@ -103,10 +103,16 @@ class Stage:
         self._desired.update(rows, inside, 0, wants)
 
     def hits(self, row: int, options: NDArray[np.int64]) -> NDArray[np.int8]:
-        """(n,) what options, rows of the table, of the person in a row hit: ``FREE``, ``WALL``, or
-        ``PERSON``, one of those ahead if they walk on as before.
+        """What the options of a person would hit if everybody else walked on as before.
 
-        People behind keep their distance themselves.
+        Only people ahead count: those behind keep their distance themselves.
+
+        Args:
+            row: of the person.
+            options: (n,) rows of the table.
+
+        Returns:
+            (n,) ``FREE``, ``WALL`` or ``PERSON``.
         """
         hit = np.empty(len(options), dtype=np.int8)
         crowd, around = self.scene.crowd, self.scene.environment.surroundings

@@ -159,7 +159,7 @@ def salib() -> ModuleType:
     """SALib.
 
     Raises:
-        ModelError: it is not installed.
+        ModelError: SALib is not installed.
     """
     try:
         import SALib

@@ -101,7 +101,7 @@ class Folder:
         """Write a file; it is complete or absent.
 
         Raises:
-            ResultsError: it cannot be written.
+            ResultsError: the file cannot be written.
         """
         if self.local:
             path = self.path(name)

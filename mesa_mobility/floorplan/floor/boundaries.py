@@ -14,7 +14,7 @@ _SHORTEST_WALL = 1e-9
 
 
 def boundary_segments(area: BaseGeometry) -> NDArray[np.float64]:
-    """(m, 4) x1, y1, x2, y2 in metres of every ring of a polygon or multipolygon."""
+    """(m, 4) x1, y1, x2, y2 in metres of the sides of every ring of a polygon or multipolygon."""
     rings = shapely.get_rings(shapely.get_parts(area))
     xy, ring = shapely.get_coordinates(rings, return_index=True)
     segments = np.concatenate([xy[:-1], xy[1:]], axis=1)[ring[:-1] == ring[1:]]
@@ -22,7 +22,10 @@ def boundary_segments(area: BaseGeometry) -> NDArray[np.float64]:
 
 
 def rings(area: BaseGeometry) -> list[NDArray[np.float64]]:
-    """The rings of a (multi)polygon as (n, 2) vertices, each once, the area on their left."""
+    """The rings of a polygon or multipolygon, each as its (n, 2) vertices in metres.
+
+    The first vertex is not repeated at the end. The area lies to the left of the ring.
+    """
     oriented = [shapely.geometry.polygon.orient(part, 1.0) for part in shapely.get_parts(area)]
     return [shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(oriented)]
 
@@ -40,15 +43,17 @@ def turns(ring: NDArray[np.float64]) -> NDArray[np.float64]:
 def cut_out(
     segments: NDArray[np.float64], openings: Iterable[Opening], off: float = EDGE_TOLERANCE
 ) -> NDArray[np.float64]:
-    """The (m, 4) segments without the parts that lie along one of the openings, up to ``off``
-    metres from it."""
+    """(k, 4) what is left of (m, 4) segments, without the parts that lie along an opening.
+
+    A part lies along an opening if it is at most ``off`` metres from it.
+    """
     for opening in openings:
         segments = _cut_one(segments, opening, off)
     return segments
 
 
 def opening_segments(openings: Iterable[Opening]) -> NDArray[np.float64]:
-    """(k, 4) x1, y1, x2, y2 of the lines of the openings."""
+    """(k, 4) x1, y1, x2, y2 in metres of the lines of the openings."""
     return np.array([[*o.a, *o.b] for o in openings], dtype=np.float64).reshape(-1, 4)
 
 

@@ -14,7 +14,7 @@ from mesa_mobility.floorplan.floor.extent import check_coordinates
 from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 
 EDGE_TOLERANCE = 0.01
-"""An exit lies on the edge of the walkable area when no point of it is farther away (metres)."""
+"""Metres by which an exit may lie off the edge of the walkable area, and a gate outside it."""
 
 STANDING_ROOM = 0.1
 """A piece of free area with no point this far from its edge (metres) can hold nobody."""
@@ -35,7 +35,7 @@ _WKT_TYPES = (
 
 @contextmanager
 def one_line(what: str) -> Iterator[None]:
-    """Turn an error of the geometry library, which says where it is, into a FloorPlanError."""
+    """Turn an error of the geometry library into a FloorPlanError about `what`."""
     try:
         yield
     except shapely.errors.GEOSException as error:
@@ -46,7 +46,10 @@ def one_line(what: str) -> Iterator[None]:
 def read_polygon(value: Polygon | str, what: str) -> Polygon:
     """`value` (shapely polygon or WKT) as a valid, finite, non-empty 2D polygon.
 
-    `what` names it in error messages.
+    Error messages call the polygon `what`.
+
+    Raises:
+        FloorPlanError: `value` is no such polygon.
     """
     geometry = read_wkt(value, what, "POLYGON") if isinstance(value, str) else value
     if not isinstance(geometry, BaseGeometry):
@@ -73,7 +76,10 @@ def read_polygon(value: Polygon | str, what: str) -> Polygon:
 def read_area(value: BaseGeometry | str, what: str) -> BaseGeometry:
     """`value` (shapely or WKT) as one or several valid, finite, non-empty 2D polygons.
 
-    `what` names it in error messages.
+    Error messages call the area `what`.
+
+    Raises:
+        FloorPlanError: `value` is no such area.
     """
     area: object = read_wkt(value, what, "POLYGON") if isinstance(value, str) else value
     if getattr(area, "geom_type", "") != "MultiPolygon":
@@ -83,7 +89,13 @@ def read_area(value: BaseGeometry | str, what: str) -> BaseGeometry:
 
 
 def read_wkt(text: str, what: str, expected: str) -> BaseGeometry:
-    """The geometry of a WKT; `what` and `expected` name it, and its types, in error messages."""
+    """Read a geometry from WKT, without checking it further.
+
+    Error messages call the geometry `what`, and name `expected` as its possible types.
+
+    Raises:
+        FloorPlanError: the text cannot be read.
+    """
     # GEOS reads nested shapes recursively, and ends the process where they nest too deeply.
     word = _WKT_TYPE.match(text)
     if word is None or word[1].upper() not in _WKT_TYPES:
@@ -99,7 +111,7 @@ def read_wkt(text: str, what: str, expected: str) -> BaseGeometry:
 
 
 def check_names(openings: Sequence[Opening]) -> None:
-    """Gates and exits must have different names, by which they are opened and closed."""
+    """Raise FloorPlanError if two gates or exits have the same name: names open and close them."""
     seen: set[str] = set()
     for opening in openings:
         if opening.name in seen:
@@ -108,7 +120,10 @@ def check_names(openings: Sequence[Opening]) -> None:
 
 
 def check_exits(walkable: Polygon, exits: Sequence[Exit], gates: Sequence[Gate]) -> None:
-    """There must be an exit or a gate; exits lie on the edge of the walkable area; none overlap."""
+    """Raise FloorPlanError unless exits lie on the edge of the walkable area, and none overlap.
+
+    There must be an exit or a gate. Exits may lie up to ``EDGE_TOLERANCE`` off the edge.
+    """
     if not exits and not gates:
         raise FloorPlanError("the floor plan has no exit, and no gate that people could go to")
     edge = walkable.boundary
@@ -134,7 +149,10 @@ def check_exits(walkable: Polygon, exits: Sequence[Exit], gates: Sequence[Gate])
 
 
 def check_gates(walkable: Polygon, gates: Iterable[Gate]) -> None:
-    """Each gate must lie in the walkable area."""
+    """Raise FloorPlanError unless each is a ``Gate`` inside the walkable area.
+
+    A gate may lie up to ``EDGE_TOLERANCE`` outside.
+    """
     room = walkable.buffer(EDGE_TOLERANCE)
     for gate in gates:
         if not isinstance(gate, Gate):

@@ -43,10 +43,11 @@ def check_coordinates(xy: ArrayLike, what: str) -> None:
 
 
 def check_extent(walkable: Polygon) -> None:
-    """The walkable area must have a size for people, in metres.
+    """Raise FloorPlanError unless the walkable area has a size for people, in metres.
 
     Raises:
-        FloorPlanError: it is more than 20 km wide or high, or less than 0.2 m in both directions.
+        FloorPlanError: the area is more than 20 km wide or high, or less than 0.2 m in both
+            directions.
     """
     width, height = _size(walkable)
     size = f"the walkable area is {width:.6g} by {height:.6g} m"

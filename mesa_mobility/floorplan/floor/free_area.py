@@ -66,11 +66,11 @@ class FreeArea:
         return changed
 
     def open_ones(self, openings: Iterable[Opening]) -> tuple[Opening, ...]:
-        """Those of some gates or exits that are open."""
+        """The gates and exits among ``openings`` that are open."""
         return tuple(each for each in openings if each.name not in self.closed)
 
     def closed_ones(self, openings: Iterable[Opening]) -> tuple[Opening, ...]:
-        """Those of some gates or exits that are closed."""
+        """The gates and exits among ``openings`` that are closed."""
         return tuple(each for each in openings if each.name in self.closed)
 
     def walls(self) -> NDArray[np.float64]:

@@ -87,12 +87,18 @@ class Layout:
 
     @property
     def seams(self) -> tuple[Seam, ...]:
-        """The seams between sheets; none where the plan is one sheet."""
+        """The seams, at which people change from one sheet to another.
+
+        A sheet is a part of a building drawn on its own. A plan of one sheet has no seams.
+        """
         return self._seams
 
     @property
     def copied(self) -> BaseGeometry:
-        """The parts of strips that belong to another sheet; empty without seams."""
+        """The parts of the floor that are drawn twice, where they are only a copy (see ``Seam``).
+
+        Empty without seams.
+        """
         return self._copied
 
     @property
@@ -101,7 +107,7 @@ class Layout:
         return self._walkable.bounds
 
     def speed_factors(self, points: ArrayLike) -> NDArray[np.float64]:
-        """(n,) share of the preferred speed at (n, 2) points, metres."""
+        """(n,) factor of people's preferred speeds at (n, 2) points, metres."""
         return speed_factors(self._zones, np.asarray(points, dtype=np.float64).reshape(-1, 2))
 
     def openings(self) -> tuple[Gate | Exit, ...]:
@@ -109,7 +115,7 @@ class Layout:
         return (*self._gates, *self._exits)
 
     def gate(self, name: str) -> Gate | Exit:
-        """The gate or exit of this name; a FloorPlanError lists the known names."""
+        """The gate or exit of this name; raises FloorPlanError if there is none."""
         for opening in self.openings():
             if opening.name == name:
                 return opening

@@ -58,8 +58,10 @@ logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 class Curve(NamedTuple):
     """A curve of a drawing.
 
-    Fields: ``layer`` its name; ``what`` its kind and handle, for error messages; ``points`` (n, 2)
-    metres.
+    Attributes:
+        layer: name of the curve's layer.
+        what: kind and handle of the curve, for error messages.
+        points: (n, 2) metres.
     """
 
     layer: str

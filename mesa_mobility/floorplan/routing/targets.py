@@ -25,7 +25,7 @@ class Targets:
     Attributes:
         points: (n, 2) metres: behind a gate or exit to cross, or past a corner to walk around, as
             far as the way on from there is in view. A person who cannot reach the destination gets
-            its own position.
+            their own position.
         gates: (n,) the gate or exit aimed through, as its number in `FloorPlan.openings()` (gates
             first, then exits); -1 for a corner.
         distances: (n,) length of the route to the line of the exit, or of the gate to cross, or to

@@ -45,8 +45,8 @@ def clear_line(
     """Whether the segment pq stays `clearance` metres (and more than `TOUCH`) from the walls.
 
     `own` is the distance of p to the nearest wall, inf if nobody stands there. If it is less than
-    the clearance, half of it suffices for walls near p. So somebody close to a wall has a view,
-    and keeps it on the straight line there. The wall with number `ignored` does not count
+    the clearance, half of `own` suffices for walls near p. So somebody close to a wall has a view,
+    and keeps it while they walk straight there. The wall with number `ignored` does not count
     (`NO_WALL`: all count).
     """
     table = sight.table
@@ -140,7 +140,10 @@ def _bars(
 
 @internal()
 def unwalled(sight: Sight, px: float, py: float, qx: float, qy: float) -> bool:
-    """Whether no wall lies across the segment pq, except one that p stands on."""
+    """Whether the segment pq neither crosses nor touches a wall.
+
+    A wall that p stands on does not count, nor do lines that are no walls (see `Sight`).
+    """
     table = sight.table
     if len(sight.walls) <= FEW_WALLS:
         return _unwalled_by_boxes(sight, px, py, qx, qy)
@@ -191,7 +194,10 @@ def _lies_across(sight: Sight, wall: int, px: float, py: float, qx: float, qy: f
 
 @internal()
 def free_length(sight: Sight, px: float, py: float, qx: float, qy: float) -> float:
-    """Metres from p towards q up to the first wall, at most to q."""
+    """Metres from p towards q until pq crosses a wall, or another line that no view crosses.
+
+    It is the length of pq if pq crosses none. Walls that pq only touches do not count.
+    """
     walls, table = sight.walls, sight.table
     dx = qx - px
     dy = qy - py
@@ -217,8 +223,10 @@ def line_of_sight(
 ) -> bool:
     """Whether the straight line from p to q (x, y in metres) stays `clearance` from all walls.
 
-    A line that touches a wall has no clearance: it is not in view. `plan_or_walls`
-    is a floor plan or an (m, 4) array of wall segments.
+    It does not if it touches a wall, even with a clearance of 0. `plan_or_walls` is a floor
+    plan or an (m, 4) array of wall segments.
+
+    Raises FloorPlanError as `lines_of_sight` does.
     """
     ends = [np.asarray(end, dtype=np.float64).reshape(1, 2) for end in (p, q)]
     return bool(lines_of_sight(plan_or_walls, ends[0], ends[1], clearance)[0])

@@ -55,8 +55,11 @@ _ROUNDS = 8
 class SmoothFloor(NamedTuple):
     """The free area without small pockets.
 
-    Fields: ``floor`` its polygon or polygons; ``walls`` (m,) its walls as shapely lines; ``tree``
-    of them; ``is_exact`` whether it is the free area itself.
+    Attributes:
+        floor: polygon or polygons of this floor.
+        walls: (m,) walls of this floor as shapely lines.
+        tree: of the walls.
+        is_exact: whether this floor is the free area itself.
     """
 
     floor: BaseGeometry

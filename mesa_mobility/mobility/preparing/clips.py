@@ -12,7 +12,7 @@ from mesa_mobility.mobility.graph import THRESHOLD
 from mesa_mobility.mobility.poses import PoseTable, pose_table
 
 STANDING_TYPE = "standing"
-"""Type of a manifest's clips that are added for people of whom no clip shows them standing."""
+"""Type of a manifest's clips that are added if no clip of the type asked for shows standing."""
 
 BOTH, ALONE = "both sides", "mirror images alone"
 """How a map's metadata calls recordings with their mirror images, and mirror images alone."""
@@ -25,10 +25,12 @@ class PreparedRecordings:
     Attributes:
         recordings: with mirror images where they are used.
         clips: what was loaded, and what was skipped or split.
-        remarks: what was decided, one line each.
-        choices: the same for a map's metadata: ``mirrored`` ("both sides", "as recorded" or
-            "mirror images alone"), ``mirrored_share`` where that was detected, and the numbers
-            of ``acted_clips`` and ``standing_clips``, if there are any.
+        remarks: what a reader should know, one line each: that clips are acted, that recordings
+            are not mirrored because the gait differs between the sides, that standing clips were
+            added.
+        choices: the decisions as entries of a map's metadata: ``mirrored`` ("both sides", "as
+            recorded" or "mirror images alone"); ``mirrored_share``, if the share was measured to
+            decide; ``acted_clips`` and ``standing_clips``, how many there are, if any.
     """
 
     recordings: list[Recording]
@@ -47,7 +49,7 @@ def prepare_recordings(
 ) -> PreparedRecordings:
     """Load the clips of a type, with their mirror images if the gait is alike on both sides.
 
-    If none of them shows anybody standing, the manifest's clips of type "standing" are added.
+    If no clip shows anybody standing, the manifest's clips of type "standing" are added.
 
     Args:
         manifest: the clips.

@@ -31,10 +31,10 @@ class Envelope:
     """What several seeds give: quantiles 0.05, 0.5 and 0.95 over the seeds that have a value.
 
     Attributes:
-        low: number or (n,) curve.
-        middle: likewise.
-        high: likewise.
-        seeds: runs.
+        low: lower end, a number or (n,) curve.
+        middle: median, a number or (n,) curve.
+        high: upper end, a number or (n,) curve.
+        seeds: number of runs.
     """
 
     low: FloatArray
@@ -61,10 +61,10 @@ class Distance:
     Attributes:
         name: of the figure.
         unit: of values and distance.
-        statistic: what ``measured`` and ``simulated`` are of the figure, such as "sd".
-        measured: of all measured runs together; for ``erd``, ``epc`` and ``sc`` the value for equal
-            curves.
-        simulated: the same of each seed.
+        statistic: which statistic of the figure ``measured`` and ``simulated`` are, such as "sd".
+        measured: statistic of all measured runs together; for ``erd``, ``epc`` and ``sc`` the value
+            for equal curves.
+        simulated: statistic of each seed.
         distance: of each seed from the measured runs.
         curve: the curve of each seed, or None for samples.
         measured_curve: of the measured runs together.
@@ -154,7 +154,7 @@ def compare(
         simulated: a run for each seed.
         measured: one run or several, which are taken together.
         view: where and when people count.
-        measured_view: the same for the measured crowd, if it is another.
+        measured_view: where and when people of the measured crowd count; by default ``view``.
         figures: names; by default all that the view suffices for.
 
     Raises:

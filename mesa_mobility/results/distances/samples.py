@@ -73,9 +73,12 @@ def _ends(person: NDArray[np.int32]) -> NDArray[np.int64]:
 class Moment(NamedTuple):
     """Where people are at one time.
 
-    Fields: ``along`` and ``across`` (n,) metres along the direction and to its left; ``way`` (n,)
-    which way each walks in the end: +1, -1, or 0 for those who hardly move; ``inside`` (n,) whether
-    they are in the area.
+    Attributes:
+        along: (n,) metres along the view's direction.
+        across: (n,) metres to the left of that direction.
+        way: (n,) which way each person walks on the whole: +1 along the direction, -1 against it, 0
+            for people who hardly move.
+        inside: (n,) whether they are in the area.
     """
 
     along: FloatArray

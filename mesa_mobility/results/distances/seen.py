@@ -22,7 +22,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A run as a view sees it.
+    """A run as a ``View`` sees it: the part of a run that a comparison measures.
 
     Attributes:
         tracks: the rows that count.
@@ -48,7 +48,10 @@ class Seen:
 
     @cached_property
     def passing_times(self) -> FloatArray:
-        """(k,) seconds since ``start`` at which people first crossed the line, in rising order."""
+        """(k,) seconds since ``start`` at which people first crossed the line, in rising order.
+
+        The view must have a line.
+        """
         return self._passing_times - self.start
 
     @property
@@ -69,21 +72,25 @@ class Seen:
 
     @cached_property
     def moving(self) -> pd.DataFrame:
-        """Speeds and densities; see ``with_pedpy.speeds_and_densities``."""
+        """One row for each second and person in the area, standing people included.
+
+        Columns are ``id``, ``frame``, ``x``, ``y``, ``speed`` and ``density``; see
+        ``with_pedpy.speeds_and_densities``. The view must have a direction and a floor.
+        """
         return with_pedpy.speeds_and_densities(self.tracks, self.view)
 
     @cached_property
     def profiles(self) -> tuple[FloatArray, FloatArray]:
-        """Density and speed by cell; see ``with_pedpy.profiles``."""
+        """Mean density and speed in each cell of the area; see ``with_pedpy.profiles``."""
         return with_pedpy.profiles(self.moving, self.tracks, self.view)
 
     @cached_property
     def moments(self) -> list[samples.Moment]:
-        """Once a second where people are; see ``samples.moments``."""
+        """Where people are, once a second; see ``samples.moments``."""
         return samples.moments(self.tracks, self.view)
 
     @cached_property
     def steps(self) -> Steps:
-        """Steps of 1.5 s in the area."""
+        """Steps of 1.5 s in the area. The view must have a direction."""
         assert self.view.direction is not None
         return steps_between(self.tracks, self.view.direction, selection=self.selection)

@@ -24,7 +24,10 @@ CELL_M = 0.5
 
 
 def passing_times(tracks: Tracks, view: View) -> FloatArray:
-    """(k,) seconds of the tracks at which people first crossed the line, in rising order."""
+    """(k,) seconds of the tracks at which people first crossed the view's line, in rising order.
+
+    The view must have a line.
+    """
     pedpy, data = _pedpy(tracks)
     assert view.line is not None
     line = pedpy.MeasurementLine(list(view.line))
@@ -33,9 +36,15 @@ def passing_times(tracks: Tracks, view: View) -> FloatArray:
 
 
 def speeds_and_densities(tracks: Tracks, view: View) -> pd.DataFrame:
-    """Once a second everybody in the area: ``x``, ``y`` (m), ``speed`` along the direction over
-    1.5 s (m/s), or against it for people who go the other way, and ``density``, of their Voronoi
-    cell (persons/m2)."""
+    """Place, speed and density of everybody in the area, once a second.
+
+    The view must have a direction and a floor.
+
+    Returns:
+        One row for each second and person in the area: ``id``, ``frame``, ``x``, ``y`` (m);
+        ``speed`` over 1.5 s along the direction, or against it for people who go the other way
+        (m/s); ``density`` of the person's Voronoi cell (persons/m2).
+    """
     pedpy, data = _pedpy(tracks)
     assert view.direction is not None
     half = max(round(WINDOW_S * tracks.frame_rate / 2), 1)

@@ -53,7 +53,8 @@ def read_jupedsim_sqlite(path: Path) -> Rows:
     """Read a JuPedSim trajectory database: positions in metres and the directions people face.
 
     Raises:
-        ResultsError: it cannot be read, or lacks tables, columns or the frame rate.
+        ResultsError: the file cannot be read, lacks tables or columns, or has a frame rate that is
+            no number. A file without a frame rate gives a ``frame_rate`` of None.
     """
     # An absent file would be created, and a file of another kind is no reason to write beside it.
     try:

@@ -28,10 +28,10 @@ def by_type(trajectories: Tracks, key: str = "type") -> pd.DataFrame:
 
     Returns:
         A row for each type, by name: ``people``, ``left``; ``mean_egress_s`` and ``p95_egress_s``,
-        mean and 95th percentile of the seconds from a person's first frame to its leaving;
-        ``mean_speed_mps``, as ``mean_speed`` has it. Those still inside count as later than all
-        others: nan as the mean where there are any, nan as the percentile where it lies among
-        them. nan as well where there is nothing to count.
+        mean and 95th percentile of the seconds from a person's first frame to when they leave;
+        ``mean_speed_mps``, as ``mean_speed`` has it. People still inside count as later than all
+        others: the mean is nan if there are any, and the percentile is nan if it lies among them.
+        Each is nan where there is nothing to count.
 
     Raises:
         ResultsError: the trajectories have no such data.
@@ -87,7 +87,7 @@ def people_by(trajectories: Tracks, key: str) -> dict[str, NDArray[np.int64]]:
 
 
 def _egress_seconds(trajectories: Tracks) -> NDArray[np.float64]:
-    """(m,) seconds from each person's first frame to its leaving; infinite for those inside."""
+    """(m,) seconds from each person's first frame to when they leave; infinite for those inside."""
     left = trajectories.exit_frames
     first = np.zeros(len(left), dtype=np.int64)
     first[trajectories.person[::-1]] = trajectories.frame[::-1]

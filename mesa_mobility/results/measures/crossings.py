@@ -104,7 +104,7 @@ def flow(times: ArrayLike) -> float | None:
 def passed_by(found: Crossings, direction: int | None = None) -> list[list[float]]:
     """The N-t curve of a line: [[t, people who have crossed it by then], ...].
 
-    An entry for each person, at its first passage.
+    There is an entry for each person, at their first passage.
 
     Args:
         found: passages, from `crossings`.
@@ -127,7 +127,7 @@ def flow_over_time(
     """Flow over a line in successive windows: [[middle of the window, people a second], ...].
 
     Args:
-        found: passages, from `crossings`; everybody counts once, at its first passage.
+        found: passages, from `crossings`; everybody counts once, at their first passage.
         duration: seconds measured (`Trajectories.duration`); a last window that is not full is
             left out.
         window: seconds.

@@ -95,8 +95,8 @@ def voronoi_density(
 ) -> list[list[float]]:
     """Mean over an area of the density 1 / A_i of the cells in it, as [[t, people / m2], ...].
 
-    Everybody counts with the share of its cell that lies in the area (Steffen and Seyfried 2010,
-    equation 6), so that the density does not jump when a person enters, as N / A does.
+    Everybody counts with the share of their cell that lies in the area (Steffen and Seyfried 2010,
+    equation 6). So the density does not jump when a person enters, as N / A does.
 
     Args:
         trajectories: the run.

@@ -186,7 +186,7 @@ def facing_angles(
 
 
 def walked_back(trajectories: Tracks, point: ArrayLike) -> FloatArray:
-    """How far each person has walked back from a point that it had come nearer to.
+    """How far each person has walked back from a point that they had come nearer to.
 
     Args:
         trajectories: the run.

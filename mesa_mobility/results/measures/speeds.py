@@ -97,7 +97,7 @@ def checked_direction(direction: ArrayLike, what: str) -> tuple[FloatArray, floa
         what: what is measured along it, for the error.
 
     Raises:
-        ResultsError: it has no length, or is no direction.
+        ResultsError: the direction has no length, or is no direction.
     """
     along = np.asarray(direction, dtype=np.float64)
     length = float(np.hypot(*along)) if along.shape == (2,) else 0.0

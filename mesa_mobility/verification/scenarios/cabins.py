@@ -36,7 +36,8 @@ def cabin(number: int) -> Polygon:
 
 
 def cabins_plan() -> FloorPlan:
-    """Corridor, stub to the main exit, cabins and their doors."""
+    """The plan: a corridor, a short side corridor to the main exit, the twelve cabins and their
+    doors."""
     parts = [box(0.0, LOW, END, HIGH), box(6.0, HIGH, 7.2, TOP)]
     for number in range(1, 13):
         lower = number <= 6

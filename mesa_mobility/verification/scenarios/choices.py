@@ -21,16 +21,16 @@ EXIT_2: Line = ((SIDE, 4.5), (SIDE, 5.5))
 NEAR, FAR = 3.0, 8.0
 """Metres to the near exit, in the left wall, and to the far one."""
 HESITATES_S = 2.0
-"""Seconds before the person chooses, in which it can see where another goes."""
+"""Seconds before the person chooses, in which they can see where another goes."""
 
 
 def influenced(seed: int, *, trials: int, other: bool) -> dict[str, Any]:
     """One person in the middle of a room with an exit at either side, 5 m away.
 
     Args:
-        seed: of the first trial; each has a generator of its own.
+        seed: of the first trial; each trial has a generator of its own.
         trials: how many.
-        other: whether a second person beside it heads for exit 2.
+        other: whether a second person beside them heads for exit 2.
 
     Returns:
         The common figures over all trials; ``share``, of trials in which the person left by
@@ -47,7 +47,7 @@ def influenced(seed: int, *, trials: int, other: bool) -> dict[str, Any]:
 
 
 def familiar(seed: int, *, trials: int, knows: bool) -> dict[str, Any]:
-    """One person 3 m from one exit and 8 m from another, which it knows or not.
+    """One person 3 m from one exit and 8 m from another, which they know or not.
 
     Returns:
         As of `influenced`, with the ``share`` of the far exit, "exit 2".

@@ -13,14 +13,14 @@ from mesa_mobility.verification.runs import CLEARANCE, Run, crowd_model, evacuat
 from mesa_mobility.verification.scenarios.rooms import SMALL_ROOM, SMALL_ROOM_DOOR
 
 MOVED_M = 0.05
-"""A person this far from its initial position has started, metres."""
+"""A person this far from their initial position has started, metres."""
 
 ROOM_TO_STAND = 1.0
 """Metres between people at the start: nobody has to wait for another to get going."""
 
 
 def late_starters(seed: int, *, people: int, times: Distribution) -> dict[str, Any]:
-    """People leave a room of 8 m x 5 m, each after a time drawn for it.
+    """People leave a room of 8 m x 5 m, each after a time drawn for them.
 
     Returns:
         The common figures, and ``assigned`` and ``started``, seconds by person; None for one

@@ -38,6 +38,9 @@ def corner(seed: int, *, people: int, start_x: float, speed: float) -> dict[str,
         people: how many start between `start_x` and x = 6 m.
         start_x: metres.
         speed: of everybody, m/s.
+
+    Returns:
+        The common figures, and ``points_outside``, as the function of this name counts them.
     """
     plan = FloorPlan(CORNER, exits=[Exit("end", (10.0, 12.0), (12.0, 12.0))])
     model = crowd_model(plan, seed)
@@ -51,7 +54,7 @@ def corner(seed: int, *, people: int, start_x: float, speed: float) -> dict[str,
 
 
 def points_outside(run: Run) -> int:
-    """Recorded places more than a millimetre off the floor, of people still inside."""
+    """How many recorded places of people still inside lie more than a millimetre off the floor."""
     tracks = run.trajectories
     left = tracks.exit_frames[tracks.person]
     inside = (left < 0) | (tracks.frame < left)
@@ -62,7 +65,12 @@ def points_outside(run: Run) -> int:
 
 
 def small_room(seed: int, *, people: int) -> dict[str, Any]:
-    """People leave a room of 8 m x 5 m by a door 1 m wide in its right wall."""
+    """People leave a room of 8 m x 5 m by a door 1 m wide in its right wall.
+
+    Returns:
+        The common figures (see ``Run.figures``), the flow through the door, ``flow_per_s``, and how
+        many people ``left``.
+    """
     plan = FloorPlan(SMALL_ROOM, exits=[Exit("door", *SMALL_ROOM_DOOR)])
     model = crowd_model(plan, seed)
     places = plan.random_points(people, model.rng, spacing=SPACING, clearance=CLEARANCE)
@@ -73,7 +81,11 @@ def small_room(seed: int, *, people: int) -> dict[str, Any]:
 
 
 def hall(seed: int, *, people: int, exits: int) -> dict[str, Any]:
-    """Men of 30 to 50 in a hall of 30 m x 20 m leave by four exits of 1 m, or by the last two."""
+    """Men of 30 to 50 in a hall of 30 m x 20 m leave by four exits of 1 m, or by the last two.
+
+    Returns:
+        The common figures, and how many people left by each exit, ``by_exit``.
+    """
     names = list(FOUR_EXITS)
     plan = FloorPlan(HALL, exits=[Exit(name, *FOUR_EXITS[name]) for name in names])
     for name in names[: len(names) - exits]:
@@ -85,6 +97,9 @@ def two_exits(seed: int, *, people: int) -> dict[str, Any]:
     """People crowd the left half of a hall whose two exits of 1 m lie on the right.
 
     They weigh the walk against the queue.
+
+    Returns:
+        The common figures, and how many people left by each exit, ``by_exit``.
     """
     plan = FloorPlan(HALL, exits=[Exit(name, *line) for name, line in TWO_EXITS.items()])
     start = box(2.0, 2.0, 15.0, 18.0)

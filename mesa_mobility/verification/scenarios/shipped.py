@@ -11,6 +11,6 @@ LIMIT_S = 900.0
 
 
 def shipped(seed: int, *, model: str, **parameters: Any) -> dict[str, Any]:
-    """A model that ships, with its own numbers but for ``parameters``, until everybody is out."""
+    """Run a model that ships until everybody is out, with its own numbers except ``parameters``."""
     run = evacuate(load_model(model)(record=True, rng=seed, **parameters), LIMIT_S)
     return run.figures()

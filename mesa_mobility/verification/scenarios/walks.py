@@ -22,7 +22,7 @@ FASTEST = 1.85
 
 
 def corridor_plan(length: float, width: float = WIDTH) -> FloorPlan:
-    """From x = 0 to `length`, y = 0 to `width`, open at its right end."""
+    """A corridor from x = 0 to `length` and y = 0 to `width`, open at the right end."""
     return FloorPlan(
         box(0.0, 0.0, length, width), exits=[Exit("end", (length, 0.0), (length, width))]
     )
@@ -39,7 +39,7 @@ def lone_walker(
         seed: of the run.
         length: of the corridor, metres.
         speed: preferred speed, m/s.
-        measured_from: x where its speed begins to be measured, metres.
+        measured_from: x where the person's speed begins to be measured, metres.
         measured_to: x where that ends.
     """
     model = crowd_model(corridor_plan(length), seed)

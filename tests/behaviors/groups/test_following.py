@@ -132,8 +132,8 @@ def test_it_goes_on_from_a_checkpoint(tmp_path):
     ("leaders", "trails", "text"),
     [
         ({1: 0}, {0: np.empty((0, 2))}, r"_trails\[0\]: has no numbers, expected some"),
-        ({1: 1}, {}, "_leaders: pedestrian 1 would follow itself"),
-        ({2: 0, 0: 1, 1: 2}, {}, "_leaders: pedestrian [012] would follow itself"),
+        ({1: 1}, {}, "_leaders: pedestrian 1 would follow themselves"),
+        ({2: 0, 0: 1, 1: 2}, {}, "_leaders: pedestrian [012] would follow themselves"),
     ],
 )
 def test_what_a_checkpoint_must_not_say(tmp_path, leaders, trails, text):
@@ -156,5 +156,5 @@ def test_what_is_refused():
     a, b, c = model.add_pedestrians([(2.0, 1.0), (3.0, 1.0), (4.0, 1.0)])
     following.follow([b], a)
     following.follow([c], b)
-    with pytest.raises(ModelError, match="pedestrian 0 would follow itself"):
+    with pytest.raises(ModelError, match="pedestrian 0 would follow themselves"):
         following.follow([a], c)

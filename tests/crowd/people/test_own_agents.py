@@ -286,7 +286,7 @@ def test_rows_of_a_base_model_stay_as_they_are():
 def test_a_row_stays_and_who_has_left_does_not_wait():
     model = model_of(corridor(), strider())
     first, second = model.add_pedestrians([(2.0, 1.0), (2.0, 3.0)])
-    with pytest.raises(ModelError, match=r"^pedestrian 0: its row is the same for ever, got 1"):
+    with pytest.raises(ModelError, match=r"^pedestrian 0: their row is the same for ever, got 1"):
         first.row = second.row
     first.remove()
     with pytest.raises(ModelError, match=r"^pedestrian 0: has left, expected somebody inside"):

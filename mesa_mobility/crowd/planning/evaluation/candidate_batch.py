@@ -44,7 +44,7 @@ class Outlook(NamedTuple):
 
 
 def pairs_of(rows: NDArray[np.int64], outlook: Outlook) -> NDArray[np.int64]:
-    """(len(rows),) options of each pedestrian times its neighbours: the size of its pair arrays."""
+    """(n,) number of options times number of neighbours of each pedestrian in ``rows`` (n,)."""
     table, crowd, grid, _, rules, _ = outlook
     clusters = crowd.cluster[rows]
     counts = table.offsets[clusters + 1] - table.offsets[clusters]

@@ -45,7 +45,7 @@ WORTH_MENTION = 0.02
 """Cost that a neighbour must add to a probed group to be relevant."""
 
 NEAR = 0.6
-"""Metres within which people count as near, or as in somebody's way to its target."""
+"""Metres within which people count as near, or as in somebody's way to their target."""
 
 
 @force_inlined()
@@ -86,8 +86,9 @@ def mark_relevant(
 def select_relevant(me: Decider, count: int, neighbours: Neighbours) -> int:
     """Move the relevant ones of the first ``count`` neighbours, likely to cost most, to the front.
 
-    They would come near if the pedestrian walked to its target at its preferred speed, or come
-    towards it. A sum of pair terms over them alone is a lower bound of the sum over all.
+    These would come near if the pedestrian walked to their target at their preferred speed, or come
+    towards the pedestrian. A sum of pair terms over them alone is a lower bound of the sum over
+    all.
 
     Returns their number.
     """
