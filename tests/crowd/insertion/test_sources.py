@@ -305,8 +305,11 @@ def test_people_who_come_for_ever_want_an_end():
 
 @pytest.mark.parametrize("comes", [{"times": [1.0]}, {"rate": 1.0, "number": 2}])
 def test_people_who_are_to_come_and_go_round_for_ever_want_an_end(comes):
-    exits, gates = [Exit("east", (20, 0), (20, 4))], [Gate("middle", (10, 0), (10, 4))]
+    exits, gates = (
+        [Exit("east", (20, 0), (20, 4))],
+        [Gate("there", (10, 0), (10, 4)), Gate("back", (6, 0), (6, 4))],
+    )
     model = model_of(FloorPlan(box(0, 0, 20, 4), exits=exits, gates=gates), strider())
-    model.add_source(Source(area=WEST, route=["middle"], loop=True, **comes))
+    model.add_source(Source(area=WEST, route=["there", "back"], loop=True, **comes))
     with pytest.raises(ModelError, match="max_seconds"):
         model.run()
