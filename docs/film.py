@@ -1,4 +1,4 @@
-"""Film a run in three dimensions: the pictures in docs/index.md and docs/how-to/bodies.md.
+"""Film a run in three dimensions: the pictures in docs/index.md and docs/how-to/results/bodies.md.
 
     mesa-mobility run doorway --seed 1 --record decisions --out out/doorway
     mesa-mobility replay out/doorway --no-open

@@ -4,7 +4,7 @@
     python examples/live_client.py ADDRESS
 
 Needs `pip install 'mesa-mobility[live]'`. In place of this program, a game engine or a training
-simulator may connect; docs/how-to/live.md says what goes over the socket.
+simulator may connect; docs/how-to/results/live.md says what goes over the socket.
 """
 
 import json

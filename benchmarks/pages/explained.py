@@ -1,4 +1,4 @@
-"""What `mesa-mobility explain` prints of a run, as a block for docs/how-to/bodies.md.
+"""What `mesa-mobility explain` prints of a run, as a block for docs/how-to/results/bodies.md.
 
 mesa-mobility run doorway --seed 1 --record decisions --out FOLDER/doorway
 python benchmarks/pages/explained.py FOLDER/doorway --out FOLDER

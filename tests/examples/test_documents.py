@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[2]
 RUN = [
     ROOT / "README.md",
     ROOT / "docs" / "dashboard.md",
-    *sorted((ROOT / "docs" / "how-to").glob("*.md")),
+    *sorted((ROOT / "docs" / "how-to").rglob("*.md")),
 ]
 LINKED = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 
