@@ -18,6 +18,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from mesa_mobility.behaviors.steering.anticipation import GAINS, WALKS, turns
+from mesa_mobility.behaviors.steering.people_ahead import (
+    LIMIT,
+    MOTION_FIELDS,
+    WAY_X,
+    WAY_Y,
+    note_motion,
+)
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Desired, Range, Tactic
@@ -64,15 +71,12 @@ class CourseSettings(NamedTuple):
 
 
 class _Around(NamedTuple):
-    """What those who choose see: everybody, in the order of ``grid``, and the walls.
-
-    ``ways`` (2, people) are where they want to go from where they are, metres; 0 of those who wait.
-    """
+    """Everybody, with their motion in the order of ``grid`` (see ``note_motion``), and walls."""
 
     grid: Grid
     sight: Sight
     state: CrowdState
-    ways: NDArray[np.float64]
+    motion: NDArray[np.float64]
 
 
 def choose_courses(
@@ -96,22 +100,13 @@ def choose_courses(
         settings: of the comparison.
     """
     points = points.copy()
-    grid, state = inside.grid, inside.crowd.records
-    ahead, ways = np.empty((_FIELDS, len(grid.people))), np.empty((2, len(grid.people)))
-    around = _Around(grid, sight, state, ways)
-    _note_ways(around, inside.crowd.agenda, frame)
+    grid, crowd = inside.grid, inside.crowd
+    n = len(grid.people)
+    ahead, motion = np.empty((_FIELDS, n)), np.empty((MOTION_FIELDS, n))
+    note_motion(grid, frame, crowd.records, crowd.agenda, motion)
+    around = _Around(grid, sight, crowd.records, motion)
     _choose_courses(rows, around, points, speeds, settings, _COURSES, ahead)
     return points
-
-
-@compiled()
-def _note_ways(around: _Around, agenda: NDArray[np.void], frame: int) -> None:
-    """Write where everybody wants to go who does not wait."""
-    for a in range(len(around.grid.people)):
-        j = around.grid.people[a]
-        goes = agenda[j]["waits_until"] <= frame
-        around.ways[0, a] = around.state[j].target_x - around.state[j].x if goes else 0.0
-        around.ways[1, a] = around.state[j].target_y - around.state[j].y if goes else 0.0
 
 
 @compiled()
@@ -186,14 +181,18 @@ def _people_ahead(
 
 @inner()
 def _somebody_comes(x: float, y: float, ex: float, ey: float, away: float, around: _Around) -> bool:
-    """Whether somebody in view, on this side of a target, wants to go the other way."""
-    grid, ways = around.grid, around.ways
+    """Whether somebody in view, on this side of a target, wants to go the other way.
+
+    People who wait do not: they always count for others, which is what an endless limit says.
+    """
+    grid, motion = around.grid, around.motion
     first, last, low, high = cells_within(grid, x, y, COMING)
     for row in range(low, high + 1):
         for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
             dx, dy = grid.x[a] - x, grid.y[a] - y
             if (
-                ways[0, a] * ex + ways[1, a] * ey < 0.0
+                motion[WAY_X, a] * ex + motion[WAY_Y, a] * ey < 0.0
+                and motion[LIMIT, a] < np.inf
                 and 0.0 < dx * ex + dy * ey < away
                 and dx * dx + dy * dy <= COMING * COMING
                 and unwalled(around.sight, x, y, grid.x[a], grid.y[a])

@@ -13,6 +13,19 @@ from mesa_mobility.errors import LiveError
 from mesa_mobility.live.frames import COLUMNS, Frame, read_frame
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
+AS_JSON = {
+    "type": "frame",
+    "number": 1,
+    "frame": 2,
+    "sent": 3.0,
+    "paused": False,
+    "person": [7],
+    "x": [0.1],
+    "y": [0.2],
+    "heading": [0.3],
+    "vx": [0.4],
+    "vy": [0.5],
+}
 
 
 @st.composite
@@ -81,19 +94,7 @@ def test_the_binary_form_is_the_documented_one():
 def test_the_json_form_has_a_list_for_each_column():
     one = [np.array([value]) for value in (0.1, 0.2, 0.3, 0.4, 0.5)]
     frame = Frame(1, 2, 3.0, False, np.array([7], dtype=np.int32), *one)
-    assert json.loads(frame.to_json()) == {
-        "type": "frame",
-        "number": 1,
-        "frame": 2,
-        "sent": 3.0,
-        "paused": False,
-        "person": [7],
-        "x": [0.1],
-        "y": [0.2],
-        "heading": [0.3],
-        "vx": [0.4],
-        "vy": [0.5],
-    }
+    assert json.loads(frame.to_json()) == AS_JSON
 
 
 @given(st.binary(max_size=200) | st.text(max_size=200))
@@ -123,18 +124,5 @@ def test_a_frame_that_is_cut_or_longer_is_refused(frame, data):
     ],
 )
 def test_a_json_frame_with_other_values_is_refused(changes, message):
-    values = {
-        "type": "frame",
-        "number": 1,
-        "frame": 2,
-        "sent": 3.0,
-        "paused": False,
-        "person": [7],
-        "x": [0.1],
-        "y": [0.2],
-        "heading": [0.3],
-        "vx": [0.4],
-        "vy": [0.5],
-    }
     with pytest.raises(LiveError, match=message):
-        read_frame(json.dumps(values | changes))
+        read_frame(json.dumps(AS_JSON | changes))

@@ -9,19 +9,8 @@ from mesa_mobility.distributions import Normal
 from mesa_mobility.mobility import shipped_map_path
 from mesa_mobility.verification.runs import evacuate
 from mesa_mobility.verification.scenarios.walks import speeds_walked
+from tests.fixtures.maps import ALL_TYPES, SLOWER_TYPES, WHEELCHAIR_TYPES
 from tests.fixtures.speeds import normal_within
-
-WHEELCHAIRS = ("wheelchair_manual", "wheelchair_powered", "wheelchair_assisted")
-OTHERS = (
-    "child",
-    "older_adult",
-    "slow",
-    "limping_left",
-    "limping_right",
-    "cane",
-    "crutches",
-    "walking_frame",
-)
 
 # Metres; 10 m of room in front of the door, 8 m behind it.
 ROOM, WALL, END = 10.0, 0.2, 18.2
@@ -76,7 +65,7 @@ def assert_safe(figures):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["able_bodied", *OTHERS, *WHEELCHAIRS])
+@pytest.mark.parametrize("name", ALL_TYPES)
 def test_fifty_alone_keep_their_own_speed(name):
     kind, mean, sd = kind_of(name)
     model, places = in_lanes(kind, 50, max(3.0, 4 * kind.core_radius + 1.0))
@@ -89,7 +78,7 @@ def test_fifty_alone_keep_their_own_speed(name):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("width", [0.9, 1.0, 1.2])
-@pytest.mark.parametrize("name", WHEELCHAIRS)
+@pytest.mark.parametrize("name", WHEELCHAIR_TYPES)
 def test_twenty_wheelchairs_get_through_a_door_that_lets_one_through_at_a_time(name, width):
     for seed in (1, 2):
         figures = through_a_door(name, 20, width, seed)
@@ -98,7 +87,7 @@ def test_twenty_wheelchairs_get_through_a_door_that_lets_one_through_at_a_time(n
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", WHEELCHAIRS)
+@pytest.mark.parametrize("name", WHEELCHAIR_TYPES)
 def test_one_wheelchair_gets_through_a_door_of_90_centimetres(name):
     figures = through_a_door(name, 1, 0.9, 1)
     assert figures["left_inside"] == 0
@@ -106,7 +95,7 @@ def test_one_wheelchair_gets_through_a_door_of_90_centimetres(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("name", SLOWER_TYPES)
 def test_sixty_get_through_a_door_of_90_centimetres(name):
     for seed in (1, 2):
         figures = through_a_door(name, 60, 0.9, seed)

@@ -6,21 +6,8 @@ from shapely import box
 
 from mesa_mobility import Exit, FloorPlan, PedestrianModel, PedestrianType, SpeedZone
 from mesa_mobility.results import Trajectories, crossings
+from tests.fixtures.maps import ALL_TYPES
 
-TYPES = (
-    "able_bodied",
-    "child",
-    "older_adult",
-    "slow",
-    "limping_left",
-    "limping_right",
-    "cane",
-    "crutches",
-    "walking_frame",
-    "wheelchair_manual",
-    "wheelchair_powered",
-    "wheelchair_assisted",
-)
 SLOWEST = 0.05
 
 
@@ -63,7 +50,7 @@ def test_slow_people_do_not_freeze(name, speed, factor):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [1.0, 0.8, 0.6, 0.4])
-@pytest.mark.parametrize("name", TYPES)
+@pytest.mark.parametrize("name", ALL_TYPES)
 def test_each_type_keeps_each_speed_in_each_zone(name, factor):
     kind = PedestrianType.named(name)
     found = {

@@ -12,23 +12,10 @@ import pytest
 from mesa_mobility.mobility import WHEELCHAIRS, MobilityMap, abilities_of, shipped_map_path
 from mesa_mobility.mobility.judging.verdict import with_verdict
 from mesa_mobility.mobility.standing.ways_back import check_ways_back
+from tests.fixtures.maps import ALL_TYPES
 
 FOLDER = Path(str(files("mesa_mobility.maps")))
 
-NAMES = (
-    "able_bodied",
-    "child",
-    "older_adult",
-    "slow",
-    "limping_left",
-    "limping_right",
-    "cane",
-    "crutches",
-    "walking_frame",
-    "wheelchair_manual",
-    "wheelchair_powered",
-    "wheelchair_assisted",
-)
 
 # Radii of the cores in metres, and free speeds of the sources in m/s.
 BODIES = {"child": 0.128, "crutches": 0.22, "walking_frame": 0.2}
@@ -45,8 +32,8 @@ SPEEDS = {
 
 
 def test_twelve_maps_ship_in_at_most_20_megabytes():
-    assert {path.stem for path in FOLDER.glob("*.npz")} == set(NAMES)
-    assert sum(shipped_map_path(name).stat().st_size for name in NAMES) <= 20e6
+    assert {path.stem for path in FOLDER.glob("*.npz")} == set(ALL_TYPES)
+    assert sum(shipped_map_path(name).stat().st_size for name in ALL_TYPES) <= 20e6
 
 
 def test_the_readme_has_their_sums():
@@ -58,12 +45,12 @@ def test_the_readme_has_their_sums():
         )
     )
     assert listed == {
-        name: hashlib.sha256(shipped_map_path(name).read_bytes()).hexdigest() for name in NAMES
+        name: hashlib.sha256(shipped_map_path(name).read_bytes()).hexdigest() for name in ALL_TYPES
     }
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", [each for each in NAMES if each != "able_bodied"])
+@pytest.mark.parametrize("name", [each for each in ALL_TYPES if each != "able_bodied"])
 def test_each_says_what_it_is_and_traps_nobody(name):
     map_ = MobilityMap.load(shipped_map_path(name))
     assert map_.pedestrian_type == name
@@ -80,7 +67,7 @@ def test_each_says_what_it_is_and_traps_nobody(name):
         assert min(abilities_of(map_)["side_step_m"]) >= 0.14
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ALL_TYPES)
 def test_each_has_passed_its_examination(name):
     with np.load(shipped_map_path(name)) as arrays:
         metadata = json.loads(arrays["metadata"].tobytes())

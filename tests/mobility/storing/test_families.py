@@ -18,20 +18,8 @@ from mesa_mobility.mobility import (
     reachable_options,
 )
 from mesa_mobility.mobility.edits import EDITS, STRIDES, TURNS_DEG
+from tests.fixtures.maps import MAP_ARRAYS
 from tests.fixtures.poses import random_poses
-
-ARRAYS = (
-    "offsets",
-    "durations",
-    "costs",
-    "path_offsets",
-    "paths",
-    "path_clusters",
-    "mean_poses",
-    "centres",
-    "sizes",
-    "mean_speeds",
-)
 
 MOTION_STEP = 2e-5
 
@@ -56,7 +44,7 @@ def test_the_file_gives_the_whole_map(built, tmp_path):
     whole.save(tmp_path / "whole.npz")
     read = MobilityMap.load(tmp_path / "a.npz")
     stored = MobilityMap.load(tmp_path / "whole.npz")
-    for name in ARRAYS:
+    for name in MAP_ARRAYS:
         np.testing.assert_array_equal(getattr(read, name), getattr(whole, name), err_msg=name)
         np.testing.assert_array_equal(getattr(read, name), getattr(stored, name), err_msg=name)
     assert read.metadata == whole.metadata

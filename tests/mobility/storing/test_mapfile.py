@@ -14,19 +14,7 @@ from hypothesis import strategies as st
 
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import MobilityMap
-
-ARRAYS = (
-    "offsets",
-    "durations",
-    "costs",
-    "path_offsets",
-    "paths",
-    "path_clusters",
-    "mean_poses",
-    "centres",
-    "sizes",
-    "mean_speeds",
-)
+from tests.fixtures.maps import MAP_ARRAYS
 
 
 @st.composite
@@ -63,7 +51,7 @@ def test_a_saved_map_reads_back_unchanged(map_, tmp_path_factory):
     folder = tmp_path_factory.mktemp("map")
     map_.save(folder / "a.npz")
     back = MobilityMap.load(folder / "a.npz")
-    for name in ARRAYS:
+    for name in MAP_ARRAYS:
         np.testing.assert_array_equal(getattr(back, name), getattr(map_, name), err_msg=name)
     assert back.metadata == map_.metadata
     back.save(folder / "b.npz")
