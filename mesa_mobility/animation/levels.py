@@ -47,9 +47,9 @@ def jointed_figures() -> dict[str, Figure]:
 def rigid_figures() -> dict[str, Figure]:
     """Figures that move as a whole and stand on the floor at the origin, by name.
 
-    Names are ``seated_near`` and ``seated_far``, a person who sits in a wheelchair;
-    ``wheelchair_near`` and ``wheelchair_far``, that wheelchair; ``person_pawn``, a person without
-    limbs.
+    Names that end with ``_near`` are of detailed figures, those with ``_far`` of coarse ones.
+    ``seated_near`` and ``seated_far`` are a person who sits in a wheelchair, ``wheelchair_near``
+    and ``wheelchair_far`` that wheelchair. ``person_pawn`` is a person without limbs.
     """
     people = {"near": human_figure(NEAR_AROUND), "far": distant_figure()}
     found = {"person_pawn": pawn()}

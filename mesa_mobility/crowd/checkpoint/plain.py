@@ -171,7 +171,8 @@ class Unpacker:
 
     Args:
         arrays: the arrays by name.
-        objects: the objects of this process, by the names that ``Packer`` gave to its references.
+        objects: the objects of this process, by the names under which ``Packer`` stored references
+            to them.
     """
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], objects: Mapping[Any, Any]) -> None:

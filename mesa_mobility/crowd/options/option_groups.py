@@ -75,7 +75,7 @@ AT_X, AT_Y = 5, 5 + len(LEVELS)
 
 
 class OptionGroups(NamedTuple):
-    """Bounds of the groups of options in an ``OptionTable``: what holds for all options of a group.
+    """Bounds of the groups of options in an ``OptionTable``, and fields of their options.
 
     Attributes:
         clusters: (clusters,) records of ``CLUSTER``.

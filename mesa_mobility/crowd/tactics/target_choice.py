@@ -36,9 +36,9 @@ class TargetChoice(Plugin):
             ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,) in metres. A
             distance is inf where there is no way. People with smaller distances decide first.
             People who come near the place of a visit slow down according to their distance. Copy
-            ``gates`` (n,) and ``corners`` (n, 2) from what ``deciding.site.targets`` gives. Without
-            it set all gates to -1, and ``corners`` to None. The model raises ModelError for other
-            values (see ``query_targets``).
+            ``gates`` (n,) and ``corners`` (n, 2) from what ``deciding.site.targets`` gives. If you
+            do not use that, set all gates to -1, and ``corners`` to None. The model raises
+            ModelError for other values (see ``query_targets``).
         """
 
 

@@ -63,8 +63,9 @@ class Stage:
 
         Args:
             places: (m, 2) metres. Places off the floor are moved to the nearest point on it.
-            velocities: (m, 2) of the movement that has just ended, m/s, which they keep.
-            destinations: (m,) the engine's numbers of their exits, as ``destinations`` gives them.
+            velocities: (m, 2) of their last movement, m/s. People keep them.
+            destinations: (m,) the engine's numbers of their exits, as the method
+                ``Stage.destinations`` returns them.
             speeds: (m,) preferred speeds, m/s.
             frames: number of frames for which each of them is assumed to walk on.
         """

@@ -29,8 +29,9 @@ class PreparedRecordings:
             are not mirrored because the gait differs between the sides, that standing clips were
             added.
         choices: the decisions as entries of a map's metadata: ``mirrored`` ("both sides", "as
-            recorded" or "mirror images alone"); ``mirrored_share``, if the share was measured to
-            decide; ``acted_clips`` and ``standing_clips``, how many there are, if any.
+            recorded" or "mirror images alone"); ``mirrored_share``, the share of moving poses
+            that look like a mirrored pose, if that was measured to decide; ``acted_clips`` and
+            ``standing_clips``, how many there are, if any.
     """
 
     recordings: list[Recording]
