@@ -48,8 +48,9 @@ def rigid_figures() -> dict[str, Figure]:
     """Figures that move as a whole and stand on the floor at the origin, by name.
 
     Names that end with ``_near`` are of detailed figures, those with ``_far`` of coarse ones.
-    ``seated_near`` and ``seated_far`` are a person who sits in a wheelchair, ``wheelchair_near``
-    and ``wheelchair_far`` that wheelchair. ``person_pawn`` is a person without limbs.
+    ``seated_near`` and ``seated_far`` show a person who sits in a wheelchair, without the
+    wheelchair. ``wheelchair_near`` and ``wheelchair_far`` show the wheelchair alone.
+    ``person_pawn`` shows a person without limbs.
     """
     people = {"near": human_figure(NEAR_AROUND), "far": distant_figure()}
     found = {"person_pawn": pawn()}

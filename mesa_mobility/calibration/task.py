@@ -1,4 +1,4 @@
-"""A calibration as it is asked for, checked and put into words that a file can keep."""
+"""Checks what a calibration is asked for, and describes it in texts and numbers for a file."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Task:
         seeds: of the runs.
         search: settings of the search.
         preset: values of all numbers that are not free.
-        files: sha256 of the files with measured data, by name.
+        files: sha256 of each file with measured data, by the file's name without its folder.
     """
 
     scenarios: Mapping[str, Compared]

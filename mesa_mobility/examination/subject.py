@@ -38,7 +38,11 @@ class Subject:
 
     @classmethod
     def of(cls, map_: MobilityMap) -> Subject:
-        """A person of the map's type who walks at the median preferred speed of the map."""
+        """A person of the map's pedestrian type, with the median of that type's preferred speeds.
+
+        Raises:
+            MapError: the speeds in the map's metadata cannot be used.
+        """
         # Under examination: its models need not warn that it has not been examined.
         kind = PedestrianType(mobility_map=with_verdict(map_, {}))
         speed = kind.preferred_speed

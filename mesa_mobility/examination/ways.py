@@ -69,7 +69,8 @@ def turn(subject: Subject) -> Finding:
     """Test whether somebody alone gets out of a dead end in time.
 
     They start at its closed end and face that end (straight, and 0.3 rad to either side) or one of
-    the sides. The test is passed if they leave in time from all of these headings.
+    the sides. The test is passed if they leave within ``Subject.limit`` from each of these
+    headings.
     """
     width = subject.corridor
     plan = FloorPlan(

@@ -31,8 +31,8 @@ class VarianceComponent:
 
     Attributes:
         source: the parameter, or "chance".
-        groups: how many different values of the parameter the runs have, counted anew in each group
-            of the level above; for chance, how many runs.
+        groups: number of groups of runs with equal values of this parameter and of all parameters
+            within which it is nested. For chance, the number of runs.
         variance: estimate, at least 0, in the square of the figure's unit.
         share: of the sum of all variances, with its interval.
     """

@@ -35,10 +35,10 @@ class Trajectories(Tracks):
         y: (n,) float64, metres, growing upwards in the plan.
         heading: (n,) float64, radians, facing direction, 0 = +x, counter-clockwise.
         frame_rate: frames a second.
-        core_radius: (m,) float64, metres: the radius of the hard body core of person p is
-            ``core_radius[p]``. A single number applies to everybody.
-        last_frame: last frame that was simulated. Later than the last row when the floor was
-            empty by then; None means the last row's frame.
+        core_radius: (m,) float64, metres: ``core_radius[p]`` is the radius of the hard body core of
+            person p. m is greater than each person's number. A single number applies to everybody.
+        last_frame: last frame that was simulated. It is later than the frame of the last row if the
+            floor was empty before the end. None means the frame of the last row.
         inside_at_end: (k,) int32, the people still inside in the last frame; None means
             everybody who has a row in it.
         person_data: further data of people, texts or numbers, by name. ``person_data[name]`` is
@@ -56,7 +56,8 @@ class Trajectories(Tracks):
         ResultsError: columns of unequal length, values that are not finite, a person twice in
             one frame, a negative frame or person, a radius that is missing or not positive,
             a person inside at the end without a row in the last frame; a frame rate that is not
-            positive, a last frame before the last row, or person data that do not fit the people.
+            positive, a last frame before the last row; person data with too few entries, with a
+            name that is taken or no identifier, or that are neither texts nor numbers.
     """
 
     @classmethod
@@ -119,14 +120,15 @@ class Trajectories(Tracks):
             path: the file.
             unit: of the coordinates: ``"m"``, ``"cm"`` or ``"mm"``. By default the unit that the
                 file names, otherwise the one in which spacing and speeds are most like people's.
-            frame_rate: frames a second, if the file does not say so. By default the usual rate,
-                such as 16 or 25, at which steps are as long as is usual for their frequency.
+            frame_rate: frames a second, if the file does not say so. By default it is guessed from
+                the gait of people who walk: the usual rate, such as 16 or 25, that fits their
+                steps best.
 
         Raises:
-            ResultsError: no such file, of no known format, or damaged; no frame rate, and too few
-                walkers to guess it; a unit or
-                frame rate other than the file's; a unit in which people would be faster than any
-                sprint or their heads less than 0.1 m apart.
+            ResultsError: no such file, of no known format, or damaged; no frame rate or unit, and
+                too little in the tracks to guess it; a unit or frame rate other than the file's; a
+                unit in which people would be faster than any sprint or their heads less than 0.1 m
+                apart.
         """
         from mesa_mobility.results.read import read_columns
 

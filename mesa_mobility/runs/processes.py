@@ -18,7 +18,7 @@ _TRIAL, _CALLED_AGAIN = "mesa-mobility trial", 75
 
 
 def available_processors() -> int:
-    """Processors that this process may use."""
+    """Number of processors that this process may use; all of them where that is not known."""
     # Only Linux tells which ones these are.
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

@@ -28,9 +28,12 @@ NEAR = 0.5, 1.5
 def judge(runs: Runs) -> Verdict:
     """Judge the median speed in each density bin.
 
-    At least three quarters of the bins of ``CASES`` lie between the least and the greatest speed
-    measured. All dense bins exist. Up to ``NEAR_MEAN_TO``, their median is 0.5 to 1.5 times the
-    measured mean; above, it lies between the least and the greatest speed measured.
+    In the runs of ``CASES``, the median must lie between the least and the greatest measured speed
+    in at least three quarters of the bins.
+
+    In all runs together, each bin from ``DENSE_FROM`` to ``DENSEST`` must have a median. At
+    densities up to ``NEAR_MEAN_TO`` it must be 0.5 to 1.5 times the measured mean. At higher
+    densities it must lie between the least and the greatest measured speed.
 
     Args:
         runs: for each seed, the figures of ``CASES`` and then those of ``DENSE``.

@@ -1,4 +1,4 @@
-"""Making the model that a command names, and what making it again needs."""
+"""Makes the model that a command names, and lists what is needed to repeat the run."""
 
 from __future__ import annotations
 

@@ -170,9 +170,9 @@ class Unpacker:
     """Restores the values that ``Packer`` has turned into JSON and arrays.
 
     Args:
-        arrays: the arrays by name.
-        objects: the objects of this process, by the names under which ``Packer`` stored references
-            to them.
+        arrays: those of ``Packer.arrays``, by the same names.
+        objects: what references refer to now, by the names that ``Packer`` was given in
+            ``references``.
     """
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], objects: Mapping[Any, Any]) -> None:
@@ -189,7 +189,10 @@ class Unpacker:
         """The value that ``Packer.pack`` was given.
 
         Raises:
-            ModelError: ``Packer.pack`` did not write this value.
+            ModelError: ``Packer.pack`` did not write this value, or one of its arrays was unpacked
+                before.
+            ContentError: the state of a generator or of a floor plan is not valid.
+            FloorPlanError: a floor plan is not valid.
         """
         if isinstance(value, list):
             return [self.unpack(each) for each in value]

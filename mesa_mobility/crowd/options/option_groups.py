@@ -3,7 +3,8 @@
 A cluster is a set of similar poses of a mobility map, and it has some 600 options: movements that
 begin in one of these poses. They are put in groups of up to 8 with the same duration, similar ends
 and similar paths. A lower bound of the cost of all 8, and a circle around their positions at some
-times, mostly suffice to drop a group without testing its options. These times are ``LEVELS``.
+times, mostly suffice to drop a group without testing its options. ``LEVELS`` has the numbers of
+the samples of a path at these times.
 """
 
 from __future__ import annotations
@@ -77,16 +78,19 @@ AT_X, AT_Y = 5, 5 + len(LEVELS)
 class OptionGroups(NamedTuple):
     """Bounds of the groups of options in an ``OptionTable``, and fields of their options.
 
+    Positions and headings are relative to the person at the start of the option: the person is at
+    the origin and faces along x.
+
     Attributes:
         clusters: (clusters,) records of ``CLUSTER``.
         first: (groups + 1,) row of the first option of each group, then the number of options.
         ends: (9, groups) with the rows ``X`` to ``FASTEST``: x, y and radius of a circle around the
             final positions, metres; unit vector of the middle final heading, and the greatest
             deviation from it, radians; duration, seconds; least and greatest speed, m/s.
-        at: (levels, 3, groups + padding) x, y and radius, metres, of a circle around the positions
-            at each of the times ``LEVELS``.
-        lanes: (groups, 13, 8) fields of each option, see ``LANE_FIELDS``. A group of fewer than 8
-            repeats its last option.
+        at: (levels, 3, groups + 16) x, y and radius, metres, of a circle around the positions at
+            each of the samples ``LEVELS``: at 0.4, 0.8, 1.2 and 1.5 s. The last 16 entries are 0.
+        lanes: (groups, 13, 8) for each group the 13 fields (see ``LANE_FIELDS``) of its 8 options,
+            laid out for SIMD instructions. A group of fewer than 8 repeats its last option.
     """
 
     clusters: NDArray[np.void]

@@ -61,7 +61,7 @@ class ModelParameter:
 
     @property
     def shown(self) -> str:
-        """The value as a text."""
+        """The value as a text, without its unit: a number with six digits, "none" for None."""
         if isinstance(self.value, int | float):
             return f"{self.value:g}"
         return "none" if self.value is None else f"{self.value}"

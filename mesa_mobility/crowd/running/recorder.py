@@ -59,8 +59,13 @@ class Recorder(Saved):
         )
 
     def arrays(self, since: int = 0) -> dict[str, NDArray[np.generic]]:
-        """``frame``, ``person``, ``x``, ``y``, ``heading`` and fields of the model's people: a row
-        for each person and frame, from frame ``since`` on."""
+        """What was recorded from frame ``since`` on, in order of time.
+
+        Returns:
+            Arrays (n,) with an entry for each person and frame: ``frame``; ``person``; ``x`` and
+            ``y``, metres; ``heading``, radians; and each field that the model declares for its
+            people.
+        """
         names = ("frame", "person", "x", "y", "heading", *self._fields)
         blocks = _since(self._blocks, since)
         if not blocks:
@@ -105,6 +110,10 @@ class DecisionRecorder(Saved):
 
     def arrays(self, repertoire: Repertoire, since: int = 0) -> dict[str, NDArray[np.generic]]:
         """What was decided from frame ``since`` on, in order of time.
+
+        Args:
+            repertoire: the model's movement options, from which people chose.
+            since: first frame.
 
         Returns:
             Arrays (n,) with an entry for each of n decisions: ``frame``; ``person``;

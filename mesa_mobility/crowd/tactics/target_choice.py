@@ -24,8 +24,9 @@ _NO_CORNERS = np.empty((0, 2), dtype=np.int64)
 class TargetChoice(Plugin):
     """A behaviour that gives each deciding pedestrian a target.
 
-    It answers the target requests of section 6 of the paper, "A Data-Driven Model of Pedestrian
-    Movement". Subclasses set ``name`` and define ``targets``. A model has one target choice.
+    The model asks it for targets when the movements of people end, as in section 6 of the paper,
+    "A Data-Driven Model of Pedestrian Movement". Subclasses set ``name`` and define
+    ``targets``. A model has one target choice.
     """
 
     @abstractmethod
@@ -33,12 +34,14 @@ class TargetChoice(Plugin):
         """Target of each deciding pedestrian, and the length of their remaining route.
 
         Returns:
-            ``Targets`` with ``points`` (n, 2) in metres and ``distances`` (n,) in metres. A
-            distance is inf where there is no way. People with smaller distances decide first.
-            People who come near the place of a visit slow down according to their distance. Copy
-            ``gates`` (n,) and ``corners`` (n, 2) from what ``deciding.site.targets`` gives. If you
-            do not use that, set all gates to -1, and ``corners`` to None. The model raises
-            ModelError for other values (see ``query_targets``).
+            ``Targets`` of the n deciding people: ``points`` (n, 2), the point to which each walks,
+            and ``distances`` (n,), the length of each route, both in metres. A distance is inf
+            where there is no way. People with smaller distances decide first. The tactic
+            ``visits`` also reads ``distances``: with it, people slow down before a place of their
+            route at which they stay. Copy ``gates`` (n,) and ``corners`` (n, 2) from what
+            ``deciding.site.targets`` gives. If you do not use that, set all gates to -1, and
+            ``corners`` to None. The model raises ModelError if this is not ``Targets``, or if an
+            array has a wrong shape or values out of range (see ``query_targets``).
         """
 
 

@@ -69,7 +69,7 @@ def _walk_freely(places: NDArray[np.float64], velocities: NDArray[np.float64]) -
 def nodes(distribution: Distribution | float, count: int) -> NDArray[np.float64]:
     """Speeds in m/s that represent a distribution, each of them equally likely.
 
-    Integrals over the free speed are sums over these nodes.
+    The expectation over the free speed is the mean over these speeds, the nodes.
 
     Args:
         distribution: of free speeds, m/s; or the one speed that everybody has.

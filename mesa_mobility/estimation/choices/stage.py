@@ -67,7 +67,7 @@ class Stage:
             destinations: (m,) the engine's numbers of their exits, as the method
                 ``Stage.destinations`` returns them.
             speeds: (m,) preferred speeds, m/s.
-            frames: number of frames for which each of them is assumed to walk on.
+            frames: number of the engine's frames, 1/30 s each, for which each of them walks on.
         """
         crowd, m = self.scene.crowd, len(places)
         if m > len(crowd.x):

@@ -15,7 +15,10 @@ _LOCK = "driver.lock"
 
 
 def is_locked(folder: Folder) -> bool:
-    """Whether a process holds the lock of a store, as far as its file system tells."""
+    """Whether a process holds the lock of the store in ``folder``.
+
+    False if that cannot be known: the folder is not local, cannot be written, or has no locks.
+    """
     path = Path(folder.path(_LOCK))
     if not folder.local or not path.exists():
         return False

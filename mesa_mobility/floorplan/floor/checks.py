@@ -1,4 +1,4 @@
-"""Checks of floor plans; each raises FloorPlanError with one line."""
+"""Checks of floor plans. Each raises FloorPlanError with a message of one line."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -149,7 +149,7 @@ def check_exits(walkable: Polygon, exits: Sequence[Exit], gates: Sequence[Gate])
 
 
 def check_gates(walkable: Polygon, gates: Iterable[Gate]) -> None:
-    """Raise FloorPlanError unless each is a ``Gate`` inside the walkable area.
+    """Raise FloorPlanError unless all ``gates`` are ``Gate`` objects inside the walkable area.
 
     A gate may lie up to ``EDGE_TOLERANCE`` outside.
     """

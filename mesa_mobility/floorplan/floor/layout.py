@@ -89,7 +89,8 @@ class Layout:
     def seams(self) -> tuple[Seam, ...]:
         """The seams, at which people change from one sheet to another.
 
-        A sheet is a part of a building drawn on its own. A plan of one sheet has no seams.
+        A sheet is a part of a building. All sheets are drawn side by side in one plan, each as a
+        piece of the walkable area of its own. A plan of one sheet has no seams.
         """
         return self._seams
 

@@ -23,15 +23,18 @@ class PreparedRecordings:
     """Result of :func:`prepare_recordings`.
 
     Attributes:
-        recordings: with mirror images where they are used.
-        clips: what was loaded, and what was skipped or split.
-        remarks: what a reader should know, one line each: that clips are acted, that recordings
-            are not mirrored because the gait differs between the sides, that standing clips were
-            added.
+        recordings: those that the map is built from: as recorded, each followed by its mirror
+            image, or mirror images alone. Standing clips that were added come last.
+        clips: the clips of the type, without mirror images and added standing clips, and which of
+            them were skipped or split.
+        remarks: what a reader should know, one line each: that clips are acted (tag "acted" in the
+            manifest), that recordings are not mirrored because the gait differs between the sides,
+            that standing clips were added.
         choices: the decisions as entries of a map's metadata: ``mirrored`` ("both sides", "as
             recorded" or "mirror images alone"); ``mirrored_share``, the share of moving poses
-            that look like a mirrored pose, if that was measured to decide; ``acted_clips`` and
-            ``standing_clips``, how many there are, if any.
+            that look like a mirrored pose, if that was measured to decide; ``acted_clips``, the
+            number of acted recordings, and ``standing_clips``, the number of standing recordings
+            that were added, if any.
     """
 
     recordings: list[Recording]

@@ -75,7 +75,10 @@ class Seen:
         """One row for each second and person in the area, standing people included.
 
         Columns are ``id``, ``frame``, ``x``, ``y``, ``speed`` and ``density``; see
-        ``with_pedpy.speeds_and_densities``. The view must have a direction and a floor.
+        ``with_pedpy.speeds_and_densities``. The view must have a direction, an area and a floor.
+
+        Raises:
+            ResultsError: PedPy is not installed.
         """
         return with_pedpy.speeds_and_densities(self.tracks, self.view)
 

@@ -50,11 +50,15 @@ class JuPedSim(OutputFormat):
 
 
 def read_jupedsim_sqlite(path: Path) -> Rows:
-    """Read a JuPedSim trajectory database: positions in metres and the directions people face.
+    """Read a JuPedSim trajectory database.
+
+    Returns:
+        Positions in metres, and as ``heading`` the directions that people face, in radians.
+        ``frame_rate`` is None if the metadata have no ``fps``.
 
     Raises:
         ResultsError: the file cannot be read, lacks tables or columns, or has a frame rate that is
-            no number. A file without a frame rate gives a ``frame_rate`` of None.
+            no number.
     """
     # An absent file would be created, and a file of another kind is no reason to write beside it.
     try:

@@ -36,8 +36,11 @@ def cabin(number: int) -> Polygon:
 
 
 def cabins_plan() -> FloorPlan:
-    """The plan: a corridor, a short side corridor to the main exit, the twelve cabins and their
-    doors."""
+    """Floor plan of the test: a corridor, a short side corridor and twelve cabins.
+
+    The main exit is at the end of the side corridor, the secondary exit at the right end of the
+    corridor. The doors of the cabins are gaps in the walls; the plan has no gates.
+    """
     parts = [box(0.0, LOW, END, HIGH), box(6.0, HIGH, 7.2, TOP)]
     for number in range(1, 13):
         lower = number <= 6

@@ -68,8 +68,9 @@ def small_room(seed: int, *, people: int) -> dict[str, Any]:
     """People leave a room of 8 m x 5 m by a door 1 m wide in its right wall.
 
     Returns:
-        The common figures (see ``Run.figures``), the flow through the door, ``flow_per_s``, and how
-        many people ``left``.
+        The common figures (see ``Run.figures``) and two more. ``flow_per_s`` is the flow through
+        the door, people a second; None if fewer than two people crossed it. ``left`` is the number
+        of people who left.
     """
     plan = FloorPlan(SMALL_ROOM, exits=[Exit("door", *SMALL_ROOM_DOOR)])
     model = crowd_model(plan, seed)
