@@ -1,4 +1,4 @@
-"""People leaving any floor plan, read from a file."""
+"""People leaving any floor plan or building, read from a file."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Annotated
 
 import numpy as np
 
-from mesa_mobility import Files, FloorPlan, MobilityMap, PedestrianModel, Range
+from mesa_mobility import Building, Files, FloorPlan, MobilityMap, PedestrianModel, Range
+from mesa_mobility.buildings import read_floor
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import plan_suffixes
@@ -15,10 +16,10 @@ from mesa_mobility.populations import Population
 
 
 class FloorPlanEgress(PedestrianModel):
-    """People all over a floor plan leave by the nearest exit.
+    """People all over a floor plan, or all levels of a building, leave by the nearest exit.
 
     Args:
-        plan: file of the floor plan, such as GeoJSON, lines of WKT, or DXF.
+        plan: file of the floor plan, such as GeoJSON, which may have levels, lines of WKT, or DXF.
         pedestrians: people, at random places all over the free floor.
         pre_movement: seconds before people set off, or their distribution.
         preset: "default", "measured" or "paper".
@@ -62,8 +63,8 @@ def patterns() -> list[str]:
     return [f"*{suffix}" for suffix in plan_suffixes()]
 
 
-def read_plan(path: Path | str | None) -> FloorPlan:
-    """The floor plan of a file.
+def read_plan(path: Path | str | None) -> FloorPlan | Building:
+    """The floor plan or the building of a file.
 
     Raises:
         ModelError: no file, or a plan without an exit.
@@ -72,7 +73,7 @@ def read_plan(path: Path | str | None) -> FloorPlan:
     if path is None:
         known = ", ".join(plan_suffixes())
         raise ModelError(f"plan: got none, expected a file of a floor plan ({known})")
-    plan = FloorPlan.from_file(path)
-    if not plan.exits:
+    plan = read_floor(path)
+    if isinstance(plan, FloorPlan) and not plan.exits:
         raise ModelError(f"plan: {path} has no exit, expected one to leave by")
     return plan

@@ -91,7 +91,7 @@ def write_film(
     step = speed * trajectories.frame_rate / PICTURES_A_SECOND
     frames = np.floor(np.arange(first, last + 1, step)).astype(np.int64)
     pace = _speeds(trajectories)
-    figure, (axes,) = floor_figure(plan, rows=1, columns=1)
+    figure, (axes,) = floor_figure(plan.bounds, rows=1, columns=1)
     draw_floor(axes, plan)
     bodies = EllipseCollection(
         [], [], [], units="xy", cmap="viridis", offset_transform=axes.transData, zorder=5

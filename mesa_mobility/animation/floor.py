@@ -15,7 +15,7 @@ def drawn_floor(plan: FloorPlan) -> dict[str, Any]:
     """Rings and lines of a plan, metres, as JSON takes them."""
     return {
         "bounds": list(plan.bounds),
-        "outline": [ring(plan.walkable.exterior)],
+        "outline": [ring(part.exterior) for part in shapely.get_parts(plan.walkable)],
         "free": [
             [ring(each) for each in (part.exterior, *part.interiors)]
             for part in shapely.get_parts(plan.free)

@@ -112,7 +112,7 @@ def export(
     with progress_bar(shown=not no_progress) as report:
         excerpt = Excerpt(
             found.trajectories,
-            found.plan,
+            found.floor_plan,
             selection,
             found.summary,
             shown.bank(),

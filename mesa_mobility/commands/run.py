@@ -89,7 +89,7 @@ def run(
         report("preparing" if is_compiled() else COMPILING)
         with compiling_ahead():
             simulation, given = create_model(
-                find_model(model), model, options, record=record or True
+                find_model(model), model, options, record=record or True, buildings=True
             )
 
     import pandas as pd
@@ -111,8 +111,8 @@ def run(
         with progress_bar(shown=not no_progress) as report:
             report("checking distances and walls", 0, 1)
             trajectories = Trajectories.of(simulation)
-            plan = simulation.floor_plan
-            safety = check_safety(trajectories, plan.walls, plan.free)
+            plan, building = simulation.floor_plan, simulation.building
+            safety = check_safety(trajectories, plan.walls, plan.free, building=building)
             table = by_type(trajectories) if "type" in trajectories.person_data else pd.DataFrame()
             summary = {
                 **simulation.summary(),
@@ -137,7 +137,7 @@ def run(
                     out,
                     summary=summary,
                     trajectories=trajectories,
-                    plan=plan,
+                    plan=building or plan,
                     reference_occupancy=simulation.reference_occupancy,
                 )
     if out is not None:

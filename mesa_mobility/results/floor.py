@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,19 +15,78 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.results.tracks import Tracks
+
 if TYPE_CHECKING:
-    from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.buildings import Building
 
 OUTSIDE, OBSTACLE, WALL, EXIT, DOOR = "#f2f2f0", "#b5b5b5", "#2b2b2b", "#00a03c", "#18a5d6"
-ZONE = "#fbe9c8"
+ZONE, STAIRS = "#fbe9c8", "#e3def2"
 # Room on the page for labels, colour bar and legend, inches.
 FRAME = (1.6, 1.4)
 LARGEST = (11.0, 9.5)
 
 
-def floor_figure(plan: FloorPlan, *, rows: int, columns: int) -> tuple[Figure, list[Axes]]:
-    """A figure of panels as large as the plan's shape allows, and its axes in reading order."""
-    x_min, y_min, x_max, y_max = plan.bounds
+@dataclass(frozen=True)
+class Storey:
+    """What one panel shows.
+
+    Attributes:
+        plan: the floor plan.
+        stairs: polygons of flights and landings that lead up or down from there.
+        tracks: those of people on it, and on the stairs up from it.
+        title: of the panel.
+    """
+
+    plan: FloorPlan
+    stairs: tuple[shapely.Polygon, ...]
+    tracks: Tracks
+    title: str = ""
+
+
+def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
+    """The panels of a run: one for a floor plan, one for each level of a building, from the top."""
+    if isinstance(plan, FloorPlan):
+        return [Storey(plan, (), tracks)]
+    levels = sorted(plan.levels, key=lambda level: level.elevation, reverse=True)
+    found, above = list[Storey](), np.inf
+    for level in levels:
+        on_stairs = ~np.isin(tracks.level, [each.number for each in levels])
+        rows = on_stairs & (level.elevation <= tracks.z) & (tracks.z < above)
+        found.append(
+            Storey(
+                plan.floor_plan_of(level.number),
+                tuple(_stairs_of(plan, level.number)),
+                tracks.only(rows | (tracks.level == level.number)),
+                level.name or f"level {level.number}",
+            )
+        )
+        above = level.elevation
+    return found
+
+
+def _stairs_of(building: Building, level: int) -> Iterator[shapely.Polygon]:
+    """The flights and landings of the stairs that lead up or down from a level."""
+    for stairs in building.stairs:
+        if level in (stairs.upper, stairs.lower):
+            ends = (building.level(each).elevation for each in (stairs.upper, stairs.lower))
+            flights, landings = stairs.parts(*ends)
+            yield from (flight.part(0.0, flight.going) for flight in flights)
+            yield from (landing.area for landing in landings)
+
+
+def floor_figure(
+    bounds: tuple[float, float, float, float], *, rows: int, columns: int
+) -> tuple[Figure, list[Axes]]:
+    """A figure of panels as large as the plan's shape allows, and its axes in reading order.
+
+    Args:
+        bounds: of the plan: least x and y, greatest x and y, metres.
+        rows: of panels.
+        columns: of panels.
+    """
+    x_min, y_min, x_max, y_max = bounds
     width, height = columns * (x_max - x_min), rows * (y_max - y_min)
     scale = min((LARGEST[0] - FRAME[0]) / width, (LARGEST[1] - FRAME[1]) / height)
     size = (
@@ -36,8 +97,15 @@ def floor_figure(plan: FloorPlan, *, rows: int, columns: int) -> tuple[Figure, l
     return figure, list(figure.subplots(rows, columns, squeeze=False).flat)
 
 
-def draw_floor(axes: Axes, plan: FloorPlan) -> list[Line2D | Patch]:
+def draw_floor(
+    axes: Axes, plan: FloorPlan, stairs: Sequence[shapely.Polygon] = ()
+) -> list[Line2D | Patch]:
     """Draw free floor white, obstacles grey, walls dark, exits, doors and slow zones coloured.
+
+    Args:
+        axes: to draw on.
+        plan: the floor plan.
+        stairs: flights and landings beside it, coloured.
 
     Returns:
         Handles for a legend that explains what was drawn.
@@ -51,6 +119,10 @@ def draw_floor(axes: Axes, plan: FloorPlan) -> list[Line2D | Patch]:
     if not solid.is_empty:
         axes.add_patch(PathPatch(_path(solid), facecolor=OBSTACLE, linewidth=0, zorder=1))
         handles.append(Patch(color=OBSTACLE, label="obstacle"))
+    for part in stairs:
+        axes.add_patch(PathPatch(_path(part), facecolor=STAIRS, edgecolor=WALL, lw=0.5, zorder=2))
+    if stairs:
+        handles.append(Patch(color=STAIRS, label="stairs"))
     for zone in plan.zones:
         inside = shapely.intersection(zone.area, plan.free)
         if inside.is_empty:
@@ -64,10 +136,10 @@ def draw_floor(axes: Axes, plan: FloorPlan) -> list[Line2D | Patch]:
         )
     )
     handles.insert(0, Line2D([], [], color=WALL, linewidth=1.6, label="wall"))
-    for openings, colour, label in (
-        (plan.open_gates(), DOOR, "door"),
-        (plan.open_exits(), EXIT, "exit"),
-    ):
+    on_stairs = shapely.union_all(stairs).buffer(1e-6)
+    ends = [each for each in plan.open_exits() if on_stairs.covers(each.line)]
+    exits = [each for each in plan.open_exits() if each not in ends]
+    for openings, colour, label in ((plan.open_gates(), DOOR, "door"), (exits, EXIT, "exit")):
         if openings:
             lines = [(opening.a, opening.b) for opening in openings]
             axes.add_collection(

@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from mesa_mobility.results.trajectories import Trajectories
 
 # Rounding of floats may bring two bodies that just touch this much closer, metres.
 TOLERANCE_M = 1e-5
+# Two people whose heights differ by more are on different storeys, or flights of stairs, metres.
+HEADROOM_M = 1.5
 # Overlaps, or wall crossings, that a report lists individually, at most.
 NAMED = 10
 
@@ -28,13 +31,15 @@ class Overlap:
 def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | None]:
     """Pairs of people closer than the sum of their core radii, over all frames.
 
+    People above each other, on different storeys or flights, are no pair.
+
     Returns:
         Their number, the first few of them, and the smallest distance between the positions of two
         people in any frame, metres; None when two people were never inside together.
     """
     offsets = trajectories.frame_offsets
     positions = np.column_stack((trajectories.x, trajectories.y))
-    radii = trajectories.radii
+    radii, z = trajectories.radii, trajectories.z
     reach = 2.0 * float(radii.max(initial=0.0))
     count, named, nearest = 0, list[Overlap](), np.inf
     for frame in range(trajectories.frames):
@@ -44,9 +49,9 @@ def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], floa
         points, people = positions[rows], trajectories.person[rows]
         tree = cKDTree(points)
         if not np.isfinite(nearest):
-            nearest = float(tree.query(points, k=2)[0][:, 1].min())
+            nearest = _nearest(tree, points, z[rows])
         # Ignore people who are neither within reach nor nearer than the nearest pair so far.
-        a, b = tree.query_pairs(max(reach, nearest), output_type="ndarray").T
+        a, b = _pairs(tree, z[rows], max(reach, nearest) if np.isfinite(nearest) else reach)
         if not len(a):
             continue
         distance = np.hypot(*(points[a] - points[b]).T)
@@ -58,3 +63,28 @@ def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], floa
             pair = sorted((int(people[a[k]]), int(people[b[k]])))
             named.append(Overlap(frame, pair[0], pair[1], float(distance[k])))
     return count, named, float(nearest) if np.isfinite(nearest) else None
+
+
+def _pairs(
+    tree: cKDTree, z: NDArray[np.float64], radius: float
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Pairs of points at most ``radius`` apart on one storey or flight, as two arrays (k,)."""
+    a, b = tree.query_pairs(radius, output_type="ndarray").T
+    beside = np.abs(z[a] - z[b]) < HEADROOM_M
+    return a[beside], b[beside]
+
+
+def _nearest(tree: cKDTree, points: NDArray[np.float64], z: NDArray[np.float64]) -> float:
+    """Least distance in metres of two of the points (n, 2) on one storey; inf if there is none."""
+    radius, extent = (
+        float(tree.query(points, k=2)[0][:, 1].min()),
+        float(np.hypot(*np.ptp(points, axis=0))),
+    )
+    while True:
+        a, b = _pairs(tree, z, radius)
+        if len(a):
+            return float(np.hypot(*(points[a] - points[b]).T).min())
+        if radius > extent:
+            return np.inf
+        # The nearest are above each other.
+        radius = 2.0 * max(radius, HEADROOM_M / 10.0)

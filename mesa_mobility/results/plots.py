@@ -11,6 +11,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
@@ -23,11 +24,12 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
-from mesa_mobility.results.floor import draw_floor, floor_figure
+from mesa_mobility.results.floor import draw_floor, floor_figure, storeys_of
 from mesa_mobility.results.measures.by_type import people_by
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
     from mesa_mobility.floorplan import FloorPlan
 
 # Largest number of track pieces in a picture; more cannot be distinguished and are slow to draw.
@@ -63,42 +65,51 @@ STILL_INSIDE: dict[str, Any] = {
 
 def plot_trajectories(
     trajectories: Tracks,
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     path: str | os.PathLike[str],
     *,
     title: str = "",
 ) -> None:
     """Draw everybody's track on the floor plan, coloured by time.
 
+    In a building each level has a panel, the topmost first. It shows the stairs up from there, too.
+
     Args:
         trajectories: the run.
-        plan: the floor plan; walls are drawn dark, obstacles grey, doors and exits coloured.
+        plan: the floor plan or the building; walls are drawn dark, obstacles grey, doors and exits
+            coloured.
         path: picture to write; its suffix chooses the format (.png, .svg, .pdf).
         title: first line of the picture.
 
     Raises:
         ResultsError: the file cannot be written.
     """
-    figure, axes = floor_figure(plan, rows=1, columns=1)
-    handles = draw_floor(axes[0], plan)
-    tracks = _tracks(trajectories)
-    axes[0].add_collection(tracks)
-    bar = figure.colorbar(tracks, ax=axes[0], shrink=0.8, aspect=30, pad=0.02)
+    storeys = storeys_of(trajectories, plan)
+    columns = min(2, len(storeys))
+    bounds = shapely.total_bounds([each.plan.walkable for each in storeys])
+    figure, axes = floor_figure(tuple(bounds), rows=-(-len(storeys) // columns), columns=columns)
+    handles: dict[str, Line2D | Patch] = {}
+    for panel in axes[len(storeys) :]:
+        panel.set_axis_off()
+    for panel, storey in zip(axes, storeys, strict=False):
+        drawn = draw_floor(panel, storey.plan, storey.stairs)
+        panel.set_title(storey.title, fontsize=10)
+        tracks = _tracks(storey.tracks)
+        panel.add_collection(tracks)
+        left = _inside_at(storey.tracks, trajectories.frames - 1)
+        if len(left):
+            panel.plot(storey.tracks.x[left], storey.tracks.y[left], **STILL_INSIDE, zorder=6)
+            label = f"still inside after {trajectories.duration:.1f} s"
+            drawn.append(Line2D([], [], **STILL_INSIDE, label=label))
+        handles |= {str(each.get_label()): each for each in drawn}
+    bar = figure.colorbar(tracks, ax=axes, shrink=0.8, aspect=30, pad=0.02)
     bar.set_label("time since the start (s)")
     # Drawn faint so that crossing tracks show; the scale itself is not faint.
     if bar.solids is not None:
         bar.solids.set_alpha(1.0)
-    left = _inside_at(trajectories, trajectories.frames - 1)
-    if len(left):
-        axes[0].plot(
-            trajectories.x[left],
-            trajectories.y[left],
-            **STILL_INSIDE,
-            zorder=6,
-        )
-        label = f"still inside after {trajectories.duration:.1f} s"
-        handles.append(Line2D([], [], **STILL_INSIDE, label=label))
-    _finish(figure, handles, title or f"Tracks of {trajectories.people} people", path)
+    _finish(
+        figure, list(handles.values()), title or f"Tracks of {trajectories.people} people", path
+    )
 
 
 def plot_snapshots(
@@ -128,7 +139,7 @@ def plot_snapshots(
             f"snapshots at {list(times)} s asked of a run of {trajectories.duration:.2f} s"
         )
     types = people_by(trajectories, "type") if "type" in trajectories.person_data else {}
-    figure, axes = floor_figure(plan, rows=(len(times) + 1) // 2, columns=min(2, len(times)))
+    figure, axes = floor_figure(plan.bounds, rows=(len(times) + 1) // 2, columns=min(2, len(times)))
     for panel in axes[len(times) :]:
         panel.set_axis_off()
     for panel, time in zip(axes, times, strict=False):

@@ -17,6 +17,7 @@ from mesa_mobility.results.measures.occupancy import egress_time, occupancy
 from mesa_mobility.results.trajectories import Trajectories, read_parquet
 
 if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
     from mesa_mobility.floorplan import FloorPlan
 
 SUMMARY, TRAJECTORIES = "summary.json", "trajectories.parquet"
@@ -36,7 +37,7 @@ def write_run(
     *,
     summary: Mapping[str, Any],
     trajectories: Trajectories,
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     reference_occupancy: Mapping[float, float] | None = None,
 ) -> None:
     """Write summary.json, trajectories.parquet, floorplan.geojson and two pictures.
@@ -50,7 +51,7 @@ def write_run(
         directory: folder to write to, created if need be.
         summary: figures of the run; `model`, `seed` and `preset` go into the pictures' titles.
         trajectories: the run.
-        plan: its floor plan.
+        plan: its floor plan, or its building.
         reference_occupancy: time (s) -> people inside, drawn beside the run's.
 
     Raises:
@@ -83,13 +84,31 @@ class Run:
 
     Attributes:
         trajectories: with the decisions, if they were recorded.
-        plan: its floor plan.
+        plan: its floor plan, or its building.
         summary: its figures.
+        folder: where it is.
     """
 
     trajectories: Trajectories
-    plan: FloorPlan
+    plan: FloorPlan | Building
     summary: Mapping[str, Any]
+    folder: Path
+
+    @property
+    def floor_plan(self) -> FloorPlan:
+        """Its one floor plan.
+
+        Raises:
+            ResultsError: it is a run in a building.
+        """
+        from mesa_mobility.floorplan import FloorPlan
+
+        if not isinstance(self.plan, FloorPlan):
+            raise ResultsError(
+                f"{self.folder}: a run in a building of {len(self.plan.levels)} levels, expected "
+                "one on a floor plan"
+            )
+        return self.plan
 
 
 def read_run(directory: str | os.PathLike[str]) -> Run:
@@ -99,7 +118,7 @@ def read_run(directory: str | os.PathLike[str]) -> Run:
         ResultsError: no folder of a complete run, or a damaged file.
         FloorPlanError: a damaged floor plan.
     """
-    from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.buildings import read_floor
     from mesa_mobility.results.decisions import read_decisions
 
     folder = Path(directory)
@@ -118,7 +137,7 @@ def read_run(directory: str | os.PathLike[str]) -> Run:
     decided = folder / "decisions.parquet"
     if decided.exists():
         trajectories = replace(trajectories, decisions=read_decisions(decided))
-    return Run(trajectories, FloorPlan.from_geojson(folder / "floorplan.geojson"), summary)
+    return Run(trajectories, read_floor(folder / "floorplan.geojson"), summary, folder)
 
 
 def _curve(trajectories: Trajectories) -> list[list[float]]:

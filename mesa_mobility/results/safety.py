@@ -7,6 +7,7 @@ written and uses shapely and, for overlaps, SciPy's k-d tree.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -16,6 +17,9 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.overlaps import NAMED, Overlap, count_overlaps
 from mesa_mobility.results.trajectories import Trajectories
+
+if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
 
 # Least width of the squares by which steps near walls are found, metres.
 SQUARE_M = 0.25
@@ -66,7 +70,11 @@ class SafetyReport:
 
 
 def check_safety(
-    trajectories: Trajectories, walls: ArrayLike, floor: BaseGeometry | None = None
+    trajectories: Trajectories,
+    walls: ArrayLike,
+    floor: BaseGeometry | None = None,
+    *,
+    building: Building | None = None,
 ) -> SafetyReport:
     """Count overlapping bodies, steps through walls and places off the floor.
 
@@ -75,12 +83,14 @@ def check_safety(
         walls: (m, 4) segments x1, y1, x2, y2 in metres (`FloorPlan.walls`), open exits cut out.
         floor: where people may be (`FloorPlan.free`), metres; without it nobody is counted as off
             the floor.
+        building: where the people walked; walls and floor are those of its floor plan.
 
     Returns:
         A report. Distances below the sum of two core radii by less than 1e-5 m are rounding.
 
     Raises:
         ResultsError: walls of another shape or not finite.
+        FloorPlanError: a place that is on no level, landing or flight of the building.
     """
     segments = np.asarray(walls, dtype=np.float64)
     if segments.size == 0:
@@ -88,19 +98,22 @@ def check_safety(
     if segments.ndim != 2 or segments.shape[1] != 4 or not np.all(np.isfinite(segments)):
         raise ResultsError(f"walls have shape {segments.shape}, expected (m, 4) finite numbers")
     overlaps, pairs, nearest = count_overlaps(trajectories)
-    count, crossings = _wall_crossings(trajectories, segments)
+    places = np.column_stack((trajectories.x, trajectories.y))
+    if building is not None:
+        places = building.plane_places(np.column_stack((places, trajectories.z)))
+    count, crossings = _wall_crossings(trajectories, places, segments)
     return SafetyReport(
         overlaps=overlaps,
         overlapping_pairs=tuple(pairs),
         min_distance_m=nearest,
         wall_crossings=count,
         crossings=tuple(crossings),
-        off_floor=None if floor is None else _off_floor(trajectories, floor),
+        off_floor=None if floor is None else _off_floor(trajectories, places, floor),
     )
 
 
-def _off_floor(trajectories: Trajectories, floor: BaseGeometry) -> int:
-    """Number of rows that lie off the floor.
+def _off_floor(trajectories: Trajectories, places: NDArray[np.float64], floor: BaseGeometry) -> int:
+    """Number of rows whose places (n, 2) lie off the floor.
 
     The last row of people who left does not count: it lies beyond their exit.
     """
@@ -108,19 +121,26 @@ def _off_floor(trajectories: Trajectories, floor: BaseGeometry) -> int:
     people, last = np.unique(trajectories.person[::-1], return_index=True)
     left = ~np.isin(people, trajectories.remaining)
     ours[len(ours) - 1 - last[left]] = False
-    x, y = trajectories.x[ours], trajectories.y[ours]
+    x, y = places[ours].T
     shapely.prepare(floor)
     off = ~shapely.intersects_xy(floor, x, y)
     return int((shapely.distance(shapely.points(x[off], y[off]), floor) > EXIT_OFF_M).sum())
 
 
 def _wall_crossings(
-    trajectories: Trajectories, walls: NDArray[np.float64]
+    trajectories: Trajectories, places: NDArray[np.float64], walls: NDArray[np.float64]
 ) -> tuple[int, list[WallCrossing]]:
+    """Steps from places (n, 2), by row of the trajectories, that meet a wall."""
     start, end = trajectories.steps()
     if not len(walls) or not len(start):
         return 0, []
-    rows, wall_of = _meet_walls(trajectories.x, trajectories.y, start, end, walls)
+    # A flight is drawn on both sheets that it joins: a step may end on the other one.
+    here, there = places[start], places[end]
+    true = np.column_stack((trajectories.x, trajectories.y))
+    changes = np.abs(there - here - (true[end] - true[start])).max(axis=1) > SQUARE_M
+    there[changes] = here[changes] + true[end][changes] - true[start][changes]
+    steps, wall_of = _meet_walls(here, there, walls)
+    rows = start[steps]
     in_order = np.argsort(rows, kind="stable")[:NAMED]
     named = [
         WallCrossing(
@@ -132,44 +152,36 @@ def _wall_crossings(
 
 
 def _meet_walls(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    start: NDArray[np.int64],
-    end: NDArray[np.int64],
-    walls: NDArray[np.float64],
+    start: NDArray[np.float64], end: NDArray[np.float64], walls: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """(h,) the rows in ``start`` from which a straight step to that in ``end`` meets a wall, and
-    (h,) a wall that it meets; ``x`` and ``y`` (n,) are places by row, metres."""
-    near = _near_walls(x, y, start, end, walls)
-    start, end = start[near], end[near]
+    """(h,) which of the straight steps from ``start`` (k, 2) to ``end`` meet a wall, and (h,) a
+    wall that each meets."""
+    near = np.flatnonzero(_near_walls(start, end, walls))
+    steps = np.stack((start[near], end[near]), axis=1)
     tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
     hits, hit_walls = list[NDArray[np.int64]](), list[NDArray[np.int64]]()
-    for first in range(0, len(start), CHUNK):
-        ends = np.stack((start[first : first + CHUNK], end[first : first + CHUNK]), axis=1)
-        step, wall = tree.query(shapely.linestrings(x[ends], y[ends]), predicate="intersects")
+    for first in range(0, len(steps), CHUNK):
+        lines = shapely.linestrings(steps[first : first + CHUNK])
+        step, wall = tree.query(lines, predicate="intersects")
         # A step through a corner meets two walls and is one crossing.
         step, once = np.unique(step, return_index=True)
-        hits.append(step + first)
+        hits.append(near[step + first])
         hit_walls.append(wall[once])
-    rows = start[np.concatenate(hits)] if hits else np.empty(0, dtype=np.int64)
-    return rows, np.concatenate(hit_walls) if hits else rows
+    found = np.concatenate(hits) if hits else np.empty(0, dtype=np.int64)
+    return found, np.concatenate(hit_walls) if hits else found
 
 
 def _near_walls(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    start: NDArray[np.int64],
-    end: NDArray[np.int64],
-    walls: NDArray[np.float64],
+    start: NDArray[np.float64], end: NDArray[np.float64], walls: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
     """(k,) which steps begin in a square that holds part of a wall, or beside one.
 
     Squares are as wide as the longest step: no other step can meet a wall.
     """
-    longest = float(np.hypot(x[end] - x[start], y[end] - y[start]).max())
+    longest = float(np.hypot(*(end - start).T).max())
     ends = walls.reshape(-1, 2)
-    low = np.minimum(ends.min(axis=0), (x.min(), y.min()))
-    high = np.maximum(ends.max(axis=0), (x.max(), y.max()))
+    low = np.minimum(ends.min(axis=0), start.min(axis=0))
+    high = np.maximum(ends.max(axis=0), start.max(axis=0))
     side = max(SQUARE_M, 1.01 * longest, float((high - low).max()) / MOST_SQUARES)
     # Places on the walls, no farther than half a square from one to the next.
     lengths = np.hypot(walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1])
@@ -186,8 +198,5 @@ def _near_walls(
     for across in range(-2, 3):
         for up in range(-2, 3):
             held[np.clip(i + across, 0, columns - 1), np.clip(j + up, 0, rows - 1)] = True
-    here = (
-        ((x[start] - low[0]) / side).astype(np.int64),
-        ((y[start] - low[1]) / side).astype(np.int64),
-    )
-    return held[here]
+    column, row = ((start - low) / side).astype(np.int64).T
+    return held[column, row]

@@ -87,7 +87,10 @@ class Tracks:
         Args:
             level: its number.
         """
-        rows = self.level == level
+        return self.only(self.level == level)
+
+    def only(self, rows: NDArray[np.bool_]) -> Self:
+        """The rows of a mask (n,) alone, in the same frames, without decisions."""
         now = self.person[rows & (self.frame == self.last_frame)]
         return replace(
             self,

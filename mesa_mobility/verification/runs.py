@@ -52,7 +52,10 @@ class Run:
     def figures(self) -> dict[str, Any]:
         """Figures of a run; overlaps and wall crossings are counted on its trajectories."""
         collect(self.trajectories, self.walls)
-        safety = check_safety(self.trajectories, self.walls, self.model.floor_plan.free)
+        model = self.model
+        safety = check_safety(
+            self.trajectories, self.walls, model.floor_plan.free, building=model.building
+        )
         summary = self.model.summary()
         kept = (
             "pedestrians",

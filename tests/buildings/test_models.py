@@ -53,6 +53,54 @@ def test_nobody_walks_through_others_on_any_floor_or_flight(run):
     assert overlaps(tracks.frame, xyz, tracks.radii[tracks.person]) == 0
 
 
+def test_the_safety_check_of_a_building_finds_nothing_in_a_run(run):
+    office, tracks = run
+    plan = office.floor_plan
+    assert check_safety(tracks, plan.walls, plan.free, building=office).passed
+
+
+def standing(office, *people):
+    """Tracks of people who are at (x, y, z) in each of three frames."""
+    xyz = np.array(people, dtype=float)  # (people, frames, 3)
+    frame = np.repeat(np.arange(3), len(xyz))
+    x, y, z = xyz.transpose(1, 0, 2).reshape(-1, 3).T
+    person = np.tile(np.arange(len(xyz)), 3)
+    return Trajectories(frame, person, x, y, 0.0 * x, core_radius=0.15, fields={"z": z})
+
+
+@pytest.mark.parametrize(
+    ("people", "overlaps", "crossings"),
+    [
+        # Above each other, on two levels.
+        ([[(4, 4, 0)] * 3, [(4, 4, RISE)] * 3], 0, 0),
+        # In the same place on one level, and with 0.1 m between them on a flight.
+        ([[(4, 4, 0)] * 3, [(4, 4, 0)] * 3], 3, 0),
+        ([[(10.0, 0.6, RISE * (12.93 - 10.0) / 4.93)] * 3,
+          [(10.1, 0.6, RISE * (12.93 - 10.1) / 4.93)] * 3], 3, 0),
+        # Down the flight over the seam at x = 10.465.
+        ([[(x, 0.6, RISE * (12.93 - x) / 4.93) for x in (10.44, 10.46, 10.48)]], 0, 0),
+        # Beside the flight on the upper level, then through its side wall near its head.
+        ([[(8.2, y, RISE) for y in (1.5, 1.4, 1.3)]], 0, 0),
+        ([[(8.05, 1.3, RISE), (8.05, 1.3, RISE), (8.05, 1.1, RISE * 4.88 / 4.93)]], 0, 1),
+    ],
+)  # fmt: skip
+def test_the_safety_check_knows_storeys_and_flights(people, overlaps, crossings):
+    office = two_storeys()
+    plan = office.floor_plan
+    report = check_safety(standing(office, *people), plan.walls, plan.free, building=office)
+    assert (report.overlaps, report.wall_crossings) == (overlaps, crossings)
+    assert report.off_floor == 0
+
+
+def test_the_least_distance_is_of_people_on_one_storey():
+    office = two_storeys()
+    people = [[(4, 4, 0)] * 3, [(4.1, 4, RISE)] * 3, [(6, 4, 0)] * 3]
+    tracks = standing(office, *people)
+    assert check_safety(tracks, office.floor_plan.walls, building=office).min_distance_m == 2.0
+    alone = standing(office, *people[:2])
+    assert check_safety(alone, office.floor_plan.walls, building=office).min_distance_m is None
+
+
 def test_nobody_walks_through_walls_or_beside_stairs(run):
     office, tracks = run
     for level in (0, 1):
@@ -195,6 +243,6 @@ class Office(PedestrianModel):
         super().__init__(two_storeys(), rng=rng)
 
 
-def test_commands_refuse_models_of_buildings():
-    with pytest.raises(ModelError, match="model office: has a building of 2 levels"):
+def test_commands_that_show_one_plan_refuse_models_of_buildings():
+    with pytest.raises(ModelError, match="model office: has a building of 2 levels, expected one"):
         create_model(Office, "office", ModelOptions(seed=1))

@@ -8,11 +8,12 @@ import pytest
 
 pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]'")
 
-from mesa_mobility.models import Doorway
+from mesa_mobility.models import Doorway, FloorPlanEgress
 
 from mesa_mobility.dashboard.session.notices import hand_out_warnings
 from mesa_mobility.dashboard.session.run_config import Recipe
 from mesa_mobility.dashboard.session.session import Session
+from tests.fixtures.buildings import two_storeys
 from tests.fixtures.waiting import until
 
 
@@ -26,6 +27,19 @@ def test_what_cannot_be_made_leaves_the_run_alone(session):
     until(lambda: session.status.value.state == "ready")
     assert session.frame.value["run"] == run
     assert session.recipe.value.keywords["pedestrians"] == 12
+
+
+def test_a_building_is_shown_as_its_plane(session, tmp_path):
+    office, failed = two_storeys(), []
+    office.write_geojson(tmp_path / "office.geojson")
+    numbers = {"plan": tmp_path / "office.geojson", "pedestrians": 3, "rng": 1}
+    session.build(Recipe(FloorPlanEgress, numbers), failed.append)
+    until(lambda: session.recipe.value.kind is FloorPlanEgress)
+    until(lambda: session.status.value.state == "ready")
+    assert not any(failed)
+    # Two levels and a landing.
+    assert len(session.floor.value["outline"]) == 3
+    assert session.status.value.inside == 3
 
 
 class Endless(Doorway):

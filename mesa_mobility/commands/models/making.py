@@ -89,6 +89,7 @@ def create_model(
     options: ModelOptions,
     *,
     record: bool | str = False,
+    buildings: bool = False,
     **keywords: Any,
 ) -> tuple[Any, dict[str, Any]]:
     """The model with its behaviours and numbers, and its own parameters with their values.
@@ -99,11 +100,12 @@ def create_model(
         options: of the command. Settings with a dot in the name are numbers of behaviours.
         record: what the model records. A `PedestrianModel` records it even if its constructor does
             not take ``record``.
+        buildings: whether the model may have a building of several levels.
         keywords: further arguments of the constructor.
 
     Raises:
         ModelError: a parameter that the constructor does not take, an unknown behaviour or number,
-            a value that is refused, or a building of several levels.
+            a value that is refused, or a building of several levels where none is expected.
     """
     from mesa_mobility import PedestrianModel
     from mesa_mobility.crowd.presets.given import Given
@@ -139,10 +141,10 @@ def create_model(
             raise
         # In the words of the user, who has typed no parameter's name.
         raise ModelError(f"{OWN_OPTION[parameter]}:{rest}") from error
-    if getattr(model, "building", None) is not None:
+    if not buildings and getattr(model, "building", None) is not None:
         raise ModelError(
-            f"model {name}: has a building of {len(model.building.levels)} levels, which commands "
-            "cannot write or show; expected one floor plan (Python runs buildings)"
+            f"model {name}: has a building of {len(model.building.levels)} levels, expected one "
+            "floor plan (`mesa-mobility run` and Python run buildings)"
         )
     if recorded_later:
         model.start_recording(record)

@@ -1,0 +1,35 @@
+"""Files that may hold a floor plan or a building."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from mesa_mobility.buildings.building import Building
+from mesa_mobility.buildings.geojson import STAIRS
+from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.formats import geojson
+
+_SUFFIXES = ".geojson", ".json"
+
+
+def read_floor(path: str | os.PathLike[str]) -> FloorPlan | Building:
+    """The floor plan of a file, or the building if the file has levels.
+
+    Args:
+        path: of any format of floor plans. Only GeoJSON has levels.
+
+    Raises:
+        FloorPlanError: the file cannot be read, or holds neither.
+    """
+    if Path(path).suffix.lower() in _SUFFIXES:
+        features = geojson.features_of(geojson.load(path), geojson.label(path))
+        if any(_of_a_building(each) for each in features):
+            return Building.from_geojson(path)
+    return FloorPlan.from_file(path)
+
+
+def _of_a_building(feature: Any) -> bool:
+    properties = feature.get("properties") if isinstance(feature, Mapping) else None
+    given = properties if isinstance(properties, Mapping) else {}
+    return given.get("kind") == STAIRS or given.get("level", 0) != 0
