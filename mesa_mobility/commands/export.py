@@ -86,6 +86,13 @@ def export(
         ),
     ] = None,
     settings: FormatSettings = None,
+    level: Annotated[
+        int | None,
+        typer.Option(
+            help="Of a run in a building: the level whose people are written. Formats of bodies "
+            "need a run on a floor plan."
+        ),
+    ] = None,
     speed: Annotated[
         float | None, typer.Option(help="For a film: its speed, as a multiple of real time.")
     ] = None,
@@ -108,7 +115,7 @@ def export(
     given = {"speed": speed, "at": at}
     options = OUTPUTS.chosen_options(chosen, WRITE, given, settings or ())
     selection = shown.selection()
-    found = read_run(run)
+    found = read_run(run) if level is None else read_run(run).on(level)
     with progress_bar(shown=not no_progress) as report:
         excerpt = Excerpt(
             found.trajectories,

@@ -110,6 +110,20 @@ class Run:
             )
         return self.plan
 
+    def on(self, level: int) -> Run:
+        """The part of a run in a building that is on one level, without decisions.
+
+        Raises:
+            ResultsError: a run on a floor plan.
+            FloorPlanError: there is no such level.
+        """
+        from mesa_mobility.floorplan import FloorPlan
+
+        if isinstance(self.plan, FloorPlan):
+            raise ResultsError(f"{self.folder}: a run on a floor plan, expected one in a building")
+        plan = self.plan.floor_plan_of(level)
+        return replace(self, trajectories=self.trajectories.on(level=level), plan=plan)
+
 
 def read_run(directory: str | os.PathLike[str]) -> Run:
     """Read the folder of a run.

@@ -5,7 +5,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from mesa_mobility import Building, FloorPlan
+from mesa_mobility import Building, FloorPlan, Trajectories
 from mesa_mobility.buildings import read_floor
 from mesa_mobility.commands.app import app
 from mesa_mobility.errors import FloorPlanError, ResultsError
@@ -54,6 +54,27 @@ def test_commands_that_show_one_plan_say_that_they_do_not(folder):
         _ = read_run(folder).floor_plan
     answer = CliRunner().invoke(app, ["replay", str(folder), "--no-open"])
     assert isinstance(answer.exception, ResultsError)
+
+
+def test_the_people_of_one_level_are_exported(folder, tmp_path):
+    command = ["export", str(folder), "--level", "1", "--no-progress", "-o"]
+    answer = CliRunner().invoke(app, [*command, str(tmp_path / "level_1.txt")])
+    assert answer.exit_code == 0, answer.output
+    written = Trajectories.read(tmp_path / "level_1.txt")
+    tracks = read_run(folder).trajectories
+    on = tracks.level == 1
+    assert set(written.person) == set(tracks.person[on])
+    assert written.x.max() <= 24.0
+    answer = CliRunner().invoke(app, [*command, str(tmp_path / "level_1.sqlite")])
+    assert answer.exit_code == 0, answer.output
+
+
+def test_a_level_is_asked_for_in_buildings_alone(folder, tmp_path):
+    run = read_run(folder)
+    with pytest.raises(FloorPlanError, match="there is no level 7; there are 0, 1"):
+        run.on(7)
+    with pytest.raises(ResultsError, match="a run on a floor plan, expected one in a building"):
+        run.on(1).on(1)
 
 
 def test_a_file_holds_a_plan_or_a_building(tmp_path):
