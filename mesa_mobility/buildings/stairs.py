@@ -34,6 +34,9 @@ _ON_STAIRS = 0.861
 it grows with the root of their ratio. The same: 1.00, 1.08, 1.16 and 1.23 m/s on stairs of 7.5/10,
 7/11, 6.5/12 and 6.5/13 inches."""
 
+_ROUNDING = 1e-9
+"""Metres."""
+
 Line = tuple[tuple[float, float], tuple[float, float]]
 """A line (left, right), each (x, y) in metres."""
 
@@ -245,7 +248,7 @@ class Stairs:
             FloorPlanError: the rise does not fit the number of risers.
         """
         riser = (top - bottom) / self.risers
-        if not RISERS[0] <= riser <= RISERS[1]:
+        if not RISERS[0] - _ROUNDING <= riser <= RISERS[1] + _ROUNDING:
             raise FloorPlanError(
                 f"stairs {self.name!r}: {self.risers} risers for a rise of {top - bottom:g} m are "
                 f"{riser:.3f} m each, expected {RISERS[0]:.2f} to {RISERS[1]:.2f} m"

@@ -47,7 +47,7 @@ def first_run_drawn() -> Iterator[list[Drawing]]:
 
 
 def collect(trajectories: Trajectories, walls: NDArray[np.float64]) -> None:
-    """Keep the drawing of a run where one is asked for."""
+    """Keep the drawing of a run where one is asked for, with these walls (m, 4), metres."""
     found = _collected.get()
     if found is None or found:
         return

@@ -1,4 +1,4 @@
-"""IMO MSC.1/Circ.1533: the tests of a level floor."""
+"""IMO MSC.1/Circ.1533: the tests of level floors and stairs."""
 
 from __future__ import annotations
 
@@ -59,6 +59,8 @@ TESTS = {
         (case(walks.lone_walker, length=40.0, speed=1.0, measured_from=10.0, measured_to=30.0),),
         judge=judging.lone_walk((37.7, 43.5), 1.0),
     ),
+    "imo-02": VerificationTest((rimea.climb(1.0, up=True),), judge=judging.climbs((1.0,))),
+    "imo-03": VerificationTest((rimea.climb(1.0, up=False),), judge=judging.climbs((1.0,))),
     "imo-04": VerificationTest((ROOM_OF_100,), judge=exit_flow),
     "imo-05": rimea.TESTS["rimea-05"],
     "imo-06": VerificationTest((CORNER,), judge=judging.corner(60.0)),
@@ -69,5 +71,6 @@ TESTS = {
     "imo-08": VerificationTest(COUNTERFLOW, judge=judging.counterflow),
     "imo-09": rimea.TESTS["rimea-09"],
     "imo-10": rimea.TESTS["rimea-10"],
+    "imo-11": VerificationTest((rimea.FOOT_OF_STAIR,), judge=rimea.jam_at_the_foot),
     "imo-12": VerificationTest(rimea.TRACKS, judge=flow_at_high_density),
 }

@@ -1,4 +1,4 @@
-"""ISO 20414: the tests of a level floor that the other standards do not have."""
+"""ISO 20414: the tests of level floors and stairs that the other standards do not have."""
 
 from __future__ import annotations
 
@@ -6,11 +6,21 @@ from collections.abc import Sequence
 
 from mesa_mobility.verification import judging
 from mesa_mobility.verification.cases import Figures, case
-from mesa_mobility.verification.checks import Verdict, at_most, exactly, falling, more_than
-from mesa_mobility.verification.scenarios import closures, halls
+from mesa_mobility.verification.checks import (
+    Verdict,
+    at_most,
+    exactly,
+    falling,
+    more_than,
+    rising,
+    within,
+)
+from mesa_mobility.verification.scenarios import closures, halls, stairs
 from mesa_mobility.verification.suite import VerificationTest
 
 PEOPLE = (60, 120, 240, 360, 480)
+WIDTHS = (1.0, 1.2, 1.4, 1.6, 1.8)
+"""Of stairs, metres."""
 FREE_SPEED = 1.0
 FASTER_BY = 0.05
 """Allowed excess over the assigned speed, m/s, as in the tests of lone walkers."""
@@ -51,7 +61,42 @@ def shortest_way(runs: Sequence[Figures]) -> Verdict:
     )
 
 
+def half_speed(runs: Sequence[Figures]) -> Verdict:
+    """People cover ground on the stair at half their speed on a level floor, within 0.05 m/s."""
+    return Verdict(
+        tuple(
+            within(f"speed {way} m/s", run["ground_mps"], 0.45, 0.55)
+            for way, run in zip(("up", "down"), runs, strict=True)
+        )
+    )
+
+
+def flow_by_width(runs: Sequence[Figures]) -> Verdict:
+    """The flow on a stair rises with its width."""
+    flows = [run["flow_per_s"] for run in runs]
+    return Verdict(
+        (*judging.everybody_out(runs), rising("least rise of the flow with the width 1/s", flows)),
+        {f"flow at {width:g} m 1/s": flow for width, flow in zip(WIDTHS, flows, strict=True)},
+    )
+
+
 TESTS = {
+    "iso-03": VerificationTest(
+        tuple(
+            case(stairs.lone_climber, up=up, risers=40, riser=0.22, tread=10 / 39, preferred=1.0)
+            for up in (True, False)
+        ),
+        judge=half_speed,
+    ),
+    "iso-12": VerificationTest(
+        tuple(
+            case(
+                stairs.down_from_a_room, effort=3.0, width=width, riser=0.22, tread=0.25, going=6.0
+            )
+            for width in WIDTHS
+        ),
+        judge=flow_by_width,
+    ),
     "iso-13": VerificationTest(
         tuple(
             case(halls.full_corridor, effort=1.0 + n / 100, people=n, speed=FREE_SPEED)

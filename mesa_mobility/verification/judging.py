@@ -58,6 +58,23 @@ def lone_walk(
     return judge
 
 
+def climbs(speeds: Sequence[float]) -> Callable[[Sequence[Figures]], Verdict]:
+    """A judge of runs in which one person walks on a stair: each at the speed set, within 5 %."""
+
+    def judge(runs: Sequence[Figures]) -> Verdict:
+        return Verdict(
+            (
+                *everybody_out(runs),
+                *(
+                    within(f"speed {k} m/s", run["speed_mps"], 0.95 * speed, 1.05 * speed)
+                    for k, (run, speed) in enumerate(zip(runs, speeds, strict=True), 1)
+                ),
+            )
+        )
+
+    return judge
+
+
 def corner(limit: float) -> Callable[[Sequence[Figures]], Verdict]:
     """A judge of a walk around a corner: all are out before ``limit`` (s), no point is outside."""
 

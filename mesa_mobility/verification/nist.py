@@ -1,8 +1,10 @@
-"""NIST Technical Note 1822: the tests of a level floor."""
+"""NIST Technical Note 1822: the tests of level floors and stairs."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -27,6 +29,7 @@ from mesa_mobility.verification.scenarios import (
     impaired,
     premovement,
     stair_foot,
+    stairs,
     walks,
 )
 from mesa_mobility.verification.suite import VerificationTest
@@ -41,6 +44,9 @@ PRE_MOVEMENT = {
 
 NARROW, WIDE = 1.2, 4.0
 TRIALS = 40
+_STEPS: dict[str, Any] = {"risers": 200, "riser": 0.22, "tread": math.sqrt(100**2 - 44**2) / 199}
+LONG_STAIR = {**_STEPS, "preferred": stairs.preferred_for(1.0, **_STEPS)}
+"""100 m along the slope, walked at 1 m/s."""
 
 
 def impaired_person(seeds: Sequence[Sequence[Figures]]) -> Verdict:
@@ -163,6 +169,10 @@ TESTS = {
     "nist-2.1": VerificationTest(
         (case(walks.lone_walker, length=60.0, speed=1.0, measured_from=10.0, measured_to=50.0),),
         judge=judging.lone_walk((56.7, 64.6), 1.0),
+    ),
+    "nist-2.2": VerificationTest(
+        tuple(case(stairs.lone_climber, effort=2.0, up=up, **LONG_STAIR) for up in (True, False)),
+        judge=judging.climbs((1.0, 1.0)),
     ),
     "nist-2.3": VerificationTest((imo.CORNER,), judge=judging.corner(60.0)),
     "nist-2.4": VerificationTest(

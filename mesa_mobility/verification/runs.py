@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility import FloorPlan, MobilityMap, PedestrianModel, Trajectories
+from mesa_mobility import Building, FloorPlan, MobilityMap, PedestrianModel, Trajectories
 from mesa_mobility.results import check_safety, crossings, flow
 from mesa_mobility.verification.drawings import collect
 
@@ -24,7 +24,7 @@ SPACING = 0.4
 
 
 def crowd_model(
-    plan: FloorPlan, seed: int | np.random.Generator, **keywords: Any
+    plan: FloorPlan | Building, seed: int | np.random.Generator, **keywords: Any
 ) -> PedestrianModel:
     """A recording model of the default preset on the map that ships."""
     if "pedestrian_types" not in keywords:
@@ -51,10 +51,14 @@ class Run:
 
     def figures(self) -> dict[str, Any]:
         """Figures of a run; overlaps and wall crossings are counted on its trajectories."""
-        collect(self.trajectories, self.walls)
-        model = self.model
+        model, building = self.model, self.model.building
+        walls = self.walls
+        if building is not None:  # those of its levels, in true coordinates
+            storeys = [building.floor_plan_of(level.number) for level in building.levels]
+            walls = np.concatenate([plan.walls for plan in storeys])
+        collect(self.trajectories, walls)
         safety = check_safety(
-            self.trajectories, self.walls, model.floor_plan.free, building=model.building
+            self.trajectories, self.walls, model.floor_plan.free, building=building
         )
         summary = self.model.summary()
         kept = (

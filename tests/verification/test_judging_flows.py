@@ -189,3 +189,45 @@ def test_jams_are_at_the_neck_and_at_the_foot():
     assert not judge([run(2.5, 2.5, 2.0), run(6.0, 4.0, 3.0)]).passed
     assert not judge([run(6.0, 2.5, 2.0), run(4.0, 4.0, 3.0)]).passed
     assert not judge([run(6.0, 2.5, 2.0), run(6.0, 4.0, 2.0)]).passed
+
+
+def foot(**changed: float) -> dict:
+    usual = {
+        "door_early": 2.9,
+        "middle_early": 2.0,
+        "middle_late": 2.1,
+        "foot_early": 1.8,
+        "foot_late": 2.6,
+        "flow_in": 3.5,
+        "flow_up": 3.0,
+    }
+    return {"left_inside": 0, **usual, **changed}
+
+
+@pytest.mark.parametrize(
+    ("changed", "wrong"),
+    [
+        ({}, []),
+        ({"door_early": 2.0}, ["density at the exit less that in the corridor, early 1/m2"]),
+        ({"foot_early": 2.7}, ["growth of the density at the foot 1/m2"]),
+        ({"middle_late": 2.7}, ["density at the foot less that in the corridor, late 1/m2"]),
+        ({"flow_up": 3.5}, ["flow into the corridor less that up the stair 1/s"]),
+    ],
+)
+@pytest.mark.parametrize("test", [rimea.TESTS["rimea-13"], imo.TESTS["imo-11"]])
+def test_a_jam_grows_at_the_foot_of_a_stair(changed, wrong, test):
+    assert unmet(test.judge([foot(**changed)])) == wrong
+
+
+def test_a_stair_that_not_all_have_climbed_has_no_jam_to_judge():
+    assert len(unmet(rimea.TESTS["rimea-13"].judge([{"left_inside": 3}]))) == 5
+
+
+def test_the_flow_on_a_stair_rises_with_its_width():
+    judge = iso.TESTS["iso-12"].judge
+    flows = [1.3, 1.6, 1.9, 2.2, 2.5]
+    assert judge([out(flow_per_s=flow) for flow in flows]).passed
+    flows[3] = 1.9
+    assert unmet(judge([out(flow_per_s=flow) for flow in flows])) == [
+        "least rise of the flow with the width 1/s"
+    ]

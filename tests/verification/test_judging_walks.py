@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from mesa_mobility.verification import iso, judging, nist, rimea
+from mesa_mobility.verification import imo, iso, judging, nist, rimea
 from tests.fixtures.verdicts import out, unmet
 
 
@@ -44,6 +44,36 @@ def corner(left: int = 0, outside: int = 0, time: float | None = 30.0) -> dict:
 )
 def test_corner(figures, wrong):
     assert unmet(rimea.TESTS["rimea-06"].judge([figures])) == wrong
+
+
+def climbed(speed: float | None, left: int = 0) -> dict:
+    return {"left_inside": left, "speed_mps": speed, "ground_mps": speed}
+
+
+@pytest.mark.parametrize(
+    ("speeds", "wrong"),
+    [
+        ([0.5, 0.7, 1.0], []),
+        ([0.526, 0.7, 1.0], ["speed 1 m/s"]),
+        ([0.5, 0.664, 1.051], ["speed 2 m/s", "speed 3 m/s"]),
+        ([0.5, None, 1.0], ["speed 2 m/s"]),
+    ],
+)
+@pytest.mark.parametrize("name", ["rimea-02", "rimea-03"])
+def test_climbs(speeds, wrong, name):
+    assert unmet(rimea.TESTS[name].judge([climbed(speed) for speed in speeds])) == wrong
+
+
+def test_somebody_who_is_still_on_the_stair_fails():
+    assert unmet(imo.TESTS["imo-02"].judge([climbed(1.0, left=1)])) == ["left inside"]
+    assert unmet(nist.TESTS["nist-2.2"].judge([climbed(0.96), climbed(0.94)])) == ["speed 2 m/s"]
+
+
+def test_half_speed_on_stairs():
+    judge = iso.TESTS["iso-03"].judge
+    assert judge([climbed(0.451), climbed(0.549)]).passed
+    assert unmet(judge([climbed(0.44), climbed(0.5)])) == ["speed up m/s"]
+    assert unmet(judge([climbed(0.5), climbed(0.56)])) == ["speed down m/s"]
 
 
 def spread(walked: np.ndarray) -> list[list[dict]]:

@@ -22,7 +22,7 @@ def verify(
     *,
     options: CheckOptions,
 ) -> None:
-    """Run the verification tests of RiMEA, IMO, NIST and ISO for a level floor.
+    """Run the verification tests of RiMEA, IMO, NIST and ISO for level floors and stairs.
 
     Ends with status 1 if a test fails.
     """
