@@ -3,6 +3,8 @@
 import math
 from typing import Annotated
 
+from mesa_mobility.behaviors.right_of_way import OPPOSED
+
 from mesa_mobility import CompiledTerm, Me, Option, Other, Range, pair_kernel
 
 
@@ -18,7 +20,8 @@ def _speed_ahead(option: Option, me: Me, other: Other, p: "SpeedAhead") -> float
     ahead = dx * ex + dy * ey
     # By factors that all neighbours share: a processor does few divisions at a time.
     share = 1.0 - abs(dy * ex - dx * ey) * (1.0 / p.width)
-    if ahead <= 0.0 or ahead >= way or share <= 0.0:
+    oncoming = ex * other.way_x + ey * other.way_y < -OPPOSED
+    if ahead <= 0.0 or ahead >= way or share <= 0.0 or oncoming:
         return 0.0
     own = ((option.x - me.x) * ex + (option.y - me.y) * ey) / option.duration
     theirs = other.vx * ex + other.vy * ey
@@ -32,7 +35,8 @@ class SpeedAhead(CompiledTerm):
     Sum over neighbours ahead of ``|v - u| s exp(-(d - g) / r)``: v and u are the speeds of the
     option and of the neighbour along the way to the target, d is how far ahead the neighbour is
     now, g the gap up to which they count in full and r the range over which that falls. s is 1
-    straight ahead and 0 at ``width`` to the side.  People beyond the target do not count.
+    straight ahead and 0 at ``width`` to the side. People beyond the target do not count, nor do
+    oncoming people, as of ``RightOfWay``: nobody follows those who come the other way.
     People who take over the speed of those ahead keep the gap as it is, so that small changes do
     not grow on their way back through a queue (Treiber and Kesting, Traffic Flow Dynamics,
     chapter 15).

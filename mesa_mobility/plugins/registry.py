@@ -119,24 +119,31 @@ def installed(group: str) -> dict[str, Plugin]:
     return plugins
 
 
-# Looking for what is installed opens a file of each package: without a cache, the terms of a preset
-# would take a third of the time of a run of 30 people. What is not found is looked for again.
+# Looking for what is installed opens a file of each package. Without a cache, the terms of a preset
+# would take a third of the time of a run of 30 people.
 @cache
+def known(group: str) -> dict[str, Plugin]:
+    """The plug-ins of a group by name, as first looked for in this process."""
+    return installed(group)
+
+
 def find(name: str, group: str) -> Plugin:
     """Find a plug-in by name, without importing it.
 
     Raises:
         ModelError: no plug-in has this name; the message lists the installed ones.
     """
-    plugins = installed(group)
+    if name not in known(group):
+        known.cache_clear()  # it may have been installed since
+    plugins = known(group)
     if name in plugins:
         return plugins[name]
     names = ", ".join(plugins) or "none"
     file = f"{name}.py"
     beside = [file] if group == MODELS and Path(file).is_file() else []
-    known = dict.fromkeys([*plugins, *beside])
+    names_known = dict.fromkeys([*plugins, *beside])
     raise ModelError(
-        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, known)}; installed: {names}"
+        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, names_known)}; installed: {names}"
         + ("; a model of your own is FILE.py or FILE.py:NAME" if group == MODELS else "")
     )
 

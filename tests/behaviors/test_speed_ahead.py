@@ -70,6 +70,13 @@ def test_nobody_beyond_the_target_is_followed():
     assert cost((1.5, 0.0), ((0.5, 0.0), (0.0, 0.0)), target=(0.4, 0.0)) == 0.0
 
 
+@pytest.mark.parametrize(("degrees", "share"), [(0, 1), (119, 1), (121, 0), (180, 0), (-121, 0)])
+def test_nobody_follows_those_who_come_the_other_way(degrees, share):
+    angle = math.radians(degrees)
+    neighbour = (0.5, 0.0), (0.0, 0.0), (math.cos(angle), math.sin(angle)), 0.0
+    assert cost((1.5, 0.0), neighbour) == pytest.approx(share)
+
+
 @given(st.integers(0, 10_000), turns, shifts)
 @settings(deadline=None)
 def test_turning_and_moving_everything_changes_nothing(seed, turn, shift):

@@ -11,7 +11,7 @@ import pytest
 from mesa_mobility.cli import main
 from mesa_mobility.commands import console
 from mesa_mobility.plugins.formats import _load
-from mesa_mobility.plugins.registry import find
+from mesa_mobility.plugins.registry import known
 from tests.fixtures.walker import walker_bvh
 
 PLUGIN = Path(__file__).parents[1] / "fixtures" / "plugin" / "corridor_plugin.py"
@@ -58,10 +58,10 @@ def install(tmp_path, monkeypatch) -> Iterator[Callable[[str, str], None]]:
         monkeypatch.syspath_prepend(str(folder))
 
     # What is installed does not change while a process runs, but here it does.
-    for cached in (find, _load):
+    for cached in (known, _load):
         cached.cache_clear()
     yield make
-    for cached in (find, _load):
+    for cached in (known, _load):
         cached.cache_clear()
 
 

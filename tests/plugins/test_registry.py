@@ -37,13 +37,18 @@ def test_a_plug_in_is_found_and_loaded():
 
 
 @pytest.mark.usefixtures("plugins")
-def test_what_is_installed_is_looked_through_once_a_name(monkeypatch):
+def test_what_is_installed_is_looked_through_once_a_group(monkeypatch):
     looked, entry_points = [], registry.entry_points
     monkeypatch.setattr(
         registry, "entry_points", lambda group: looked.append(group) or entry_points(group=group)
     )
     assert registry.load_model("corridor") is registry.load_model("corridor")
+    assert registry.load_model("doorway").__name__ == "Doorway"
     assert looked == [registry.MODELS]
+    for _ in range(2):  # what is not found may have been installed since
+        with pytest.raises(ModelError, match="unknown model 'nowhere'"):
+            registry.load_model("nowhere")
+    assert looked == [registry.MODELS] * 3
 
 
 @pytest.mark.usefixtures("plugins")
