@@ -122,3 +122,10 @@ def test_what_is_wrong_is_said_in_one_line(make, said):
     with pytest.raises(FloorPlanError, match=said) as error:
         make()
     assert "\n" not in str(error.value)
+
+
+def test_the_highest_riser_is_accepted_however_its_height_is_rounded():
+    assert 8.8 / 40 > 0.22
+    stairs = Stairs.straight("steep", 1, 0, head=((0, 2), (0, 0)), risers=40, tread=0.25)
+    flights, _ = stairs.parts(8.8, 0.0)
+    assert flights[0].going == pytest.approx(39 * 0.25)
