@@ -141,9 +141,9 @@ def find(name: str, group: str) -> Plugin:
     names = ", ".join(plugins) or "none"
     file = f"{name}.py"
     beside = [file] if group == MODELS and Path(file).is_file() else []
-    names_known = dict.fromkeys([*plugins, *beside])
+    choices = dict.fromkeys([*plugins, *beside])
     raise ModelError(
-        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, names_known)}; installed: {names}"
+        f"unknown {_KINDS[group]} {name!r}{did_you_mean(name, choices)}; installed: {names}"
         + ("; a model of your own is FILE.py or FILE.py:NAME" if group == MODELS else "")
     )
 
