@@ -111,7 +111,7 @@ def run(
         with progress_bar(shown=not no_progress) as report:
             report("checking distances and walls", 0, 1)
             trajectories = Trajectories.of(simulation)
-            plan, building = simulation.floor_plan, simulation.building
+            plan, building = simulation.floor_plan, getattr(simulation, "building", None)
             safety = check_safety(trajectories, plan.walls, plan.free, building=building)
             table = by_type(trajectories) if "type" in trajectories.person_data else pd.DataFrame()
             summary = {
