@@ -107,7 +107,8 @@ PRESS = "import signal; press = lambda *_: os.kill(os.getpid(), signal.SIGINT)\n
 @pytest.mark.thorough
 def test_a_second_one_stops_at_once_and_writes_nothing(tmp_path):
     prepare = PRESS + (
-        "from mesa_mobility import results\nresults.check_safety = lambda *_, **__: (press(), press())"
+        "from mesa_mobility import results\n"
+        "results.check_safety = lambda *_, **__: (press(), press())"
     )
     arguments = ["run", "straight_walk", "--seconds", 0.2, "--out", tmp_path / "out"]
     ended = interrupted(arguments, 0.0, times=0, prepare=prepare)
