@@ -16,6 +16,7 @@ headway, and nobody goes round the queue that they want to join.
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 from mesa_mobility.behaviors.steering.people_ahead import (
@@ -30,7 +31,7 @@ from mesa_mobility.behaviors.steering.people_ahead import (
 )
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, Desired, FloorPlan, Tactic
+from mesa_mobility import Deciding, Desired, FloorPlan, Range, Tactic
 from mesa_mobility.steering import (
     Crowd,
     CrowdState,
@@ -46,8 +47,10 @@ HORIZON = 4.0
 """Seconds within which a closest approach counts, or as long as the way to the target takes."""
 
 LEFT = 0.1
-"""What turning left costs more, m/s: of two people who might as well pass on either side, both keep
-to the right."""
+"""What turning left costs more, m/s, where nobody comes."""
+
+LEFT_OF_COMING = 0.5
+"""The same where somebody comes, who looks for a side, too: both keep to the right."""
 
 STEPS = 6
 """Number of courses to each side."""
@@ -78,13 +81,13 @@ def turns(steps: int) -> NDArray[np.float64]:
 
 
 def _course_table() -> NDArray[np.float64]:
-    """(``_COURSE_FIELDS``, courses) share of the speed, cosine and sine of the turn, and what the
-    side costs, m/s, of each course; the other rows are workspace."""
+    """(``_COURSE_FIELDS``, courses) share of the speed, cosine and sine of the turn, and whether it
+    is to the left, of each course; the other rows are workspace."""
     angles = np.tile(turns(STEPS), 2)
     courses = np.zeros((_COURSE_FIELDS, _COURSES))
     courses[0] = np.repeat([1.0, SLOWER], 2 * STEPS + 1)
     courses[1], courses[2] = np.cos(angles), np.sin(angles)
-    courses[3] = np.where(angles > 0.0, LEFT, 0.0)
+    courses[3] = angles > 0.0
     return courses
 
 
@@ -163,10 +166,13 @@ def _turn_aside(
         if not any_too_near(speed * ex, speed * ey, horizon, ahead, count):
             continue
         _set_courses(ex, ey, speed, courses)
+        left = LEFT
         for other in range(count):
             if _matters(ahead, other, courses) and seen(place, sight, ahead, other):
                 _add_cost(ahead, other, horizon, courses)
-        best = _cheapest(speed * ex, speed * ey, courses)
+                if ahead[2, other] * ex + ahead[3, other] * ey < 0.0:
+                    left = LEFT_OF_COMING
+        best = _cheapest(speed * ex, speed * ey, left, courses)
         share, c, s = courses[0, best], courses[1, best], courses[2, best]
         points[k, 0] = place[0] + away * (c * ex - s * ey)
         points[k, 1] = place[1] + away * (s * ex + c * ey)
@@ -226,35 +232,61 @@ def _add_cost(
 
 
 @inner()
-def _cheapest(wanted_x: float, wanted_y: float, courses: NDArray[np.float64]) -> int:
-    """Index of the cheapest course of somebody who wants this velocity; the first of equal ones."""
+def _cheapest(wanted_x: float, wanted_y: float, left: float, courses: NDArray[np.float64]) -> int:
+    """Index of the cheapest course of somebody who wants this velocity; the first of equal ones.
+
+    Those to the left cost ``left`` more.
+    """
     side, ux, uy, people = courses[3], courses[4], courses[5], courses[6]
     least, best = np.inf, 0
     for n in range(_COURSES):
         dx, dy = ux[n] - wanted_x, uy[n] - wanted_y
-        cost = math.sqrt(dx * dx + dy * dy) + side[n] + people[n]
+        cost = math.sqrt(dx * dx + dy * dy) + left * side[n] + people[n]
         if cost < least:
             least, best = cost, n
     return best
 
 
 class Anticipation(Tactic):
-    """People who walk turn aside early for those whom they would come too near."""
+    """People who walk turn aside early for those whom they would come too near.
+
+    Those who walk and turn aside for nobody do not keep their course exactly: it is off by a
+    normally distributed angle, drawn anew for each movement.
+
+    Args:
+        wander: standard deviation of that angle, radians.
+
+    Raises:
+        ModelError: a number out of range.
+    """
 
     name = "anticipation"
 
+    def __init__(self, wander: Annotated[float, Range(0.0, 1.5, "rad")] = 0.0) -> None:
+        self.wander = wander
+
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Turn the points of those for whom another course is better, or slow them down."""
-        if not desired.newcomers:
-            desired.points, desired.speeds = turn_aside(
-                deciding.pedestrians,
-                deciding.inside.grid,
-                deciding.frame,
-                deciding.inside.crowd,
-                deciding.site.plan,
-                desired.points,
-                desired.speeds,
-            )
+        if desired.newcomers:
+            return
+        rows, crowd, aims = deciding.pedestrians, deciding.inside.crowd, desired.points
+        points, speeds = turn_aside(
+            rows,
+            deciding.inside.grid,
+            deciding.frame,
+            crowd,
+            deciding.site.plan,
+            aims,
+            desired.speeds,
+        )
+        if self.wander > 0.0:
+            off = self.wander * deciding.rng.standard_normal(len(rows))
+            stands = np.hypot(crowd.vx[rows], crowd.vy[rows]) < WALKS
+            off[stands | (points != aims).any(axis=1) | (speeds != desired.speeds)] = 0.0
+            dx, dy = (points - deciding.positions).T
+            c, s = np.cos(off), np.sin(off)
+            points = deciding.positions + np.column_stack([c * dx - s * dy, s * dx + c * dy])
+        desired.points, desired.speeds = points, speeds
 
     def compile_ahead(self) -> None:
         """Compile the comparison of courses."""

@@ -107,4 +107,7 @@ class SpreadAtCorners(Tactic):
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Change the points of those who pass a corner after others."""
-        desired.points = spread_at_corners(deciding, desired.targets, deciding.inside.crowd)
+        points = spread_at_corners(deciding, desired.targets, deciding.inside.crowd)
+        spread = (points != desired.targets.points).any(axis=1)
+        if spread.any():
+            desired.points = np.where(spread[:, None], points, desired.points)

@@ -17,7 +17,8 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from mesa_mobility.behaviors.steering.anticipation import GAINS, WALKS, turns
+from mesa_mobility.behaviors.right_of_way import OPPOSED
+from mesa_mobility.behaviors.steering.anticipation import GAINS, turns
 from mesa_mobility.behaviors.steering.people_ahead import (
     LIMIT,
     MOTION_FIELDS,
@@ -41,10 +42,10 @@ from mesa_mobility.steering import (
     unwalled,
 )
 
-REACH = 3.0
+REACH = 4.0
 """Metres within which people ahead count."""
 
-AHEAD = 3.0
+AHEAD = 4.0
 """Seconds for which courses are compared, or as long as the way to the target takes."""
 
 CLOSE = 0.4
@@ -181,7 +182,8 @@ def _people_ahead(
 
 @inner()
 def _somebody_comes(x: float, y: float, ex: float, ey: float, away: float, around: _Around) -> bool:
-    """Whether somebody in view, on this side of a target, wants to go the other way.
+    """Whether somebody in view, on this side of a target, wants to go the other way, at more than
+    120 degrees.
 
     People who wait do not: they always count for others, which is what an endless limit says.
     """
@@ -191,7 +193,8 @@ def _somebody_comes(x: float, y: float, ex: float, ey: float, away: float, aroun
         for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
             dx, dy = grid.x[a] - x, grid.y[a] - y
             if (
-                motion[WAY_X, a] * ex + motion[WAY_Y, a] * ey < 0.0
+                motion[WAY_X, a] * ex + motion[WAY_Y, a] * ey
+                < -OPPOSED * math.hypot(motion[WAY_X, a], motion[WAY_Y, a])
                 and motion[LIMIT, a] < np.inf
                 and 0.0 < dx * ex + dy * ey < away
                 and dx * dx + dy * dy <= COMING * COMING
@@ -243,14 +246,10 @@ def _gets_on(
 class ChooseCourse(Tactic):
     """People who are held up go where they get on.
 
-    Nobody keeps a course exactly, either: that of whoever walks is off by a normally distributed
-    angle, drawn anew for each movement.
-
     Args:
         haste: what a metre a second that a course loses of the way to the target costs, beside a
             metre a second of its change of velocity.  At 0 everybody goes straight.
         width: metres to the side at which somebody does not hold one up.
-        wander: standard deviation of the angle by which courses are off, radians.
 
     Raises:
         ModelError: a number out of range.
@@ -262,31 +261,22 @@ class ChooseCourse(Tactic):
         self,
         haste: Annotated[float, Range(0.0)] = 8.0,
         width: Annotated[float, Range(0.0, unit="m", above=True)] = 0.4,
-        wander: Annotated[float, Range(0.0, 1.5, "rad")] = 0.07,
     ) -> None:
         self.haste = haste
         self.width = width
-        self.wander = wander
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
-        """Turn the points of those who get on faster on another course, and let all wander."""
-        if desired.newcomers:
-            return
-        rows, inside, points = deciding.pedestrians, deciding.inside, desired.points
-        if self.haste > 0.0:
-            settings = CourseSettings(self.haste, self.width)
-            sight = sight_on(desired.targets.floor or deciding.site.plan, 0.0)
-            points = choose_courses(
-                rows, inside, deciding.frame, sight, points, desired.speeds, settings
+        """Turn the points of those who get on faster on another course."""
+        if not desired.newcomers and self.haste > 0.0:
+            desired.points = choose_courses(
+                deciding.pedestrians,
+                deciding.inside,
+                deciding.frame,
+                sight_on(desired.targets.floor or deciding.site.plan, 0.0),
+                desired.points,
+                desired.speeds,
+                CourseSettings(self.haste, self.width),
             )
-        if self.wander > 0.0:
-            off = self.wander * deciding.rng.standard_normal(len(rows))
-            crowd = inside.crowd
-            off[np.hypot(crowd.vx[rows], crowd.vy[rows]) < WALKS] = 0.0
-            dx, dy = (points - deciding.positions).T
-            c, s = np.cos(off), np.sin(off)
-            points = deciding.positions + np.column_stack([c * dx - s * dy, s * dx + c * dy])
-        desired.points = points
 
     def compile_ahead(self) -> None:
         """Compile the comparison of courses."""

@@ -41,7 +41,7 @@ BOUNDS = {
     "right_of_way.width": (0.25, 0.8),
     "course_choice.haste": (1.0, 20.0),
     "course_choice.width": (0.2, 0.6),
-    "course_choice.wander": (0.02, 0.15),
+    "anticipation.wander": (0.02, 0.15),
 }
 """The numbers that are free, and their ranges."""
 

@@ -13,10 +13,15 @@ from shapely import box
 from benchmarks.conflicts import corridor, narrow
 from benchmarks.measured_preset.closeness import beyond
 from mesa_mobility import Exit, FloorPlan
+from mesa_mobility.verification.references import bottleneck_envelope
 from mesa_mobility.verification.runs import crowd_model
-from mesa_mobility.verification.scenarios import counterflow, walks
+from mesa_mobility.verification.scenarios import counterflow, necks, stairs, walks
 
 LIMIT_S = 240.0
+LONG_NECK_M = 1.1, 4.0
+"""Width and length of a neck, metres."""
+RISER, TREAD = 0.17, 0.3
+"""Of a stair, metres."""
 
 GOALS: dict[str, tuple[float, float, float]] = {
     "two_way_door": (0.0, 60.0, 10.0),
@@ -27,6 +32,8 @@ GOALS: dict[str, tuple[float, float, float]] = {
     "abreast": (0.67, 0.83, 0.04),
     "mixed_corridor": (0.0, 0.0, 1.5),
     "round_somebody": (0.0, 8.0, 4.0),
+    "long_neck": (*bottleneck_envelope(LONG_NECK_M[0]), 0.1),
+    "jams": (0.05, 5.0, 0.15),
 }
 """The range in which what each scene gives should be, and how far outside counts as 1."""
 
@@ -127,6 +134,23 @@ def round_somebody(seed: int) -> float:
     while model.elapsed < 30.0 and walker.position[0] < 6.0:
         model.step()
     return model.elapsed
+
+
+def long_neck(seed: int) -> float:
+    """Flow through a neck as long as a short corridor, persons a second."""
+    width, length = LONG_NECK_M
+    found = necks.neck(seed, width=width, length=length, goal=8.0, people=120)
+    return float(found["flow_per_s"] or 0.0)
+
+
+def jams(seed: int) -> float:
+    """How much denser it is at the exit of a room and at the foot of a stair than in the corridor
+    between them, persons a square metre: the smaller one of the two."""
+    found = stairs.up_from_a_corridor(seed, riser=RISER, tread=TREAD, people=130)
+    if "foot_late" not in found:
+        return -1.0
+    door = found["door_early"] - found["middle_early"]
+    return float(min(door, found["foot_late"] - found["middle_late"]))
 
 
 def outside(simulated: float, wanted: Sequence[float]) -> float:

@@ -29,7 +29,7 @@ def test_there_are_three():
 def test_the_measured_one_says_where_it_comes_from_has_few_rules_and_empties_a_room():
     rules = PRESETS["measured"]
     assert len(rules.terms) == 8
-    assert len(rules.tactics) == 6
+    assert len(rules.tactics) == 5
     assert len(rules.provenance.data) == 5
     # 60 people and two doors in a row, at 0.5 to 3 persons/s.
     model = Doorway(pedestrians=60, preset="measured", rng=1)

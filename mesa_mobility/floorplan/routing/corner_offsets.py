@@ -12,6 +12,11 @@ from mesa_mobility.floorplan.walls.wall_distances import wall_distance
 
 # Least distance to the corner, or to the place to pass it, that is taken into account (metres).
 _THERE = 0.05
+# Greatest width of a way that is measured (metres).
+_WIDEST = 50.0
+# How far past a corner the width of the way on is measured (metres): more than a corner of a route
+# keeps from the wall.
+_PAST = 0.5
 
 
 @kept(nogil=True)
@@ -43,8 +48,8 @@ def pass_abreast(
         out = min((x - cx) * ux + (y - cy) * uy, areas[k] / away)
         if out <= 0.0:
             continue
-        end = out + clearance
-        out = min(out, free_length(sight, cx, cy, cx + end * ux, cy + end * uy) - clearance)
+        room = _room(sight, (x, y), (cx, cy), (ux, uy))
+        out = min(out, room - clearance)
         if out <= 0.0 or not _is_wide(sight, ways, (x, y), (cx, cy), (ux, uy), out, onward):
             continue
         qx, qy = cx + out * ux, cy + out * uy
@@ -54,6 +59,27 @@ def pass_abreast(
         ):
             # Not assigned as a row: the check of its shape takes Numba 2 s to compile.
             points[k, 0], points[k, 1] = past_corner(sight, ways, x, y, qx, qy, corners[k, 1])
+
+
+@internal()
+def _room(
+    sight: Sight,
+    person: tuple[float, float],
+    corner: tuple[float, float],
+    along: tuple[float, float],
+) -> float:
+    """How far from a corner people can pass it and then go on side by side, metres.
+
+    It is the width of the way up to the corner, along the line ``along`` through it, as far as the
+    way on is as wide, just past the corner. As much as the way on is narrower, they have less room:
+    they queue for what comes then. Where it is half as wide, all pass at the corner.
+    """
+    (x, y), (cx, cy), (ux, uy) = person, corner, along
+    before = free_length(sight, cx, cy, cx + _WIDEST * ux, cy + _WIDEST * uy)
+    side = 1.0 if (x - cx) * uy - (y - cy) * ux > 0.0 else -1.0
+    px, py = cx - _PAST * ux, cy - _PAST * uy
+    on = free_length(sight, px, py, px - side * _WIDEST * uy, py + side * _WIDEST * ux)
+    return min(before, 2.0 * on - before)
 
 
 @internal()

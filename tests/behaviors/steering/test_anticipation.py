@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mesa_mobility.behaviors.steering.anticipation import turn_aside
+from mesa_mobility.behaviors.steering.anticipation import Anticipation, turn_aside
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan
+from mesa_mobility import Exit, FloorPlan, PedestrianModel
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.view import CrowdView
+from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import shipped_map
 from tests.fixtures.oracles.counting import overlaps
 from tests.fixtures.scenes import model_of
@@ -125,9 +126,23 @@ def best_course(others, speed):
             weight = 3.0 * min((relative**2 - 0.81) / full, 1.0) * 4.0 / (4.0 + abs(place))
             counted.append((place, velocity, weight))
 
+    def too_near(place, velocity, course):
+        times = np.linspace(0.0, 40.0, 40001)
+        gaps = abs(place + (velocity - course) * times)
+        return gaps.argmin() > 0 and gaps.min() < min(0.65, 0.6 * abs(place))
+
+    comes = any(
+        too_near(place, velocity, cmath.rect(share * speed, math.copysign(0.8 * (k / 6) ** 2, k)))
+        for place, velocity, _ in counted
+        if velocity.real < 0.0
+        for k in range(-6, 7)
+        for share in (1.0, 0.7)
+    )
+    left = 0.5 if comes else 0.1
+
     def cost(angle, share):
         course = cmath.rect(share * speed, angle)
-        total = abs(course - speed) + (0.1 if angle > 0.0 else 0.0)
+        total = abs(course - speed) + (left if angle > 0.0 else 0.0)
         for place, velocity, weight in counted:
             times = np.linspace(0.0, 4.0, 4001)
             gaps = abs(place + (velocity - course) * times)
@@ -170,3 +185,24 @@ def test_two_people_pass_each_other_with_room(aside):
     tracks = [np.column_stack([rows["x"], rows["y"]])[rows["person"] == p] for p in (0, 1)]
     assert np.hypot(*(tracks[0] - tracks[1]).T).min() >= 0.6
     assert overlaps(rows, 0.14) == 0
+
+
+def test_courses_of_those_who_walk_alone_wander_by_the_angle_that_is_set():
+    model = PedestrianModel(HALL, rng=1)
+    model.tactics[:] = [Anticipation(wander=0.05)]
+    places = [(x, y) for x in range(1, 30, 2) for y in range(1, 40, 2)]
+    people = model.add_pedestrians(places, preferred_speeds=1.3, exits=["east"])
+    assert all(person.target[1] == pytest.approx(person.position[1]) for person in people)
+    model.run(max_seconds=2.0)
+    angles = []
+    for person in people:
+        (x, y), (tx, ty) = person.position, person.target
+        angles.append(math.atan2(ty - y, tx - x))
+    # 300 angles: their deviation is within an eighth of that of the distribution, three sigma.
+    # Since people do not walk exactly where they want to, the way from there is a little off, too.
+    assert 0.05 * 0.875 < np.std(angles) < 0.05 * 1.3
+
+
+def test_a_deviation_out_of_range():
+    with pytest.raises(ModelError, match="anticipation: wander"):
+        Anticipation(wander=2.0)

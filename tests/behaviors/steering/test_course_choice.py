@@ -11,7 +11,7 @@ from mesa_mobility.behaviors import ChooseCourse
 from mesa_mobility.behaviors.steering.course_choice import CourseSettings, choose_courses
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan, PedestrianModel
+from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.errors import ModelError
@@ -63,10 +63,10 @@ def test_somebody_alone_goes_straight():
 
 
 def test_somebody_who_stands_right_ahead_is_passed():
-    # Straight on they get 1 - 0.4 of 3.6 m in 3 s: 8 x 1.2 x (1 - 0.6 / 3.6) = 8. The fifth course
-    # is turned by 0.8 x (5 / 6)^2 = 0.556 rad and passes 0.53 m from somebody 1 m away; it costs
-    # 8 x 1.2 x (1 - cos) = 1.44, and 2.4 x sin(0.278) = 0.66 for the change. The fourth, of 0.356
-    # rad, passes 0.35 m away, which holds them up by a quarter: 2.5 and 0.4.
+    # Straight on they get 1 - 0.4 of 4.8 m in 4 s: 8 x 1.2 x (1 - 0.6 / 4.8) = 8.4. The fifth
+    # course is turned by 0.8 x (5 / 6)^2 = 0.556 rad and passes 0.53 m from somebody 1 m away; it
+    # costs 8 x 1.2 x (1 - cos) = 1.44, and 2.4 x sin(0.278) = 0.66 for the change. The fourth, of
+    # 0.356 rad, passes 0.35 m away, which holds them up by a quarter: 2.7 and 0.4.
     angle = look((1.0 + 0j, 0j))
     assert abs(angle) == pytest.approx(0.8 * (5 / 6) ** 2)
     assert look((1.0 + 0j, 0j), haste=0.0) == 0.0
@@ -84,8 +84,8 @@ def test_of_two_sides_the_free_one_is_taken(side):
         (1.0 + 0j, SPEED + 0j),  # as fast
         (-1.0 + 0j, 0j),  # behind
         (1.0 + 0.45j, 0j),  # beside the way
-        (3.1 + 0j, 0j),  # too far
-        (2.5 + 0j, 0.8 + 0j),  # 0.4 m/s slower, and not caught up with in 3 s
+        (4.1 + 0j, 0j),  # too far
+        (2.5 + 0j, 0.8 + 0j),  # 0.4 m/s slower, and not caught up with in 4 s
     ],
 )
 def test_who_does_not_hold_one_up(other):
@@ -138,7 +138,7 @@ def test_no_course_leads_into_a_wall_and_people_behind_one_do_not_count():
 # Millimetres, and not on the edge of what is near: adding AT would move them over it.
 METRES = st.integers(-3500, 3500).map(lambda millimetres: millimetres / 1000.0)
 PLACES = st.tuples(METRES, METRES, st.floats(-1.5, 1.5)).filter(
-    lambda person: abs(math.hypot(person[0], person[1]) - 3.0) > 1e-6
+    lambda person: abs(math.hypot(person[0], person[1]) - 4.0) > 1e-6
 )
 
 
@@ -147,13 +147,13 @@ PLACES = st.tuples(METRES, METRES, st.floats(-1.5, 1.5)).filter(
 def test_the_course_is_the_cheapest_of_fifteen(others, now, preferred):
     people = [(complex(x, y), complex(v, 0.0)) for x, y, v in others]
     speed = min(preferred, now + 0.4)
-    far = min(3.0 * speed, 12.0)
+    far = min(4.0 * speed, 12.0)
     turns = np.array([0.0, *(sign * 0.8 * (k / 6) ** 2 for k in range(1, 8) for sign in (-1, 1))])
     costs = []
     for turn in turns:
         course, on = cmath.exp(1j * turn), far
         for place, v in people:
-            if place.real <= 0.0 or abs(place) > 3.0:
+            if place.real <= 0.0 or abs(place) > 4.0:
                 continue
             along, aside = (place / course).real, abs((place / course).imag)
             share = min(max(2.0 * (1.0 - aside / WIDTH), 0.0), 1.0)
@@ -168,28 +168,11 @@ def test_the_course_is_the_cheapest_of_fifteen(others, now, preferred):
     assert costs[least] == pytest.approx(min(costs), abs=1e-9)
 
 
-def test_courses_of_those_who_walk_wander_by_the_angle_that_is_set():
-    model = PedestrianModel(HALL, rng=1)
-    model.tactics[:] = [ChooseCourse(haste=0.0, wander=0.05)]
-    places = [(x, y) for x in range(1, 30, 2) for y in range(1, 40, 2)]
-    people = model.add_pedestrians(places, preferred_speeds=1.3)
-    assert all(person.target[1] == pytest.approx(person.position[1]) for person in people)
-    model.run(max_seconds=3.0)
-    angles = []
-    for person in people:
-        (x, y), (tx, ty) = person.position, person.target
-        angles.append(math.atan2(ty - y, tx - x))
-    # 300 angles: their deviation is within an eighth of that of the distribution, three sigma.
-    # Since people do not walk exactly where they want to, the way from there is a little off, too.
-    assert 0.05 * 0.875 < np.std(angles) < 0.05 * 1.3
-
-
 @pytest.mark.parametrize(
     ("numbers", "text"),
     [
         ({"haste": -1.0}, "haste"),
         ({"width": 0.0}, "width"),
-        ({"wander": 2.0}, "wander"),
     ],
 )
 def test_numbers_out_of_range(numbers, text):

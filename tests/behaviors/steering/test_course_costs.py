@@ -91,16 +91,33 @@ def by_definition(crowd, order, plan, i, speed):
         for other in others
         if not walls.intersects(shapely.LineString([(px, py), (px + other[0], py + other[1])]))
     ]
-    best = (math.inf, 0.0, 1.0)
+    courses = []
     for share in (1.0, 0.7):
         for step in range(13):
             turn = 0.8 / 36 * ((step + 1) // 2) * ((step + 1) // 2)
             angle = -turn if step % 2 else turn
             c, s = math.cos(angle), math.sin(angle)
             ux, uy = share * own * (c * ex - s * ey), share * own * (s * ex + c * ey)
-            wx, wy = ux - own * ex, uy - own * ey
-            cost = math.sqrt(wx * wx + wy * wy) + (0.1 if angle > 0.0 else 0.0)
-            best = min(best, (cost + people(ux, uy, seen), angle, share), key=lambda each: each[0])
+            courses.append((angle, share, ux, uy))
+
+    def comes_near(x, y, vx, vy, *_):
+        """Whether somebody who comes the other way would ever be too near on any course."""
+        if vx * ex + vy * ey >= 0.0:
+            return False
+        room2 = min(0.65 * 0.65, 0.6 * 0.6 * (x * x + y * y))
+        for _, _, ux, uy in courses:
+            wx, wy = vx - ux, vy - uy
+            towards = -(x * wx + y * wy)
+            if towards > 0.0 and x * x + y * y - towards * towards / (wx * wx + wy * wy) < room2:
+                return True
+        return False
+
+    left = 0.5 if any(comes_near(*other) for other in seen) else 0.1
+    best = (math.inf, 0.0, 1.0)
+    for angle, share, ux, uy in courses:
+        wx, wy = ux - own * ex, uy - own * ey
+        cost = math.sqrt(wx * wx + wy * wy) + (left if angle > 0.0 else 0.0)
+        best = min(best, (cost + people(ux, uy, seen), angle, share), key=lambda each: each[0])
     _, angle, share = best
     c, s = math.cos(angle), math.sin(angle)
     return (px + away * (c * ex - s * ey), py + away * (s * ex + c * ey)), speed * share

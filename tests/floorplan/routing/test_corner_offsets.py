@@ -55,6 +55,23 @@ def test_those_behind_pass_farther_out(place, area, out):
     assert passes_at(place, point) == pytest.approx(BEND[0] - out, abs=0.02)
 
 
+@pytest.mark.parametrize(
+    ("low", "out"), [(0.0, 19.8), (5.0, 9.8), (8.0, 3.8), (10.0, 0.0), (15.0, 0.0)]
+)
+def test_they_spread_as_far_as_the_way_on_is_as_wide_as_the_way_there(low, out):
+    # The way on is 20 - low wide, the way there 20 m: as much as it is narrower, they have less.
+    plan = FloorPlan(
+        Polygon([(0, 0), (20, 0), (20, low), (40, low), (40, 20), (20, 20), (20, 50), (0, 50)]),
+        exits=[Exit("end", (40, low), (40, 20))],
+    )
+    place = (5.0, 26.0)
+    alone, point = aims(plan, place, 1e6)
+    if out:
+        assert passes_at(place, point) == pytest.approx(max(BEND[0] - out, place[0]), abs=0.3)
+    else:
+        assert point.tolist() == alone.tolist()
+
+
 def test_whatever_the_arrays_are_made_of():
     router = Router(HALLS)
     places = np.array([[15.0, 26.0], [17.0, 23.0], [10.0, 30.0]])
