@@ -47,10 +47,10 @@ HORIZON = 4.0
 """Seconds within which a closest approach counts, or as long as the way to the target takes."""
 
 LEFT = 0.1
-"""What turning left costs more, m/s, where nobody comes."""
+"""A course to the left costs so much more, m/s, where nobody comes."""
 
 LEFT_OF_COMING = 0.5
-"""The same where somebody comes, who looks for a side, too: both keep to the right."""
+"""The same where somebody comes: they look for a side, too, and both keep to the right."""
 
 STEPS = 6
 """Number of courses to each side."""
@@ -266,7 +266,8 @@ class Anticipation(Tactic):
         self.wander = wander
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
-        """Turn the points of those for whom another course is better, or slow them down."""
+        """Turn the points of those for whom another course is better, or slow them down; let others
+        wander."""
         if desired.newcomers:
             return
         rows, crowd, aims = deciding.pedestrians, deciding.inside.crowd, desired.points

@@ -193,11 +193,11 @@ def _somebody_comes(x: float, y: float, ex: float, ey: float, away: float, aroun
         for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
             dx, dy = grid.x[a] - x, grid.y[a] - y
             if (
-                motion[WAY_X, a] * ex + motion[WAY_Y, a] * ey
-                < -OPPOSED * math.hypot(motion[WAY_X, a], motion[WAY_Y, a])
-                and motion[LIMIT, a] < np.inf
+                motion[LIMIT, a] < np.inf
                 and 0.0 < dx * ex + dy * ey < away
                 and dx * dx + dy * dy <= COMING * COMING
+                and motion[WAY_X, a] * ex + motion[WAY_Y, a] * ey
+                < -OPPOSED * math.hypot(motion[WAY_X, a], motion[WAY_Y, a])
                 and unwalled(around.sight, x, y, grid.x[a], grid.y[a])
             ):
                 return True
