@@ -1,15 +1,16 @@
 """Keeping a distance to those ahead."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 from mesa_mobility.behaviors.stepping import STANDS
 
-from mesa_mobility import CompiledTerm, Me, Option, Other, Range, pair_kernel
+from mesa_mobility import CompiledTerm, Option, Other, Range, pair_kernel
 
 
-@pair_kernel
-def _headway(option: Option, me: Me, other: Other, p: "Headway") -> float:
+# ``me`` is a Me with the field ``pace``.
+@pair_kernel(fields=("pace",))
+def _headway(option: Option, me: Any, other: Other, p: "Headway") -> float:
     wx = me.target_x - me.x
     wy = me.target_y - me.y
     way2 = wx * wx + wy * wy
@@ -24,7 +25,7 @@ def _headway(option: Option, me: Me, other: Other, p: "Headway") -> float:
     ahead = dx * mx + dy * my
     # By factors that all neighbours share: a processor does few divisions at a time.
     share = 1.0 - abs(dy * mx - dx * my) * (1.0 / p.width)
-    excess = option.speed - (ahead - p.distance) * (1.0 / p.time)
+    excess = option.speed - me.pace * (ahead - p.distance) * (1.0 / p.time)
     if ahead <= 0.0 or share <= 0.0 or excess <= 0.0:
         return 0.0
     if (other.x - me.x) * wx + (other.y - me.y) * wy >= way2:
@@ -38,15 +39,20 @@ class Headway(CompiledTerm):
     """Keeps a distance from people ahead that grows with speed.
 
     The cost is a sum over neighbours ahead. Each counts by how much faster an option is than the
-    room to the neighbour allows: e = v - (d - l) / T, where this is positive. v is the speed of the
-    option. d is how far ahead of the mobility point the neighbour will be when the option ends, at
-    constant velocity. l is the distance that people keep when they stand, and T the time gap when
-    they walk. Ahead is where one faces at the mobility point or, for an option that covers no
+    room to the neighbour allows: e = v - s (d - l) / T, where this is positive. v is the speed of
+    the option. d is how far ahead of the mobility point the neighbour will be when the option ends,
+    at constant velocity. l is the distance that people keep when they stand, and T the time gap
+    when they walk. Ahead is where one faces at the mobility point or, for an option that covers no
     ground, where one's target is: nobody makes room by looking elsewhere.
 
+    s is the share of their speed at which the ground lets people walk. On stairs and in speed zones
+    people keep the same distances at a lower speed, so flows fall as speeds do. In the SFPE
+    Handbook, too, speeds on stairs are a share of those on a level floor at every density (chapter
+    on employing the hydraulic model).
+
     The cost of a neighbour is 1.5 h(e), in metres over the 1.5 s of the paper. h is Huber's loss
-    (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 s) for e up to s, ``softness``,
-    and e - s / 2 beyond. If all costs were linear, their sum would be least at a kink. A small
+    (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 b) for e up to b, ``softness``,
+    and e - b / 2 beyond. If all costs were linear, their sum would be least at a kink. A small
     change of the room ahead would then take people from one kink to another: from the speed that
     the room allows to the speed that they prefer.
 
@@ -60,7 +66,7 @@ class Headway(CompiledTerm):
         distance: l, metres between the middles of two people.
         time: T, seconds.
         width: metres.
-        softness: s, m/s.
+        softness: b, m/s.
         beyond: how much people beyond the target count. At 0 people come up to a door or to the end
             of a queue as if nobody stood behind it.
 

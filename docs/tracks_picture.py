@@ -2,7 +2,8 @@
 
 python docs/tracks_picture.py docs/images/tracks.png
 
-Decision record 23 has the terms and tactics that the upper row lacks.
+`WITHOUT` lacks the terms `velocity_change` and `speed_ahead`, the tactic `anticipation` and the
+limit of accelerations.
 """
 
 from __future__ import annotations
@@ -36,27 +37,24 @@ SEED = 1
 BAR = 2.0
 """Length of the bar below each panel, metres."""
 RED, BLUE = "#b2182b", "#2166ac"
-# The terms of record 3, and the options of that time.
 WITHOUT = replace(
     PRESETS["default"],
     name="without",
     terms={
-        "target_distance": 1.0,
-        "facing_deviation": 1.2,
-        "preferred_velocity": 2.0,
-        "interference": 1.0,
-        "headway": 1.5,
-        "right_of_way": 3.0,
-        "stepping": 1.0,
+        name: weight
+        for name, weight in PRESETS["default"].terms.items()
+        if name not in ("velocity_change", "speed_ahead")
     },
-    shares=((0.5, 0.25, 0.0),),
+    settings={
+        name: numbers
+        for name, numbers in PRESETS["default"].settings.items()
+        if name not in ("velocity_change", "speed_ahead", "anticipation")
+    },
     most_acceleration=None,
-    tactics=tuple(
-        name
-        for name in PRESETS["default"].tactics
-        if name not in ("anticipation", "speed_adaptation")
-    ),
+    tactics=tuple(name for name in PRESETS["default"].tactics if name != "anticipation"),
 )
+"""The preset without what has people keep their velocity, follow those ahead and look ahead."""
+
 ROWS = {"without": WITHOUT, "default preset": PRESETS["default"]}
 
 

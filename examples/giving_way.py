@@ -20,7 +20,7 @@ class NarrowCorridor(PedestrianModel):
 
 def main():
     for niche in (True, False):
-        model = NarrowCorridor(niche, rng=5)
+        model = NarrowCorridor(niche, rng=10)
         [giving_way] = [each for each in model.tactics if each.name == "giving_way"]
         farthest, gave_way = 0.0, set()
         while model.inside and model.elapsed < 200.0:

@@ -71,7 +71,7 @@ class Auditorium(PedestrianModel):
     Args:
         pedestrians: people; a twelfth of them, but no more than ten an office, are in the offices.
         pre_movement: seconds before people set off, or their distribution.
-        preset: "default", "measured" or "paper".
+        preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
         exit_door: width of the exit doors, metres; by default 0.7, or 0.9 with a population some of

@@ -22,7 +22,7 @@ class FloorPlanEgress(PedestrianModel):
         plan: file of the floor plan, such as GeoJSON, which may have levels, lines of WKT, or DXF.
         pedestrians: people, at random places all over the free floor.
         pre_movement: seconds before people set off, or their distribution.
-        preset: "default", "measured" or "paper".
+        preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
         frames_per_step: frames that one step advances; 3 are 0.1 s.

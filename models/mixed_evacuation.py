@@ -63,7 +63,7 @@ class MixedEvacuation(PedestrianModel):
         population: the types of people, as "care_home" or "able_bodied: 0.9, child: 0.1".
         ramp_factor: share of their speed that people keep on the ramp.
         pre_movement: seconds before people set off, or their distribution.
-        preset: "default", "measured" or "paper".
+        preset: "default" or "paper".
         mobility_map: a map or its file for everybody, instead of the population.
         frames_per_step: frames that one step advances; 3 are 0.1 s.
         record: keep every frame.

@@ -20,7 +20,7 @@ class OpenSpace(PedestrianModel):
         pedestrians: people in both groups together.
         size: side of the plaza, metres.
         pre_movement: seconds before people set off, or their distribution.
-        preset: "default", "measured" or "paper".
+        preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
         frames_per_step: frames that one step advances; 3 are 0.1 s.

@@ -23,7 +23,7 @@ class StraightWalk(PedestrianModel):
         fastest: preferred speed of the last, m/s; the others lie evenly between. People of a
             population have the speeds of their types instead.
         length: metres to walk.
-        preset: "default", "measured" or "paper".
+        preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
         frames_per_step: frames that one step advances; 3 are 0.1 s.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -39,6 +40,9 @@ _GETS_THERE, _LEAST = 1.0, 0.4
 # Metres from the end of the line at which somebody joins it; from their place in the line at which
 # they stand; and from which they move up again.
 _JOINS, _STANDS, _MOVES_UP = 1.0, 0.15, 0.3
+
+# Greatest speed of somebody who stands, m/s.
+_SETTLED = 0.05
 
 
 @dataclass(frozen=True)
@@ -173,7 +177,8 @@ class Queueing(Tactic):
         return next((n for n, each in enumerate(self.counters) if each.visit == stop), -1)
 
     def _let_by(self, counter: Counter, line: list[int]) -> None:
-        """Change the order of two one after the other, of whom the second stands in front.
+        """Change the order of two one after the other, of whom the second stands in front, or is in
+        the way of the first.
 
         People who come from aside join behind somebody who is still on the way to their place. If
         they get there first, neither could pass the other.
@@ -183,8 +188,24 @@ class Queueing(Tactic):
             place = counter.places_of(crowd.core[line])[k]
             pair = line[k : k + 2]
             away = np.hypot(crowd.x[pair] - place[0], crowd.y[pair] - place[1])
-            if away[1] < away[0] - _MOVES_UP and not self._is_served(pair[0]):
+            if self._is_served(pair[0]):
+                continue
+            if away[1] < away[0] - _MOVES_UP or (
+                away[0] > _MOVES_UP and self._is_in_the_way(pair, place)
+            ):
                 line[k : k + 2] = pair[::-1]
+
+    def _is_in_the_way(self, pair: list[int], place: NDArray[np.float64]) -> bool:
+        """Whether the first of two people stands, and the second is in their way to a place, but
+        the first not in the way of the second to the same place."""
+        crowd = self._model.crowd
+        (x, other_x), (y, other_y) = crowd.x[pair], crowd.y[pair]
+        near = math.hypot(other_x - x, other_y - y) < crowd.core[pair].sum() + _MOVES_UP
+        if not near or math.hypot(crowd.vx[pair[0]], crowd.vy[pair[0]]) > _SETTLED:
+            return False
+        points, speeds = np.tile(place, (2, 1)), crowd.agenda["speed"][pair]
+        blockers = self._model.wishes(np.array(pair), points, speeds).blockers
+        return bool(blockers[0] == pair[1] and blockers[1] != pair[0])
 
     def _line_up(
         self,

@@ -3,11 +3,11 @@
 Cost terms look at the end of a movement, when it is too late to step aside gently.  Here, people
 who walk compare courses before they choose a movement: straight to their target, turned by up to 45
 degrees to either side, each at their own speed and somewhat slower.  The cost of a course is the
-change of velocity that it takes and, for each person in view, how much nearer than ``ROOM`` the two
-would come within ``HORIZON`` if both walked on.  It is sought as in sampled velocity obstacles (van
-den Berg, Lin and Manocha, ICRA 2008).  That people respond to the predicted time to a collision,
-and less the farther it lies ahead, is measured by Karamouzas, Skinner and Guy, Physical Review
-Letters 113 (2014) 238701.
+change of velocity that it takes and, for each person in view, how much nearer the two would come
+than ``ROOM`` (more for wide bodies) within ``HORIZON`` if both walked on.  It is sought as in
+sampled velocity obstacles (van den Berg, Lin and Manocha, ICRA 2008).  That people respond to the
+predicted time to a collision, and less the farther it lies ahead, is measured by Karamouzas,
+Skinner and Guy, Physical Review Letters 113 (2014) 238701.
 
 Those who go the same way, and those who are held up in a queue, do not count: they are a matter of
 headway, and nobody goes round the queue that they want to join.
@@ -22,8 +22,6 @@ import numpy as np
 from mesa_mobility.behaviors.steering.people_ahead import (
     AHEAD_FIELDS,
     MOTION_FIELDS,
-    ROOM,
-    SHARE,
     any_too_near,
     find_ahead,
     note_motion,
@@ -161,7 +159,7 @@ def _turn_aside(
             continue
         ex, ey = dx / away, dy / away
         speed = min(speeds[k], now + GAINS)
-        count = find_ahead(place, (ex, ey), speed, grid, motion, found, ahead)
+        count = find_ahead(place, (ex, ey), speed, state[i].core, grid, motion, found, ahead)
         horizon = min(HORIZON, away / speed)
         if not any_too_near(speed * ex, speed * ey, horizon, ahead, count):
             continue
@@ -200,7 +198,7 @@ def _matters(ahead: NDArray[np.float64], k: int, courses: NDArray[np.float64]) -
     x, y, vx, vy = ahead[0, k], ahead[1, k], ahead[2, k], ahead[3, k]
     ux, uy = courses[4], courses[5]
     away2 = x * x + y * y
-    beyond = away2 - min(ROOM * ROOM, SHARE * SHARE * away2)
+    beyond = away2 - ahead[5, k]
     near = 0
     for n in range(_COURSES):
         wx, wy = vx - ux[n], vy - uy[n]
@@ -217,11 +215,11 @@ def _add_cost(
     """Add what the k-th of those ahead costs on each course.
 
     It is 1 - (d / l)^2 times how much they count, as far as their closest approach d is less than
-    l, ``ROOM`` or ``SHARE`` of the present distance.
+    l, the room that is asked of them.
     """
-    x, y, vx, vy, counts = ahead[0, k], ahead[1, k], ahead[2, k], ahead[3, k], ahead[4, k]
+    x, y, vx, vy = ahead[0, k], ahead[1, k], ahead[2, k], ahead[3, k]
+    counts, room2 = ahead[4, k], ahead[5, k]
     ux, uy, people = courses[4], courses[5], courses[6]
-    room2 = min(ROOM * ROOM, SHARE * SHARE * (x * x + y * y))
     for n in range(_COURSES):
         wx, wy = vx - ux[n], vy - uy[n]
         towards = -(x * wx + y * wy)

@@ -21,8 +21,9 @@ from mesa_mobility.steering import (
     unwalled,
 )
 
-ROOM = 0.65
-"""Metres between the middles of two people who pass each other freely."""
+ROOM, SLIM = 0.65, 0.28
+"""Metres between the middles of two people who pass each other freely, if their core radii add up
+to ``SLIM`` metres. Between wider bodies is as much room."""
 
 SHARE = 0.6
 """Share of the present distance that the room asked for is at most: nobody can demand room of
@@ -46,14 +47,15 @@ QUEUES = 0.5
 SAME_WAY = 0.5
 """Cosine of the angle between the ways of two people up to which they go the same way."""
 
-VX, VY, WAY_X, WAY_Y, LIMIT, MARKED = range(6)
-MOTION_FIELDS = 6
+VX, VY, WAY_X, WAY_Y, LIMIT, CORE, MARKED = range(7)
+MOTION_FIELDS = 7
 """Rows of the table of motion: velocity, m/s; the way to the target, metres; how far that may lead
-along the way of another for whom somebody still counts, metres; and workspace."""
+along the way of another for whom somebody still counts, metres; core radius, metres; and
+workspace."""
 
-AHEAD_FIELDS = 6
+AHEAD_FIELDS = 7
 """Rows of the table of people ahead: place from the walker, metres; velocity, m/s; how much they
-count, m/s; and workspace."""
+count, m/s; the square of the room that is asked of them, square metres; and workspace."""
 
 
 @compiled()
@@ -79,6 +81,7 @@ def note_motion(
             limit = -np.inf
         motion[VX, a], motion[VY, a] = vx, vy
         motion[WAY_X, a], motion[WAY_Y, a], motion[LIMIT, a] = dx, dy, limit
+        motion[CORE, a] = state[j].core
 
 
 @inner()
@@ -86,6 +89,7 @@ def find_ahead(
     place: tuple[float, float],
     way: tuple[float, float],
     speed: float,
+    core: float,
     grid: Grid,
     motion: NDArray[np.float64],
     found: NDArray[np.int64],
@@ -99,6 +103,7 @@ def find_ahead(
         place: metres.
         way: the unit vector.
         speed: of the walker, m/s.
+        core: radius of the walker, metres.
         grid: everybody inside.
         motion: of the people in the grid.
         found: workspace with room for all of them and one more.
@@ -125,6 +130,8 @@ def find_ahead(
         weight = WEIGHT * min(excess * full, 1.0)
         ahead[0, k], ahead[1, k], ahead[2, k], ahead[3, k] = x, y, vx, vy
         ahead[4, k] = weight * HALFWAY / (HALFWAY + math.sqrt(x * x + y * y))
+        room = ROOM + (core + motion[CORE, a] - SLIM)
+        ahead[5, k] = min(room * room, SHARE * SHARE * (x * x + y * y))
     return count
 
 
@@ -168,14 +175,13 @@ def any_too_near(
 ) -> bool:
     """Whether somebody who walks at (ux, uy) comes too near to any of those ahead; see
     ``anticipation``."""
-    x, y, vx, vy, near = ahead[0], ahead[1], ahead[2], ahead[3], ahead[5]
+    x, y, vx, vy, room2, near = ahead[0], ahead[1], ahead[2], ahead[3], ahead[5], ahead[6]
     for k in range(count):
         wx, wy = vx[k] - ux, vy[k] - uy
         towards = -(x[k] * wx + y[k] * wy)
         time = min(towards / (wx * wx + wy * wy), horizon)
         dx, dy = x[k] + wx * time, y[k] + wy * time
-        room2 = min(ROOM * ROOM, SHARE * SHARE * (x[k] * x[k] + y[k] * y[k]))
-        near[k] = 1.0 if (towards > 0.0) & (dx * dx + dy * dy < room2) else 0.0
+        near[k] = 1.0 if (towards > 0.0) & (dx * dx + dy * dy < room2[k]) else 0.0
     number = 0.0
     for k in range(count):
         number += near[k]

@@ -3,9 +3,9 @@
 python benchmarks/pages/settings_tables.py [--out FOLDER]
 
 The tables are cost_terms.md, default_numbers.md and shipped_map.md beside this file. In them
-{{default.headway}} is a weight, {{headway.time}} a setting of a term, {{anticipation.HORIZON}} a
-constant of the module of a tactic, or of `people_ahead`, {{preset.durations}} a member of the
-preset `default`, and {{map.options}} a figure of the map.
+{{default.headway}} is a weight, {{headway.time}} a setting of a term or tactic,
+{{anticipation.HORIZON}} a constant of the module of a tactic, or of `people_ahead`,
+{{preset.durations}} a member of the preset `default`, and {{map.options}} a figure of the map.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def names() -> dict[str, Mapping[str, Any]]:
     found: dict[str, Mapping[str, Any]] = {name: p.terms for name, p in PRESETS.items()}
     found["preset"] = preset.numbers()
     for tactic in preset.make_tactics():
-        found[tactic.name] = vars(sys.modules[type(tactic).__module__])
+        found[tactic.name] = vars(sys.modules[type(tactic).__module__]) | tactic.settings()
     for term in preset.make_terms():
         found[term.name] = term.settings()
     return found | {"people_ahead": vars(people_ahead), "map": map_figures()}

@@ -14,7 +14,7 @@ from mesa_mobility.errors import ModelError
 
 def preset(
     name: Annotated[
-        str, typer.Argument(metavar="NAME|FILE", help="default, measured, paper or a TOML file.")
+        str, typer.Argument(metavar="NAME|FILE", help="default, paper or a TOML file.")
     ] = "default",
     numbers: Numbers = None,
     out: Annotated[

@@ -37,7 +37,7 @@ class PedestrianModel(CrowdModel):
         floor_plan: where people walk, a ``FloorPlan`` or a ``Building``. A building is drawn as
             several sheets side by side in one plane, and positions are coordinates in that plane:
             see its ``places`` and ``true_places``.
-        preset: "default", "measured", "paper", a TOML file, or rules of one's own.
+        preset: "default", "paper", a TOML file, or rules of one's own.
         mobility_map: a mobility map or its file; by default the able-bodied map that ships.
             Everybody then has the same type, with the map's preferred speeds.
         pedestrian_types: the types of pedestrians, instead of ``mobility_map``.

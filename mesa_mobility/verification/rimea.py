@@ -70,11 +70,15 @@ def climb(speed: float, *, up: bool) -> Case:
 
 
 def jam_at_the_foot(runs: Sequence[Figures]) -> Verdict:
-    """The exit of the room jams, and a jam grows at the foot of the stair."""
+    """The exit of the room jams, and a jam grows at the foot of the stair.
+
+    A jam that begins at the foot grows along the corridor, and ends at the foot. So people spend
+    more time at the foot than in the corridor, though the jam is as dense there once it has grown.
+    """
     (run,) = runs
     door, foot = (
         None if name not in run else run[name] - run[other]
-        for name, other in (("door_early", "middle_early"), ("foot_late", "middle_late"))
+        for name, other in (("door_early", "middle_early"), ("foot_s", "middle_s"))
     )
     growth = run["foot_late"] - run["foot_early"] if "foot_late" in run else None
     excess = run["flow_in"] - run["flow_up"] if "flow_in" in run else None
@@ -82,7 +86,7 @@ def jam_at_the_foot(runs: Sequence[Figures]) -> Verdict:
         (
             *judging.everybody_out(runs),
             more_than("density at the exit less that in the corridor, early 1/m2", door, 0.0),
-            more_than("density at the foot less that in the corridor, late 1/m2", foot, 0.0),
+            more_than("time at the foot less that in the corridor s", foot, 0.0),
             more_than("growth of the density at the foot 1/m2", growth, 0.0),
             more_than("flow into the corridor less that up the stair 1/s", excess, 0.0),
         ),

@@ -169,5 +169,7 @@ def _only(options, k: int):
         neighbour_offsets=np.array([0, q]),
         wall_offsets=np.array([0, len(walls)]),
         walls=walls,
+        fields={name: values[k : k + 1] for name, values in options.fields.items()},
+        neighbour_fields={name: values[near] for name, values in options.neighbour_fields.items()},
         **fields,
     )

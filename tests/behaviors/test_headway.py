@@ -182,3 +182,15 @@ def test_does_not_depend_on_where_north_is(options, angle, by):
     sure = decided(options)
     moved = Headway().cost(turned_and_moved(options, angle, by))
     np.testing.assert_allclose(moved[sure], Headway().cost(options)[sure], atol=1e-9)
+
+
+@pytest.mark.parametrize("pace", [0.25, 0.5, 1.0])
+def test_slow_ground_lets_people_walk_that_much_slower_at_the_same_distance(pace):
+    # Room for v = pace (d - 0.5) at a distance d, so that flows fall with the pace as speeds do.
+    ending, term, costs = Ending(displacement=1.5 * pace, duration=1.5), Headway(**ROUND), []
+    for ahead in (1.5, 1.4):
+        around = [((ahead, 0.0), STILL)]
+        option = one_option(ending, target=(20.0, 0.0), neighbours=around, pace=pace)
+        costs.append(float(term.cost(option)[0]))
+    # A tenth of a metre nearer the speed is pace / 10 too high, which counts by its square.
+    assert costs == pytest.approx([0.0, 1.5 * (0.1 * pace) ** 2 / 0.4])

@@ -160,7 +160,7 @@ def test_settings_that_do_not_fit_together_are_refused():
     with pytest.raises(
         ModelError, match=r"right_of_way: width 0\.4 m, expected more than the bias"
     ):
-        PRESETS["default"].with_parameters({"right_of_way.bias": 0.5})
+        PRESETS["default"].with_parameters({"right_of_way.bias": 0.5, "right_of_way.width": 0.4})
     wider = {"right_of_way.bias": 0.5, "right_of_way.width": 0.6}
     assert PRESETS["default"].with_parameters(wider).settings["right_of_way"]["bias"] == 0.5
 

@@ -22,17 +22,17 @@ def weights(model):
     return {type(term): term.weight for term in model.terms}
 
 
-def test_there_are_three():
-    assert set(PRESETS) == {"default", "measured", "paper"}
+def test_there_are_two():
+    assert set(PRESETS) == {"default", "paper"}
 
 
-def test_the_measured_one_says_where_it_comes_from_has_few_rules_and_empties_a_room():
-    rules = PRESETS["measured"]
+def test_the_default_says_where_it_comes_from_has_few_rules_and_empties_a_room():
+    rules = PRESETS["default"]
     assert len(rules.terms) == 8
     assert len(rules.tactics) == 5
     assert len(rules.provenance.data) == 5
     # 60 people and two doors in a row, at 0.5 to 3 persons/s.
-    model = Doorway(pedestrians=60, preset="measured", rng=1)
+    model = Doorway(pedestrians=60, rng=1)
     model.run(max_seconds=120.0)
     assert model.inside == 0
     assert 20.0 < model.elapsed < 120.0

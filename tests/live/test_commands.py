@@ -239,11 +239,11 @@ def test_nobody_is_steered_faster_than_anybody_walks(room):
         do(room, "steer", person=row, velocity=[12.0, 16.0])
 
 
-def way_through_a_crowd(*, steered):
+def way_through_a_crowd(seed, *, steered):
     """Metres that somebody gets on in 10 s, at 1 m/s, among people who stand in a corridor."""
     plan = FloorPlan("POLYGON ((0 0, 12 0, 12 2, 0 2, 0 0))", exits=[Exit("e", (12, 0), (12, 2))])
     model = model_of(plan, shipped_map(), record=False)
-    run, rng = Run(model), np.random.default_rng(1)
+    run, rng = Run(model), np.random.default_rng(seed)
     walker = put(model, 1.0, 1.0, preferred_speeds=1.0).row
     spots = plan.random_points(20, rng, spacing=0.6, clearance=0.3, avoid=[(1.0, 1.0)])
     standing = [person.row for person in model.add_pedestrians(spots[spots[:, 0] > 2.0])]
@@ -255,10 +255,13 @@ def way_through_a_crowd(*, steered):
 
 
 def test_the_crowd_makes_way_for_somebody_who_is_steered():
-    # Who is not steered goes round those who stand: 7.3 m. As people look ahead that costs little,
-    # so the limit is far from what it is without: 10 m less the first steps.
-    assert way_through_a_crowd(steered=False) < 8.0
-    assert way_through_a_crowd(steered=True) > 9.0
+    # Who is not steered goes round those who stand. Of the 10 m those make way for the steered one
+    # for some seconds at most.
+    own, steered = (
+        np.mean([way_through_a_crowd(seed, steered=each) for seed in range(1, 5)])
+        for each in (False, True)
+    )
+    assert own + 1.0 < steered > 7.0
 
 
 def test_those_whom_a_client_steers_are_let_go_when_it_goes(room):

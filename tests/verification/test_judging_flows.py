@@ -195,9 +195,10 @@ def foot(**changed: float) -> dict:
     usual = {
         "door_early": 2.9,
         "middle_early": 2.0,
-        "middle_late": 2.1,
         "foot_early": 1.8,
         "foot_late": 2.6,
+        "middle_s": 3.2,
+        "foot_s": 3.7,
         "flow_in": 3.5,
         "flow_up": 3.0,
     }
@@ -210,7 +211,7 @@ def foot(**changed: float) -> dict:
         ({}, []),
         ({"door_early": 2.0}, ["density at the exit less that in the corridor, early 1/m2"]),
         ({"foot_early": 2.7}, ["growth of the density at the foot 1/m2"]),
-        ({"middle_late": 2.7}, ["density at the foot less that in the corridor, late 1/m2"]),
+        ({"middle_s": 3.7}, ["time at the foot less that in the corridor s"]),
         ({"flow_up": 3.5}, ["flow into the corridor less that up the stair 1/s"]),
     ],
 )

@@ -129,7 +129,7 @@ class GiveWay(Tactic):
         if len(who):
             blockers = self._wishes(deciding, desired, who).blockers
             seen = deciding.inside.seen_by(rows[who], blockers)
-            join(rows[who], blockers, seen, now, crowd.records, notes)
+            join(rows[who], blockers, seen, now, crowd.records, crowd.agenda, notes)
         who = np.flatnonzero((hindered | served) & goes & stays)
         if len(who):
             wishes = self._wishes(deciding, desired, who)
@@ -163,9 +163,9 @@ class GiveWay(Tactic):
         people = build_grid(nobody, crowd.x, crowd.y)
         wait_behind(nobody, 0.0, people, state, agenda, none)
         stop_making_way(nobody, 0.0, state, notes)
-        join(nobody, nobody, np.empty((0, 2)), 0.0, state, notes)
+        join(nobody, nobody, np.empty((0, 2)), 0.0, state, agenda, notes)
         resolve(nobody, nobody, none, none, 0.0, state, agenda, notes)
-        pass_on(nobody, nobody, 0.0, state, notes)
+        pass_on(nobody, nobody, 0.0, state, agenda, notes)
 
     def _wishes(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> Wishes:
         """The wishes of some of those who decide, on their own way."""
@@ -236,7 +236,8 @@ class GiveWay(Tactic):
         gets_on = rows[moving & ~short & (blockers == NOBODY)]
         crowd.presses[gets_on] = 1
         notes["served"][notes["first"][gets_on]] = deciding.elapsed
-        pass_on(rows[moving], blockers[moving], deciding.elapsed, crowd.records, notes)
+        now, state, agenda = deciding.elapsed, crowd.records, crowd.agenda
+        pass_on(rows[moving], blockers[moving], now, state, agenda, notes)
         notes["first"][rows[back]] = NOBODY
 
     def _places(

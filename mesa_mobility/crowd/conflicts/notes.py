@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point, internal
+from mesa_mobility.crowd.conflicts.hindrance import PATIENCE
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.state.records import FARTHEST, CrowdState
 from mesa_mobility.crowd.state.wishes import NOBODY
 from mesa_mobility.schema import Array
@@ -104,19 +106,30 @@ def ask(
     notes[who]["asked_by"], notes[who]["until"] = by, elapsed + AGREED
 
 
+@internal()
+def _gets_on(i: int, elapsed: float, agenda: NDArray[np.void], notes: NDArray[np.void]) -> bool:
+    """Whether person i has made progress, or way for others, within the last seconds.
+
+    People who wait do not, nor do those who go back from a wall.
+    """
+    waits = agenda[i]["waits_until"] * FRAME_SECONDS > elapsed or notes[i]["first"] == i
+    return bool(not waits and elapsed - agenda[i]["since"] <= PATIENCE)
+
+
 @entry_point()
 def pass_on(
     rows: NDArray[np.int64],
     blockers: NDArray[np.int64],
     elapsed: float,
     state: CrowdState,
+    agenda: NDArray[np.void],
     notes: NDArray[np.void],
 ) -> None:
     """Have those make way who are in the way of people in ``rows``, who make way themselves."""
     for k in range(len(rows)):
         i, j = rows[k], blockers[k]
         notes[i]["blocker"] = j
-        if j != NOBODY and notes[i]["first"] != j:
+        if j != NOBODY and notes[i]["first"] != j and not _gets_on(j, elapsed, agenda, notes):
             ask(j, notes[i]["first"], i, elapsed, state, notes)
 
 
@@ -127,6 +140,7 @@ def join(
     seen: NDArray[np.float64],
     elapsed: float,
     state: CrowdState,
+    agenda: NDArray[np.void],
     notes: NDArray[np.void],
 ) -> None:
     """Have people in ``rows`` make way who would run into somebody who comes towards them to make
@@ -137,6 +151,8 @@ def join(
     for k in range(len(rows)):
         i, j = rows[k], blockers[k]
         if j == NOBODY or notes[j]["first"] == NOBODY or notes[j]["first"] == i:
+            continue
+        if _gets_on(i, elapsed, agenda, notes):
             continue
         to_x, to_y = notes[j]["x"] - state[j].x, notes[j]["y"] - state[j].y
         if to_x * (state[i].x - seen[k, 0]) + to_y * (state[i].y - seen[k, 1]) > 0.0:

@@ -48,8 +48,8 @@ def option_kernel(
 
     Args:
         function: the function.
-        fields: names of fields that the model declares for its people. ``me`` then has them, too,
-            as floats.
+        fields: names of fields that the model declares for its people, or ``pace``: the share of
+            their speed at which the ground lets people walk. ``me`` then has them, too, as floats.
 
     Raises:
         ModelError: an argument or a field that there is not, or fields that are no list of
@@ -92,8 +92,8 @@ def pair_kernel(
 
     Args:
         function: the function.
-        fields: names of fields that the model declares for its people. ``me`` and ``other`` then
-            have them, too, as floats.
+        fields: names as for ``option_kernel``. ``me`` and ``other`` then have these fields, too,
+            as floats.
 
     Raises:
         ModelError: as for ``option_kernel``.

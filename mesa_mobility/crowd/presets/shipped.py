@@ -20,7 +20,7 @@ def _shipped(name: str) -> Preset:
     return parse_preset(file.read_text("utf-8"), f"{name}{SUFFIX}", f"preset {name}")
 
 
-PRESETS = {name: _shipped(name) for name in ("paper", DEFAULT, "measured")}
+PRESETS = {name: _shipped(name) for name in ("paper", DEFAULT)}
 
 
 def is_preset_file(preset: object) -> bool:

@@ -106,6 +106,8 @@ FALLBACK = -2
 
 _SECONDS = Array("f8", (), -1e9, 1e9)
 
+PACE = "pace"
+
 AGENDA_FIELDS: dict[str, Array] = {
     "speed": Array("f8", (), 0.0, 100.0),
     "sets_off": _FRAME,
@@ -119,6 +121,7 @@ AGENDA_FIELDS: dict[str, Array] = {
     "since": _SECONDS,
     "desired_speed": Array("f8", (), 0.0, 100.0),
     "behind": Array("f8", (), -1e3, 1e3),
+    PACE: Array("f8", (), 0.0, 1.0),
 }
 
 AGENDA = _record(AGENDA_FIELDS)
@@ -131,7 +134,7 @@ of the journey they have passed up to frame ``checked``; ``group``, number of th
 none; ``corner``, number of the next corner of their route; ``nearest``, shortest route so far,
 metres; ``since``, time of their last progress, s; ``desired_speed``, the preferred speed of the
 last decision, m/s; ``behind``, metres by which free walking has fallen short of that speed, below 0
-if they are ahead.
+if they are ahead; ``pace``, share of their speed at which the ground lets them walk.
 """
 
 
@@ -195,6 +198,12 @@ class Crowd:
         self._take(np.zeros(capacity, dtype=PERSON))
         self.agenda = np.zeros(capacity, dtype=AGENDA)
         self.fields = {name: np.zeros(capacity, kind) for name, kind in (fields or {}).items()}
+
+    @property
+    def kernel_fields(self) -> dict[str, NDArray[Any]]:
+        """(capacity,) values that a kernel may ask for by ``fields``: those of the fields that the
+        model declares, and ``pace``."""
+        return {PACE: self.agenda[PACE], **self.fields}
 
     def first(self, count: int) -> dict[str, Any]:
         """The records of the first people."""

@@ -25,3 +25,4 @@ class SlowInZones(Tactic):
             ]
             factors = mean_factors(zones, deciding.positions, deciding.positions + way)
             desired.speeds = desired.speeds * factors
+            deciding.inside.crowd.agenda["pace"][deciding.pedestrians] = factors

@@ -30,7 +30,7 @@ MOST_NEAR = 60
 LEAVING = 0.4
 """Seconds up to the end of a choice over which the direction of walking is taken."""
 
-TACTICS = ("corner_spreading", "anticipation", "speed_adaptation")
+TACTICS = ("corner_spreading", "course_choice", "anticipation")
 """Tactics of a preset that need nothing of what people have decided before."""
 
 

@@ -19,6 +19,9 @@ from mesa_mobility.estimation.choices.availability import what_is_hit
 from mesa_mobility.estimation.choices.poses import STANDS
 from mesa_mobility.floorplan import FloorPlan
 
+_DRAWN = "anticipation.wander"
+"""The number by which what people want is drawn at random, which estimation leaves out."""
+
 
 class Stage:
     """The engine, with people put where they were.
@@ -35,6 +38,8 @@ class Stage:
     def __init__(self, plan: FloorPlan, tactics: tuple[str, ...], **arguments: Any) -> None:
         self.model = PedestrianModel(plan, **arguments)
         self.model.tactics = [each for each in self.model.tactics if each.name in tactics]
+        if _DRAWN in self.model.parameters():
+            self.model.set_parameters({_DRAWN: 0.0})
         self.scene = self.model._scene
         self._desired = DesiredMotion(self.scene.environment, self.scene.crowd)
         self._plan = plan

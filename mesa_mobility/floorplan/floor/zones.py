@@ -20,6 +20,7 @@ class SpeedZone:
     A movement is decided on as a whole: one that leads into a zone or out of it has the mean speed
     of its way. So people slow down at most 1.5 s before a zone, speed up at most 1.5 s before its
     end, and come to its far side when they should. Where zones overlap, their factors multiply.
+    People keep the same distances as elsewhere, at a lower speed (`Headway`).
 
     Args:
         polygon: shapely or WKT, metres.

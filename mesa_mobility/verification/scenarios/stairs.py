@@ -147,8 +147,10 @@ def up_from_a_corridor(
     Returns:
         The common figures; mean densities (1/m2) at the ``door`` of the room, in the ``middle`` of
         the corridor and at the ``foot`` of the stair while the first third of the people climb,
-        ``early``, and while the last but one third does, ``late``; and flows into the corridor and
-        onto the stair while people are in the room, ``flow_in`` and ``flow_up``.
+        ``early``, and while the last but one third does, ``late``; the mean times that people spend
+        in the last two of these areas, which are equally large, ``middle_s`` and ``foot_s``; and
+        flows into the corridor and onto the stair while people are in the room, ``flow_in`` and
+        ``flow_up``.
     """
     risers = round(3.0 / tread) + 1
     top = box(20.0, 3.0, 20.0 + LANDING, 5.0)
@@ -173,7 +175,9 @@ def up_from_a_corridor(
         return found
     thirds = [round(2.0 * onto[round(share * people) - 1]) for share in (0.05, 1 / 3, 2 / 3)]
     for name, area in (("door", DOOR), ("middle", MIDDLE), ("foot", FOOT)):
-        density = counted(run, area) / area.area
+        inside = counted(run, area)
+        found[f"{name}_s"] = float(inside.sum()) / 2.0 / people
+        density = inside / area.area
         found[f"{name}_early"] = float(density[thirds[0] : thirds[1]].mean())
         found[f"{name}_late"] = float(density[thirds[1] : thirds[2]].mean())
     early = onto[onto <= into[-1]]

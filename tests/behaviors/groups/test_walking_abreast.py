@@ -54,7 +54,7 @@ def test_small_groups_walk_side_by_side_and_slower(size, places):
     # Their fit for low density: 1.26 - 0.04 N m/s, so that one alone walks at 1.22 m/s.
     assert speed_of(tracks) == pytest.approx(1.26 - 0.04 * size, abs=0.025)
     dx, dy = np.diff(tracks[:, 0], axis=0), np.diff(tracks[:, 1], axis=0)
-    assert dy.mean() == pytest.approx(0.75, abs=0.02)
+    assert dy.mean() == pytest.approx(0.75, abs=0.03)
     # Those in the middle walk behind: 0.1 to 0.2 m along the way add up to 0.03 m.
     assert 0.73 < np.hypot(dx, dy).mean() < 0.78
     # Angle of the line between the outermost members to the way of the group.

@@ -5,7 +5,7 @@ import pytest
 from mesa_mobility.behaviors import Counter, Queueing
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, Gate, MobilityMap, PedestrianModel, PedestrianType
 from mesa_mobility.distributions import Uniform
 from mesa_mobility.errors import ModelError
 from tests.fixtures.checkpoints import check_going_on
@@ -47,11 +47,12 @@ def test_the_last_of_six_is_served_after_six_service_times():
     assert len(times) == 6
     # Everybody is served for 4 s, as far as steps of 0.1 s tell.
     assert times[:, 1] - times[:, 0] == pytest.approx(4.0, abs=0.25)
-    # In between the next one walks 0.6 m: more than 0.4 s, the shortest movement.
+    # In between the next one walks 0.6 m: more than 0.4 s, the shortest movement, and less than
+    # at a quarter of a metre a second.
     moving_up = times[1:, 0] - times[:-1, 1]
     assert (moving_up > 0.4).all()
-    assert moving_up.mean() < 1.8
-    assert 6 * 4.0 + 5 * 0.4 < times[-1, 1] - times[0, 0] < 6 * 4.25 + 5 * 1.8
+    assert moving_up.mean() < 2.4
+    assert 6 * 4.0 + 5 * 0.4 < times[-1, 1] - times[0, 0] < 6 * 4.25 + 5 * 2.4
     assert np.mean(apart) == pytest.approx(0.6, abs=0.08)
     rows = model.recorder.arrays()
     assert overlaps(rows, core_of(model)) == 0
@@ -153,3 +154,19 @@ def test_it_goes_on_from_a_checkpoint(tmp_path):
 def test_counters_that_are_none_are_refused(wrong, text):
     with pytest.raises(ModelError, match=text):
         Counter(**{"line": [(0, 0), (1, 0)], "service": 1.0, **wrong})
+
+
+def test_whoever_is_in_the_way_of_the_first_in_line_goes_first():
+    # Two in wheelchairs come to the counter from both sides, as near to it as each other.
+    rng = np.random.default_rng([19, 3])
+    head, long, y = rng.uniform(8.0, 12.0), rng.uniform(3.0, 6.0), rng.uniform(2.0, 6.0)
+    starts = hall().random_points(
+        6, rng, within=box(0.0, 0.0, head, 8.0), spacing=0.9, clearance=0.45
+    )
+    counter = Counter([(head, y), (head - long, y)], service=2.0)
+    wheelchairs = [PedestrianType.named("wheelchair_manual")]
+    model = PedestrianModel(hall(), pedestrian_types=wheelchairs, rng=19)
+    model.add_tactic(Queueing([counter]))
+    model.add_pedestrians(starts, route=[counter.visit], preferred_speeds=0.6)
+    model.run(max_seconds=100)
+    assert model.inside == 0

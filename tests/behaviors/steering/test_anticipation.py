@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mesa_mobility.behaviors.steering.anticipation import Anticipation, turn_aside
 from shapely import box
 
-from mesa_mobility import Exit, FloorPlan, PedestrianModel
+from mesa_mobility import Exit, FloorPlan, PedestrianModel, PedestrianType
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.view import CrowdView
 from mesa_mobility.errors import ModelError
@@ -37,7 +37,7 @@ def look(*others, plan=HALL, velocity=SPEED + 0j, target=AT + 12.0, speed=SPEED,
     crowd.x[:], crowd.y[:] = places.real, places.imag
     crowd.vx[:], crowd.vy[:] = velocities.real, velocities.imag
     crowd.target_x[:], crowd.target_y[:] = (places + ways).real, (places + ways).imag
-    crowd.agenda["waits_until"] = 0
+    crowd.core[:], crowd.agenda["waits_until"] = 0.14, 0
     crowd.agenda["waits_until"][list(waits)] = 1000
     wanted = np.array([[target.real, target.imag]])
     points, speeds = turn_aside(
@@ -53,6 +53,25 @@ def look(*others, plan=HALL, velocity=SPEED + 0j, target=AT + 12.0, speed=SPEED,
     found = complex(*points[0]) - AT
     assert abs(found) == pytest.approx(abs(target - AT))
     return cmath.phase(found / (target - AT)) if found else 0.0, speeds[0] / speed
+
+
+@pytest.mark.parametrize(("kind", "room"), [("able_bodied", 0.5), ("wheelchair_manual", 0.85)])
+def test_people_who_meet_keep_as_much_room_between_wide_bodies(kind, room):
+    # Some 0.4 m: between cores of 0.14 m each, and between those of 0.35 m.
+    types, least = [PedestrianType.named(kind)], []
+    for seed in range(1, 4):
+        model = PedestrianModel(HALL, pedestrian_types=types, rng=seed)
+        one, other = (
+            *model.add_pedestrians([(15.0, 20.0)], exits=["east"], preferred_speeds=0.9),
+            *model.add_pedestrians(
+                [(25.0, 20.1)], exits=["west"], headings=[math.pi], preferred_speeds=0.9
+            ),
+        )
+        least.append(math.inf)
+        while model.elapsed < 10.0:
+            model.step()
+            least[-1] = min(least[-1], np.hypot(*(one.position - other.position)))
+    assert min(least) > room
 
 
 def test_alone_nothing_changes():

@@ -38,6 +38,7 @@ def crowd_of(seed, people):
     crowd.target_y[:] = crowd.y + 10.0 * np.sin(turn + off)
     arrived = rng.random(people) < 0.1
     crowd.target_x[arrived], crowd.target_y[arrived] = crowd.x[arrived], crowd.y[arrived]
+    crowd.core[:] = rng.choice([0.14, 0.17, 0.35], people)
     crowd.agenda["waits_until"] = np.where(rng.random(people) < 0.2, FRAME + 10, 0)
     return crowd, rng.uniform(0.7, 1.8, people)
 
@@ -68,18 +69,20 @@ def by_definition(crowd, order, plan, i, speed):
         if not stays and jx * ex + jy * ey > 0.5 * math.sqrt(jx * jx + jy * jy):
             continue
         weight = 3.0 * min(excess * full, 1.0) * 4.0 / (4.0 + math.sqrt(x * x + y * y))
-        others.append((x, y, vx, vy, weight))
+        room = 0.65 + (float(crowd.core[j]) + float(crowd.core[i]) - 0.28)
+        room2 = min(room * room, 0.6 * 0.6 * (x * x + y * y))
+        others.append((x, y, vx, vy, weight, room2))
     horizon = min(4.0, away / own)
 
     def people(ux, uy, others):
         total = 0.0
-        for x, y, vx, vy, weight in others:
+        for x, y, vx, vy, weight, room2 in others:
             wx, wy = vx - ux, vy - uy
             towards = -(x * wx + y * wy)
             if towards > 0.0:
                 time = min(towards / (wx * wx + wy * wy), horizon)
                 ax, ay = x + wx * time, y + wy * time
-                near = 1.0 - (ax * ax + ay * ay) / min(0.65 * 0.65, 0.6 * 0.6 * (x * x + y * y))
+                near = 1.0 - (ax * ax + ay * ay) / room2
                 total += near * weight if near > 0.0 else 0.0
         return total
 
@@ -100,12 +103,11 @@ def by_definition(crowd, order, plan, i, speed):
             ux, uy = share * own * (c * ex - s * ey), share * own * (s * ex + c * ey)
             courses.append((angle, share, ux, uy))
 
-    def comes_near(x, y, vx, vy, *_):
+    def comes_near(x, y, vx, vy, _, room2):
         """Whether somebody who comes the other way would ever be too near on any course."""
         if vx * ex + vy * ey >= 0.0:
             return False
-        room2 = min(0.65 * 0.65, 0.6 * 0.6 * (x * x + y * y))
-        for _, _, ux, uy in courses:
+        for *_, ux, uy in courses:
             wx, wy = vx - ux, vy - uy
             towards = -(x * wx + y * wy)
             if towards > 0.0 and x * x + y * y - towards * towards / (wx * wx + wy * wy) < room2:

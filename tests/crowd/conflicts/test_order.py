@@ -71,13 +71,13 @@ def test_whoever_has_made_way_comes_after_those_who_follow():
 def test_those_in_the_way_of_somebody_who_makes_way_do_so_too():
     crowd = crowd_of(3.0, 4.0, 5.0)
     notes = resolved(crowd, [1, 0, -1])
-    pass_on(np.array([1]), np.array([2]), 11.0, crowd.records, notes)
+    pass_on(np.array([1]), np.array([2]), 11.0, crowd.records, crowd.agenda, notes)
     assert notes["first"].tolist() == [-1, 0, 0]
     assert notes["asked_by"][2] == 1
     # But not for somebody who comes later in the order than they.
     crowd.route[2] = 1.0
     notes["first"][2], notes["later"][2] = -1, 0.0
-    pass_on(np.array([1]), np.array([2]), 12.0, crowd.records, notes)
+    pass_on(np.array([1]), np.array([2]), 12.0, crowd.records, crowd.agenda, notes)
     assert notes["first"][2] == -1
 
 
@@ -87,8 +87,35 @@ def test_whoever_comes_towards_somebody_who_makes_way_joins(x, joins):
     notes = resolved(crowd, [1, 0, -1])
     # 1 is at 0 and makes way to x = 2; 2 stands behind or ahead.
     notes["x"][1], crowd.x[2] = 2.0, x
-    join(np.array([2]), np.array([1]), np.array([[0.0, 0.0]]), 11.0, crowd.records, notes)
+    seen = np.array([[0.0, 0.0]])
+    join(np.array([2]), np.array([1]), seen, 11.0, crowd.records, crowd.agenda, notes)
     assert (notes["first"][2] == 0) == joins
+
+
+@pytest.mark.parametrize(
+    ("since", "waits", "asked"), [(2.0, 0, True), (9.0, 0, False), (9.0, 600, True)]
+)
+def test_whoever_gets_on_need_not_make_way_for_those_who_make_way(since, waits, asked):
+    crowd = crowd_of(3.0, 4.0, 5.0)
+    notes = resolved(crowd, [1, 0, -1])
+    # 2 has got on 9 or 2 s ago, or waits until 20 s.
+    crowd.agenda["since"][2], crowd.agenda["waits_until"][2] = since, waits
+    passed, joined = notes.copy(), notes.copy()
+    pass_on(np.array([1]), np.array([2]), 11.0, crowd.records, crowd.agenda, passed)
+    assert (passed["first"][2] == 0) == asked
+    joined["x"][1], crowd.x[2], seen = 2.0, 3.0, np.array([[0.0, 0.0]])
+    join(np.array([2]), np.array([1]), seen, 11.0, crowd.records, crowd.agenda, joined)
+    assert (joined["first"][2] == 0) == asked
+
+
+def test_whoever_goes_back_from_a_wall_makes_way_though_they_move():
+    # Two at the jambs of a door go back, and each is in the way of the other.
+    crowd = crowd_of(3.0, 4.0)
+    notes = resolved(crowd, [1, 0], at=10.0, walled=[0, 1])
+    assert notes["first"].tolist() == [0, 1]
+    crowd.agenda["since"] = 10.0
+    pass_on(np.array([0]), np.array([1]), 10.0, crowd.records, crowd.agenda, notes)
+    assert notes["first"].tolist() == [0, 0]
 
 
 def test_the_first_comes_last_if_nobody_can_make_room():
@@ -145,7 +172,7 @@ def test_whoever_is_held_by_a_wall_goes_back_though_others_make_way():
 def test_whoever_is_held_by_a_wall_comes_first_and_so_has_others_move():
     crowd = crowd_of(4.0, 3.0)  # the other one comes first
     asked = resolved(crowd, [1, 0], at=10.0, walled=[0])
-    pass_on(np.array([0]), np.array([1]), 10.0, crowd.records, asked)
+    pass_on(np.array([0]), np.array([1]), 10.0, crowd.records, crowd.agenda, asked)
     assert asked["first"].tolist() == [0, 0]
 
 

@@ -184,7 +184,7 @@ PILLAR = "POLYGON((3 2,3.5 2,3.5 3,3 3,3 2))"
 
 
 @pytest.mark.parametrize(
-    "preset", [ENGINE, PRESETS["measured"], "paper"], ids=["engine", "measured", "paper"]
+    "preset", [ENGINE, PRESETS["default"], "paper"], ids=["engine", "default", "paper"]
 )
 @pytest.mark.parametrize("seed", range(6))
 def test_every_decision_is_the_one_worked_out_by_brute_force(preset, seed):

@@ -48,6 +48,14 @@ def test_a_way_through_a_narrow_zone_takes_what_each_part_of_it_takes():
     assert found == pytest.approx(0.875 / 1.5, abs=0.04)
 
 
+def test_people_ahead_leave_room_for_as_small_a_share_of_the_speed():
+    model = model_of(strip(SpeedZone(box(3, 0, 10, 2), 0.5)), shipped_map())
+    people = [put(model, x, 1.0, preferred_speeds=1.25) for x in (5.0, 11.0)]
+    advance(model, 1)
+    paces = [model.crowd.agenda["pace"][person.row] for person in people]
+    assert paces == [model.crowd.preferred[people[0].row] / 1.25, 1.0]
+
+
 def test_where_zones_overlap_their_factors_multiply():
     plan = strip(SpeedZone(box(0, 0, 10, 2), 0.5), SpeedZone(box(5, 0, 15, 2), 0.4))
     points = [(2.0, 1.0), (7.0, 1.0), (12.0, 1.0), (20.0, 1.0), (10.0, 1.0)]

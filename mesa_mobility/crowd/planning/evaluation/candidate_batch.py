@@ -114,8 +114,8 @@ def candidates_of(
         neighbour_cores=crowd.core[neighbours],
         neighbour_types=crowd.type_index[neighbours].astype(np.int64),
         neighbour_groups=crowd.agenda["group"][neighbours].astype(np.int64),
-        fields={name: values[rows] for name, values in crowd.fields.items()},
-        neighbour_fields={name: values[neighbours] for name, values in crowd.fields.items()},
+        fields={name: values[rows] for name, values in crowd.kernel_fields.items()},
+        neighbour_fields={name: values[neighbours] for name, values in crowd.kernel_fields.items()},
         time=moment.frame * FRAME_SECONDS,
         rng=moment.rng,
     )

@@ -115,7 +115,7 @@ def field_values(names: Sequence[str], crowd: Crowd) -> NDArray[np.float64]:
         "group": crowd.agenda["group"],
         "heading": crowd.heading,
         "core": crowd.core,
-        **crowd.fields,
+        **crowd.kernel_fields,
     }
     values = np.empty((len(crowd.x), len(names)))
     for column, name in enumerate(names):

@@ -37,10 +37,10 @@ def _pick(bounds, above, up_to, first, picked):
 def cost():
     """A function of what is enough and of the term to begin with, and the costs by term."""
     rng = np.random.default_rng(8)
-    record = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14])
+    record = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14, np.inf, 1.0])
     own = Decider(0, 0, 0.0, 0.0, 1.0, 0.0, 0.14, record)
     ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
-    neighbours = make_neighbours(24, 3, 0)
+    neighbours = make_neighbours(24, 3, 1)  # the pace is a field
     others = neighbours.others
     others[:] = 0.0
     others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
@@ -54,12 +54,13 @@ def cost():
         given = own, ends, NEIGHBOURS, moved, neighbours, enough, compiled.pair
         return _cost(*given), neighbours.first[0]
 
+    paces = [1.0]
     each = [
         term.weight
         * sum(
             term.kernel.value(
                 option=Option(*ends[:, 0]),
-                me=me(),
+                me=term.kernel.kinds["me"](*me(), *paces[: len(term.kernel.declared)]),
                 other=Other(*others[:7, a], 0.0, 0.0, 0.0, 0.0),
                 p=term,
             )

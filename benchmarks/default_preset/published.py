@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.measured_preset.closeness import off
+from benchmarks.default_preset.closeness import off
 from mesa_mobility.validation.bottleneck import START, density_in_front, plan
 from mesa_mobility.validation.scenes import corridors, wide_necks
 from mesa_mobility.verification.references import bottleneck_fit, corridor_band, published

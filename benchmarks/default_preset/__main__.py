@@ -1,7 +1,7 @@
-"""Calibrate the preset `measured` on measured crowds, or on all but some of them.
+"""Calibrate the preset `default` on measured crowds, or on all but some of them.
 
-python -m benchmarks.measured_preset TRACKS STORE [--leave-out corridors] [--evaluations 320]
-    [--preset measured] [--spread 0.1] [--workers 2]
+python -m benchmarks.default_preset TRACKS STORE [--leave-out corridors] [--evaluations 320]
+    [--preset default] [--spread 0.1] [--workers 2]
 
 TRACKS is the folder with the files of ``measured.RUNS``.  STORE keeps all runs, the preset found
 and a report; the same command goes on where it stopped.
@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from benchmarks.measured_preset import goals, measured, published
+from benchmarks.default_preset import goals, measured, published
 from mesa_mobility.calibration import Distance, Free, HeldOut, Search, Seeds, calibrate
 from mesa_mobility.crowd.presets.shipped import preset_of
 from mesa_mobility.errors import MobilityError
@@ -108,7 +108,7 @@ def main() -> int:
     parser.add_argument("store", type=Path)
     parser.add_argument("--leave-out", choices=sorted(measured.FOLDS), help="runs not to see")
     parser.add_argument("--evaluations", type=int, default=320, help="sets of numbers to try")
-    parser.add_argument("--preset", default="measured", help="where the search starts")
+    parser.add_argument("--preset", default="default", help="where the search starts")
     parser.add_argument("--spread", type=float, default=0.1, help="of the first sets")
     parser.add_argument("--seeds", type=int, default=5, help="that judge what was found")
     parser.add_argument("--workers", type=int, default=None)

@@ -1,4 +1,4 @@
-"""The measured runs that the preset `measured` is calibrated on, and how far their replays are off.
+"""The measured runs that the preset `default` is calibrated on, and how far their replays are off.
 
 They are of the archive of Forschungszentrum Juelich (https://ped.fz-juelich.de/da): corridors of
 HERMES (2009) and BaSiGo (2013), and the gate of https://doi.org/10.34735/ped.2018.1.
@@ -13,7 +13,7 @@ from typing import Any
 import shapely
 from shapely import Polygon, affinity, box
 
-from benchmarks.measured_preset.closeness import off
+from benchmarks.default_preset.closeness import off
 from mesa_mobility import Exit, FloorPlan, PedestrianModel, Trajectories
 from mesa_mobility.distributions import parse
 from mesa_mobility.results.distances import View, compare

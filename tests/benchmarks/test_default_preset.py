@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from benchmarks.measured_preset import goals, measured
-from benchmarks.measured_preset.__main__ import BOUNDS, scenarios
-from benchmarks.measured_preset.closeness import beyond, off
+from benchmarks.default_preset import goals, measured
+from benchmarks.default_preset.__main__ import BOUNDS, scenarios
+from benchmarks.default_preset.closeness import beyond, off
 from mesa_mobility.calibration import HeldOut
-from mesa_mobility.crowd import PRESETS, model_rules
+from mesa_mobility.crowd import PRESETS
 
 
 def test_each_figure_is_off_in_units_of_its_tolerance_and_by_six_at_most():
@@ -43,7 +43,7 @@ def test_each_run_is_in_one_fold():
 
 
 def test_the_numbers_that_are_free_are_the_presets_and_in_their_ranges():
-    values = PRESETS["measured"].parameters()
+    values = PRESETS["default"].parameters()
     for name, (low, high) in BOUNDS.items():
         assert low <= values[name] <= high, name
     assert {name for name in values if name.endswith(".weight")} <= BOUNDS.keys()
@@ -59,5 +59,4 @@ def test_people_can_walk_where_a_run_is_measured(run):
 
 def test_somebody_gets_round_a_person_whom_they_stand_behind():
     low, high, _ = goals.GOALS["round_somebody"]
-    with model_rules(preset="measured"):
-        assert low <= goals.round_somebody(3) <= high
+    assert low <= goals.round_somebody(3) <= high

@@ -1,1 +1,0 @@
-"""The calibration of the preset `measured`: what it is calibrated on, and the command."""
