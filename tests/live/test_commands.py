@@ -255,8 +255,8 @@ def way_through_a_crowd(seed, *, steered):
 
 
 def test_the_crowd_makes_way_for_somebody_who_is_steered():
-    # Who is not steered goes round those who stand. Of the 10 m those make way for the steered one
-    # for some seconds at most.
+    # A person who is not steered goes round those who stand. They make way for a person who is
+    # steered, which takes some seconds of the ten.
     own, steered = (
         np.mean([way_through_a_crowd(seed, steered=each) for seed in range(1, 5)])
         for each in (False, True)
