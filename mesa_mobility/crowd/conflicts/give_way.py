@@ -17,7 +17,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.conflicts.hindrance import find_hindered, wait_behind
+from mesa_mobility.crowd.conflicts.hindrance import PATIENCE, find_hindered, wait_behind
 from mesa_mobility.crowd.conflicts.notes import (
     NOTE,
     NOTE_FIELDS,
@@ -269,7 +269,8 @@ class GiveWay(Tactic):
             def aims(places: NDArray[np.float64]) -> NDArray[np.float64]:
                 return deciding.site.targets(places, to.repeat(len(places))).points
 
-            return places_to_set_out(deciding.site.plan, me, aims, taken, cores)
+            goes_back = deciding.elapsed - crowd.agenda["since"][row] <= PATIENCE
+            return places_to_set_out(deciding.site.plan, me, aims, taken, cores, own=goes_back)
         return places_aside(deciding.site.plan, me, ways, taken, cores)
 
     def _ways_of_firsts(self, rows: NDArray[np.int64], deciding: Deciding) -> dict[int, Way]:

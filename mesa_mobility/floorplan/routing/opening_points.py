@@ -36,6 +36,9 @@ def place(
         qx, qy = nearest(ends, x, y)
         away = np.hypot(qx - x, qy - y)
         ax, ay = nearest(_clear_of_jambs(ends), x, y)
+        # No farther aside than the line is away, or people just before it would walk along it.
+        share = min(1.0, away / max(np.hypot(ax - qx, ay - qy), 1e-9))
+        ax, ay = qx + share * (ax - qx), qy + share * (ay - qy)
         if _serves(sight, ways, (x, y), node, after, (ax, ay), ways.view_clearance, own):
             return ax, ay, away
     return qx, qy, away

@@ -26,6 +26,8 @@ def aslant(dx: float, dy: float) -> tuple[float, float]:
         # The places aimed through are 0.2 m clear of the jambs and 0.25 m more: 4.45 to 4.55.
         ((4.3, 1), aslant(0.15, 1)),
         ((1.5, 3), aslant(2.95, 3)),
+        ((4.3, 0.1), (4.4 + 0.5**0.5, -(0.5**0.5))),  # no farther aside than the line is away
+        ((4.3, 0.01), (4.31, -2)),
         ((4.5, 0), (4.5, -2)),  # in the line itself
         ((4.5, -0.02), (4.5, -2)),  # a little past it
     ],
