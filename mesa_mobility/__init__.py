@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mesa_mobility.batch import batch_run as batch_run
     from mesa_mobility.buildings import Building as Building
     from mesa_mobility.buildings import Level as Level
+    from mesa_mobility.buildings import Lift as Lift
     from mesa_mobility.buildings import Stairs as Stairs
     from mesa_mobility.crowd import Candidates as Candidates
     from mesa_mobility.crowd import Capability as Capability

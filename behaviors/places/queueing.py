@@ -177,8 +177,8 @@ class Queueing(Tactic):
         return next((n for n, each in enumerate(self.counters) if each.visit == stop), -1)
 
     def _let_by(self, counter: Counter, line: list[int]) -> None:
-        """Change the order of two one after the other, of whom the second stands in front, or is in
-        the way of the first.
+        """Let those go first who stand in front of the person before them, or are in the way of
+        somebody before them.
 
         People who come from aside join behind somebody who is still on the way to their place. If
         they get there first, neither could pass the other.
@@ -190,22 +190,27 @@ class Queueing(Tactic):
             away = np.hypot(crowd.x[pair] - place[0], crowd.y[pair] - place[1])
             if self._is_served(pair[0]):
                 continue
-            if away[1] < away[0] - _MOVES_UP or (
-                away[0] > _MOVES_UP and self._is_in_the_way(pair, place)
-            ):
+            if away[1] < away[0] - _MOVES_UP:
                 line[k : k + 2] = pair[::-1]
+            elif away[0] > _MOVES_UP:
+                other = self._in_the_way(line[k], line[k + 1 :], place)
+                if other is not None:
+                    line.remove(other)
+                    line.insert(k, other)
 
-    def _is_in_the_way(self, pair: list[int], place: NDArray[np.float64]) -> bool:
-        """Whether the first of two people stands, and the second is in their way to a place, but
-        the first not in the way of the second to the same place."""
+    def _in_the_way(self, row: int, behind: list[int], place: NDArray[np.float64]) -> int | None:
+        """Who of those behind is in the way of somebody who stands before their place; nobody if
+        that person is in the other's way to the same place."""
         crowd = self._model.crowd
-        (x, other_x), (y, other_y) = crowd.x[pair], crowd.y[pair]
-        near = math.hypot(other_x - x, other_y - y) < crowd.core[pair].sum() + _MOVES_UP
-        if not near or math.hypot(crowd.vx[pair[0]], crowd.vy[pair[0]]) > _SETTLED:
-            return False
-        points, speeds = np.tile(place, (2, 1)), crowd.agenda["speed"][pair]
-        blockers = self._model.wishes(np.array(pair), points, speeds).blockers
-        return bool(blockers[0] == pair[1] and blockers[1] != pair[0])
+        away = np.hypot(crowd.x[behind] - crowd.x[row], crowd.y[behind] - crowd.y[row])
+        touching = away < crowd.core[behind] + crowd.core[row] + _MOVES_UP
+        near = [row, *np.array(behind)[touching].tolist()]
+        if len(near) == 1 or math.hypot(crowd.vx[row], crowd.vy[row]) > _SETTLED:
+            return None
+        points, speeds = np.tile(place, (len(near), 1)), crowd.agenda["speed"][near]
+        blockers = self._model.wishes(np.array(near), points, speeds).blockers.tolist()
+        other = blockers[0]
+        return None if other not in near[1:] or blockers[near.index(other)] == row else other
 
     def _line_up(
         self,

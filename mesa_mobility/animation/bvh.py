@@ -34,6 +34,7 @@ class Bvh(OutputFormat):
 
     name = "bvh"
     suffixes = (".bvh",)
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """Write ``person_NUMBER.bvh`` for each person into a folder; see ``write_bvh``."""
@@ -41,7 +42,7 @@ class Bvh(OutputFormat):
             path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise ResultsError(f"{path}: expected a folder for one file a person") from error
-        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank)
+        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank, excerpt.building)
         for done, walker in enumerate(people, start=1):
             write_bvh(walker.motion, path / f"person_{walker.person}.bvh")
             excerpt.person_done(done)

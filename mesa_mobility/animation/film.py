@@ -17,10 +17,12 @@ from mesa_mobility.results.formats.output_format import OutputFormat
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
-    from matplotlib.collections import EllipseCollection, LineCollection
+    from matplotlib.axes import Axes
 
+    from mesa_mobility.buildings import Building
     from mesa_mobility.floorplan import FloorPlan
     from mesa_mobility.results.excerpts import Excerpt
+    from mesa_mobility.results.floor import Storey
 
 PICTURES_A_SECOND = 15
 FASTEST = 1.6
@@ -37,6 +39,7 @@ class Film(OutputFormat):
 
     name = "film"
     suffixes = (".mp4", ".gif", ".webp")
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path, *, speed: float = 1.0) -> None:
         """See ``write_film``."""
@@ -52,7 +55,7 @@ class Film(OutputFormat):
 
 def write_film(
     trajectories: Tracks,
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     path: str | os.PathLike[str],
     selection: Selection | None = None,
     *,
@@ -61,9 +64,12 @@ def write_film(
 ) -> None:
     """Draw people as discs of their cores, coloured by speed, with a stroke for the facing.
 
+    In a building each level has a panel, the topmost first. It shows the people on the stairs up
+    from there, too.
+
     Args:
         trajectories: the run.
-        plan: its floor plan.
+        plan: its floor plan, or its building.
         path: the film; its suffix is one of ``Film.suffixes``. MP4 needs ffmpeg.
         selection: whom and when; all of it by default.
         speed: how many times as fast as it was.
@@ -74,9 +80,8 @@ def write_film(
     """
     # Matplotlib takes half a second to load.
     from matplotlib.animation import FFMpegWriter, PillowWriter
-    from matplotlib.collections import EllipseCollection, LineCollection
 
-    from mesa_mobility.results.floor import draw_floor, floor_figure
+    from mesa_mobility.results.floor import panels_of, storeys_of
 
     selection = selection or Selection()
     suffix = Path(path).suffix.lower()
@@ -91,16 +96,9 @@ def write_film(
     step = speed * trajectories.frame_rate / PICTURES_A_SECOND
     frames = np.floor(np.arange(first, last + 1, step)).astype(np.int64)
     pace = _speeds(trajectories)
-    figure, (axes,) = floor_figure(plan.bounds, rows=1, columns=1)
-    draw_floor(axes, plan)
-    bodies = EllipseCollection(
-        [], [], [], units="xy", cmap="viridis", offset_transform=axes.transData, zorder=5
-    )
-    bodies.set_clim(0.0, FASTEST)
-    strokes = LineCollection([], colors="black", linewidths=0.8, zorder=6)
-    axes.add_collection(bodies)
-    axes.add_collection(strokes)
-    figure.colorbar(bodies, ax=axes, label="speed (m/s)", shrink=0.8)
+    figure, axes = panels_of(storeys_of(trajectories, plan))
+    panels = [_Panel(each, storey) for each, storey in axes]
+    figure.colorbar(panels[0].bodies, ax=figure.axes, label="speed (m/s)", shrink=0.8)
     kind: Any = FFMpegWriter if suffix == ".mp4" else PillowWriter
     writer = kind(fps=PICTURES_A_SECOND)
     with replacing(path, ResultsError) as temporary:
@@ -111,30 +109,53 @@ def write_film(
             for done, frame in enumerate(frames.tolist(), start=1):
                 own = slice(*trajectories.frame_offsets[frame : frame + 2].tolist())
                 rows = np.arange(own.start, own.stop)[shown[own]]
-                _place(bodies, strokes, trajectories, rows)
-                bodies.set_array(pace[rows])
-                axes.set_title(f"{frame / trajectories.frame_rate:.1f} s, {len(rows)} people")
+                for panel in panels:
+                    panel.show(trajectories, rows, pace, frame / trajectories.frame_rate)
                 writer.grab_frame()
                 if progress is not None:
                     progress(done, len(frames))
 
 
-def _place(
-    bodies: EllipseCollection,
-    strokes: LineCollection,
-    trajectories: Tracks,
-    rows: NDArray[np.int64],
-) -> None:
-    """Draw the bodies of some rows."""
-    radius = trajectories.radii[trajectories.person[rows]]
-    centre = np.column_stack((trajectories.x[rows], trajectories.y[rows]))
-    heading = trajectories.heading[rows]
-    tip = centre + 1.8 * radius[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
-    bodies.set_offsets(centre)
-    bodies.set_widths(2.0 * radius)
-    bodies.set_heights(2.0 * radius)
-    bodies.set_angles(np.zeros(len(radius)))
-    strokes.set_segments(list(np.stack((centre, tip), axis=1)))
+class _Panel:
+    """The picture of a storey and of the people on it."""
+
+    def __init__(self, axes: Axes, storey: Storey) -> None:
+        # Matplotlib takes half a second to load.
+        from matplotlib.collections import EllipseCollection, LineCollection
+
+        from mesa_mobility.results.floor import draw_floor
+
+        draw_floor(axes, storey.plan, storey.stairs)
+        self._axes, self._storey = axes, storey
+        self.bodies = EllipseCollection(
+            [], [], [], units="xy", cmap="viridis", offset_transform=axes.transData, zorder=5
+        )
+        self.bodies.set_clim(0.0, FASTEST)
+        self._strokes = LineCollection([], colors="black", linewidths=0.8, zorder=6)
+        axes.add_collection(self.bodies)
+        axes.add_collection(self._strokes)
+
+    def show(
+        self,
+        trajectories: Tracks,
+        rows: NDArray[np.int64],
+        pace: NDArray[np.float64],
+        time: float,
+    ) -> None:
+        """Draw the bodies of those rows that are on the storey."""
+        own = rows[self._storey.rows[rows]]
+        radius = trajectories.radii[trajectories.person[own]]
+        centre = np.column_stack((trajectories.x[own], trajectories.y[own]))
+        heading = trajectories.heading[own]
+        tip = centre + 1.8 * radius[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
+        self.bodies.set_offsets(centre)
+        self.bodies.set_widths(2.0 * radius)
+        self.bodies.set_heights(2.0 * radius)
+        self.bodies.set_angles(np.zeros(len(radius)))
+        self.bodies.set_array(pace[own])
+        self._strokes.set_segments(list(np.stack((centre, tip), axis=1)))
+        where = f"{self._storey.title}, " if self._storey.title else ""
+        self._axes.set_title(f"{where}{time:.1f} s, {len(own)} people")
 
 
 def _speeds(trajectories: Tracks) -> NDArray[np.float64]:

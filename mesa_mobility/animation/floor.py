@@ -9,6 +9,7 @@ import shapely
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.floorplan.floor.openings import Opening
 
 
 def drawn_floor(plan: FloorPlan) -> dict[str, Any]:
@@ -16,23 +17,24 @@ def drawn_floor(plan: FloorPlan) -> dict[str, Any]:
     return {
         "bounds": list(plan.bounds),
         "outline": [ring(part.exterior) for part in shapely.get_parts(plan.walkable)],
-        "free": [
-            [ring(each) for each in (part.exterior, *part.interiors)]
-            for part in shapely.get_parts(plan.free)
-        ],
+        "free": [rings(part) for part in shapely.get_parts(plan.free)],
         "walls": plan.walls.tolist(),
         "zones": [ring(zone.area.exterior) for zone in plan.zones],
         "openings": [
-            {
-                "name": opening.name,
-                "kind": opening.kind,
-                "a": list(opening.a),
-                "b": list(opening.b),
-                "open": plan.is_open(opening.name),
-            }
-            for opening in plan.openings()
+            drawn_opening(opening, plan.is_open(opening.name)) for opening in plan.openings()
         ],
     }
+
+
+def drawn_opening(opening: Opening, is_open: bool) -> dict[str, Any]:
+    """An exit or a gate, metres, and whether it is open."""
+    line = {"a": list(opening.a), "b": list(opening.b)}
+    return {"name": opening.name, "kind": opening.kind, **line, "open": is_open}
+
+
+def rings(area: shapely.Polygon) -> list[list[list[float]]]:
+    """Points of the outline of an area, then of its holes."""
+    return [ring(each) for each in (area.exterior, *area.interiors)]
 
 
 def ring(line: shapely.LinearRing) -> list[list[float]]:

@@ -26,6 +26,7 @@ from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.output_format import OutputFormat
 
 if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
     from mesa_mobility.floorplan import FloorPlan
     from mesa_mobility.results.excerpts import Excerpt
 
@@ -40,16 +41,17 @@ class Glb(OutputFormat):
 
     name = "glb"
     suffixes = (".glb",)
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_glb``."""
-        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank)
+        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank, excerpt.building)
         write_glb(people, excerpt.plan, path, progress=excerpt.person_done)
 
 
 def write_glb(
     people: Iterable[Walker],
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     path: str | os.PathLike[str],
     *,
     progress: Callable[[int], None] | None = None,
@@ -58,7 +60,7 @@ def write_glb(
 
     Args:
         people: those shown; the animation begins with the first of their frames.
-        plan: floor and walls.
+        plan: floor and walls, or a building.
         path: the file.
         progress: called with the number of people done.
 
@@ -184,15 +186,18 @@ def _mesh(
     return attributes, store.accessor(flat, "SCALAR", _USHORT, target=_INDEX)
 
 
-def _material(gltf: Any, file: Any, colour: str, *, both_sides: bool = False) -> int:
+def _material(
+    gltf: Any, file: Any, colour: str, *, both_sides: bool = False, opacity: float = 1.0
+) -> int:
     file.materials.append(
         gltf.Material(
             pbrMetallicRoughness=gltf.PbrMetallicRoughness(
-                baseColorFactor=[*linear(colour), 1.0],
+                baseColorFactor=[*linear(colour), opacity],
                 metallicFactor=0.0,
                 roughnessFactor=0.9,
             ),
             doubleSided=both_sides,
+            alphaMode="OPAQUE" if opacity == 1.0 else "BLEND",
         )
     )
     return len(file.materials) - 1
@@ -218,11 +223,11 @@ def _add_figures(
     return meshes, store.accessor(bind, "MAT4", _FLOAT)
 
 
-def _add_plan(gltf: Any, file: Any, store: _Store, plan: FloorPlan, world: int) -> None:
+def _add_plan(gltf: Any, file: Any, store: _Store, plan: FloorPlan | Building, world: int) -> None:
     # Indices have 16 bits, and 65,535 is not allowed.
-    for name, vertices, normals, triangles, colour, both_sides in surfaces(plan, 65_535):
+    for name, vertices, normals, triangles, colour, both_sides, opacity in surfaces(plan, 65_535):
         attributes, indices = _mesh(store, gltf, vertices, normals, triangles)
-        material = _material(gltf, file, colour, both_sides=both_sides)
+        material = _material(gltf, file, colour, both_sides=both_sides, opacity=opacity)
         part = gltf.Primitive(attributes=attributes, indices=indices, material=material)
         file.meshes.append(gltf.Mesh(name=name, primitives=[part]))
         node = store.node(gltf.Node(name=name, mesh=len(file.meshes) - 1))

@@ -16,17 +16,19 @@ from numpy.typing import NDArray
 from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
 from mesa_mobility.animation.floor import drawn_floor
+from mesa_mobility.animation.storeys import drawn_building
 from mesa_mobility.bodies import PoseBank
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.sequence import stretches
 from mesa_mobility.errors import MapError, ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.results.excerpts import Selection
 from mesa_mobility.results.formats.output_format import OutputFormat
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
-    from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.buildings import Building
     from mesa_mobility.results import Decisions
     from mesa_mobility.results.excerpts import Excerpt
 
@@ -38,12 +40,16 @@ PLACE_STEP, TURN_STEP = 0.001, 0.001
 
 SHARE_STEP = 0.001
 
+STAGE_SCRIPTS = "bundle", "poses", "footing", "bodies", "troop", "scenery", "stage"
+"""Files of the viewer that draw a crowd in three dimensions, in the order in which they load."""
+
 
 class Page(OutputFormat):
     """Page that plays the run in three dimensions and needs no network."""
 
     name = "html"
     suffixes = (".html",)
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_page``."""
@@ -66,7 +72,7 @@ def viewer_part(name: str) -> str:
 
 def write_page(
     trajectories: Tracks,
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     path: str | os.PathLike[str],
     selection: Selection | None = None,
     *,
@@ -82,7 +88,7 @@ def write_page(
 
     Args:
         trajectories: the run.
-        plan: floor and walls.
+        plan: floor and walls, or a building.
         path: the page (.html).
         selection: people and times to show; by default everybody, all the time.
         title: the page's title.
@@ -101,7 +107,7 @@ def write_page(
 
 def page_text(
     trajectories: Tracks,
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     selection: Selection | None = None,
     *,
     title: str,
@@ -109,8 +115,11 @@ def page_text(
     progress: Callable[[int], None] | None = None,
 ) -> str:
     """The text of the page; arguments and errors are those of ``write_page``."""
-    header, arrays = run_parts(trajectories, selection or Selection(), bank, progress)
-    header |= {"title": title, "floor": drawn_floor(plan)}
+    whole = isinstance(plan, FloorPlan)
+    header, arrays = run_parts(
+        trajectories, selection or Selection(), bank, progress, storeys=not whole
+    )
+    header |= {"title": title, "floor": _drawn(plan)}
     return Template(viewer_part("page.html")).substitute(
         title=html.escape(title),
         # Would end the script early.
@@ -118,7 +127,16 @@ def page_text(
         content=bundled(header, arrays),
         viewer="\n".join(
             viewer_part(f"{each}.js")
-            for each in ("bundle", "poses", "bodies", "troop", "stage", "player")
+            for each in (
+                "bundle",
+                "poses",
+                "footing",
+                "bodies",
+                "troop",
+                "scenery",
+                "stage",
+                "player",
+            )
         ),
     )
 
@@ -128,8 +146,13 @@ def run_parts(
     selection: Selection,
     bank: PoseBank | None = None,
     progress: Callable[[int], None] | None = None,
+    *,
+    storeys: bool = False,
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """Header and arrays of a run: people's places, movements and decisions, and the poses."""
+    """Header and arrays of a run: people's places, movements and decisions, and the poses.
+
+    Places have elevations if there are several storeys.
+    """
     if trajectories.frame_rate != FRAME_RATE:
         raise ResultsError(f"{trajectories.frame_rate:g} frames a second: expected {FRAME_RATE:g}")
     first, last = selection.frames_of(trajectories)
@@ -143,7 +166,9 @@ def run_parts(
     ordered = trajectories.by_person
     begins = np.searchsorted(trajectories.person[ordered], np.arange(max(people) + 2))
     for done, person in enumerate(people, start=1):
-        track = _track(trajectories, ordered[begins[person] : begins[person + 1]], first, last)
+        track = _track(
+            trajectories, ordered[begins[person] : begins[person + 1]], (first, last), storeys
+        )
         course, own, digest = _course(decisions, banks, person, int(track[0, 0]), last)
         tracks.append(track)
         courses.append(course)
@@ -192,21 +217,30 @@ def _banks(decisions: Decisions, given: PoseBank | None) -> dict[str, PoseBank]:
     return found
 
 
+def _drawn(plan: FloorPlan | Building) -> dict[str, Any]:
+    return drawn_floor(plan) if isinstance(plan, FloorPlan) else drawn_building(plan)
+
+
 def _track(
-    trajectories: Tracks, rows: NDArray[np.int64], first: int, last: int
+    trajectories: Tracks, rows: NDArray[np.int64], span: tuple[int, int], storeys: bool
 ) -> NDArray[np.int64]:
-    """(n, 4) frames, x, y and heading of a person, the differences of successive rows in steps."""
+    """(n, 4) frames, x, y and heading of a person, the differences of successive rows in steps.
+
+    With several storeys it is (n, 5), and the last column is the elevation.
+    """
+    first, last = span
     rows = rows[(trajectories.frame[rows] >= first) & (trajectories.frame[rows] <= last)]
     rows = np.append(rows[:-1:EVERY], rows[-1])
     heading = np.unwrap(trajectories.heading[rows])
-    table = np.column_stack(
-        [
-            trajectories.frame[rows],
-            np.rint(trajectories.x[rows] / PLACE_STEP),
-            np.rint(trajectories.y[rows] / PLACE_STEP),
-            np.rint(heading / TURN_STEP),
-        ]
-    ).astype(np.int64)
+    columns = [
+        trajectories.frame[rows],
+        np.rint(trajectories.x[rows] / PLACE_STEP),
+        np.rint(trajectories.y[rows] / PLACE_STEP),
+        np.rint(heading / TURN_STEP),
+    ]
+    if storeys:
+        columns.append(np.rint(trajectories.z[rows] / PLACE_STEP))
+    table = np.column_stack(columns).astype(np.int64)
     return np.diff(table, axis=0, prepend=0)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,12 @@ from scipy.spatial.transform import Rotation
 from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.bodies import BodyMotion, PoseBank
 from mesa_mobility.bodies.seated import seated_motion
-from mesa_mobility.results.bodies import body_of, track_of
+from mesa_mobility.results.bodies import body_of, elevation_of, track_of
 from mesa_mobility.results.excerpts import Selection
 from mesa_mobility.results.tracks import Tracks
+
+if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,10 @@ class Walker:
 
 
 def walkers(
-    trajectories: Tracks, selection: Selection, bank: PoseBank | None = None
+    trajectories: Tracks,
+    selection: Selection,
+    bank: PoseBank | None = None,
+    building: Building | None = None,
 ) -> Iterator[Walker]:
     """The people shown, one after the other; those in wheelchairs sit.
 
@@ -61,6 +68,7 @@ def walkers(
         trajectories: a run with its decisions.
         selection: whom and when.
         bank: poses of their type; by default those that ship for the map.
+        building: where the run was, to put feet on the treads of its stairs.
 
     Raises:
         ResultsError: nobody to show, or no decisions.
@@ -71,9 +79,10 @@ def walkers(
     for person in selection.people_of(trajectories):
         name = str(types[person]) if types is not None else ""
         if aid_of(name) == "wheelchair":
-            motion = seated_motion(*track_of(trajectories, person))
+            elevation = None if building is None else elevation_of(trajectories, person)
+            motion = seated_motion(*track_of(trajectories, person), elevation)
         else:
-            motion = body_of(trajectories, person, bank=bank)
+            motion = body_of(trajectories, person, bank=bank, building=building)
         there = np.flatnonzero((motion.frames >= first) & (motion.frames <= last))
         part = BodyMotion(
             frames=motion.frames[there],

@@ -17,6 +17,7 @@ class Picture(OutputFormat):
 
     name = "picture"
     suffixes = (".png", ".pdf", ".svg")
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path, *, at: str | None = None) -> None:
         """Draw people as discs with a stroke for the facing; see ``plot_snapshots``.

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from mesa_mobility.animation.aids import aid_of, figure_with
 from mesa_mobility.animation.figure import rest_positions
+from mesa_mobility.animation.meshes import FLOOR, WALL
 from mesa_mobility.animation.people import Walker, walkers
-from mesa_mobility.animation.scenery import COLOURS, FLOOR, WALL, linear, surfaces
+from mesa_mobility.animation.scenery import COLOURS, linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.errors import ResultsError
@@ -25,6 +26,7 @@ from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.output_format import OutputFormat
 
 if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
     from mesa_mobility.floorplan import FloorPlan
     from mesa_mobility.results.excerpts import Excerpt
 
@@ -37,16 +39,17 @@ class OpenUsd(OutputFormat):
 
     name = "usd"
     suffixes = (".usd", ".usda", ".usdc")
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_usd``."""
-        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank)
+        people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank, excerpt.building)
         write_usd(people, excerpt.plan, path, progress=excerpt.person_done)
 
 
 def write_usd(
     people: Iterable[Walker],
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     path: str | os.PathLike[str],
     *,
     progress: Callable[[int], None] | None = None,
@@ -57,7 +60,7 @@ def write_usd(
 
     Args:
         people: those shown.
-        plan: floor and walls.
+        plan: floor and walls, or a building.
         path: the file; its suffix is one of ``OpenUsd.suffixes``.
         progress: called with the number of people done.
 
@@ -103,15 +106,17 @@ def write_usd(
             raise OSError(f"{error}") from error
 
 
-def _material(stage: Any, colour: str) -> Any:
-    """A matt material of this colour."""
+def _material(stage: Any, look: str, opacity: float = 1.0) -> Any:
+    """A matt material; its look begins with its colour as hexadecimal digits."""
     from pxr import Sdf, UsdShade
 
-    material = UsdShade.Material.Define(stage, f"/world/materials/colour_{colour[1:]}")
+    material = UsdShade.Material.Define(stage, f"/world/materials/colour_{look[1:]}")
     shader = UsdShade.Shader.Define(stage, material.GetPath().AppendChild("surface"))
     shader.CreateIdAttr("UsdPreviewSurface")
-    shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(tuple(linear(colour)))
+    shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(tuple(linear(look)))
     shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.9)
+    if opacity < 1.0:
+        shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(opacity)
     material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
     return material
 
@@ -138,11 +143,14 @@ def _mesh(
     return mesh
 
 
-def _add_plan(stage: Any, plan: FloorPlan, materials: dict[str, Any]) -> None:
-    for name, vertices, normals, triangles, colour, both_sides in surfaces(plan):
+def _add_plan(stage: Any, plan: FloorPlan | Building, materials: dict[str, Any]) -> None:
+    for name, vertices, normals, triangles, colour, both_sides, opacity in surfaces(plan):
         mesh = _mesh(stage, f"/world/{name}", vertices, normals, triangles)
         mesh.CreateDoubleSidedAttr(both_sides)
-        _bind(mesh, materials[colour])
+        look = f"{colour}_through" if opacity < 1.0 else colour
+        if look not in materials:
+            materials[look] = _material(stage, look, opacity)
+        _bind(mesh, materials[look])
 
 
 def _bind(mesh: Any, material: Any) -> None:

@@ -8,6 +8,7 @@ back while it swings. Two-bone inverse kinematics bends the leg accordingly.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,10 @@ LANDING_FRAMES = 4
 STRAIGHT = 0.9995
 """Length of a leg that is stretched, as a share of thigh and shank."""
 
+Floor = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+"""Heights (n,) of the floor beneath (n, 2) points of successive frames, and (n,) heights over which
+feet swing there; see ``Footing.beneath`` of ``mesa_mobility.buildings``."""
+
 _HEEL = np.array([-HEEL_BACK, 0.0, -ANKLE_HEIGHT])
 _BALL = np.array([OFFSETS[JOINT["left_toe"], 0], 0.0, -ANKLE_HEIGHT])
 
@@ -51,6 +56,7 @@ def plant(
     positions: NDArray[np.float64],
     oriented: NDArray[np.float64],
     bearing: NDArray[np.bool_],
+    floor: Floor | None = None,
 ) -> NDArray[np.bool_]:
     """Hold feet where they bear on the floor, and put them onto it; changes the first arguments.
 
@@ -58,6 +64,7 @@ def plant(
         positions: (n, 22, 3) joint positions of one person in successive frames, metres.
         oriented: (n, 22, 3, 3) orientations of the joints.
         bearing: (n, 4) whether left ankle and toe, right ankle and toe bear on the floor.
+        floor: where the floor is; by default it is level, at 0.
 
     Returns:
         (n, 4) the same, without feet that take a step to get back under the body.
@@ -72,7 +79,8 @@ def plant(
         target = positions[:, ankle].copy()
         target[:, :2] += away
         target[:, 2] += lift
-        target[:, 2] += _to_floor(target, oriented[:, ankle], held[:, 2 * side : 2 * side + 2])
+        bears = held[:, 2 * side : 2 * side + 2]
+        target[:, 2] += _to_floor(target, oriented[:, ankle], bears, floor)
         bend(positions, oriented, (hip, knee, ankle), target)
         positions[:, toe] = positions[:, ankle] + oriented[:, ankle] @ OFFSETS[toe]
     return held
@@ -127,7 +135,10 @@ def _hold(
 
 
 def _to_floor(
-    ankle: NDArray[np.float64], foot: NDArray[np.float64], bearing: NDArray[np.bool_]
+    ankle: NDArray[np.float64],
+    foot: NDArray[np.float64],
+    bearing: NDArray[np.bool_],
+    floor: Floor | None,
 ) -> NDArray[np.float64]:
     """(n,) how far a foot is raised so that it bears on the floor and never enters it."""
     heel, ball = soles(ankle, foot)
@@ -136,6 +147,10 @@ def _to_floor(
     weights = np.full(LANDING_FRAMES, 1.0 / LANDING_FRAMES)
     share = np.convolve(np.concatenate([np.full(LANDING_FRAMES - 1, down[0]), down]), weights)
     landed = share[LANDING_FRAMES - 1 : LANDING_FRAMES - 1 + len(down)]
+    if floor is not None:
+        # A foot over the edge of a tread is on the higher one. A swinging foot passes the edges.
+        treads, edges = np.maximum(floor(heel[:, :2]), floor(ball[:, :2]))
+        lowest = lowest - (edges + landed * (treads - edges))
     return np.where(lowest > 0.0, -lowest * landed, -lowest)
 
 

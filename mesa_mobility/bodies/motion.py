@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,9 @@ from mesa_mobility.bodies.skeleton import (
     local_rotations,
 )
 from mesa_mobility.errors import ResultsError
+
+if TYPE_CHECKING:
+    from mesa_mobility.buildings import Footing
 
 FRAME_RATE = 30.0
 
@@ -96,6 +100,8 @@ def body_motion(
     track: NDArray[np.float64],
     *,
     planted: bool = True,
+    elevation: NDArray[np.float64] | None = None,
+    footing: Footing | None = None,
 ) -> BodyMotion:
     """One person's body in successive frames.
 
@@ -105,7 +111,11 @@ def body_motion(
         frames: (n,) successive frames at 30 Hz.
         track: (n, 3) the person's x, y (metres) and heading (radians) in them.
         planted: whether feet are held where they bear on the floor.
+        elevation: (n,) elevation of the person's place, metres; 0 by default.
+        footing: stairs on whose treads feet are put; by default the floor beneath feet has the
+            elevation of the person's place.
     """
+    floor = None if elevation is None else _Floor(track[:, :2], elevation, bank.scale, footing)
     track = np.asarray(track, dtype=np.float64) / [bank.scale, bank.scale, 1.0]
     sequence = pose_sequence(bank, frames, movements)
     turns, heights = blended(bank, sequence)
@@ -118,8 +128,10 @@ def body_motion(
     positions = np.einsum("nij,nkj->nki", facing, positions)
     oriented = np.einsum("nij,nkjl->nkil", facing, oriented)
     positions += np.column_stack([track[:, :2], heights])[:, None]
+    if floor is not None:
+        positions[:, :, 2] += floor.carried()[:, None]
     if planted:
-        bearing = plant(positions, oriented, bearing)
+        bearing = plant(positions, oriented, bearing, floor)
     quaternions = Rotation.from_matrix(oriented.reshape(-1, 3, 3)).as_quat()
     return BodyMotion(
         frames=frames.astype(np.float64),
@@ -128,6 +140,33 @@ def body_motion(
         bearing=bearing,
         scale=bank.scale,
     )
+
+
+class _Floor:
+    """The floor of a building under one person, in units of the person's size."""
+
+    def __init__(
+        self,
+        xy: NDArray[np.float64],
+        elevation: NDArray[np.float64],
+        scale: float,
+        footing: Footing | None,
+    ) -> None:
+        self._places = np.column_stack([xy, elevation])
+        self._scale, self._footing = scale, footing
+
+    def carried(self) -> NDArray[np.float64]:
+        places, footing = self._places, self._footing
+        return (places[:, 2] if footing is None else footing.carried(places)) / self._scale
+
+    def __call__(
+        self, points: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        if self._footing is None:
+            level = self.carried()
+            return level, level
+        treads, edges = self._footing.beneath(self._places, points * self._scale)
+        return treads / self._scale, edges / self._scale
 
 
 def _liveliness(strides: NDArray[np.float64], heading: NDArray[np.float64]) -> NDArray[np.float64]:

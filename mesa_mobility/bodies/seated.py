@@ -16,12 +16,17 @@ _TURNED_UP = {"hip": -90.0, "knee": 90.0, "shoulder": -35.0, "elbow": -55.0}
 """Degrees about the axis to the left: thighs and forearms are level, shanks upright."""
 
 
-def seated_motion(frames: NDArray[np.integer], track: NDArray[np.float64]) -> BodyMotion:
+def seated_motion(
+    frames: NDArray[np.integer],
+    track: NDArray[np.float64],
+    elevation: NDArray[np.float64] | None = None,
+) -> BodyMotion:
     """An adult who sits, in successive frames.
 
     Args:
         frames: (n,) frames at 30 Hz.
         track: (n, 3) x, y (metres) and heading (radians) in them.
+        elevation: (n,) elevation of the floor, metres; 0 by default.
     """
     vectors = np.zeros((1, len(TURNING), 3))
     for part, degrees in _TURNED_UP.items():
@@ -30,7 +35,10 @@ def seated_motion(frames: NDArray[np.integer], track: NDArray[np.float64]) -> Bo
     positions, oriented = forward_kinematics(from_vectors(vectors))
     facing = about_z(track[:, 2])
     places = np.einsum("nij,kj->nki", facing, positions[0])
-    places += np.column_stack([track[:, :2], np.full(len(track), SEATED_PELVIS)])[:, None]
+    height = np.full(len(track), SEATED_PELVIS)
+    if elevation is not None:
+        height += elevation
+    places += np.column_stack([track[:, :2], height])[:, None]
     return BodyMotion(
         frames=np.asarray(frames, dtype=np.float64),
         positions=places,

@@ -1,4 +1,4 @@
-"""A building: levels joined by stairs, laid out in one plane."""
+"""A building: levels joined by stairs and lifts, laid out in one plane."""
 
 import os
 from collections.abc import Sequence
@@ -9,11 +9,14 @@ import networkx as nx
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
+from shapely import Polygon
 
 from mesa_mobility.buildings import geojson
+from mesa_mobility.buildings.footing import Footing
 from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import Places
-from mesa_mobility.buildings.sheets import Sheet, seam_of, sheets_of, zones_of
+from mesa_mobility.buildings.sheets import Sheet, seam_of, shaft_of, sheets_of, zones_of
 from mesa_mobility.buildings.stairs import Flight, Landing, Stairs, sheet_of
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, FloorPlan
@@ -21,7 +24,7 @@ from mesa_mobility.floorplan.formats.geojson import label
 
 
 class Building:
-    """Levels that stairs join.
+    """Levels that stairs and lifts join.
 
     People are simulated in a plane, in which the levels and landings lie side by side as sheets.
     Each flight of stairs is drawn on both sheets that it joins, up to 0.3 m beyond its end. At its
@@ -39,19 +42,23 @@ class Building:
     Args:
         levels: at least one.
         stairs: what joins them.
+        lifts: the lifts.
         name: for titles and files.
 
     Raises:
         FloorPlanError: levels or stairs of one number or name; stairs that lead nowhere, do not fit
             their rise, have no floor before them, or overlap an obstacle, an opening or other
-            stairs; levels from which no stairs lead to an exit; or what `FloorPlan` refuses.
+            stairs or a lift; levels from which neither stairs nor a lift lead to an exit; or what
+            `FloorPlan` refuses.
 
     Attributes:
         levels: the levels, in the order given.
         stairs: the stairs, in the order given.
+        lifts: the lifts, in the order given.
         flights: the flights of all stairs.
         landings: the landings of all stairs.
         floor_plan: all sheets in one plane, which models use.
+        footing: what carries bodies and feet on the stairs, for pictures.
 
     Examples:
         >>> from mesa_mobility import Building, Exit, Level, Stairs
@@ -68,13 +75,20 @@ class Building:
     """
 
     def __init__(
-        self, levels: Sequence[Level], stairs: Sequence[Stairs] = (), *, name: str = ""
+        self,
+        levels: Sequence[Level],
+        stairs: Sequence[Stairs] = (),
+        *,
+        lifts: Sequence[Lift] = (),
+        name: str = "",
     ) -> None:
-        self.levels, self.stairs, self.name = tuple(levels), tuple(stairs), name
-        _check_names(self.levels, self.stairs)
+        self.levels, self.stairs, self.lifts = tuple(levels), tuple(stairs), tuple(lifts)
+        self.name = name
+        _check_names(self.levels, self.stairs, self.lifts)
         flights: list[Flight] = []
         landings: list[Landing] = []
-        for each in self.stairs:
+        self._owners: dict[str, int] = {}
+        for number, each in enumerate(self.stairs):
             try:
                 upper, lower = self.level(each.upper), self.level(each.lower)
             except FloorPlanError as error:
@@ -82,10 +96,19 @@ class Building:
             more, between = each.parts(upper.elevation, lower.elevation)
             flights += more
             landings += between
+            names = [flight.name for flight in more] + [landing.name for landing in between]
+            self._owners |= dict.fromkeys(names, number)
         self.flights, self.landings = tuple(flights), tuple(landings)
-        self._sheets = sheets_of(self.levels, flights, landings)
+        for lift in self.lifts:
+            for number in lift.numbers:
+                try:
+                    self.level(number)
+                except FloorPlanError as error:
+                    raise FloorPlanError(f"lift {lift.name!r}: {error}") from None
+        self._sheets = sheets_of(self.levels, flights, landings, self.lifts)
         self._check_joined()
-        self._places = Places(self._sheets, flights)
+        self._places = Places(self._sheets, flights, self._owners)
+        self.footing = Footing(flights)
         self.floor_plan = self._plan()
 
     def __repr__(self) -> str:
@@ -101,7 +124,7 @@ class Building:
         """
         where, parts = label(source), geojson.read(source)
         try:
-            building = cls(parts.levels, parts.stairs, name=parts.name)
+            building = cls(parts.levels, parts.stairs, lifts=parts.lifts, name=parts.name)
         except FloorPlanError as error:
             raise FloorPlanError(f"{where}: {error}") from None
         for closed in parts.closed:
@@ -116,15 +139,16 @@ class Building:
         an `elevation`. A feature of the kind `stairs` is their upper edge, the end on the left of
         somebody who walks down first. It has `from` and `to`, the numbers of the upper and the
         lower level, `risers`, `tread` and `type`, straight or dog_leg; a dog-leg also `turn`,
-        `well` and, if it is not as deep as wide, `landing`. A building of one level is written as
-        its floor plan.
+        `well` and, if it is not as deep as wide, `landing`. A feature of the kind `lift` is the
+        door, with the numbers of its `levels` and the other arguments of `Lift`. A building of one
+        level is written as its floor plan.
         """
         first, plan = self.levels[0], self.floor_plan
         if len(self.levels) == 1 and first.number == 0 and first.elevation == 0.0:
             return plan.to_geojson()
         closed = [each.name for each in plan.openings() if not plan.is_open(each.name)]
         return geojson.feature_collection(
-            geojson.Parts(self.levels, self.stairs, self.name, closed)
+            geojson.Parts(self.levels, self.stairs, self.lifts, self.name, closed)
         )
 
     def write_geojson(self, path: "str | os.PathLike[str]") -> None:
@@ -142,6 +166,11 @@ class Building:
     def exits(self, level: int) -> tuple[str, ...]:
         """Names of the exits on a level."""
         return tuple(each.name for each in self.level(level).exits)
+
+    @property
+    def sheets(self) -> tuple[Sheet, ...]:
+        """Levels and landings as drawn in the plane, from the left."""
+        return tuple(self._sheets.values())
 
     def true_places(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
         """True places of points in the plane.
@@ -162,6 +191,24 @@ class Building:
             FloorPlanError: a place more than a centimetre above or below any floor.
         """
         return self._places.plane(places)
+
+    def stairs_at(self, places: ArrayLike) -> NDArray[np.int16]:
+        """The stairs on which true places are, to a centimetre.
+
+        Args:
+            places: (n, 3) x, y and z, metres.
+
+        Returns:
+            (n,) indices in `stairs`; -1 for places that are on no flight or landing.
+        """
+        return self._places.stairs(places)
+
+    def shapes_of(self, stairs: Stairs) -> list[Polygon]:
+        """The flights and landings of stairs in plan, in the building's coordinates."""
+        number = self.stairs.index(stairs)
+        flights = [each for each in self.flights if self._owners[each.name] == number]
+        landings = [each for each in self.landings if self._owners[each.name] == number]
+        return [*(each.part(0.0, each.going) for each in flights), *(e.area for e in landings)]
 
     def places(self, points: ArrayLike, level: int) -> NDArray[np.float64]:
         """(n, 2) points in the plane of (n, 2) places on a level, metres."""
@@ -209,8 +256,8 @@ class Building:
     def floor_plan_of(self, level: int) -> FloorPlan:
         """The floor of one level as a plan of its own, in the building's coordinates.
 
-        Stairs are not part of it: people leave by the end of a flight as by an exit, which has the
-        name of the flight.
+        Stairs and lifts are not part of it: people leave by the end of a flight as by an exit,
+        which has the name of the flight.
         """
         own, sheet = self.level(level), self._sheet(level)
         ends = [Exit(each.name, *each.head) for each in self.flights if each.upper == sheet.name]
@@ -229,15 +276,17 @@ class Building:
         return self._sheets[sheet_of(self.level(level).number)]
 
     def _check_joined(self) -> None:
-        """Stairs must lead from each level to one with an exit; FloorPlanError otherwise."""
+        """A way must lead from each level to one with an exit; FloorPlanError otherwise."""
         graph = nx.Graph()
         graph.add_nodes_from(level.number for level in self.levels)
         graph.add_edges_from((each.upper, each.lower) for each in self.stairs)
+        graph.add_edges_from(pair for each in self.lifts for pair in pairwise(each.numbers))
         leading_out = {level.number for level in self.levels if level.exits}
         for joined in nx.connected_components(graph):
             if len(self.levels) > 1 and not joined & leading_out:
                 raise FloorPlanError(
-                    f"level {min(joined)}: no stairs lead from there to a level with an exit"
+                    f"level {min(joined)}: neither stairs nor a lift lead from there to a level "
+                    "with an exit"
                 )
 
     def _plan(self) -> FloorPlan:
@@ -261,14 +310,15 @@ class Building:
             zones=zones,
             name=self.name or (self.levels[0].name if len(self.levels) == 1 else ""),
             seams=[seam_of(flight, self._sheets) for flight in self.flights],
+            shafts=[shaft_of(lift, self._sheets) for lift in self.lifts],
         )
 
 
-def _check_names(levels: Sequence[Level], stairs: Sequence[Stairs]) -> None:
-    """Levels and stairs must be that, and have different numbers and names."""
+def _check_names(levels: Sequence[Level], stairs: Sequence[Stairs], lifts: Sequence[Lift]) -> None:
+    """Levels, stairs and lifts must be that, and have different numbers and names."""
     if not levels:
         raise FloorPlanError("a building needs at least one level")
-    for given, kind in ((levels, Level), (stairs, Stairs)):
+    for given, kind in ((levels, Level), (stairs, Stairs), (lifts, Lift)):
         for each in given:
             if not isinstance(each, kind):
                 raise FloorPlanError(
@@ -276,7 +326,7 @@ def _check_names(levels: Sequence[Level], stairs: Sequence[Stairs]) -> None:
                 )
     for what, names in (
         ("level", sorted(each.number for each in levels)),
-        ("stairs", sorted(each.name for each in stairs)),
+        ("stairs or lift", sorted([each.name for each in stairs] + [each.name for each in lifts])),
     ):
         for one, other in pairwise(names):
             if one == other:

@@ -10,15 +10,19 @@ import shapely
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.buildings.level import Level
-from mesa_mobility.buildings.stairs import DOG_LEG, Line, Stairs
+from mesa_mobility.buildings.lift import Lift
+from mesa_mobility.buildings.lines import Line
+from mesa_mobility.buildings.stairs import DOG_LEG, Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.content import Content, content_of
 
-STAIRS = "stairs"
+STAIRS, LIFT = "stairs", "lift"
 
 _OF_DOG_LEGS = ("turn", "well", "landing")
+
+_OF_LIFTS = ("capacity", "speed", "door_s", "width", "depth", "everybody")
 
 
 @dataclass(frozen=True)
@@ -28,12 +32,14 @@ class Parts:
     Attributes:
         levels: its levels.
         stairs: its stairs.
+        lifts: its lifts.
         name: its name.
         closed: names of the exits and gates that are closed.
     """
 
     levels: Sequence[Level]
     stairs: Sequence[Stairs]
+    lifts: Sequence[Lift]
     name: str
     closed: Sequence[str]
 
@@ -46,6 +52,7 @@ def feature_collection(parts: Parts) -> dict[str, Any]:
         if properties["kind"] in ("gate", "exit") and properties["name"] in parts.closed:
             properties["closed"] = True
     features += [_stairs_feature(each) for each in parts.stairs]
+    features += [_lift_feature(each) for each in parts.lifts]
     return {"type": "FeatureCollection", "name": parts.name, "features": features}
 
 
@@ -65,13 +72,16 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     where, data = geojson.label(source), geojson.load(source)
     by_level: dict[int, list[tuple[object, str]]] = {}
     elevations: dict[int, float] = {}
-    stairs = []
+    stairs, lifts = [], []
     for number, feature in enumerate(geojson.features_of(data, where)):
         at = f"{where}: feature {number}"
         properties = feature.get("properties") if isinstance(feature, Mapping) else None
         given: Mapping[str, Any] = properties if isinstance(properties, Mapping) else {}
         if given.get("kind") == STAIRS:
             stairs.append(_stairs(feature, given, at))
+            continue
+        if given.get("kind") == LIFT:
+            lifts.append(_lift(feature, given, at))
             continue
         level = _whole(given, "level", at, 0)
         by_level.setdefault(level, []).append((feature, at))
@@ -89,7 +99,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     except FloorPlanError as error:
         raise FloorPlanError(f"{where}: {error}") from None
     closed = [name for content in contents.values() for name in content.closed]
-    return Parts(levels, stairs, name, closed)
+    return Parts(levels, stairs, lifts, name, closed)
 
 
 def _level(number: int, content: Content, elevation: Any) -> Level:
@@ -141,18 +151,43 @@ def _stairs_feature(stairs: Stairs) -> dict[str, Any]:
     return feature
 
 
-def _stairs(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Stairs:
+def _lift_feature(lift: Lift) -> dict[str, Any]:
+    feature = geojson.feature_of(LIFT, lift.name, shapely.LineString(lift.door))
+    feature["properties"] |= {"level": lift.numbers[0], "levels": list(lift.numbers)}
+    feature["properties"] |= {name: getattr(lift, name) for name in _OF_LIFTS}
+    return feature
+
+
+def _lift(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Lift:
+    levels = given.get("levels")
+    if not isinstance(levels, list) or not all(type(each) is int for each in levels):
+        raise FloorPlanError(f"{at}: levels must be whole numbers, found {levels!r:.60}")
+    everybody = given.get("everybody", False)
+    if not isinstance(everybody, bool):
+        raise FloorPlanError(f"{at}: everybody must be true or false, found {everybody!r:.60}")
+    more = {name: given[name] for name in _OF_LIFTS if name in given}
+    try:
+        return Lift(str(given.get("name") or ""), levels, _line(feature, LIFT, at), **more)
+    except FloorPlanError as error:
+        raise FloorPlanError(f"{at}: {error}") from None
+
+
+def _line(feature: Mapping[str, Any], kind: str, at: str) -> Line:
     try:
         geometry = shapely.geometry.shape(feature.get("geometry"))
     except Exception as error:  # shapely raises whatever the malformed mapping led it into
         text = " ".join(str(error).split())
         raise FloorPlanError(f"{at}: the geometry cannot be read ({text})") from None
     if geometry.geom_type != "LineString":
-        raise FloorPlanError(f"{at}: stairs must be a LineString, found {geometry.geom_type}")
+        raise FloorPlanError(f"{at}: {kind} must be a LineString, found {geometry.geom_type}")
+    return cast("Line", tuple(map(tuple, shapely.get_coordinates(geometry).tolist())))
+
+
+def _stairs(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Stairs:
+    head = _line(feature, STAIRS, at)
     upper, lower, risers = (_whole(given, name, at) for name in ("from", "to", "risers"))
     tread, shape = _number(given, "tread", at), given.get("type", "straight")
     more = {name: given[name] for name in _OF_DOG_LEGS if name in given}
-    head = cast("Line", tuple(map(tuple, shapely.get_coordinates(geometry).tolist())))
     try:
         return Stairs(
             str(given.get("name") or ""), upper, lower, head, risers, tread, shape, **more

@@ -7,15 +7,16 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.buildings.sheets import BEYOND, Sheet, middle_of
+from mesa_mobility.buildings.lines import middle_of
+from mesa_mobility.buildings.sheets import BEYOND, Sheet
 from mesa_mobility.buildings.stairs import Flight
 from mesa_mobility.errors import FloorPlanError
 
 ON_STAIRS = -32_768
 """The level of people on flights and landings."""
 
-_HEIGHT = 0.01
-"""Most metres by which a place may be above or below the floor."""
+_OFF = 0.01
+"""Most metres by which a place may be off a floor: above it, below it or beside it."""
 
 _ROUNDING = 1e-6
 """Metres."""
@@ -27,10 +28,16 @@ class Places:
     Args:
         sheets: the sheets of a building.
         flights: its flights.
+        owners: for the name of each flight and landing, the number of its stairs.
     """
 
-    def __init__(self, sheets: Mapping[str, Sheet], flights: Sequence[Flight]) -> None:
-        self._sheets = list(sheets.values())
+    def __init__(
+        self,
+        sheets: Mapping[str, Sheet],
+        flights: Sequence[Flight],
+        owners: Mapping[str, int],
+    ) -> None:
+        self._sheets, self._owners = list(sheets.values()), dict(owners)
         self._number = {sheet.name: number for number, sheet in enumerate(self._sheets)}
         self._flights = tuple(flights)
         bounds = [sheet.in_plane(sheet.area).bounds for sheet in self._sheets]
@@ -50,9 +57,9 @@ class Places:
         for flight in self._flights:
             upper, lower = self._number[flight.upper], self._number[flight.lower]
             own = np.flatnonzero((sheet == upper) | (sheet == lower))
-            down, aside = _on(flight, places[own, :2])
+            down, aside = place_on(flight, places[own, :2])
             drawn = (aside <= flight.width / 2.0) & (down > 0.0) & (down < flight.going)
-            places[own[drawn], 2] = _height(flight, down[drawn])
+            places[own[drawn], 2] = height_on(flight, down[drawn])
             levels[own[drawn]] = ON_STAIRS
             # Beyond the flight, the copied end of a strip is on the other sheet's floor.
             for past, here, there in ((down - flight.going, upper, lower), (-down, lower, upper)):
@@ -73,14 +80,12 @@ class Places:
         nearest = np.full(len(xyz), np.inf)
         points = shapely.points(xyz[:, :2])
         for number, each in enumerate(self._sheets):
-            level = np.flatnonzero(np.abs(xyz[:, 2] - each.elevation) <= _HEIGHT)
+            level = np.flatnonzero(np.abs(xyz[:, 2] - each.elevation) <= _OFF)
             away = shapely.distance(each.floor, points[level])
             nearer = away < nearest[level]
             sheet[level[nearer]], nearest[level[nearer]] = number, away[nearer]
         for flight in self._flights:
-            down, aside = _on(flight, xyz[:, :2])
-            on = (down > 0.0) & (down < flight.going) & (aside <= flight.width / 2.0)
-            on &= np.abs(_height(flight, down) - xyz[:, 2]) <= _HEIGHT
+            on, down = _at(flight, xyz)
             lower, upper = self._number[flight.lower], self._number[flight.upper]
             sheet[on] = np.where(down[on] >= flight.going / 2.0, lower, upper)
         if (sheet < 0).any():
@@ -91,6 +96,19 @@ class Places:
             )
         return xyz[:, :2] + self._shifts[sheet]
 
+    def stairs(self, places: ArrayLike) -> NDArray[np.int16]:
+        """(n,) numbers of the stairs on which (n, 3) true places are; -1 for other places."""
+        xyz = np.asarray(places, dtype=np.float64).reshape(-1, 3)
+        found = np.full(len(xyz), -1, dtype=np.int16)
+        for landing in (each for each in self._sheets if each.level is None):
+            near = np.flatnonzero(np.abs(xyz[:, 2] - landing.elevation) <= _OFF)
+            away = shapely.distance(landing.floor, shapely.points(xyz[near, :2]))
+            found[near[away <= _OFF]] = self._owners[landing.name]
+        for flight in self._flights:
+            on, _ = _at(flight, xyz, _OFF)
+            found[on] = self._owners[flight.name]
+        return found
+
     def _copied(self, flight: Flight, sheet: int, xy: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether places beyond a flight, on a sheet, are on its strip and not on the floor."""
         floor = self._sheets[sheet].floor
@@ -99,13 +117,31 @@ class Places:
         )
 
 
-def _on(flight: Flight, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def place_on(
+    flight: Flight, xy: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Metres down from the head of a flight, and metres from its middle line, of (n, 2) places."""
     away, down = xy - middle_of(flight.head), flight.down
     return away @ down, np.abs(away @ np.array([-down[1], down[0]]))
 
 
-def _height(flight: Flight, down: NDArray[np.float64]) -> NDArray[np.float64]:
+def _at(
+    flight: Flight, xyz: NDArray[np.float64], beside: float = 0.0
+) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Whether (n, 3) true places are on a flight, and metres down from its head.
+
+    Args:
+        flight: the flight.
+        xyz: (n, 3) metres.
+        beside: metres by which places may be beyond its edges in plan.
+    """
+    down, aside = place_on(flight, xyz[:, :2])
+    on = (down > -beside) & (down < flight.going + beside) & (aside <= flight.width / 2.0 + beside)
+    on &= np.abs(height_on(flight, down) - xyz[:, 2]) <= _OFF
+    return on, down
+
+
+def height_on(flight: Flight, down: NDArray[np.float64]) -> NDArray[np.float64]:
     """Elevation of places on a flight, as on a ramp."""
     share = down / flight.going
     height: NDArray[np.float64] = flight.top + share * (flight.bottom - flight.top)

@@ -1,19 +1,21 @@
-"""Sheets: the levels and landings of a building, each with the stairs that end there."""
+"""Sheets: the levels and landings of a building, each with its stairs and lifts."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.buildings.level import Level
-from mesa_mobility.buildings.stairs import Flight, Landing, Line, sheet_of
+from mesa_mobility.buildings.lift import DOORWAY, Lift
+from mesa_mobility.buildings.lines import moved, right_angle
+from mesa_mobility.buildings.stairs import Flight, Landing, sheet_of
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Exit, Gate, Seam, SpeedZone
+from mesa_mobility.floorplan import Exit, Gate, Seam, Shaft, SpeedZone, Stop
 
 BEYOND = 0.3
 """Metres by which a strip goes on beyond its flight, on the sheet to which that half is copied."""
@@ -33,6 +35,9 @@ wrong intersection."""
 
 _FREE = 0.5
 """Metres of floor that must be free before either end of a flight."""
+
+_FREE_BEFORE_LIFT = 1.5
+"""The same before the door of a lift: room for a wheelchair to turn (ISO 21542)."""
 
 Opening = TypeVar("Opening", Exit, Gate)
 
@@ -71,19 +76,22 @@ class Sheet:
 
 
 def sheets_of(
-    levels: Sequence[Level], flights: Sequence[Flight], landings: Sequence[Landing]
+    levels: Sequence[Level],
+    flights: Sequence[Flight],
+    landings: Sequence[Landing],
+    lifts: Sequence[Lift] = (),
 ) -> dict[str, Sheet]:
     """The sheets of a building by name, side by side in the plane in the order given.
 
     The first level keeps its coordinates.
 
     Raises:
-        FloorPlanError: a flight without floor before one of its ends, or over an obstacle or
-            opening, or two that overlap.
+        FloorPlanError: a flight or a lift without floor before it, or over an obstacle or opening,
+            or two that overlap.
     """
     sheets = []
     for level in levels:
-        own = _strips(sheet_of(level.number), flights)
+        own = _strips(sheet_of(level.number), flights, lifts)
         _check_level(level, own)
         sheets.append(
             _sheet(sheet_of(level.number), level.number, level.elevation, level.area, own)
@@ -126,31 +134,51 @@ def zones_of(flight: Flight, sheets: Mapping[str, Sheet]) -> list[SpeedZone]:
     ]
 
 
+def shaft_of(lift: Lift, sheets: Mapping[str, Sheet]) -> Shaft:
+    """A lift as drawn in the plane."""
+    own = [sheets[sheet_of(number)] for number in lift.numbers]
+    shifts = [0.5 * DOORWAY * right_angle(lift.door) + each.shift for each in own]
+    return Shaft(
+        name=lift.name,
+        stops=tuple(
+            Stop(each.name, moved(lift.door, shift), each.elevation)
+            for each, shift in zip(own, shifts, strict=True)
+        ),
+        before=0.5 * DOORWAY,
+        width=lift.width,
+        depth=lift.depth,
+        capacity=lift.capacity,
+        speed=lift.speed,
+        door_s=lift.door_s,
+        everybody=lift.everybody,
+    )
+
+
 @dataclass(frozen=True)
 class _Strip:
-    """A flight as drawn on one of its sheets.
+    """A flight or the car of a lift as drawn on a sheet.
 
     Attributes:
-        flight: the flight.
-        drawn: the strip.
-        taken: what is taken from the floor for it.
+        what: what it is, for messages.
+        drawn: its floor.
+        taken: what is taken from the floor of the sheet for it.
         before: the floor that must be free before it.
     """
 
-    flight: Flight
-    drawn: Polygon
+    what: str
+    drawn: BaseGeometry
     taken: Polygon
     before: Polygon
 
 
-def _strips(sheet: str, flights: Sequence[Flight]) -> list[_Strip]:
+def _strips(sheet: str, flights: Sequence[Flight], lifts: Sequence[Lift] = ()) -> list[_Strip]:
     found = []
     for flight in flights:
-        going = flight.going
+        going, what = flight.going, f"stairs {flight.name!r}"
         if flight.upper == sheet:
             found.append(
                 _Strip(
-                    flight,
+                    what,
                     flight.part(-_INTO, going + BEYOND),
                     flight.part(0.0, going + BEYOND + _WALL, _WALL),
                     flight.part(-_FREE, 0.0),
@@ -159,10 +187,23 @@ def _strips(sheet: str, flights: Sequence[Flight]) -> list[_Strip]:
         if flight.lower == sheet:
             found.append(
                 _Strip(
-                    flight,
+                    what,
                     flight.part(-BEYOND, going + _INTO),
                     flight.part(-BEYOND - _WALL, going, _WALL),
                     flight.part(going, going + _FREE),
+                )
+            )
+    for lift in lifts:
+        if sheet in map(sheet_of, lift.numbers):
+            door, car = math.dist(*lift.door) / 2.0, lift.width / 2.0
+            end = DOORWAY + lift.depth
+            doorway = lift.part(-_INTO, DOORWAY + _INTO, door)
+            found.append(
+                _Strip(
+                    f"lift {lift.name!r}",
+                    shapely.union(doorway, lift.part(DOORWAY, end, car), grid_size=_GRID),
+                    lift.part(0.0, end + _WALL, car + _WALL),
+                    lift.part(-_FREE_BEFORE_LIFT, 0.0, door),
                 )
             )
     return found
@@ -179,8 +220,8 @@ def _sheet(
             if shared.area > 1e-6:
                 spot = shared.representative_point()
                 raise FloorPlanError(
-                    f"stairs {other.flight.name!r} and {one.flight.name!r} overlap on the plan of "
-                    f"{name} at ({spot.x:.2f}, {spot.y:.2f})"
+                    f"{other.what} and {one.what} overlap on the plan of {name} at "
+                    f"({spot.x:.2f}, {spot.y:.2f})"
                 )
     taken = shapely.union_all([each.taken for each in strips], grid_size=_GRID)
     floor = shapely.difference(area, taken, grid_size=_GRID)
@@ -190,7 +231,7 @@ def _sheet(
 
 
 def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
-    """There must be floor before stairs, and nothing on them; FloorPlanError otherwise."""
+    """Raise FloorPlanError without floor before stairs and lifts, or with something on them."""
     obstacles = {f"obstacle {k}": each for k, each in enumerate(level.blocked)}
     openings = {f"{each.kind} {each.name!r}": each.line for each in (*level.exits, *level.gates)}
     free = shapely.difference(
@@ -198,7 +239,7 @@ def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
     )
     free = free.buffer(1e-6)
     for strip in strips:
-        where = f"stairs {strip.flight.name!r} on level {level.number}"
+        where = f"{strip.what} on level {level.number}"
         for what, shape in (*obstacles.items(), *openings.items()):
             if strip.taken.buffer(-1e-6).intersects(shape):
                 spot = strip.taken.intersection(shape).representative_point()
@@ -212,11 +253,5 @@ def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
             spot = missing.representative_point()
             raise FloorPlanError(
                 f"{where}: no floor at ({spot.x:.2f}, {spot.y:.2f}), expected {_FREE} m of free "
-                "floor before them"
+                f"floor before stairs and {_FREE_BEFORE_LIFT:g} m before lifts"
             )
-
-
-def middle_of(line: Line) -> NDArray[np.float64]:
-    """(2,) the middle of a line."""
-    middle: NDArray[np.float64] = np.array(line).mean(axis=0)
-    return middle

@@ -11,8 +11,8 @@ from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.lines import Line, line_of, moved, pair, right_angle
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Gate
 
 STRAIGHT, DOG_LEG = "straight", "dog_leg"
 
@@ -36,9 +36,6 @@ it grows with the root of their ratio. The same: 1.00, 1.08, 1.16 and 1.23 m/s o
 
 _ROUNDING = 1e-9
 """Metres."""
-
-Line = tuple[tuple[float, float], tuple[float, float]]
-"""A line (left, right), each (x, y) in metres."""
 
 
 def speed_factor(riser: float, tread: float) -> float:
@@ -89,17 +86,22 @@ class Flight:
     @property
     def down(self) -> NDArray[np.float64]:
         """(2,) unit vector in which people walk down."""
-        return _down(self.head)
+        return right_angle(self.head)
 
     @property
     def foot(self) -> Line:
         """Its lower edge, (left, right) as seen by somebody who walks down."""
-        return _moved(self.head, self.going * self.down)
+        return moved(self.head, self.going * self.down)
 
     @property
     def factor(self) -> float:
         """The share of their speed on a level floor at which people walk; see `speed_factor`."""
-        return speed_factor((self.top - self.bottom) / self.risers, self.tread)
+        return speed_factor(self.riser, self.tread)
+
+    @property
+    def riser(self) -> float:
+        """Height of a riser, metres."""
+        return (self.top - self.bottom) / self.risers
 
     def part(self, first: float, last: float, wider: float = 0.0) -> Polygon:
         """The strip from `first` to `last` metres below the upper edge, measured in plan.
@@ -176,7 +178,14 @@ class Stairs:
         tread: float = 0.29,
     ) -> Self:
         """Stairs of one straight flight; see the class for the arguments."""
-        return cls(name, _number(upper), _number(lower), _line(name, head), risers, tread)
+        return cls(
+            name,
+            _number(upper),
+            _number(lower),
+            line_of("stairs", name, "head", head),
+            risers,
+            tread,
+        )
 
     @classmethod
     def dog_leg(
@@ -200,7 +209,7 @@ class Stairs:
             name,
             _number(upper),
             _number(lower),
-            _line(name, head),
+            line_of("stairs", name, "head", head),
             risers,
             tread,
             DOG_LEG,
@@ -210,7 +219,7 @@ class Stairs:
         )
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "head", _line(self.name, self.head))
+        object.__setattr__(self, "head", line_of("stairs", self.name, "head", self.head))
         least = 2 if self.shape == STRAIGHT else 4
         if (
             not isinstance(self.risers, int)
@@ -285,7 +294,7 @@ class Stairs:
         count = self.risers - count
         second = Flight(
             f"{self.name} 1",
-            (_pair(head[0]), _pair(head[1])),
+            (pair(head[0]), pair(head[1])),
             (count - 1) * self.tread,
             middle,
             bottom,
@@ -309,33 +318,3 @@ def sheet_of(level: int) -> str:
 
 def _number(level: Level | int) -> int:
     return level.number if isinstance(level, Level) else level
-
-
-def _line(name: str, head: Sequence[Sequence[float]]) -> Line:
-    """The head of stairs as two points; FloorPlanError for anything else."""
-    if not isinstance(name, str) or not name:
-        raise FloorPlanError(f"stairs: expected a name of at least one letter, found {name!r:.60}")
-    try:
-        a, b = head
-        line = Gate("head", tuple(a), tuple(b))  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        raise FloorPlanError(
-            f"stairs {name!r}: head must be two points (x, y), found {head!r:.60}"
-        ) from None
-    except FloorPlanError as error:
-        raise FloorPlanError(f"stairs {name!r}: {error}") from None
-    return line.a, line.b
-
-
-def _down(head: Line) -> NDArray[np.float64]:
-    (ax, ay), (bx, by) = head
-    return np.array([ay - by, bx - ax]) / math.dist(*head)
-
-
-def _moved(line: Line, by: NDArray[np.float64]) -> Line:
-    a, b = np.array(line) + by
-    return _pair(a), _pair(b)
-
-
-def _pair(point: NDArray[np.float64]) -> tuple[float, float]:
-    return float(point[0]), float(point[1])

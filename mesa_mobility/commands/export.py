@@ -89,8 +89,8 @@ def export(
     level: Annotated[
         int | None,
         typer.Option(
-            help="Of a run in a building: the level whose people are written. Formats of bodies "
-            "need a run on a floor plan."
+            help="Of a run in a building: the level whose people are written, without bodies. By "
+            "default everybody is, in formats that have elevations."
         ),
     ] = None,
     speed: Annotated[
@@ -119,7 +119,7 @@ def export(
     with progress_bar(shown=not no_progress) as report:
         excerpt = Excerpt(
             found.trajectories,
-            found.floor_plan,
+            found.plan if chosen.storeys else found.floor_plan,
             selection,
             found.summary,
             shown.bank(),

@@ -45,7 +45,7 @@ def replay(
     with progress_bar(shown=not no_progress) as report:
         write_page(
             found.trajectories,
-            found.floor_plan,
+            found.plan,
             page,
             selection,
             bank=shown.bank(),

@@ -120,6 +120,7 @@ def run(
                 "preset": options.preset or getattr(simulation, "preset", "default"),
                 "seed": options.seed,
                 "by_type": table.reset_index().to_dict("records"),
+                **_by_storey(trajectories, building),
                 **origin_of(given, simulation),
                 "behaviors": options.behaviors or [],
                 "wall_s": round(wall, 3),
@@ -160,6 +161,19 @@ def run(
         raise typer.Exit(STALLED)
     if stood:
         say(f"blocked: {stood}")
+
+
+def _by_storey(trajectories: Any, building: Any) -> dict[str, Any]:
+    """Figures of the levels and stairs of a building, if it is a run in one."""
+    if building is None:
+        return {}
+    from mesa_mobility.results import by_level, by_stairs
+
+    tables = {"by_level": by_level, "by_stairs": by_stairs}
+    return {
+        name: measure(trajectories, building).reset_index().to_dict("records")
+        for name, measure in tables.items()
+    }
 
 
 def _said_of_blocked(summary: dict[str, Any]) -> str:
@@ -213,6 +227,14 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
         "Blocked": _said_of_blocked(summary) or "nobody stood for a minute without a reason",
         "Mean speed": "-" if speed is None else f"{speed:.2f} m/s",
         **{f"  {each['type']}": _figures_of_type(each) for each in types},
+        **{
+            f"Level {each['level']}": _figures_of_level(each)
+            for each in summary.get("by_level", ())
+        },
+        **{
+            f"Stairs {each['stairs']}": _figures_of_stairs(each)
+            for each in summary.get("by_stairs", ())
+        },
         "Decisions": f"{summary['decisions']}",
         "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
         f"{summary['fallback_time_share']:.1%} of the time",
@@ -236,3 +258,17 @@ def _figures_of_type(each: dict[str, Any]) -> str:
     return text + (
         "" if math.isnan(each["mean_speed_mps"]) else f", {each['mean_speed_mps']:.2f} m/s"
     )
+
+
+def _figures_of_level(each: dict[str, Any]) -> str:
+    text = f"{each['at_start']} people at the start"
+    if each["at_end"]:
+        return f"{text}, {each['at_end']} at the end"
+    clear = each["clear_s"]
+    return text if math.isnan(clear) else f"{text}, empty after {clear:.1f} s"
+
+
+def _figures_of_stairs(each: dict[str, Any]) -> str:
+    text = f"{each['people']} people"
+    mean = each["mean_s"]
+    return text if math.isnan(mean) else f"{text}, {mean:.1f} s on average"

@@ -134,6 +134,8 @@ class Dynamics(Saved):
         people.see_off(now)
         known = people.count
         self._let_in()
+        lifts = self._scene.lifts
+        lifts.advance(now, people.present, crowd, self._scene.environment)
         if now == 0:
             types = [each.name for each in model.pedestrian_types]
             if said := without_weight(model.terms, types):
@@ -148,6 +150,8 @@ class Dynamics(Saved):
             self._take_decisions()
         full_second = (now // FRAMES_A_SECOND + 1) * FRAMES_A_SECOND
         end = min(end, max(self._next, now + 1), full_second)
+        if len(lifts):
+            end = min(end, lifts.next_look(now))
         expecting = len(model.sources) > 0 or model.sources.expecting
         if model.recorder is not None or expecting or self._plan_has_changed:
             end = now + 1

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.journeys.visit import Route
+from mesa_mobility.crowd.lifts.lifts import Lifts
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
@@ -78,6 +79,10 @@ class World(Protocol):
     @property
     def journeys(self) -> Journeys:
         """The routes of people who cross gates and visit places in order."""
+
+    @property
+    def lifts(self) -> Lifts:
+        """The lifts, and who rides them."""
 
     @property
     def speed_rules(self) -> Sequence[Any]:

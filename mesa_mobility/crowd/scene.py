@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.journeys.journeys import Journeys
+from mesa_mobility.crowd.lifts.lifts import Lifts
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets.preset import Preset
@@ -37,6 +38,7 @@ class Scene:
         crowd: a record for each person.
         reach: metres from a person within which their movements, body included, end.
         strips: the strips of the plan's seams, as in ``Twins``.
+        lifts: the lifts of the plan.
     """
 
     plan: FloorPlan
@@ -50,6 +52,7 @@ class Scene:
     crowd: Crowd
     reach: float
     strips: NDArray[np.float64]
+    lifts: Lifts
 
 
 def make_scene(
@@ -106,4 +109,5 @@ def make_scene(
         crowd=Crowd(64, fields),
         reach=float(reach + largest) + 0.02,
         strips=strips_of(plan.seams),
+        lifts=Lifts(plan.shafts),
     )

@@ -240,8 +240,8 @@ def _Crowd(session: Session) -> None:
         heading(2, "Crowd", hidden=True)
         OneOf("view of the crowd", VIEWS, view, choose)
         if view == BODIES and session.poses.value:
-            poses = session.poses.value
-            Fed(session.frame, BodyCanvas, poses=poses, **shared).key("bodies")
+            solid = {"poses": session.poses.value, "solid": session.solid.value}
+            Fed(session.frame, BodyCanvas, **solid, **shared).key("bodies")
         elif view == PLAN:
             Fed(session.frame, CrowdCanvas, event_toggle=toggle, shortcuts=True, **shared).key(
                 "plan"

@@ -42,9 +42,7 @@ def replay_of(name: str) -> str:
     if name not in offered_runs():
         raise ResultsError(f"{name}: expected a saved run in {offered.FOLDER}")
     run = read_run(offered.FOLDER / name)
-    text = page_text(
-        run.trajectories, run.floor_plan, title=title_of(run.summary, run.trajectories)
-    )
+    text = page_text(run.trajectories, run.plan, title=title_of(run.summary, run.trajectories))
     if len(text) > LARGEST:
         raise ResultsError(
             f"{name}: {len(text) / 1e6:.0f} MB, expected at most {LARGEST / 1e6:.0f} MB on this "

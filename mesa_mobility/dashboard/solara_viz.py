@@ -37,7 +37,9 @@ def make_crowd_view(
         observer = solara.use_memo(lambda: Observer(model), [model])
         observer.after_step()
         plan = model.floor_plan
-        floor = solara.use_memo(lambda: serialization.floor(plan), [plan, plan.version])
+        floor = solara.use_memo(
+            lambda: serialization.floor(plan, building=model.building), [plan, plan.version]
+        )
         colouring = colouring_named(colour_by, model)
         frame = serialization.frame(model, colouring, observer, run=id(model), number=model.frame)
         CrowdCanvas(frame=frame, floor=floor, height=height)

@@ -2,6 +2,7 @@
 
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.seams import Seam
+from mesa_mobility.floorplan.floor.shafts import Shaft, Stop
 from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import Content
@@ -20,7 +21,9 @@ __all__ = [
     "PlanFormat",
     "Router",
     "Seam",
+    "Shaft",
     "SpeedZone",
+    "Stop",
     "Targets",
     "WallIndex",
     "line_of_sight",

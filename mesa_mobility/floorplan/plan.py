@@ -18,6 +18,7 @@ from mesa_mobility.floorplan.floor.free_area import FreeArea
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.seams import Seam
+from mesa_mobility.floorplan.floor.shafts import Shaft
 from mesa_mobility.floorplan.floor.wall_index import WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats import geojson
@@ -47,6 +48,7 @@ class FloorPlan(Floor):
             gates, and in `walkable` and `obstacles`, nothing changes.
         seams: where people change from one sheet of the plan to another. With them the walkable
             area may be several polygons, and pieces may be without an exit.
+        shafts: lifts between sheets, with the same consequences.
 
     Raises:
         FloorPlanError: geometry that is empty, not valid, not finite or in several pieces; a
@@ -84,8 +86,9 @@ class FloorPlan(Floor):
         cut_off: bool = False,
         simplify: float = SIMPLIFY,
         seams: Iterable[Seam] = (),
+        shafts: Iterable[Shaft] = (),
     ) -> None:
-        super().__init__(walkable, exits, gates, zones, name, simplify, seams)
+        super().__init__(walkable, exits, gates, zones, name, simplify, seams, shafts)
         self.version = 0
         polygons = {
             i: read_polygon(obstacle, f"obstacle {i}") for i, obstacle in enumerate(obstacles)

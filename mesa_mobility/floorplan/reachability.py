@@ -75,7 +75,7 @@ def _pieces(
     pieces = shapely.get_parts(room.difference(closed))
     lines = shapely.union_all([e.line for e in exits])
     leads_out = shapely.intersects(pieces, lines)
-    joined(pieces, plan.seams, leads_out)
+    joined(pieces, plan.joints, leads_out)
     # What lies in such a corridor is no place to be.
     cut_off = [piece for piece in pieces[~leads_out] if piece.intersects(floor)]
     return shapely.union_all(pieces[leads_out]), shapely.union_all(cut_off)

@@ -11,6 +11,7 @@ from mesa_mobility.results.formats.jupedsim import write_jupedsim_sqlite
 from mesa_mobility.results.formats.output_format import OutputFormat
 from mesa_mobility.results.formats.parquet import write_parquet
 from mesa_mobility.results.measures.by_type import by_type, occupancy_by_type
+from mesa_mobility.results.measures.climbs import Climbs, by_stairs, climbs, occupancy_by_stairs
 from mesa_mobility.results.measures.crossings import (
     Crossings,
     crossings,
@@ -34,6 +35,7 @@ from mesa_mobility.results.measures.speeds import (
     speeds,
     speeds_along,
 )
+from mesa_mobility.results.measures.storeys import by_level, leaving_times, occupancy_by_level
 from mesa_mobility.results.overlaps import Overlap
 from mesa_mobility.results.run import write_run
 from mesa_mobility.results.safety import SafetyReport, WallCrossing, check_safety
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
     from mesa_mobility.results.plots import plot_occupancy, plot_snapshots, plot_trajectories
 
 __all__ = [
+    "Climbs",
     "Crossings",
     "Excerpt",
     "OutputFormat",
@@ -53,9 +56,12 @@ __all__ = [
     "Sway",
     "Trajectories",
     "WallCrossing",
+    "by_level",
+    "by_stairs",
     "by_type",
     "check_safety",
     "check_writable",
+    "climbs",
     "crossings",
     "density",
     "departures",
@@ -65,8 +71,11 @@ __all__ = [
     "flow_over_time",
     "individual_densities",
     "lateral_sway",
+    "leaving_times",
     "mean_speed",
     "occupancy",
+    "occupancy_by_level",
+    "occupancy_by_stairs",
     "occupancy_by_type",
     "passages",
     "passed_by",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -10,6 +12,9 @@ from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.tracks import Tracks
 
+if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
+
 
 def body_of(
     trajectories: Tracks,
@@ -17,6 +22,7 @@ def body_of(
     frames: ArrayLike | None = None,
     *,
     bank: PoseBank | None = None,
+    building: Building | None = None,
 ) -> BodyMotion:
     """The body of one person of a run.
 
@@ -25,6 +31,8 @@ def body_of(
         person: who.
         frames: (k,) frames, whole or between two; by default all in which the person is there.
         bank: poses of the person's type; by default those that ship for the type's map.
+        building: where the run was, to put feet on the treads of its stairs. Without it, bodies on
+            stairs walk as on a slope.
 
     Raises:
         ResultsError: no decisions, nobody of that number, or a time at which they are not there.
@@ -48,7 +56,14 @@ def body_of(
     if bank is None:
         bank = PoseBank.of(digest)
     bank.check_map(digest)
-    motion = body_motion(bank, decisions.movements_of(person), known, track)
+    motion = body_motion(
+        bank,
+        decisions.movements_of(person),
+        known,
+        track,
+        elevation=elevation_of(trajectories, person),
+        footing=None if building is None else building.footing,
+    )
     return motion if frames is None else motion.at(frames)
 
 
@@ -57,3 +72,8 @@ def track_of(trajectories: Tracks, person: int) -> tuple[NDArray[np.int64], NDAr
     rows = trajectories.rows_of(person)
     columns = (trajectories.x, trajectories.y, trajectories.heading)
     return trajectories.frame[rows].astype(np.int64), np.column_stack([c[rows] for c in columns])
+
+
+def elevation_of(trajectories: Tracks, person: int) -> NDArray[np.float64] | None:
+    """(k,) elevation of one person in the frames of `track_of`, metres; None on a floor plan."""
+    return trajectories.z[trajectories.rows_of(person)] if "z" in trajectories.fields else None

@@ -15,6 +15,7 @@ from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.bodies import PoseBank
+    from mesa_mobility.buildings import Building
     from mesa_mobility.floorplan import FloorPlan
 
 
@@ -72,7 +73,7 @@ class Excerpt:
 
     Attributes:
         trajectories: the whole run, with the decisions if they were recorded.
-        plan: its floor plan.
+        plan: its floor plan, or its building for formats with ``storeys``.
         selection: whom to write, and when.
         summary: its figures.
         bank: poses of the run's map where they do not ship.
@@ -80,7 +81,7 @@ class Excerpt:
     """
 
     trajectories: Tracks
-    plan: FloorPlan
+    plan: FloorPlan | Building
     selection: Selection = field(default_factory=Selection)
     summary: Mapping[str, Any] = field(default_factory=dict)
     bank: PoseBank | None = None
@@ -90,6 +91,26 @@ class Excerpt:
     def people(self) -> list[int]:
         """Numbers of the people who are written; see ``Selection.people_of`` for errors."""
         return self.selection.people_of(self.trajectories)
+
+    @property
+    def building(self) -> Building | None:
+        """The building of a run in several storeys."""
+        from mesa_mobility.floorplan import FloorPlan
+
+        return None if isinstance(self.plan, FloorPlan) else self.plan
+
+    @property
+    def floor_plan(self) -> FloorPlan:
+        """The floor plan of a run on one level.
+
+        Raises:
+            ResultsError: it is a run in a building.
+        """
+        from mesa_mobility.floorplan import FloorPlan
+
+        if not isinstance(self.plan, FloorPlan):
+            raise ResultsError(f"a run in a building of {len(self.plan.levels)} levels")
+        return self.plan
 
     @property
     def title(self) -> str:

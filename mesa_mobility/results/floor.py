@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
+from numpy.typing import NDArray
 
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.results.tracks import Tracks
@@ -35,20 +36,20 @@ class Storey:
     Attributes:
         plan: the floor plan.
         stairs: polygons of flights and landings that lead up or down from there.
-        tracks: those of people on it, and on the stairs up from it.
+        rows: (n,) bool; rows of the run of people on it, and on the stairs up from it.
         title: of the panel.
     """
 
     plan: FloorPlan
     stairs: tuple[shapely.Polygon, ...]
-    tracks: Tracks
+    rows: NDArray[np.bool_]
     title: str = ""
 
 
 def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
     """The panels of a run: one for a floor plan, one for each level of a building, from the top."""
     if isinstance(plan, FloorPlan):
-        return [Storey(plan, (), tracks)]
+        return [Storey(plan, (), np.ones(len(tracks), dtype=np.bool_))]
     levels = sorted(plan.levels, key=lambda level: level.elevation, reverse=True)
     found, above = list[Storey](), np.inf
     for level in levels:
@@ -58,7 +59,7 @@ def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
             Storey(
                 plan.floor_plan_of(level.number),
                 tuple(_stairs_of(plan, level.number)),
-                tracks.only(rows | (tracks.level == level.number)),
+                rows | (tracks.level == level.number),
                 level.name or f"level {level.number}",
             )
         )
@@ -66,14 +67,31 @@ def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
     return found
 
 
+def panels_of(
+    storeys: Sequence[Storey], times: int = 1
+) -> tuple[Figure, list[tuple[Axes, Storey]]]:
+    """A figure with a panel for each storey, at each of some times, and what each panel shows.
+
+    The panels of one time follow each other. Those of one storey have two columns.
+
+    Args:
+        storeys: what to show.
+        times: how many.
+    """
+    count = len(storeys) * times
+    columns = min(2, count) if len(storeys) == 1 or times == 1 else len(storeys)
+    bounds = shapely.total_bounds([each.plan.walkable for each in storeys])
+    figure, axes = floor_figure(tuple(bounds), rows=-(-count // columns), columns=columns)
+    for panel in axes[count:]:
+        panel.set_axis_off()
+    return figure, list(zip(axes, list(storeys) * times, strict=False))
+
+
 def _stairs_of(building: Building, level: int) -> Iterator[shapely.Polygon]:
     """The flights and landings of the stairs that lead up or down from a level."""
     for stairs in building.stairs:
         if level in (stairs.upper, stairs.lower):
-            ends = (building.level(each).elevation for each in (stairs.upper, stairs.lower))
-            flights, landings = stairs.parts(*ends)
-            yield from (flight.part(0.0, flight.going) for flight in flights)
-            yield from (landing.area for landing in landings)
+            yield from building.shapes_of(stairs)
 
 
 def floor_figure(

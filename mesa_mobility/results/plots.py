@@ -11,7 +11,6 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import shapely
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
@@ -24,7 +23,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
-from mesa_mobility.results.floor import draw_floor, floor_figure, storeys_of
+from mesa_mobility.results.floor import draw_floor, panels_of, storeys_of
 from mesa_mobility.results.measures.by_type import people_by
 from mesa_mobility.results.tracks import Tracks
 
@@ -85,24 +84,21 @@ def plot_trajectories(
         ResultsError: the file cannot be written.
     """
     storeys = storeys_of(trajectories, plan)
-    columns = min(2, len(storeys))
-    bounds = shapely.total_bounds([each.plan.walkable for each in storeys])
-    figure, axes = floor_figure(tuple(bounds), rows=-(-len(storeys) // columns), columns=columns)
+    figure, panels = panels_of(storeys)
     handles: dict[str, Line2D | Patch] = {}
-    for panel in axes[len(storeys) :]:
-        panel.set_axis_off()
-    for panel, storey in zip(axes, storeys, strict=False):
+    for panel, storey in panels:
         drawn = draw_floor(panel, storey.plan, storey.stairs)
         panel.set_title(storey.title, fontsize=10)
-        tracks = _tracks(storey.tracks)
+        own = trajectories if storey.rows.all() else trajectories.only(storey.rows)
+        tracks = _tracks(own)
         panel.add_collection(tracks)
-        left = _inside_at(storey.tracks, trajectories.frames - 1)
+        left = _inside_at(own, trajectories.frames - 1)
         if len(left):
-            panel.plot(storey.tracks.x[left], storey.tracks.y[left], **STILL_INSIDE, zorder=6)
+            panel.plot(own.x[left], own.y[left], **STILL_INSIDE, zorder=6)
             label = f"still inside after {trajectories.duration:.1f} s"
             drawn.append(Line2D([], [], **STILL_INSIDE, label=label))
         handles |= {str(each.get_label()): each for each in drawn}
-    bar = figure.colorbar(tracks, ax=axes, shrink=0.8, aspect=30, pad=0.02)
+    bar = figure.colorbar(tracks, ax=figure.axes, shrink=0.8, aspect=30, pad=0.02)
     bar.set_label("time since the start (s)")
     # Drawn faint so that crossing tracks show; the scale itself is not faint.
     if bar.solids is not None:
@@ -114,7 +110,7 @@ def plot_trajectories(
 
 def plot_snapshots(
     trajectories: Tracks,
-    plan: FloorPlan,
+    plan: FloorPlan | Building,
     path: str | os.PathLike[str],
     *,
     times: Sequence[float],
@@ -122,13 +118,14 @@ def plot_snapshots(
 ) -> None:
     """Draw people at given times: body cores as discs, with a stroke for the facing.
 
-    Where there are several types, discs have the colours of types.
+    Where there are several types, discs have the colours of types. In a building there is a panel
+    for each level, the topmost first. It shows the people on the stairs up from there, too.
 
     Args:
         trajectories: the run.
-        plan: the floor plan.
+        plan: the floor plan or the building.
         path: picture to write.
-        times: seconds, one panel each.
+        times: seconds, one panel each, or one for each level.
         title: first line of the picture.
 
     Raises:
@@ -139,17 +136,22 @@ def plot_snapshots(
             f"snapshots at {list(times)} s asked of a run of {trajectories.duration:.2f} s"
         )
     types = people_by(trajectories, "type") if "type" in trajectories.person_data else {}
-    figure, axes = floor_figure(plan.bounds, rows=(len(times) + 1) // 2, columns=min(2, len(times)))
-    for panel in axes[len(times) :]:
-        panel.set_axis_off()
-    for panel, time in zip(axes, times, strict=False):
-        handles = draw_floor(panel, plan)
+    storeys = storeys_of(trajectories, plan)
+    figure, panels = panels_of(storeys, len(times))
+    known: dict[str, Line2D | Patch] = {}
+    for number, (panel, storey) in enumerate(panels):
+        time = times[number // len(storeys)]
+        for each in draw_floor(panel, storey.plan, storey.stairs):
+            known.setdefault(str(each.get_label()), each)
         rows = _inside_at(trajectories, round(time * trajectories.frame_rate))
+        rows = rows[storey.rows[rows]]
         _draw_bodies(panel, trajectories, rows, _colours(types, len(trajectories.radii)))
-        panel.set_title(f"{time:g} s: {len(rows)} people inside", fontsize=10)
+        where = f"{storey.title}, " if storey.title else ""
+        panel.set_title(f"{where}{time:g} s: {len(rows)} people inside", fontsize=10)
     said = [("person, facing the stroke", BODY)]
     if len(types) > 1:
         said = list(zip(types, cycle(TYPE_COLOURS), strict=False))
+    handles = list(known.values())
     handles += [
         Line2D([], [], linestyle="none", marker="o", color=colour, label=name)
         for name, colour in said

@@ -43,6 +43,7 @@ def read_columns(
     rate, rate_from = _rate(source, rows, unit, frame_rate)
     unit, unit_from = unit_of(name, rows, unit, rate)
     rows = replace(rows, x=rows.x * UNITS[unit], y=rows.y * UNITS[unit])
+    fields = {} if rows.z is None else {"z": rows.z * UNITS[unit]}
     reading = Reading(
         name,
         unit,
@@ -58,7 +59,7 @@ def read_columns(
         places = np.column_stack([rows.x, rows.y])
         rows = replace(rows, heading=headings(rows.person, rows.frame, places, rate))
     columns = {name: getattr(rows, name) for name in ("frame", "person", "x", "y", "heading")}
-    return {**columns, "frame_rate": rate, "reading": reading}
+    return {**columns, "fields": fields, "frame_rate": rate, "reading": reading}
 
 
 def _found_in(source: Path) -> Rows | Tracks:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import pedpy
 
     from mesa_mobility.bodies import BodyMotion, PoseBank
+    from mesa_mobility.buildings import Building
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,12 +136,17 @@ class Trajectories(Tracks):
         return cls(**read_columns(path, unit, frame_rate))
 
     def poses(
-        self, person: int, frames: ArrayLike | None = None, *, bank: PoseBank | None = None
+        self,
+        person: int,
+        frames: ArrayLike | None = None,
+        *,
+        bank: PoseBank | None = None,
+        building: Building | None = None,
     ) -> BodyMotion:
         """The body of one person: see :func:`mesa_mobility.results.bodies.body_of`."""
         from mesa_mobility.results.bodies import body_of
 
-        return body_of(self, person, frames, bank=bank)
+        return body_of(self, person, frames, bank=bank, building=building)
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Write a Parquet file: see :func:`mesa_mobility.results.write_parquet`."""

@@ -60,9 +60,9 @@ def suite(ids: Sequence[str] = ()) -> dict[str, VerificationTest]:
     Raises:
         ModelError: an unknown id.
     """
-    from mesa_mobility.verification import imo, iso, nist, rimea
+    from mesa_mobility.verification import imo, iso, nist, rimea, storeys
 
-    known = {**rimea.TESTS, **imo.TESTS, **nist.TESTS, **iso.TESTS}
+    known = {**rimea.TESTS, **storeys.TESTS, **imo.TESTS, **nist.TESTS, **iso.TESTS}
     for name in ids:
         if name not in known:
             raise ModelError(

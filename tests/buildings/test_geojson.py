@@ -134,7 +134,7 @@ def test_closed_exits_stay_closed():
         (1, "level", "zero", "GeoJSON: feature 1: level must be a whole number, found 'zero'"),
         (1, "level", 5, "GeoJSON: level 5: expected one walkable area, found 0"),
         (3, "elevation", "high", "GeoJSON: level 1: elevation must be metres"),
-        (3, "kind", "lift", "GeoJSON: feature 3: property kind must be one of"),
+        (3, "kind", "ramps", "GeoJSON: feature 3: property kind must be one of"),
     ],
 )
 def test_what_is_wrong_is_named_with_its_feature(feature, name, value, said):

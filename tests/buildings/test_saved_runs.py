@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -9,6 +10,14 @@ from mesa_mobility import Building, FloorPlan, Trajectories
 from mesa_mobility.buildings import read_floor
 from mesa_mobility.commands.app import app
 from mesa_mobility.errors import FloorPlanError, ResultsError
+from mesa_mobility.results import (
+    by_stairs,
+    climbs,
+    crossings,
+    occupancy,
+    occupancy_by_level,
+    occupancy_by_stairs,
+)
 from mesa_mobility.results.floor import storeys_of
 from mesa_mobility.results.run import read_run
 from tests.fixtures.buildings import RISE, two_storeys
@@ -40,20 +49,29 @@ def test_the_folder_holds_the_building_and_true_places(folder):
 
 def test_each_level_has_a_panel_and_each_row_is_in_one(folder):
     run = read_run(folder)
-    upper, lower = storeys_of(run.trajectories, run.plan)
+    tracks = run.trajectories
+    upper, lower = storeys_of(tracks, run.plan)
     assert (upper.title, lower.title) == ("level 1", "level 0")
-    assert len(upper.tracks) + len(lower.tracks) == len(run.trajectories)
-    assert (upper.tracks.z == RISE).all()
-    assert (lower.tracks.z < RISE).all()
+    assert (upper.rows ^ lower.rows).all()
+    assert (tracks.z[upper.rows] == RISE).all()
+    assert (tracks.z[lower.rows] < RISE).all()
     # A straight flight, and two flights and a landing, from either end.
     assert len(upper.stairs) == len(lower.stairs) == 4
 
 
-def test_commands_that_show_one_plan_say_that_they_do_not(folder):
+def test_what_takes_one_plan_says_so(folder, tmp_path):
     with pytest.raises(ResultsError, match="a run in a building of 2 levels, expected one on a"):
         _ = read_run(folder).floor_plan
-    answer = CliRunner().invoke(app, ["replay", str(folder), "--no-open"])
-    assert isinstance(answer.exception, ResultsError)
+    command = ["export", str(folder), "--no-progress", "-o", str(tmp_path / "tracks.sqlite")]
+    assert isinstance(CliRunner().invoke(app, command).exception, ResultsError)
+
+
+@pytest.mark.parametrize("name", ["run.html", "run.png", "run.gif"])
+def test_pages_films_and_stills_show_all_storeys(folder, tmp_path, name):
+    command = ["export", str(folder), "--no-progress", "--to", "1", "-o", str(tmp_path / name)]
+    answer = CliRunner().invoke(app, command)
+    assert answer.exit_code == 0, answer.output
+    assert (tmp_path / name).stat().st_size > 0
 
 
 def test_the_people_of_one_level_are_exported(folder, tmp_path):
@@ -67,6 +85,54 @@ def test_the_people_of_one_level_are_exported(folder, tmp_path):
     assert written.x.max() <= 24.0
     answer = CliRunner().invoke(app, [*command, str(tmp_path / "level_1.sqlite")])
     assert answer.exit_code == 0, answer.output
+
+
+def test_everybody_is_exported_with_elevations(folder, tmp_path):
+    office, tracks = read_run(folder).plan, read_run(folder).trajectories
+    command = ["export", str(folder), "--no-progress", "-o"]
+    for name in ("all.txt", "all.parquet"):
+        answer = CliRunner().invoke(app, [*command, str(tmp_path / name)])
+        assert answer.exit_code == 0, answer.output
+    again = Trajectories.read(tmp_path / "all.parquet")
+    assert (again.z == tracks.z).all()
+    assert (again.level == tracks.level).all()
+    # Everybody walks on for three frames beyond their exit, on the ground floor.
+    text = Trajectories.read(tmp_path / "all.txt")
+    assert len(text) == len(tracks) + 3 * tracks.people
+    for person in range(tracks.people):
+        own, read = tracks.rows_of(person), text.rows_of(person)
+        assert np.abs(text.z[read[:-3]] - tracks.z[own]).max() < 1e-4
+        assert (text.z[read[-3:]] == 0.0).all()
+    assert by_stairs(text, office)["down"].tolist() == by_stairs(tracks, office)["down"].tolist()
+    answer = CliRunner().invoke(app, [*command, str(tmp_path / "all.sqlite")])
+    assert isinstance(answer.exception, ResultsError)
+
+
+def test_levels_and_stairs_add_up_to_all_people(folder):
+    run = read_run(folder)
+    tracks, office = run.trajectories, run.plan
+    curves = [*occupancy_by_level(tracks, office, 0.1).values()]
+    curves += occupancy_by_stairs(tracks, office, 0.1).values()
+    everybody = np.array(occupancy(tracks, 0.1))
+    assert (sum(np.array(each)[:, 1] for each in curves) == everybody[:, 1]).all()
+    # The head of the straight stair is passed where its line is, to a frame of 1/30 s.
+    way, line = climbs(tracks, office)["south"], crossings(tracks, *office.flights[0].head)
+    assert len(line.time)
+    assert way.over_head().time == pytest.approx(line.time, abs=1.0 / 30.0 + 1e-9)
+    assert (way.over_head().direction == line.direction).all()
+
+
+def test_the_summary_has_tables_of_levels_and_stairs(folder):
+    run = read_run(folder)
+    levels, stairs = run.summary["by_level"], run.summary["by_stairs"]
+    assert [each["level"] for each in levels] == [1, 0]
+    assert sum(each["at_start"] for each in levels) == 20
+    assert levels[1]["clear_s"] == pytest.approx(run.summary["egress_s"], abs=1e-6)
+    upstairs = levels[0]
+    assert 0.0 < upstairs["clear_s"] < run.summary["egress_s"]
+    assert [each["stairs"] for each in stairs] == ["south", "north"]
+    assert sum(each["down"] for each in stairs) == upstairs["people"] == upstairs["at_start"]
+    assert all(each["up"] == 0 for each in stairs)
 
 
 def test_a_level_is_asked_for_in_buildings_alone(folder, tmp_path):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from shapely import Polygon, box
+from shapely import MultiPoint, Polygon, box
 
 from mesa_mobility.validation import bottleneck
 from mesa_mobility.verification.scenarios import (
@@ -14,6 +14,7 @@ from mesa_mobility.verification.scenarios import (
     impaired,
     necks,
     rooms,
+    storeys,
     walks,
 )
 from mesa_mobility.verification.scenarios.tracks.oval import Oval
@@ -125,3 +126,26 @@ def test_the_tracks_of_rimea_4_have_their_densities():
     assert {each["width"] for each in numbers} == {2.0}
     # Two straights of 15 m and half circles of 3 m: 48.85 m, 97.7 m2.
     assert 2 * track.STRAIGHT + 2 * math.pi * track.RADIUS == pytest.approx(48.85, abs=0.005)
+
+
+def test_the_house_has_38_rooms_on_each_of_three_storeys():
+    house = storeys.house()
+    assert [level.elevation for level in house.levels] == [0.0, 3.06, 6.12]
+    # Rooms of 1.8 m x 2.8 m within their walls, doors of 1 m in walls of 0.2 m, the corridor and
+    # the landing.
+    area = 38 * (1.8 * 2.8 + 1.0 * 0.2) + 38.0 * 1.0 + 2.0 * 4.2
+    assert all(level.area.area == pytest.approx(area) for level in house.levels)
+    assert [flight.width for flight in house.flights] == pytest.approx([2.0] * 4)
+    assert [flight.risers for flight in house.flights] == [9] * 4
+    beds = storeys.beds()
+    assert len(beds) == 152
+    assert house.levels[1].area.buffer(-0.4).contains_properly(MultiPoint(beds))
+
+
+def test_the_way_over_the_bridge_is_short_and_the_way_round_is_long():
+    building = storeys.two_ways()
+    ground, bridge = building.levels
+    assert (ground.elevation, bridge.elevation) == (0.0, 3.06)
+    # Two legs of 30 m, a cross-piece between them, and what is left to the feet of the stairs.
+    assert ground.area.area == pytest.approx(2 * 60.0 + 20.0 * 2.0 + 2 * 2.0 * (10.0 - 4.93 - 2.0))
+    assert [flight.foot[0][0] for flight in building.flights] == pytest.approx([5.07, 18.93])

@@ -2,8 +2,8 @@
 
 import pytest
 
-from mesa_mobility.verification import judging, nist, rimea
-from tests.fixtures.verdicts import out
+from mesa_mobility.verification import judging, nist, rimea, storeys
+from tests.fixtures.verdicts import out, unmet
 
 
 @pytest.mark.parametrize(
@@ -92,3 +92,35 @@ def test_those_who_know_the_far_exit_use_it_more():
     judge = nist.TESTS["nist-3.3"].pooled
     assert judge(shares((0.1, 0.2))).passed
     assert not judge(shares((0.2, 0.2))).passed
+
+
+def test_the_time_to_leave_a_house_falls_with_the_speed():
+    judge = storeys.TESTS["rimea-08"].judge
+    times = [448.0, 358.0, 320.0, 372.0, 417.0]
+    verdict = judge([out(egress_s=time) for time in times])
+    assert verdict.passed
+    assert verdict.measured["least fall of the time with the speed s"] == 38.0
+    assert verdict.figures["from 0.25 to 1.25 m/s: all out s"] == 417.0
+    times[2] = 358.0
+    assert unmet(judge([out(egress_s=time) for time in times])) == [
+        "least fall of the time with the speed s"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("free", "closed", "share", "wrong"),
+    [
+        ((20, 0), (0, 20), 1.0, []),
+        ((5, 15), (0, 20), 0.25, []),
+        ((20, 0), (1, 19), 1.0, ["over closed stairs", "round, of all, with closed stairs"]),
+        ((19, 0), (0, 20), 0.95, ["over or round, of all"]),
+    ],
+)
+def test_people_take_the_short_or_the_long_way(free, closed, share, wrong):
+    runs = [
+        out(pedestrians=20, over=over, round=round_, egress_s=35.0)
+        for over, round_ in (free, closed)
+    ]
+    verdict = storeys.TESTS["rimea-14"].judge(runs)
+    assert verdict.figures["share over the stairs"] == share
+    assert unmet(verdict) == wrong

@@ -9,6 +9,7 @@ const FARTHEST = 0.15, STEP_LIFT = 0.03, STRAIGHT = 0.9995; // metres, metres, s
 class Body {
   constructor(skeleton) {
     this.skeleton = skeleton;
+    this.footing = null; // stairs that carry bodies and feet
     this.places = new Float64Array(66);
     this.turns = new Float64Array(88);
     this.local = new Float64Array(4);
@@ -164,14 +165,15 @@ class Body {
   }
 
   // Onto the person's place in the world, feet held; the size of the body comes last.
-  put(scale, [x, y, heading], feet, share) {
+  put(scale, where, feet, share) {
+    const [x, y, heading, z] = where, { footing } = this, carried = (footing ? footing.carried([x, y, z]) : z) / scale;
     const { places: p, turns, local } = this, c = Math.cos(heading), s = Math.sin(heading);
     local.set([0, 0, Math.sin(heading / 2), Math.cos(heading / 2)]);
     for (let j = 0; j < 22; j += 1) {
       const px = p[3 * j], py = p[3 * j + 1];
       p[3 * j] = c * px - s * py + x / scale;
       p[3 * j + 1] = s * px + c * py + y / scale;
-      p[3 * j + 2] += this.height;
+      p[3 * j + 2] += this.height + carried;
       multiply(local, 0, turns, 4 * j, turns, 4 * j);
     }
     this.skeleton.legs.forEach(([hip, knee, ankle, toe], side) => {
@@ -185,7 +187,7 @@ class Body {
         target[2] += mix("lift");
         landed = mix("landed");
       }
-      const lowest = this.lowest(4 * ankle) + target[2];
+      const lowest = this.lowest(4 * ankle) + target[2] - this.floor(where, 4 * ankle, target, landed, scale);
       if (lowest < 0) target[2] -= lowest;
       else target[2] -= landed * lowest;
       if (feet || lowest < 0) {
@@ -194,6 +196,19 @@ class Body {
       }
     });
     for (let k = 0; k < 66; k += 1) p[k] *= scale;
+  }
+
+  // The height of the floor under a foot: a foot over an edge is on the higher tread, a swinging one passes the edges.
+  floor([x, y, , z], q, ankle, landed, scale) {
+    if (!this.footing) return z / scale;
+    const { heel, ball } = this.skeleton, out = [0, 0, 0], heights = [-Infinity, -Infinity];
+    for (const end of [heel, ball]) {
+      turned(this.turns, q, end, 0, ankle, 0, out, 0);
+      this.footing.beneath([x, y, z], out[0] * scale, out[1] * scale).forEach((height, k) => {
+        heights[k] = Math.max(heights[k], height / scale);
+      });
+    }
+    return heights[1] + landed * (heights[0] - heights[1]);
   }
 
   // Of heel and ball, below the ankle.

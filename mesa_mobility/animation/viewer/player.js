@@ -7,7 +7,7 @@ const SCALE = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80",
 const KINDS_OF_PEOPLE = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#999999", "#5b3a93", "#8c510a",
   "#b5a300", "#00a6a6", "#b2182b"].map(channels);
 const FASTEST = 1.8, SPAN = 15; // m/s of the scale's last colour; frames over which a speed is taken
-const state = { frame: 0, playing: true, people: [], run: null, stage: null };
+const state = { frame: 0, playing: true, people: [], run: null, stage: null, below: Infinity };
 
 function cumulated(values, from, count, step = 1) {
   const found = new Float32Array(count);
@@ -28,7 +28,8 @@ function peopleOf({ header, arrays }) {
   for (let k = 0; k < rows.length; k += 6) {
     const [row, places, pieces, decisions, kind, bank] = rows.subarray(k, k + 6);
     const track = new Track(part("tracks", 0, t, places), part("tracks", 1, t, places, steps.place),
-      part("tracks", 2, t, places, steps.place), part("tracks", 3, t, places, steps.turn));
+      part("tracks", 2, t, places, steps.place), part("tracks", 3, t, places, steps.turn),
+      arrays["tracks.4"] ? part("tracks", 4, t, places, steps.place) : null);
     let course = null;
     if (bank >= 0 && pieces) {
       course = new Course(banks[bank]);
@@ -50,6 +51,11 @@ function peopleOf({ header, arrays }) {
 
 function present() {
   return state.people.filter((each) => each.first <= state.frame && state.frame <= each.last);
+}
+
+// Those on the storeys that are shown.
+function shown() {
+  return present().filter(({ track }) => track.at(state.frame)[3] < state.below - CUT_ROUNDED);
 }
 
 function colour(people) {
@@ -98,7 +104,7 @@ function why() {
 }
 
 function draw() {
-  const people = present();
+  const people = shown();
   colour(people);
   state.stage.draw(people, state.frame, chosen());
   element("time").value = state.frame / RATE;
@@ -143,6 +149,10 @@ function listen() {
     }
     state.stage.look(element("camera").value);
   };
+  element("storey").onchange = () => {
+    state.below = Number(element("storey").value);
+    state.stage.scenery.cut(state.below);
+  };
   window.addEventListener("keydown", (event) => {
     if (["SELECT", "BUTTON"].includes(event.target.tagName) || !keys[event.key]) return;
     event.preventDefault();
@@ -153,8 +163,14 @@ function listen() {
   canvas.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
   canvas.addEventListener("click", (event) => {
     if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
-    element("person").value = state.stage.personAt(event.clientX, event.clientY, present(), state.frame);
+    element("person").value = state.stage.personAt(event.clientX, event.clientY, shown(), state.frame);
   });
+}
+
+function offerStoreys(storeys) {
+  const cuts = storeyCuts(storeys);
+  element("storeys").hidden = !cuts.length;
+  for (const { name, below } of cuts) element("storey").add(new Option(`up to ${name}`, below));
 }
 
 async function open() {
@@ -166,6 +182,7 @@ async function open() {
   state.stage.setFloor(header.floor, PAPER);
   Object.assign(element("time"), { min: state.first / RATE, max: state.last / RATE });
   for (const { row } of state.people) element("person").add(new Option(row));
+  offerStoreys(header.floor.storeys || []);
   if (header.types.length < 2) element("colour").remove(1);
   listen();
   let before = performance.now();

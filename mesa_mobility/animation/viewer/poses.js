@@ -148,32 +148,36 @@ class Course {
 
 // Where a person is: samples of (x, y, heading) at rising frames, straight between them.
 class Track {
-  constructor(frames = [], x = [], y = [], heading = []) {
-    Object.assign(this, { frames, x, y, heading, near: 0 });
+  // z: elevations; 0 where they are left out.
+  constructor(frames = [], x = [], y = [], heading = [], z = null) {
+    Object.assign(this, { frames, x, y, heading, z, near: 0 });
   }
 
-  add(frame, x, y, heading) {
+  add(frame, [x, y, z], heading) {
     const last = this.heading[this.heading.length - 1] ?? heading, round = 2 * Math.PI;
     this.frames.push(frame);
     this.x.push(x);
     this.y.push(y);
+    this.z.push(z);
     this.heading.push(heading + round * Math.round((last - heading) / round));
   }
 
+  // Place and heading at a time: [x, y, heading, z].
   at(frame) {
-    const { frames, x, y, heading } = this, last = frames.length - 1;
+    const { frames, x, y, heading, z } = this, last = frames.length - 1;
     let k = Math.min(this.near, last);
     while (k < last && frames[k + 1] <= frame) k += k + 64 < last && frames[k + 64] <= frame ? 64 : 1;
     while (k > 0 && frames[k] > frame) k -= k > 64 && frames[k - 64] > frame ? 64 : 1;
     this.near = k;
-    if (k === last || frame <= frames[k]) return [x[k], y[k], heading[k]];
+    if (k === last || frame <= frames[k]) return [x[k], y[k], heading[k], z ? z[k] : 0];
     const u = (frame - frames[k]) / (frames[k + 1] - frames[k]);
-    return [x[k] + u * (x[k + 1] - x[k]), y[k] + u * (y[k + 1] - y[k]), heading[k] + u * (heading[k + 1] - heading[k])];
+    const between = (values) => values[k] + u * (values[k + 1] - values[k]);
+    return [between(x), between(y), between(heading), z ? between(z) : 0];
   }
 
   forget(frame) {
     if (this.frames.length < 256 || this.frames[128] > frame) return;
-    for (const each of ["frames", "x", "y", "heading"]) this[each] = this[each].slice(128);
+    for (const each of ["frames", "x", "y", "heading", "z"]) this[each] = this[each].slice(128);
     this.near = 0;
   }
 }

@@ -1,7 +1,7 @@
-// A crowd in three dimensions: floor, walls, people as figures, and cameras. z is up, in metres.
+// A crowd in three dimensions: people as figures, and cameras. z is up, in metres.
 "use strict";
 
-const WALL_HEIGHT = 1.2, EYES = 0.1, BONES = 22;
+const EYES = 0.1, BONES = 22;
 const FOLLOWED = 1.1, OVER = 0.25; // metres: height of the place that is followed; a camera's way above walls
 const FINE_PIXELS = 110, FIGURE_PIXELS = 16; // height on the screen from which people are figures
 const FINE_MOST = 24, HELD_MOST = 100; // figures with all corners, with feet held on the floor
@@ -10,9 +10,6 @@ const QUICK = 0.018; // seconds between pictures from which on there is more det
 const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
   { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
 const SEATED = "wheelchair", METAL = [0.26, 0.27, 0.29];
-const channels = (colour) => (colour[0] === "#" ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
-  : colour.match(/\d+/g).map(Number)).map((each) => each / 255);
-const OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
 
 class Stage {
   // figure: {skeleton, meshes}, see animation/levels.py. Throws where a page cannot draw so.
@@ -36,8 +33,7 @@ class Stage {
     this.ring = new THREE.Mesh(new THREE.RingGeometry(0.36, 0.46, 24),
       new THREE.MeshBasicMaterial({ color: 0xe6007e, side: THREE.DoubleSide }));
     this.scene.add(this.ring);
-    this.fixed = [];
-    this.walls = [];
+    this.scenery = new Scenery(this.scene);
     this.how = "orbit";
     this.missed = false; // whether somebody was to be followed who is not there
     this.detail = 0;
@@ -54,39 +50,15 @@ class Stage {
     this.canvas.remove();
   }
 
-  // floor: what `serialization.floor` makes; colours: {ground, free, wall} as "#rrggbb".
+  // floor: what `floor.py` or `storeys.py` makes, or null; colours: {ground, free, wall} as "#rrggbb".
   setFloor(floor, colours) {
-    for (const each of this.fixed) {
-      this.scene.remove(each);
-      each.geometry.dispose();
-      each.material.dispose();
+    if (!floor) {
+      this.scenery.clear();
+      return;
     }
-    this.fixed = [];
-    if (!floor) return;
-    this.walls = floor.walls;
     this.scene.background = new THREE.Color(colours.ground);
-    const put = (geometry, material) => {
-      const mesh = new THREE.Mesh(geometry, material);
-      this.fixed.push(mesh);
-      this.scene.add(mesh);
-      mesh.updateMatrixWorld();
-    };
-    const points = (ring, path) => path.setFromPoints(ring.map(([x, y]) => new THREE.Vector3(x, y, 0)));
-    const shapes = floor.free.map(([outer, ...holes]) => {
-      const shape = points(outer, new THREE.Shape());
-      shape.holes = holes.map((each) => points(each, new THREE.Path()));
-      return shape;
-    });
-    put(new THREE.ShapeGeometry(shapes), new THREE.MeshBasicMaterial({ color: colours.free }));
-    for (const { a, b, kind, open } of floor.openings || []) {
-      const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, wide = 0.12;
-      const across = [(-wide * (b[1] - a[1])) / long, (wide * (b[0] - a[0])) / long];
-      const corners = [[a, 1], [b, 1], [b, -1], [a, -1]].flatMap(([p, s]) => [p[0] + s * across[0], p[1] + s * across[1], 0.01]);
-      put(triangles(corners, [0, 1, 2, 0, 2, 3]),
-        new THREE.MeshBasicMaterial({ color: open === false ? OPENINGS.closed : OPENINGS[kind] || OPENINGS.door, side: THREE.DoubleSide }));
-    }
-    put(wallGeometry(floor.walls), new THREE.ShaderMaterial({ vertexShader: WALL_VERTEX, fragmentShader: FRAGMENT,
-      glslVersion: THREE.GLSL3, side: THREE.DoubleSide, uniforms: { colour: { value: channels(colours.wall) } } }));
+    this.scenery.set(floor, colours);
+    this.body.footing = floor.flights ? new Footing(floor.flights) : null;
     const same = this.bounds && String(this.bounds) === String(floor.bounds);
     this.bounds = floor.bounds;
     if (!same) this.fit();
@@ -95,10 +67,10 @@ class Stage {
   // The whole floor is in the picture.
   fit() {
     this.resize(true);
-    const [x0, y0, x1, y1] = this.bounds, half = Math.hypot(x1 - x0, y1 - y0) / 2;
+    const [x0, y0, x1, y1] = this.bounds, { top } = this.scenery, half = Math.hypot(x1 - x0, y1 - y0, top) / 2;
     const high = Math.tan((this.perspective.fov * Math.PI) / 360), wide = high * this.perspective.aspect;
-    const far = Math.max(half / wide, (0.75 * half) / high) + 1;
-    this.orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, 0.8);
+    const far = Math.max(half / wide, ((top ? 1 : 0.75) * half) / high) + 1; // storeys need more room above each other
+    this.orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, 0.8 + top / 2);
     this.perspective.position.set(0.31, -0.77, 0.56).multiplyScalar(far).add(this.orbit.target);
     this.orbit.update();
   }
@@ -116,7 +88,7 @@ class Stage {
     const [x0, y0, x1, y1] = this.bounds;
     const half = Math.max((y1 - y0) / 2, ((x1 - x0) / 2) * (height / width)) * 1.1;
     Object.assign(this.above, { left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half });
-    this.above.position.set((x0 + x1) / 2, (y0 + y1) / 2, 50);
+    this.above.position.set((x0 + x1) / 2, (y0 + y1) / 2, 50 + this.scenery.top);
     this.above.up.set(0, 1, 0);
     this.above.lookAt((x0 + x1) / 2, (y0 + y1) / 2, 0);
     this.above.updateProjectionMatrix();
@@ -156,16 +128,16 @@ class Stage {
     const figures = [], least = FIGURE_PIXELS * DETAIL[this.detail].afar;
     let pawns = 0;
     for (const person of people) {
-      const [x, y, heading] = person.track.at(frame), dx = x - cx, dy = y - cy;
-      const depth = dx * ahead.x + dy * ahead.y + (1 - cz) * ahead.z;
+      const [x, y, heading, z] = person.track.at(frame), dx = x - cx, dy = y - cy;
+      const depth = dx * ahead.x + dy * ahead.y + (z + 1 - cz) * ahead.z;
       if (depth < -1 || (person === who && this.how === "eyes")) continue;
       if (right && Math.abs(dx * right.x + dy * right.y) > wide * Math.max(depth, 0) + 1.5) continue; // beside the picture
       const high = camera === this.above ? pixels : (1.75 * pixels) / Math.max(depth, 0.3);
-      if (person === who) this.mark(x, y);
+      if (person === who) this.mark(x, y, z);
       if (person.aid === SEATED || (person.course && high >= least)) figures.push({ person, high });
       else {
         const scale = person.course ? person.course.bank.scale : person.scale || 1;
-        this.troops.add("person_pawn", { stand: [x, y, heading, scale], colour: person.colour });
+        this.troops.add("person_pawn", { stand: [x, y, heading, scale], rise: z, colour: person.colour });
         pawns += 1;
       }
     }
@@ -175,9 +147,9 @@ class Stage {
     figures.forEach(({ person }, k) => {
       const level = k < fine ? "near" : "far", { aid, colour } = person;
       if (aid === SEATED) {
-        const stand = [...person.track.at(frame), 1];
-        this.troops.add(`seated_${level}`, { stand, colour });
-        this.troops.add(`${aid}_${level}`, { stand, colour: METAL });
+        const [x, y, heading, rise] = person.track.at(frame), stand = [x, y, heading, 1];
+        this.troops.add(`seated_${level}`, { stand, rise, colour });
+        this.troops.add(`${aid}_${level}`, { stand, rise, colour: METAL });
         return;
       }
       this.body.pose(person, frame, k < HELD_MOST || person === who);
@@ -215,17 +187,17 @@ class Stage {
     this.bones.value.needsUpdate = true;
   }
 
-  mark(x, y) {
-    this.ring.position.set(x, y, 0.02);
+  mark(x, y, z) {
+    this.ring.position.set(x, y, z + 0.02);
     this.ring.updateMatrixWorld();
   }
 
   // Joints of somebody's body: where the head is and where it looks.
   head(person, frame) {
-    const [x, y, heading] = person.track.at(frame);
+    const [x, y, heading, z] = person.track.at(frame);
     if (person.aid === SEATED || !person.course) {
       const c = Math.cos(heading), s = Math.sin(heading), [forward, , high] = this.skeleton.seatedHead;
-      const place = person.aid === SEATED ? [x + c * forward, y + s * forward, high] : [x, y, 1.6];
+      const place = person.aid === SEATED ? [x + c * forward, y + s * forward, z + high] : [x, y, z + 1.6];
       return { place, ahead: [c, s, 0] };
     }
     this.body.pose(person, frame, false);
@@ -247,7 +219,7 @@ class Stage {
       return;
     }
     if (this.how === "follow") {
-      const [x, y] = who.track.at(frame), target = new THREE.Vector3(x, y, FOLLOWED);
+      const [x, y, , z] = who.track.at(frame), target = new THREE.Vector3(x, y, z + FOLLOWED);
       camera.position.add(target.clone().sub(orbit.target));
       orbit.target.copy(target);
       const away = camera.position.clone().sub(target);
@@ -255,7 +227,7 @@ class Stage {
       orbit.update();
       // The reader's own view comes back after the picture, for the next turn of theirs.
       this.turned = camera.position.clone();
-      camera.position.set(...overWalls(this.walls, target.toArray(), this.turned.toArray()));
+      camera.position.set(...overWalls(this.scenery.wallsAt(z), target.toArray(), this.turned.toArray()));
       camera.lookAt(target);
       return;
     }
@@ -281,8 +253,8 @@ class Stage {
     const box = this.canvas.getBoundingClientRect(), place = new THREE.Vector3();
     let best = reach, who = -1;
     for (const { row, track } of people) {
-      const [x, y] = track.at(frame);
-      place.set(x, y, 1).project(this.camera);
+      const [x, y, , z] = track.at(frame);
+      place.set(x, y, z + 1).project(this.camera);
       if (place.z > 1) continue;
       const px = box.left + ((place.x + 1) / 2) * box.width, py = box.top + ((1 - place.y) / 2) * box.height;
       const away = Math.hypot(px - clientX, (py - clientY) / 2);
@@ -298,34 +270,14 @@ function overWalls(walls, target, camera) {
   const [x, y, z] = target, dx = camera[0] - x, dy = camera[1] - y, dz = camera[2] - z;
   const level = Math.hypot(dx, dy), long = Math.hypot(level, dz);
   let steep = level ? dz / level : Infinity;
-  for (const [ax, ay, bx, by] of walls) {
+  for (const [ax, ay, bx, by, base = 0] of walls) {
     // Where the line of sight crosses the wall: at share u of its own length, v of the wall's.
     const wx = bx - ax, wy = by - ay, turn = dx * wy - dy * wx;
     if (!turn) continue;
     const u = ((ax - x) * wy - (ay - y) * wx) / turn, v = ((ax - x) * dy - (ay - y) * dx) / turn;
-    if (u > 0 && u <= 1 && v >= 0 && v <= 1) steep = Math.max(steep, (WALL_HEIGHT + OVER - z) / (u * level));
+    if (u > 0 && u <= 1 && v >= 0 && v <= 1) steep = Math.max(steep, (base + WALL_HEIGHT + OVER - z) / (u * level));
   }
   if (!level || steep <= dz / level) return camera;
   const share = long / Math.hypot(1, steep) / level;
   return [x + share * dx, y + share * dy, z + share * level * steep];
-}
-
-function triangles(corners, index, normals) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(corners), 3));
-  if (normals) geometry.setAttribute("normal", new THREE.BufferAttribute(new Float32Array(normals), 3));
-  geometry.setIndex(index);
-  return geometry;
-}
-
-// Walls are lines on the plan, which stand up here.
-function wallGeometry(walls) {
-  const corners = [], normals = [], index = [];
-  walls.forEach(([x0, y0, x1, y1], k) => {
-    const long = Math.hypot(x1 - x0, y1 - y0) || 1, normal = [(y0 - y1) / long, (x1 - x0) / long, 0];
-    corners.push(x0, y0, 0, x1, y1, 0, x1, y1, WALL_HEIGHT, x0, y0, WALL_HEIGHT);
-    for (let i = 0; i < 4; i += 1) normals.push(...normal);
-    index.push(...[0, 1, 2, 0, 2, 3].map((i) => 4 * k + i));
-  });
-  return triangles(corners, index, normals);
 }

@@ -28,12 +28,12 @@ const FIGURE_VERTEX = (fine) => `
     gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
   }`;
 const RIGID_VERTEX = `
-  in vec4 stand; in vec3 colour; out vec3 vColour; ${SHADE}
+  in vec4 stand; in float rise; in vec3 colour; out vec3 vColour; ${SHADE}
   void main() {
     float c = cos(stand.z), s = sin(stand.z);
     mat3 turned = mat3(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
     vColour = shaded(colour, turned * normal);
-    gl_Position = projectionMatrix * viewMatrix * vec4(turned * position * stand.w + vec3(stand.xy, 0.0), 1.0);
+    gl_Position = projectionMatrix * viewMatrix * vec4(turned * position * stand.w + vec3(stand.xy, rise), 1.0);
   }`;
 const WALL_VERTEX = `
   uniform vec3 colour; out vec3 vColour;
@@ -58,18 +58,18 @@ class Troop {
       fragmentShader: FRAGMENT, uniforms: mesh.joints ? { bones } : {}, glslVersion: THREE.GLSL3 });
     this.mesh = new THREE.Mesh(this.geometry, material);
     this.mesh.frustumCulled = false;
-    this.sizes = mesh.joints ? { colour: 3, row: 1 } : { colour: 3, stand: 4 };
+    this.sizes = mesh.joints ? { colour: 3, row: 1 } : { colour: 3, stand: 4, rise: 1 };
     this.room = 0;
     this.count = 0;
     scene.add(this.mesh);
   }
 
-  // For each copy its colour, and its row of bones or its place: x, y, heading, size.
+  // For each copy its colour, and its row of bones or its place (x, y, heading, size) and elevation.
   add(values) {
     if (this.count === this.room) this.enlarge(Math.max(64, 2 * this.room));
     for (const name of Object.keys(this.sizes)) {
       const { array } = this.geometry.attributes[name], from = this.count * this.sizes[name];
-      if (name === "row") array[from] = values.row;
+      if (this.sizes[name] === 1) array[from] = values[name];
       else array.set(values[name], from);
     }
     this.count += 1;

@@ -115,7 +115,7 @@ def check_crowd(model: CrowdModel, states: Mapping[str, Any]) -> None:
     if columns:
         check_choices(columns[2], columns[3], scene)
     if model.recorder is not None:
-        shifts = scene.strips[:, 6:]
+        shifts = np.concatenate([scene.strips[:, 6:], *(each.shifts for each in scene.plan.shafts)])
         check_recording(states["recorder"], scene.crowd, model.frame, shifts)
     counted = (model.frame - 2) * FRAME_SECONDS
     for source, inflow in states["sources"]["inflows"]:

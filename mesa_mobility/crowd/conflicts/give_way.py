@@ -17,7 +17,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.conflicts.hindrance import PATIENCE, find_hindered, wait_behind
+from mesa_mobility.crowd.conflicts.hindrance import GETTING_NEARER, find_hindered, wait_behind
 from mesa_mobility.crowd.conflicts.notes import (
     NOTE,
     NOTE_FIELDS,
@@ -31,6 +31,7 @@ from mesa_mobility.crowd.conflicts.notes import (
 from mesa_mobility.crowd.conflicts.places import (
     AHEAD,
     AROUND,
+    CLEAR,
     Body,
     Way,
     distances_to_way,
@@ -44,6 +45,7 @@ from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.floorplan.floor.seams import to_own_sheets
 from mesa_mobility.schema import Kind, Records
 
@@ -181,10 +183,12 @@ class GiveWay(Tactic):
         return np.asarray((np.hypot(to[..., 0], to[..., 1]) < NEAR).any(axis=1))
 
     def _go_on(self, deciding: Deciding, desired: Desired, who: NDArray[np.intp]) -> None:
-        """Let those go on making way whose own way still leads across that of the others."""
+        """Let those go on making way whose own way still leads across that of the others, and those
+        set out again who have gone back from a wall."""
         if len(who) == 0:
             return
         wishes, crowd = self._wishes(deciding, desired, who), deciding.inside.crowd
+        self._set_out(deciding, desired.targets.points[who], who, wishes)
         firsts = self._ways_of_firsts(deciding.pedestrians[who], deciding)
         for k, row in enumerate(deciding.pedestrians[who].tolist()):
             path = wishes.paths[k, :, : wishes.pieces[k] + 1].T
@@ -193,6 +197,24 @@ class GiveWay(Tactic):
                 if ((off < other.body.core + crowd.core[row]) & (along > 0.0)).any():
                     until = deciding.elapsed + GOES_ON
                     self._notes["until"][row] = max(self._notes["until"][row], until)
+
+    def _set_out(
+        self,
+        deciding: Deciding,
+        aims: NDArray[np.float64],
+        who: NDArray[np.intp],
+        wishes: Wishes,
+    ) -> None:
+        """Let those set out again who have gone back from a wall far enough: they would get on, and
+        no wall is near their way. ``aims`` (n, 2) are their targets, metres."""
+        rows, plan = deciding.pedestrians[who], deciding.site.plan
+        back = np.flatnonzero(
+            (self._notes["first"][rows] == rows) & (_gains(wishes, aims) >= GETTING_NEARER)
+        )
+        for k in back.tolist():
+            room = deciding.inside.crowd.core[rows[k]] + CLEAR
+            if lines_of_sight(plan, deciding.positions[who[[k]]], aims[[k]], room)[0]:
+                self._notes["first"][rows[k]] = NOBODY
 
     def _make_way(self, who: NDArray[np.intp], deciding: Deciding, desired: Desired) -> None:
         """Set points and speeds of those who make way, and ask those who are in the way of that."""
@@ -269,8 +291,7 @@ class GiveWay(Tactic):
             def aims(places: NDArray[np.float64]) -> NDArray[np.float64]:
                 return deciding.site.targets(places, to.repeat(len(places))).points
 
-            goes_back = deciding.elapsed - crowd.agenda["since"][row] <= PATIENCE
-            return places_to_set_out(deciding.site.plan, me, aims, taken, cores, own=goes_back)
+            return places_to_set_out(deciding.site.plan, me, aims, taken, cores)
         return places_aside(deciding.site.plan, me, ways, taken, cores)
 
     def _ways_of_firsts(self, rows: NDArray[np.int64], deciding: Deciding) -> dict[int, Way]:

@@ -117,8 +117,6 @@ def places_to_set_out(
     aims: Callable[[NDArray[np.float64]], NDArray[np.float64]],
     taken: NDArray[np.float64],
     cores: NDArray[np.float64],
-    *,
-    own: bool = False,
 ) -> NDArray[np.float64]:
     """The places from which somebody's way to their target keeps clear of walls, nearest first.
 
@@ -132,13 +130,12 @@ def places_to_set_out(
         aims: gives the targets (n, 2) of places (n, 2), metres.
         taken: (m, 2) where others stand or are about to, metres.
         cores: (m,) their core radii, metres.
-        own: whether the place where they are may be one of them.
 
     Returns:
         (k, 2) metres, at most ``TRIED``, maybe none.
     """
     ends, can = _within_reach(plan, me)
-    can[0] = own
+    can[0] = False  # their own place
     ends, far = ends[can], np.hypot(*_STEPS[can].T)
     targets = aims(ends)
     for share in ROOMS:

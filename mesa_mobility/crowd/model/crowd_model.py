@@ -124,7 +124,7 @@ class CrowdModel(mesa.Model):
         self.preset, self.rules = scene.preset.name, scene.preset
         self.floor_plan, self.pedestrian_types = plan, scene.types
         self._agents_step = pedestrian_class.step is not mesa.Agent.step
-        self.crowd, self.journeys = scene.crowd, scene.journeys
+        self.crowd, self.journeys, self.lifts = scene.crowd, scene.journeys, scene.lifts
         terms: Any = self.rules.make_terms() if behaviors is None else behaviors
         self.terms: list[CostTerm] = terms
         self.speed_rules: list[SpeedRule] = []
@@ -171,6 +171,7 @@ class CrowdModel(mesa.Model):
         parts: dict[str, Saved] = {
             "environment": self._scene.environment,
             "journeys": self.journeys,
+            "lifts": self.lifts,
             "population": self.population,
             "sources": self.sources,
             "statistics": self.statistics,
@@ -226,7 +227,7 @@ class CrowdModel(mesa.Model):
 
         They stay on their level, where they stand.
         """
-        if not self.floor_plan.seams:
+        if not self.floor_plan.in_sheets:
             return []
         rows, crowd = self.population.present, self.crowd
         climbs = np.array([each.climbs for each in self.pedestrian_types])

@@ -30,7 +30,7 @@ from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.registry import did_you_mean, load_behavior
 
-SCENE_FIRST = ("visits", "speed_zones", "speed_rules")
+SCENE_FIRST = ("visits", "lifts", "speed_zones", "speed_rules")
 """Tactics by which people do what the scene says, before those of a preset."""
 
 SCENE_LAST = ("waiting", "stepping_off")

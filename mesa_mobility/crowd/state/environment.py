@@ -26,15 +26,16 @@ _SLIM = 0.05
 class Environment(Saved):
     """Walls for the collision tests and routes for the targets of one floor plan.
 
-    A body is a core radius and, on a plan with seams, whether it crosses them. Each body has routes
-    of its own, which are searched for when the first person with such a body has a destination. The
-    number of a destination stands for two things: a set of exits, a gate or a point, and a body.
+    A body is a core radius and, on a plan of several sheets, whether it uses stairs. Each body has
+    routes of its own, which are searched for when the first person with such a body has a
+    destination. The number of a destination stands for two things: a set of exits, a gate or a
+    point, and a body.
 
     Args:
         plan: the floor plan; obstacles and doors may change while a model runs.
         reach: how far from a person walls matter, metres.
         core_radii: core radius of each pedestrian type, metres.
-        climbs: whether each type crosses seams; by default all do.
+        climbs: whether each type uses stairs; by default all do.
 
     Attributes:
         plan: the floor plan.
@@ -53,12 +54,12 @@ class Environment(Saved):
         self._reach = reach
         self._of_types = tuple(core_radii)
         self._climbs = (True,) * len(core_radii) if climbs is None else tuple(climbs)
-        # Without seams all bodies of one size have the same routes.
-        over = self._climbs if plan.seams else (True,) * len(core_radii)
+        # On one sheet all bodies of one size have the same routes.
+        over = self._climbs if plan.in_sheets else (True,) * len(core_radii)
         types = list(zip(core_radii, over, strict=True))
         bodies = list(dict.fromkeys(types))
         self._radii = [radius for radius, _ in bodies]
-        self._over_seams = [climbs for _, climbs in bodies]
+        self._climbing = [climbs for _, climbs in bodies]
         self._clearances = [clearance_of(radius) for radius in self._radii]
         self._body_of = [bodies.index(each) for each in types]
         self._make_routers([None])
@@ -138,13 +139,13 @@ class Environment(Saved):
         router = self._routers[body]
         if router is None:
             router = self._routers[body] = self._new_router(
-                self.plan, self._clearances[body], self._over_seams[body]
+                self.plan, self._clearances[body], self._climbing[body]
             )
         return router
 
-    def _new_router(self, plan: FloorPlan, clearance: float, seams: bool = True) -> Router:
+    def _new_router(self, plan: FloorPlan, clearance: float, climbs: bool = True) -> Router:
         """A router that knows all destinations by their numbers."""
-        router = Router(plan, clearance=clearance, seams=seams)
+        router = Router(plan, clearance=clearance, climbs=climbs)
         for names in self._destinations:
             self._add_destination(router, names)
         return router
@@ -248,7 +249,7 @@ class Environment(Saved):
         everybody climbed stairs."""
         number, body = divmod(destination, self.bodies)
         lost = _without_way(self._router(body), points, number)
-        if lost.any() and not (self._all_open() and self._over_seams[body]):
+        if lost.any() and not (self._all_open() and self._climbing[body]):
             lost[lost] = _without_way(self._router_when_open(body), points[lost], number)
         return lost
 

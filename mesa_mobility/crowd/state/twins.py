@@ -92,7 +92,7 @@ def laid_twins(
     here[new] = _on_strip(strips[numbers], crowd.x[owners], crowd.y[owners], crowd.core[owners])
     for values in (crowd.records, crowd.agenda, *crowd.fields.values()):
         values[new] = values[owners]
-    _shift(crowd, new, strips[numbers, 6:])
+    shift_people(crowd, new, strips[numbers, 6:])
     crowd.target_x[new] += strips[numbers, 6]
     crowd.target_y[new] += strips[numbers, 7]
     crowd.person_of = np.arange(len(follow), dtype=np.int64)
@@ -137,7 +137,7 @@ def change_sheets(strips: NDArray[np.float64], rows: NDArray[np.int64], crowd: C
     for strip in strips:
         along, aside = _in_strip(strip, crowd.x[rows], crowd.y[rows])
         there = rows[(along > 0.0) & (along <= strip[5]) & (np.abs(aside) <= strip[4])]
-        _shift(crowd, there, np.tile(strip[6:], (len(there), 1)))
+        shift_people(crowd, there, np.tile(strip[6:], (len(there), 1)))
         # Nobody changes twice: strips of one sheet do not overlap.
         rows = np.setdiff1d(rows, there, assume_unique=True)
 
@@ -195,7 +195,7 @@ def _on_strip(
     return found
 
 
-def _shift(crowd: Crowd, rows: NDArray[np.int64], by: NDArray[np.float64]) -> None:
+def shift_people(crowd: Crowd, rows: NDArray[np.int64], by: NDArray[np.float64]) -> None:
     """Move the people in ``rows``, with their paths, by (n, 2) metres."""
     for axis, name in enumerate("xy"):
         for column in (name, f"from_{name}", f"to_{name}"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mesa_mobility import PedestrianModel
+from mesa_mobility.animation.storeys import drawn_building
 from mesa_mobility.dashboard.session import serialization
 from mesa_mobility.floorplan.occupants import check_vacant
 
@@ -17,14 +18,19 @@ class PlanChanges:
     """
 
     def __init__(self, model: PedestrianModel) -> None:
-        self._plan = model.floor_plan
+        self._plan, self._building = model.floor_plan, model.building
         self._polygons = list(self._plan.obstacles.values())
         self._there: list[int | None] = list(self._plan.obstacles)
 
     def drawn(self) -> dict[str, Any]:
         """The plan as the canvas draws it."""
         there = [number is not None for number in self._there]
-        return serialization.floor(self._plan, list(zip(self._polygons, there, strict=True)))
+        obstacles = list(zip(self._polygons, there, strict=True))
+        return serialization.floor(self._plan, obstacles, self._building)
+
+    def solid(self) -> dict[str, Any]:
+        """The building as the three-dimensional view draws it; {} for a floor plan."""
+        return {} if self._building is None else drawn_building(self._building)
 
     def toggle_opening(self, name: str) -> None:
         """Close a door or exit that is open, open one that is closed."""

@@ -10,11 +10,12 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from mesa_mobility import FloorPlan, PedestrianModel
+from mesa_mobility import Building, FloorPlan, PedestrianModel
 from mesa_mobility.animation.floor import drawn_floor, ring
 from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.colouring import Colouring
 from mesa_mobility.dashboard.session.observer import Observer
+from mesa_mobility.dashboard.session.storeys import storeys
 
 
 def packed(values: ArrayLike) -> str:
@@ -68,16 +69,21 @@ def frame(
 
 
 def floor(
-    plan: FloorPlan, obstacles: Sequence[tuple[shapely.Polygon, bool]] = ()
+    plan: FloorPlan,
+    obstacles: Sequence[tuple[shapely.Polygon, bool]] = (),
+    building: Building | None = None,
 ) -> dict[str, Any]:
     """A floor plan as the canvas draws it: rings and lines, metres.
 
     Args:
         plan: the plan.
         obstacles: those that a click takes away or brings back, and whether each is there now.
+        building: adds ``storeys`` where the plan has those of a building.
     """
+    several = {} if building is None else {"storeys": storeys(building)}
     return {
         **drawn_floor(plan),
+        **several,
         "obstacles": [
             {"number": number, "ring": ring(polygon.exterior), "there": there}
             for number, (polygon, there) in enumerate(obstacles)

@@ -226,7 +226,7 @@ class Session(Engine):
 
         def command(run: Run) -> None:
             run.plan.toggle_opening(name)
-            self.floor.set(run.plan.drawn())
+            self.show_floor(run.plan)
 
         self.post(command, shown)
 
@@ -235,6 +235,6 @@ class Session(Engine):
 
         def command(run: Run) -> None:
             run.plan.toggle_obstacle(number)
-            self.floor.set(run.plan.drawn())
+            self.show_floor(run.plan)
 
         self.post(command, shown)

@@ -71,6 +71,7 @@ class Shown:
         status: ``Status``, each second and when it changes.
         frame: the crowd as the canvas draws it.
         floor: the floor plan as the canvas draws it.
+        solid: the building as the three-dimensional view draws it; {} for a floor plan.
         behaviours: ``TermState`` of each cost term.
         choice: ``ChoiceState`` of the exits chosen.
         series: a number that grows, and the ``Observer`` of the run; each second.
@@ -93,6 +94,7 @@ class Shown:
         self.status = solara.reactive(Status())
         self.frame = Feed("frame")
         self.floor: solara.Reactive[dict[str, Any]] = solara.reactive({})
+        self.solid: solara.Reactive[dict[str, Any]] = solara.reactive({})
         self.behaviours: solara.Reactive[tuple[TermState, ...]] = solara.reactive(())
         self.choice = solara.reactive(ChoiceState("", ()))
         self.series: solara.Reactive[tuple[int, Observer | None]] = solara.reactive((0, None))
@@ -129,10 +131,16 @@ class Shown:
         self.problem.set("")
         self.mark(-1)
         self.types.set(model.pedestrian_types)
-        self.floor.set(plan.drawn())
+        self.show_floor(plan)
         self.colourings.set(tuple(colourings_of(model)))
         self.use_bodies(self._posing, model)
         self.use_colour(self._colour, model)
+
+    def show_floor(self, plan: PlanChanges) -> None:
+        """Show a floor plan as it is now."""
+        with self.together:
+            self.floor.set(plan.drawn())
+            self.solid.set(plan.solid())
 
     def use_bodies(self, on: bool, model: PedestrianModel | None) -> None:
         """Send the poses of this model's people from now on, or not."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import mesa_mobility.animation
+from mesa_mobility.animation.page import STAGE_SCRIPTS
 from mesa_mobility.dashboard.views.canvases import canvas_component
 
 _VIEWER = Path(mesa_mobility.animation.__file__).parent / "viewer"
@@ -16,15 +17,14 @@ _VIEWER = Path(mesa_mobility.animation.__file__).parent / "viewer"
     "body_view.vue",
     "frames.js",
     "people.js",
+    "sheets.js",
     "steering.js",
-    *(
-        str(_VIEWER / f"{name}.js")
-        for name in ("three.bundle", "bundle", "poses", "bodies", "troop", "stage")
-    ),
+    *(str(_VIEWER / f"{name}.js") for name in ("three.bundle", *STAGE_SCRIPTS)),
 )
 def BodyCanvas(
     floor: dict[str, Any],
     poses: str,
+    solid: dict[str, Any] = {},  # noqa: B006
     frame: dict[str, Any] = {},  # noqa: B006
     selected: int = -1,
     height: str = "62vh",
@@ -38,6 +38,7 @@ def BodyCanvas(
     Args:
         floor: what ``serialization.floor`` makes.
         poses: what ``Bodies.bundle`` makes.
+        solid: what ``drawn_building`` makes of a building; left out for a floor plan.
         frame: what ``serialization.frame`` makes with bodies; left out where a feed writes it.
         selected: row of the person to mark and to follow, or -1.
         height: of the canvas, as CSS says it.

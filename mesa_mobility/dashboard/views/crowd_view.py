@@ -15,7 +15,9 @@ from mesa_mobility.dashboard.views.canvases import canvas_component
     "gestures.js",
     "people.js",
     "plane.js",
+    "sheets.js",
     "steering.js",
+    "storeys.js",
     "trails.js",
 )
 def CrowdCanvas(
@@ -30,7 +32,7 @@ def CrowdCanvas(
     event_steer: Callable[[dict[str, Any]], None] | None = None,
     event_play: Callable[[Any], None] | None = None,
 ) -> None:
-    """The canvas.
+    """The canvas; of a building also a choice of storeys and a section.
 
     Args:
         floor: what ``serialization.floor`` makes.

@@ -44,7 +44,7 @@ class FreeArea:
         cut_off: bool = False,
     ) -> None:
         self._walkable, self._exits, self._gates = layout.walkable, layout.exits, layout.gates
-        self._simplify, self._in_sheets = layout.simplify, bool(layout.seams)
+        self._simplify, self._in_sheets = layout.simplify, layout.in_sheets
         self.cut_off = cut_off
         self.closed: frozenset[str] = frozenset()
         self._subtract(obstacles)

@@ -14,6 +14,7 @@ from mesa_mobility.floorplan.floor import checks, extent
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import check_tolerance
 from mesa_mobility.floorplan.floor.seams import Seam, check_seams
+from mesa_mobility.floorplan.floor.shafts import Shaft, joints_of
 from mesa_mobility.floorplan.floor.zones import SpeedZone, check_zones, speed_factors
 
 
@@ -28,6 +29,7 @@ class Layout:
         name: for titles and files.
         simplify: metres by which walls may recede to have fewer vertices.
         seams: where people change from one piece of the walkable area to another.
+        shafts: lifts between pieces of the walkable area.
 
     Raises:
         FloorPlanError: parts that ``FloorPlan`` refuses.
@@ -42,17 +44,22 @@ class Layout:
         name: str,
         simplify: float,
         seams: Iterable[Seam] = (),
+        shafts: Iterable[Shaft] = (),
     ) -> None:
         self.name = name
         self._simplify = check_tolerance(simplify)
-        self._seams = tuple(seams)
-        read = checks.read_area if self._seams else checks.read_polygon
+        self._seams, self._shafts = tuple(seams), tuple(shafts)
+        read = checks.read_area if self.in_sheets else checks.read_polygon
         self._walkable = cast("Polygon", read(walkable, "walkable area"))
         extent.check_extent(self._walkable)
         check_seams(self._walkable, self._seams)
         self._copied = shapely.union_all([part for each in self._seams for part in each.copies])
         self._exits = tuple(exits)
-        self._gates = (*gates, *(gate for each in self._seams for gate in each.gates))
+        self._gates = (
+            *gates,
+            *(gate for each in self._seams for gate in each.gates),
+            *(gate for each in self._shafts for gate in each.gates),
+        )
         checks.check_exits(self._walkable, self._exits, self._gates)
         checks.check_gates(self._walkable, self._gates)
         self._zones = tuple(zones)
@@ -77,7 +84,7 @@ class Layout:
 
     @property
     def gates(self) -> tuple[Gate, ...]:
-        """All gates, open or closed, those of seams last."""
+        """All gates, open or closed, those of seams and lifts last."""
         return self._gates
 
     @property
@@ -93,6 +100,25 @@ class Layout:
         piece of the walkable area of its own. A plan of one sheet has no seams.
         """
         return self._seams
+
+    @property
+    def shafts(self) -> tuple[Shaft, ...]:
+        """The lifts between sheets."""
+        return self._shafts
+
+    def shafts_for(self, climbs: bool) -> tuple[Shaft, ...]:
+        """The lifts of people who use stairs, or of those who do not."""
+        return tuple(each for each in self._shafts if each.everybody or not climbs)
+
+    @property
+    def in_sheets(self) -> bool:
+        """Whether the plan has several sheets."""
+        return bool(self._seams or self._shafts)
+
+    @property
+    def joints(self) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+        """Pairs of places, (x, y) in metres, at which sheets are joined."""
+        return [*(each.joint for each in self._seams), *joints_of(self._shafts)]
 
     @property
     def copied(self) -> BaseGeometry:

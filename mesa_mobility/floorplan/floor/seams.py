@@ -8,6 +8,7 @@ is a copy: people who enter it continue on the other sheet.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -27,6 +28,26 @@ BEFORE, AFTER = "before", "after"
 and on that of the second."""
 
 _COPY = " (copy)"
+
+
+class Link(NamedTuple):
+    """A part of routes that leads from one sheet to another.
+
+    Attributes:
+        leaving: name of the gate by which people leave the one.
+        arriving: name of the gate by which they come to the other.
+        out: (2,) direction in which they cross the former.
+        on: (2,) direction in which they cross the latter.
+        shift: (2,) metres from a place in the former to the same in the latter.
+        length: metres as which it counts.
+    """
+
+    leaving: str
+    arriving: str
+    out: NDArray[np.float64]
+    on: NDArray[np.float64]
+    shift: NDArray[np.float64]
+    length: float
 
 
 @dataclass(frozen=True)
@@ -89,6 +110,12 @@ class Seam:
         return (self.a[0] + self.b[0]) / 2.0, (self.a[1] + self.b[1]) / 2.0
 
     @property
+    def joint(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The middle of the line on the first sheet and on the second, (x, y) in metres."""
+        (x, y), (dx, dy) = self.centre, self.shift
+        return (x, y), (x + dx, y + dy)
+
+    @property
     def direction(self) -> tuple[float, float]:
         """The unit vector in which people cross from the first sheet to the second."""
         return -(self.b[1] - self.a[1]) / self.width, (self.b[0] - self.a[0]) / self.width
@@ -141,12 +168,14 @@ class Seam:
         )
 
     @property
-    def links(self) -> tuple[tuple[str, str, NDArray[np.float64], NDArray[np.float64]], ...]:
-        """How routes lead from sheet to sheet, up and back: name of the copied gate, name of the
-        gate itself, (2,) direction, and (2,) shift from the one to the other."""
+    def links(self) -> list[Link]:
+        """How routes lead from sheet to sheet, up and back."""
         forward, shift = np.array(self.direction), np.array(self.shift)
         before, after = f"{self.name} {BEFORE}", f"{self.name} {AFTER}"
-        return (after + _COPY, after, forward, shift), (before + _COPY, before, -forward, -shift)
+        return [
+            Link(after + _COPY, after, forward, forward, shift, self.extra),
+            Link(before + _COPY, before, -forward, -forward, -shift, self.extra),
+        ]
 
     def _gate(self, name: str, past: float, second: bool, copy: str) -> Gate:
         a, b = shapely.get_coordinates(self.part(past, past, second).exterior)[:2].tolist()
@@ -187,19 +216,19 @@ def check_seams(walkable: BaseGeometry, seams: Sequence[Seam]) -> None:
                 )
 
 
-def joined(pieces: NDArray[np.object_], seams: Sequence[Seam], found: NDArray[np.bool_]) -> None:
-    """Mark the pieces of floor to which seams lead from those that are marked.
+def joined(
+    pieces: NDArray[np.object_],
+    joints: Sequence[tuple[tuple[float, float], tuple[float, float]]],
+    found: NDArray[np.bool_],
+) -> None:
+    """Mark the pieces of floor that are joined with those that are marked.
 
     Args:
         pieces: (n,) polygons.
-        seams: the seams between them.
+        joints: pairs of places, (x, y) in metres, that are joined.
         found: (n,) whether each is marked; is written.
     """
-    ends = []
-    for seam in seams:
-        here = shapely.Point(seam.centre)
-        there = shapely.Point(np.array(seam.centre) + seam.shift)
-        ends.append([shapely.intersects(pieces, each) for each in (here, there)])
+    ends = [[shapely.intersects(pieces, shapely.Point(each)) for each in joint] for joint in joints]
     for _ in range(len(pieces)):
         known = found.copy()
         for one, other in ends:

@@ -39,9 +39,9 @@ def feature_collection(plan: Floor) -> dict[str, Any]:
     and `name`; a closed gate or exit has `closed` true, a zone its `factor`.
     Reading it back gives the same coordinates to the last bit; obstacle ids count from 0 again.
     """
-    if plan.seams:
+    if plan.in_sheets:
         raise FloorPlanError(
-            "a floor plan with seams has no GeoJSON of its own, expected that of its building"
+            "a plan of several sheets has no GeoJSON of its own, expected that of its building"
         )
     features = [feature_of("walkable", plan.name, plan.walkable)]
     if plan.cut_off:

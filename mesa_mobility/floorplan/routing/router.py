@@ -23,7 +23,7 @@ from mesa_mobility.floorplan.routing.route_nodes import (
     find_nodes,
     with_points,
 )
-from mesa_mobility.floorplan.routing.seam_links import seam_links
+from mesa_mobility.floorplan.routing.sheet_links import sheet_links
 from mesa_mobility.floorplan.routing.target_cache import Found, empty_cache
 from mesa_mobility.floorplan.routing.target_search import ALL_FOUND, NO_TABLE, UNSEEN, aim
 from mesa_mobility.floorplan.routing.targets import Destination, Targets, is_point
@@ -47,14 +47,15 @@ class Router:
             shrinks to 85 % of this; narrower gaps are impassable.
         beyond: how far behind a gate or exit the target lies, metres, above 0; less where a wall
             is nearer.
-        seams: whether routes lead across seams.
+        climbs: whether routes are for people who use stairs: they lead across seams, and through
+            lifts that are for everybody. Other routes lead through all lifts, and across no seam.
 
     Raises:
         FloorPlanError: clearance or beyond out of range.
     """
 
     def __init__(
-        self, plan: Floor, *, clearance: float = 0.2, beyond: float = 2.0, seams: bool = True
+        self, plan: Floor, *, clearance: float = 0.2, beyond: float = 2.0, climbs: bool = True
     ) -> None:
         if not (np.isfinite([clearance, beyond]).all() and clearance > 0 and beyond > 0):
             raise FloorPlanError(
@@ -63,7 +64,9 @@ class Router:
         self._plan = plan
         self._clearance = float(clearance)
         self._beyond = float(beyond)
-        self._seams = plan.seams if seams else ()
+        self._links = [link for each in plan.shafts_for(climbs) for link in each.links]
+        if climbs:
+            self._links += [link for each in plan.seams for link in each.links]
         self._destinations: list[Destination] = [None]
         self._version = -1
         self._distances: dict[int, NDArray[np.float64]] = {}
@@ -271,7 +274,7 @@ class Router:
         self._edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
-        self._leaving, self._arriving, lengths = seam_links(self._seams, plan.openings(), nodes)
+        self._leaving, self._arriving, lengths = sheet_links(self._links, plan.openings(), nodes)
         if len(lengths):
             links = np.column_stack([self._leaving, self._arriving])
             self._edges = np.concatenate([self._edges, links])

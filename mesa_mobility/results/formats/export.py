@@ -89,6 +89,11 @@ def walked_on(trajectories: Tracks) -> Tracks:
         **columns,
         last_frame=max(trajectories.last_frame, int(beyond["frame"].max(initial=0))),
         inside_at_end=np.empty(0, dtype=np.int32),
-        fields={},
+        # An exit is on a level: who walks on from there stays at its elevation.
+        fields={
+            name: np.concatenate([values, values[after]])
+            for name, values in trajectories.fields.items()
+            if name == "z"
+        },
         decisions=None,
     )

@@ -11,7 +11,7 @@ from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.formats.export import CHUNK, walked_on
 from mesa_mobility.results.formats.output_format import OutputFormat
 from mesa_mobility.results.reading.rows import Rows
-from mesa_mobility.results.reading.text import read_text
+from mesa_mobility.results.reading.text import ELEVATIONS, read_text
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ class Juelich(OutputFormat):
 
     name = "juelich"
     suffixes = (".txt",)
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_juelich_text``."""
@@ -36,19 +37,22 @@ class Juelich(OutputFormat):
 def write_juelich_text(trajectories: Tracks, path: str | os.PathLike[str]) -> None:
     """Write the text form of the Juelich data archive: lines of ID, frame, x, y, z in metres.
 
-    Coordinates are rounded to 0.1 mm and z is 0. PedPy and JPSreport read it. People who left walk
-    on for ``BEYOND`` frames, as in ``to_pedpy``.
+    Coordinates are rounded to 0.1 mm. z is the elevation of the floor where people walked in a
+    building, which a comment line says, and 0 elsewhere. PedPy and JPSreport read the file. People
+    who left walk on for ``BEYOND`` frames, as in ``to_pedpy``.
 
     Raises:
         ResultsError: no rows, or the file cannot be written.
     """
     trajectories = walked_on(trajectories)
-    order = trajectories.by_person
+    order, elevated = trajectories.by_person, "z" in trajectories.fields
     with (
         replacing(path, ResultsError) as temporary,
         temporary.open("w", encoding="utf-8", newline="\n") as file,
     ):
         file.write(f"# framerate: {trajectories.frame_rate:g}\n# id frame x/m y/m z/m\n")
+        if elevated:
+            file.write(f"# {ELEVATIONS}\n")
         for first in range(0, len(order), CHUNK):
             rows = order[first : first + CHUNK]
             columns = (
@@ -56,8 +60,9 @@ def write_juelich_text(trajectories: Tracks, path: str | os.PathLike[str]) -> No
                 trajectories.frame[rows],
                 trajectories.x[rows],
                 trajectories.y[rows],
+                trajectories.z[rows],
             )
             file.writelines(
-                f"{person} {frame} {x:.4f} {y:.4f} 0\n"
-                for person, frame, x, y in zip(*(c.tolist() for c in columns), strict=True)
+                f"{person} {frame} {x:.4f} {y:.4f} {f'{z:.4f}' if elevated else 0}\n"
+                for person, frame, x, y, z in zip(*(c.tolist() for c in columns), strict=True)
             )

@@ -42,7 +42,7 @@ class JuPedSim(OutputFormat):
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_jupedsim_sqlite``."""
-        write_jupedsim_sqlite(excerpt.tracks(), path, excerpt.plan.free)
+        write_jupedsim_sqlite(excerpt.tracks(), path, excerpt.floor_plan.free)
 
     def read(self, path: Path) -> Rows:
         """See ``read_jupedsim_sqlite``."""

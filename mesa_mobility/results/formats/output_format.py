@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.plugins.formats import Format, Formats
@@ -20,7 +20,13 @@ class OutputFormat(Format):
 
     It is a class with ``write``, ``read`` or both. Keyword-only parameters of ``write`` are the
     options of the format.
+
+    Attributes:
+        storeys: whether ``write`` takes runs in buildings of several levels as a whole; others take
+            one level.
     """
+
+    storeys: ClassVar[bool] = False
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """Write a run or a part of it, complete or not at all.

@@ -39,6 +39,7 @@ class Parquet(OutputFormat):
 
     name = "parquet"
     suffixes = (".parquet",)
+    storeys = True
 
     def write(self, excerpt: Excerpt, path: Path) -> None:
         """See ``write_parquet``."""

@@ -40,6 +40,7 @@ def sorted_once(rows: Rows) -> Rows:
         x=rows.x[kept],
         y=rows.y[kept],
         heading=None if rows.heading is None else rows.heading[kept],
+        z=None if rows.z is None else rows.z[kept],
         faults=(*rows.faults, *faults),
     )
 

@@ -42,6 +42,7 @@ class Rows:
         unit: ``"m"``, ``"cm"`` or ``"mm"``, if the file says so.
         frame_rate: frames a second, if the file says so.
         faults: rows that were left out because they could not be read.
+        z: (n,) elevation of the floor in the file's unit, if the file has it.
     """
 
     person: NDArray[Any]
@@ -52,6 +53,7 @@ class Rows:
     unit: str | None = None
     frame_rate: float | None = None
     faults: tuple[Fault, ...] = ()
+    z: NDArray[Any] | None = None
 
 
 @dataclass(frozen=True)

@@ -138,7 +138,8 @@ def _spacing(rows: Rows) -> float | None:
     starts = np.searchsorted(rows.frame[order], chosen)
     ends = np.searchsorted(rows.frame[order], chosen, side="right")
     nearest = []
+    columns = [rows.x, rows.y] if rows.z is None else [rows.x, rows.y, rows.z]
     for start, end in zip(starts, ends, strict=True):
-        places = np.column_stack([rows.x, rows.y])[order[start:end]]
+        places = np.column_stack(columns)[order[start:end]]
         nearest.append(cKDTree(places).query(places, k=2)[0][:, 1])
     return float(np.median(np.concatenate(nearest))) or None

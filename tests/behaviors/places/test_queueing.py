@@ -156,16 +156,18 @@ def test_counters_that_are_none_are_refused(wrong, text):
         Counter(**{"line": [(0, 0), (1, 0)], "service": 1.0, **wrong})
 
 
-def test_whoever_is_in_the_way_of_the_first_in_line_goes_first():
-    # Two in wheelchairs come to the counter from both sides, as near to it as each other.
-    rng = np.random.default_rng([19, 3])
+# 19: two in wheelchairs come to the counter from both sides, as near to it as each other. 3, 10:
+# the last in line stands before the first, face to face.
+@pytest.mark.parametrize("seed", [3, 10, 19])
+def test_whoever_is_in_the_way_of_the_first_in_line_goes_first(seed):
+    rng = np.random.default_rng([seed, 3])
     head, long, y = rng.uniform(8.0, 12.0), rng.uniform(3.0, 6.0), rng.uniform(2.0, 6.0)
     starts = hall().random_points(
         6, rng, within=box(0.0, 0.0, head, 8.0), spacing=0.9, clearance=0.45
     )
     counter = Counter([(head, y), (head - long, y)], service=2.0)
     wheelchairs = [PedestrianType.named("wheelchair_manual")]
-    model = PedestrianModel(hall(), pedestrian_types=wheelchairs, rng=19)
+    model = PedestrianModel(hall(), pedestrian_types=wheelchairs, rng=seed)
     model.add_tactic(Queueing([counter]))
     model.add_pedestrians(starts, route=[counter.visit], preferred_speeds=0.6)
     model.run(max_seconds=100)

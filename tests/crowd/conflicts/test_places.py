@@ -78,17 +78,6 @@ def test_setting_out_again_beside_a_jamb():
     assert places[0, 0] < 4.0
 
 
-def test_whoever_has_gone_back_far_enough_stays():
-    hall = FloorPlan(box(0, 0, 8, 4), exits=[Exit("end", (8, 1), (8, 3))])
-
-    def ahead(places):
-        return np.broadcast_to((9.0, 2.0), places.shape)
-
-    me = Body(np.array([3.0, 2.0]), 0.2)
-    assert places_to_set_out(hall, me, ahead, *NOBODY, own=True)[0].tolist() == [3.0, 2.0]
-    assert places_to_set_out(hall, me, ahead, *NOBODY)[0].tolist() != [3.0, 2.0]
-
-
 def test_where_no_way_passes_walls_with_room_the_widest_is_taken():
     door = box(4, 1.85, 4.2, 2.15)  # 0.3 m wide, for a body of 0.4 m
     floor = union_all([box(0, 0, 4, 4), door, box(4.2, 0, 8, 4)])

@@ -43,7 +43,7 @@ def names(model):
 
 def test_those_of_the_presets():
     # Without these, places to visit, zones, rules, waiting times and closing doors mean nothing.
-    needed = ["visits", "speed_zones", "speed_rules", "waiting", "stepping_off"]
+    needed = ["visits", "lifts", "speed_zones", "speed_rules", "waiting", "stepping_off"]
     assert names(model_of(corridor(), strider(), preset="paper")) == needed
     default = names(model_of(corridor(), strider(), preset="default"))
     assert [name for name in default if name not in needed] == [
@@ -51,6 +51,7 @@ def test_those_of_the_presets():
     ]
     assert [name for name in default if name in needed] == needed
     everything = [
+        "lifts",
         "corner_spreading",
         "visits",
         "speed_zones",
@@ -69,6 +70,7 @@ def test_those_of_the_scene_come_around_those_of_a_preset_unless_it_names_their_
     mine = replace(PRESETS["paper"], tactics=("giving_way", "stepping_off", "anticipation"))
     assert names(model_of(corridor(), strider(), preset=mine)) == [
         "visits",
+        "lifts",
         "speed_zones",
         "speed_rules",
         "giving_way",
@@ -99,7 +101,7 @@ def test_one_that_is_added_goes_behind_the_one_that_it_names():
     behind = GoUp()
     behind.after = "speed_zones"
     model.add_tactic(behind)
-    assert names(model)[3:5] == ["go_up", "speed_rules"]
+    assert names(model)[4:6] == ["go_up", "speed_rules"]
 
 
 def test_what_a_tactic_gives_is_checked():
@@ -123,7 +125,14 @@ def test_a_preset_of_ones_own_is_saved_with_the_figures():
     model = model_of(corridor(), strider(), preset=mine)
     assert model.preset == "mine"
     assert [(term.name, term.weight) for term in model.terms] == [("target_distance", 2.0)]
-    assert names(model) == ["speed_zones", "speed_rules", "visits", "stepping_off", "waiting"]
+    assert names(model) == [
+        "lifts",
+        "speed_zones",
+        "speed_rules",
+        "visits",
+        "stepping_off",
+        "waiting",
+    ]
     rules = model.summary()["rules"]
     assert (rules["name"], rules["terms"], rules["tactics"]) == (
         "mine",

@@ -24,7 +24,8 @@ def length(plan: FloorPlan, place: tuple[float, float], exits: tuple[str, ...] |
     [
         ((4.5, 4), 4.0),  # straight down
         ((4.25, 0.001), 0.001),
-        ((1.5, 3), hypot(2.7, 3)),  # to the end of the passable part, (4.2, 0)
+        ((1.5, 3), hypot(2.7, 2.8) + 0.2),  # straight, it is 0.149 m past the jamb: by (4.2, 0.2)
+        ((2, 3), hypot(2.2, 3)),  # to the end of the passable part, (4.2, 0)
         ((9, 7), hypot(4.2, 7)),  # to (4.8, 0)
         ((1, 0.3), hypot(3.2, 0.1) + 0.2),  # along the wall: around (4.2, 0.2)
         ((9.8, 0.2), 5.0 + 0.2),  # along the wall: around (4.8, 0.2)
@@ -224,8 +225,8 @@ def test_exits_side_by_side_cost_no_views_of_each_other() -> None:
     assert router.graph.number_of_edges() <= 300 * 2 * 3
     assert router.targets([(150.5, 8)], [0]).distances[0] == pytest.approx(8.0, abs=CLOSE)
     # Along the wall to the next one, around the end of its wall at (150.3, 0.2).
-    along = router.targets([(149.98, 0.15)], [router.destination(["door 150"])]).distances[0]
-    assert along == pytest.approx(hypot(0.32, 0.05) + 0.2, abs=CLOSE)
+    along = router.targets([(149.98, 0.17)], [router.destination(["door 150"])]).distances[0]
+    assert along == pytest.approx(hypot(0.32, 0.03) + 0.2, abs=CLOSE)
 
 
 def test_ends_of_walls_beside_an_exit_lead_to_it_alone() -> None:

@@ -180,3 +180,30 @@ def test_equal_runs_give_equal_exports(writer, run, room, tmp_path):
         writer(run, tmp_path / name, *area)
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b"]
+
+
+def test_juelich_text_of_a_building_has_elevations(walk, pedpy, tmp_path):
+    """Down a stair of 1 m a frame at 1 Hz, and out at x = 3; with nothing said of z, it is 0."""
+    points = [(0.0, 1.0), (1.0, 1.0), (2.0, 1.0), (3.5, 1.0)]
+    z = np.array([1.0, 0.5, 0.12345, 0.0])
+    last = {"inside_at_end": np.empty(0, dtype=int), "frame_rate": 1.0}
+    write_juelich_text(walk({0: (0, points)}, fields={"z": z}, **last), tmp_path / "stair.txt")
+    assert (tmp_path / "stair.txt").read_text().splitlines() == [
+        "# framerate: 1",
+        "# id frame x/m y/m z/m",
+        "# z is the elevation of the floor",
+        "0 0 0.0000 1.0000 1.0000",
+        "0 1 1.0000 1.0000 0.5000",
+        "0 2 2.0000 1.0000 0.1235",
+        "0 3 3.5000 1.0000 0.0000",
+        "0 4 5.0000 1.0000 0.0000",
+        "0 5 6.5000 1.0000 0.0000",
+        "0 6 8.0000 1.0000 0.0000",
+    ]
+    data = pedpy.load_trajectory(trajectory_file=tmp_path / "stair.txt")
+    assert len(data.data) == 7
+    write_juelich_text(walk({0: (0, points)}, **last), tmp_path / "floor.txt")
+    assert (tmp_path / "floor.txt").read_text().splitlines()[1:3] == [
+        "# id frame x/m y/m z/m",
+        "0 0 0.0000 1.0000 0",
+    ]

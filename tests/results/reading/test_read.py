@@ -289,3 +289,16 @@ def test_a_rate_that_steps_do_not_show_is_not_guessed(file):
     rows = [(p, f, 0.05 * f, 1.2 * p + rng.normal(0, 0.03)) for p in range(12) for f in range(300)]
     with pytest.raises(ResultsError, match="no frame rate in it: give it, as in frame_rate=16"):
         Trajectories.read(file(text(rows)), unit="m")
+
+
+def test_a_fifth_column_is_read_where_it_is_an_elevation(file):
+    """Two people right above each other, on floors 3 m apart: nothing is wrong with their unit."""
+    rows = [(p, f, 10.0 * f, 300.0 * p) for f in range(40) for p in (0, 1)]
+    lines = "".join(f"{p} {f} {x:g} 0 {z:g}\n" for p, f, x, z in rows)
+    assert "z" not in quiet(file(HEADER + lines), unit="cm").fields
+    tracks = quiet(file(HEADER + "# z is the elevation of the floor\n" + lines))
+    assert tracks.z.tolist() == [0.0, 3.0] * 40
+    assert tracks.x.max() == pytest.approx(3.9)
+    short = file(HEADER + "# z is the elevation of the floor\n" + lines + "7 0 1 1\n")
+    with pytest.warns(UserWarning, match="line 84: '7 0 1 1', expected id, frame, x, y"):
+        assert len(Trajectories.read(short)) == 80

@@ -11,13 +11,24 @@ function shade(share) {
   return blend(VIRIDIS, share);
 }
 
+// The number of the colour of a value, and the colour.
+function shadeOf(value, { low, high, names }) {
+  const steps = names.length ? 1 : SHADES / (high - low);
+  return Math.max(0, Math.min(SHADES - 1, Math.floor(steps * (value - low))));
+}
+
+function colourOf(value, legend) {
+  const number = shadeOf(value, legend);
+  return legend.names.length ? TYPES[number % TYPES.length] : shade(number / (SHADES - 1));
+}
+
 const PEOPLE = {
   created() {
     this.sprites = new Map();
   },
   methods: {
     paintPeople(ctx, now) {
-      const people = now.people, { scale } = this.view, { low, high, names } = now.legend;
+      const people = now.people, { scale } = this.view;
       const canvas = this.$refs.canvas;
       // Shoulders are 0.46 m wide and bodies 0.26 m deep; never smaller than can be seen.
       const size = Math.max(0.23 * scale, 1.5 * this.ratio);
@@ -28,20 +39,18 @@ const PEOPLE = {
       }
       const [px, py] = [canvas.width / 2, canvas.height / 2], { x: vx, y: vy } = this.view;
       const width = canvas.width + half, height = canvas.height + half;
-      const steps = names.length ? 1 : SHADES / (high - low);
       // On whole pixels pictures are copied, which is twice as fast; only large ones would jerk.
       const small = size < 4 * this.ratio;
       let ring = null;
       for (let k = 0; k < people.length; k += FIELDS) {
         const x = px + (people[k + 1] - vx) * scale, y = py - (people[k + 2] - vy) * scale;
         if (x < -half || y < -half || x > width || y > height) continue;
-        const colour = Math.max(0, Math.min(SHADES - 1, Math.floor(steps * (people[k + 4] - low))));
+        const colour = shadeOf(people[k + 4], now.legend);
         const turn = ((Math.round((people[k + 3] / (2 * Math.PI)) * TURNS) % TURNS) + TURNS) % TURNS;
         const key = colour * TURNS + turn;
         let sprite = this.sprites.get(key);
         if (!sprite) {
-          const fill = names.length ? TYPES[colour % TYPES.length] : shade(colour / (SHADES - 1));
-          sprite = this.sprite(fill, (turn * 2 * Math.PI) / TURNS, size, half);
+          sprite = this.sprite(colourOf(people[k + 4], now.legend), (turn * 2 * Math.PI) / TURNS, size, half);
           this.sprites.set(key, sprite);
         }
         if (small) ctx.drawImage(sprite, Math.round(x - half), Math.round(y - half));

@@ -32,8 +32,8 @@ const PLANE = {
     fit() {
       const canvas = this.$refs.canvas;
       this.dirty = this.whole = true;
-      if (!canvas || !this.floor || !this.floor.bounds) return;
-      const [x0, y0, x1, y1] = this.floor.bounds;
+      if (!canvas || !this.shownBounds) return;
+      const [x0, y0, x1, y1] = this.shownBounds;
       const room = 44 * this.ratio; // for the texts above and below
       this.view = { x: (x0 + x1) / 2, y: (y0 + y1) / 2,
         scale: Math.min((0.97 * canvas.width) / (x1 - x0),
@@ -54,9 +54,9 @@ const PLANE = {
       this.show({ ...this.view, x: this.view.x - dx * metre, y: this.view.y + dy * metre });
     },
     show(view) {
-      if (this.floor && this.floor.bounds) {
+      if (this.shownBounds) {
         // The floor cannot be lost: its bounds hold the middle of the canvas.
-        const [x0, y0, x1, y1] = this.floor.bounds;
+        const [x0, y0, x1, y1] = this.shownBounds;
         view.x = Math.min(Math.max(view.x, x0), x1);
         view.y = Math.min(Math.max(view.y, y0), y1);
       }

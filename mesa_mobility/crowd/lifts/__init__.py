@@ -1,0 +1,1 @@
+"""Lifts: who calls them, who gets in, and where the cars go."""

@@ -1,0 +1,262 @@
+"""The cars of a model's lifts: where they are, whom they let in, and when they go."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.lifts.spots import free_spot
+from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
+from mesa_mobility.crowd.saved import Saved
+from mesa_mobility.crowd.state.environment import Environment
+from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
+from mesa_mobility.crowd.state.twins import shift_people
+from mesa_mobility.floorplan import Shaft
+from mesa_mobility.schema import Array, Kind
+
+NOBODY = -1
+
+EVERY = 3
+"""Frames from one look at the cars to the next."""
+
+DWELL = 3 * FRAMES_A_SECOND
+"""Frames for which the doors stay open after the last person has got in."""
+
+GIVES_UP = 20 * FRAMES_A_SECOND
+"""Frames after which those who have not got in are no longer waited for."""
+
+
+class Lifts(Saved):
+    """The cars of all lifts, and the people who call and ride them. Rows are those of the crowd.
+
+    A person calls a lift when they come near its door. The car goes to the stop where somebody has
+    waited longest. There people get out. Then as many of those who wait get in as there is room
+    for, those nearest to the door first, each to a spot in the car at which their body fits. When
+    all are in, or have not come for a while, the car goes to the nearest level at which somebody
+    wants to get out.
+
+    Args:
+        shafts: the lifts of the floor plan.
+
+    Attributes:
+        at: (lifts,) number of the stop at which each car is, or to which it goes.
+        trips: (lifts,) how often each has gone from one stop to another.
+        carried: (lifts,) people whom each has carried.
+    """
+
+    saved: ClassVar[Mapping[str, Kind]] = {
+        "at": Array("i8", ("lifts",), 0),
+        "trips": Array("i8", ("lifts",), 0),
+        "carried": Array("i8", ("lifts",), 0),
+        "_from": Array("i8", ("lifts",), NOBODY),
+        "_open": Array("i8", ("lifts",), 0, 2 * LAST_FRAME),
+        "_since": Array("i8", ("lifts",), 0, 2 * LAST_FRAME),
+        "_rides": Array("i8", ("known",), NOBODY),
+        "_to": Array("i8", ("known",), NOBODY),
+        "_spot": Array("f8", ("known", 2), -FARTHEST, FARTHEST),
+        "_calls": Array("i8", ("known",), NOBODY),
+        "_stop": Array("i8", ("known",), NOBODY),
+        "_called": Array("i8", ("known",), 0, LAST_FRAME),
+    }
+
+    def __init__(self, shafts: tuple[Shaft, ...]) -> None:
+        self.shafts = shafts
+        count = len(shafts)
+        self.at, self.trips, self.carried, self._open, self._since = np.zeros((5, count), np.int64)
+        self._from = np.full(count, NOBODY)
+        self._rides, self._to, self._calls, self._stop, self._called = np.empty((5, 0), np.int64)
+        self._spot = np.empty((0, 2))
+
+    def __len__(self) -> int:
+        return len(self.shafts)
+
+    def rides(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,) number of the lift that each person in ``rows`` rides or is to get into, or -1."""
+        self._make_room(rows)
+        return self._rides[rows]
+
+    def spots(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        """(n, 2) where those in ``rows`` stand in their car, metres."""
+        return self._spot[rows]
+
+    def car_of(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
+        """(n,) number of the lift in whose car, at any stop, each (n, 2) point is; -1 for none."""
+        found = np.full(len(points), NOBODY)
+        for number, shaft in enumerate(self.shafts):
+            for stop in range(len(shaft.stops)):
+                found[shaft.in_car(stop, points)] = number
+        return found
+
+    def call(
+        self,
+        rows: NDArray[np.int64],
+        lifts: NDArray[np.int64],
+        stops: NDArray[np.int64],
+        frame: int,
+    ) -> None:
+        """Note who waits for a lift, and at which stop.
+
+        Args:
+            rows: (n,) people who decide now.
+            lifts: (n,) the lift for which each waits, or -1.
+            stops: (n,) at which of its stops.
+            frame: now.
+        """
+        self._make_room(rows)
+        new = (lifts != self._calls[rows]) | (stops != self._stop[rows])
+        self._called[rows[new]] = frame
+        self._calls[rows], self._stop[rows] = lifts, stops
+
+    def waiting(
+        self, lift: int, stop: int, crowd: Crowd
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Rows of the people who wait for a lift at a stop, those nearest to the door first, and
+        since which frame each does."""
+        known = min(len(self._calls), len(crowd.active))
+        ours = (self._calls[:known] == lift) & (self._stop[:known] == stop)
+        rows = np.flatnonzero(ours & crowd.active[:known] & (self._rides[:known] == NOBODY))
+        x, y = self.shafts[lift].door(stop)
+        away = np.hypot(crowd.x[rows] - x, crowd.y[rows] - y)
+        rows = rows[np.argsort(away, kind="stable")]
+        return rows, self._called[rows]
+
+    def next_look(self, frame: int) -> int:
+        """The next frame after this one in which something may happen."""
+        return (frame // EVERY + 1) * EVERY
+
+    def advance(
+        self, frame: int, inside: NDArray[np.int64], crowd: Crowd, environment: Environment
+    ) -> None:
+        """Let people in and out, and move the cars.
+
+        Args:
+            frame: now.
+            inside: (n,) rows of the people inside.
+            crowd: the crowd; those who ride are moved.
+            environment: the routes.
+        """
+        if frame % EVERY or not len(self._calls):
+            return
+        self._make_room(inside)
+        for lift, shaft in enumerate(self.shafts):
+            if frame < self._open[lift]:
+                continue
+            if self._from[lift] != NOBODY:
+                self._arrive(lift, frame, inside, crowd)
+            self._stand(lift, shaft, frame, inside, crowd, environment)
+
+    def _arrive(self, lift: int, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
+        """Open the doors: those who have ridden are at the new stop from now on."""
+        start, end, shaft = int(self._from[lift]), int(self.at[lift]), self.shafts[lift]
+        riding = inside[self._rides[inside] == lift]
+        shift_people(crowd, riding, np.tile(shaft.shift(start, end), (len(riding), 1)))
+        self._spot[riding] += shaft.shift(start, end)
+        arrived = riding[self._to[riding] == end]
+        self._rides[arrived], self._calls[arrived] = NOBODY, NOBODY
+        self._from[lift], self._since[lift] = NOBODY, frame
+
+    def _stand(
+        self,
+        lift: int,
+        shaft: Shaft,
+        frame: int,
+        inside: NDArray[np.int64],
+        crowd: Crowd,
+        environment: Environment,
+    ) -> None:
+        """Let people out, then in, then go."""
+        stop = int(self.at[lift])
+        there = self._in_car(lift, stop, inside, crowd)
+        if (self._rides[there] != lift).any():
+            self._since[lift] = frame
+            return
+        if self._admit(lift, stop, inside, crowd, environment):
+            self._since[lift] = frame
+        ours = inside[self._rides[inside] == lift]
+        outside = np.setdiff1d(ours, there, assume_unique=True)
+        waited = frame - self._since[lift]
+        if len(outside) and waited < GIVES_UP:
+            return
+        self._rides[outside] = NOBODY
+        if len(there) and waited >= DWELL:
+            rise = [
+                abs(shaft.stops[to].elevation - shaft.stops[stop].elevation)
+                for to in self._to[there].tolist()
+            ]
+            self.carried[lift] += len(there)
+            self._go(lift, int(self._to[there[int(np.argmin(rise))]]), frame)
+        elif not len(there):
+            calls = [
+                (int(called.min()), to)
+                for to in range(len(shaft.stops))
+                if to != stop and len(called := self.waiting(lift, to, crowd)[1])
+            ]
+            if calls:
+                self._go(lift, min(calls)[1], frame)
+
+    def _go(self, lift: int, to: int, frame: int) -> None:
+        start = int(self.at[lift])
+        seconds = self.shafts[lift].ride_s(start, to)
+        self._from[lift], self.at[lift] = start, to
+        self._open[lift] = frame + round(seconds * FRAMES_A_SECOND)
+        self.trips[lift] += 1
+
+    def _admit(
+        self,
+        lift: int,
+        stop: int,
+        inside: NDArray[np.int64],
+        crowd: Crowd,
+        environment: Environment,
+    ) -> bool:
+        """Let those in who fit, those nearest to the door first; whether anybody was."""
+        shaft, admitted = self.shafts[lift], False
+        ours = inside[self._rides[inside] == lift]
+        for row in self.waiting(lift, stop, crowd)[0].tolist():
+            if len(ours) >= shaft.capacity:
+                break
+            spot = free_spot(shaft, stop, crowd.core[row], self._spot[ours], crowd.core[ours])
+            to = self._destination(shaft, stop, row, crowd, environment)
+            if spot is None or to == stop:
+                continue
+            self._rides[row], self._to[row], self._spot[row] = lift, to, spot
+            ours, admitted = np.append(ours, row), True
+        return admitted
+
+    def _destination(
+        self, shaft: Shaft, stop: int, row: int, crowd: Crowd, environment: Environment
+    ) -> int:
+        """The stop from which somebody's way out is shortest, the ride included."""
+        count = len(shaft.stops)
+        doors = np.array([shaft.before_door(k) for k in range(count)])
+        destinations = crowd.destination[[row]].astype(np.int64).repeat(count)
+        lengths = environment.targets(doors, destinations).distances
+        rides = {(each.leaving, each.arriving): each.length for each in shaft.links}
+        names = [gate.name for gate in shaft.gates]
+        ways = [
+            lengths[k] + (rides[names[stop], names[k]] if k != stop else 0.0) for k in range(count)
+        ]
+        # The way from this stop leads through the lift as well, and is as long as that by the best.
+        ways[stop] = np.inf
+        best = int(np.argmin(ways))
+        return best if np.isfinite(ways[best]) else stop
+
+    def _in_car(
+        self, lift: int, stop: int, inside: NDArray[np.int64], crowd: Crowd
+    ) -> NDArray[np.int64]:
+        """Rows of those inside who are in a car at a stop."""
+        points = np.column_stack([crowd.x[inside], crowd.y[inside]])
+        return inside[self.shafts[lift].in_car(stop, points)]
+
+    def _make_room(self, rows: NDArray[np.int64]) -> None:
+        count = int(rows.max(initial=-1)) + 1
+        more = max(count, 2 * len(self._rides)) - len(self._rides)
+        if count <= len(self._rides):
+            return
+        for name in ("_rides", "_to", "_calls", "_stop"):
+            setattr(self, name, np.append(getattr(self, name), np.full(more, NOBODY)))
+        self._called = np.append(self._called, np.zeros(more, np.int64))
+        self._spot = np.append(self._spot, np.zeros((more, 2)), axis=0)

@@ -1,0 +1,106 @@
+"""Waiting for a lift, getting in, and standing in the car."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.lifts.lifts import NOBODY, Lifts
+from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
+from mesa_mobility.crowd.tactics.tactic import Tactic
+from mesa_mobility.crowd.tactics.visits import slow_down
+from mesa_mobility.schema import Kind
+
+CALLS = 4.0
+"""Metres from the door within which somebody calls a lift."""
+
+KEEPS_OFF = 1.2
+"""Least metres from the door at which people wait, so that others can get out."""
+
+DETOUR = 1.0
+"""Metres by which a route may be shorter than the way to the middle of a door and on from there for
+it to lead through that door."""
+
+APART = 0.15
+"""Metres that somebody who waits takes up around their body."""
+
+THERE = 0.15
+"""Metres from their spot at which people stop."""
+
+
+class RideLifts(Tactic):
+    """People wait before lifts until there is room for them, get in, and stand in the car."""
+
+    name = "lifts"
+    saved: ClassVar[Mapping[str, Kind]] = {}  # the lifts are the model's
+
+    _lifts: Lifts
+
+    def bind(self, model: World) -> None:
+        """Keep the lifts, and which openings are their doors."""
+        self._lifts = model.lifts
+        numbers = {opening.name: k for k, opening in enumerate(model.floor_plan.openings())}
+        self._doors = [[numbers[gate.name] for gate in each.gates] for each in self._lifts.shafts]
+
+    def apply(self, deciding: Deciding, desired: Desired) -> None:
+        """Have people stand before the doors, or go to their spot in the car."""
+        if desired.newcomers or not len(self._lifts):
+            return
+        rows, lifts = deciding.pedestrians, self._lifts
+        inside = lifts.car_of(deciding.positions) != NOBODY
+        new = lifts.rides(rows) == NOBODY
+        number, stop, away = self._bound_for(deciding, desired, ~inside)
+        lifts.call(rows[new], number[new], stop[new], deciding.frame)
+        held = (number != NOBODY) & new
+        held &= away < self._rims(number, stop, held, deciding)
+        in_car = np.flatnonzero(inside & ~new)
+        if len(in_car):
+            spots = lifts.spots(rows[in_car])
+            left = np.hypot(*(spots - deciding.positions[in_car]).T)
+            held[in_car[left < THERE]] = True
+            desired.points, desired.speeds = desired.points.copy(), desired.speeds.copy()
+            desired.points[in_car] = spots
+            desired.speeds[in_car] = slow_down(desired.speeds[in_car], left)
+        if held.any():
+            deciding.hold(desired, held)
+
+    def _bound_for(
+        self, deciding: Deciding, desired: Desired, who: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        """(n,) number of the lift into which the route of each leads soon, or -1, (n,) of the stop
+        there, and (n,) metres to the door."""
+        count = len(deciding.pedestrians)
+        number, stop = np.full((2, count), NOBODY)
+        away = np.full(count, np.inf)
+        for lift, shaft in enumerate(self._lifts.shafts):
+            for k, opening in enumerate(self._doors[lift]):
+                to_door = np.hypot(*(deciding.positions - shaft.door(k)).T)
+                near = np.flatnonzero(who & (to_door < CALLS))
+                if not len(near):
+                    continue
+                before = shaft.before_door(k)[None].repeat(len(near), axis=0)
+                there = deciding.site.targets(before, deciding.destinations[near])
+                way = np.hypot(*(deciding.positions[near] - before).T) + there.distances
+                by = (there.gates == opening) & (way < desired.targets.distances[near] + DETOUR)
+                number[near[by]], stop[near[by]], away[near[by]] = lift, k, to_door[near[by]]
+        return number, stop, away
+
+    def _rims(
+        self,
+        number: NDArray[np.int64],
+        stop: NDArray[np.int64],
+        calls: NDArray[np.bool_],
+        deciding: Deciding,
+    ) -> NDArray[np.float64]:
+        """(n,) metres from the door within which those who call wait: a half-circle with room for
+        all of them."""
+        crowd, rims = deciding.inside.crowd, np.zeros(len(number))
+        for lift, k in {(int(a), int(b)) for a, b in zip(number[calls], stop[calls], strict=True)}:
+            cores = crowd.core[self._lifts.waiting(lift, k, crowd)[0]]
+            area = float((np.pi * (cores + APART) ** 2).sum())
+            rims[calls & (number == lift) & (stop == k)] = KEEPS_OFF + np.sqrt(2.0 * area / np.pi)
+        return rims
