@@ -4,6 +4,7 @@ from mesa_mobility.models.auditorium import Auditorium
 from mesa_mobility.models.doorway import Doorway
 from mesa_mobility.models.floor_plan import FloorPlanEgress
 from mesa_mobility.models.mixed_evacuation import MixedEvacuation
+from mesa_mobility.models.office_tower import OfficeTower
 from mesa_mobility.models.open_space import OpenSpace
 from mesa_mobility.models.straight_walk import StraightWalk
 
@@ -12,6 +13,7 @@ __all__ = [
     "Doorway",
     "FloorPlanEgress",
     "MixedEvacuation",
+    "OfficeTower",
     "OpenSpace",
     "StraightWalk",
 ]

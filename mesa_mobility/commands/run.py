@@ -235,6 +235,10 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
             f"Stairs {each['stairs']}": _figures_of_stairs(each)
             for each in summary.get("by_stairs", ())
         },
+        **{
+            f"Lift {each['lift']}": f"{each['carried']} people carried in {each['trips']} rides"
+            for each in summary.get("lifts", ())
+        },
         "Decisions": f"{summary['decisions']}",
         "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
         f"{summary['fallback_time_share']:.1%} of the time",

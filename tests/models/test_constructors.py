@@ -4,7 +4,14 @@ import inspect
 
 import numpy as np
 import pytest
-from mesa_mobility.models import Auditorium, Doorway, MixedEvacuation, OpenSpace, StraightWalk
+from mesa_mobility.models import (
+    Auditorium,
+    Doorway,
+    MixedEvacuation,
+    OfficeTower,
+    OpenSpace,
+    StraightWalk,
+)
 
 from mesa_mobility import FloorPlan, PedestrianModel
 from mesa_mobility.errors import FloorPlanError, MapError, MobilityError, ModelError
@@ -18,6 +25,7 @@ MODELS = {
     "doorway": Doorway,
     "auditorium": Auditorium,
     "mixed_evacuation": MixedEvacuation,
+    "office_tower": OfficeTower,
 }
 
 models = pytest.mark.parametrize("model", MODELS.values())
@@ -89,7 +97,9 @@ def test_the_map_may_be_a_file(model, tmp_path):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("model", [each for each in MODELS.values() if each is not MixedEvacuation])
+@pytest.mark.parametrize(
+    "model", [each for each in MODELS.values() if each not in (MixedEvacuation, OfficeTower)]
+)
 def test_the_map_that_ships_is_the_default(model):
     made = model(pedestrians=1, rng=1)
     assert made.pedestrian_types[0].name == "able_bodied"
@@ -114,6 +124,8 @@ BAD = [
     (Doorway, {"door_width": float("nan")}, "door_width"),
     (Auditorium, {"pedestrians": 5000}, "pedestrians: got 5000"),
     (Auditorium, {"exit_door": 0.3}, "exit_door: got 0.3"),
+    (OfficeTower, {"storeys": 1}, "storeys: got 1"),
+    (OfficeTower, {"pedestrians": 2000}, "pedestrians: got 2000"),
     (MixedEvacuation, {"ramp_factor": 0.0}, "ramp_factor: got 0"),
     (MixedEvacuation, {"ramp_factor": 1.5}, "ramp_factor: got 1.5"),
     (MixedEvacuation, {"ramp_factor": float("nan")}, "ramp_factor: got nan"),

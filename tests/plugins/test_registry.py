@@ -6,7 +6,14 @@ from tests.commands.conftest import install, plugins
 
 __all__ = ["install", "plugins"]
 
-SHIPPED_MODELS = {"straight_walk", "open_space", "doorway", "auditorium", "mixed_evacuation"}
+SHIPPED_MODELS = {
+    "straight_walk",
+    "open_space",
+    "doorway",
+    "auditorium",
+    "mixed_evacuation",
+    "office_tower",
+}
 SHIPPED_BEHAVIORS = {
     "target_distance",
     "facing_deviation",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
 from mesa_mobility.crowd.state.twins import shift_people
+from mesa_mobility.errors import ContentError
 from mesa_mobility.floorplan import Shaft
 from mesa_mobility.schema import Array, Kind
 
@@ -47,21 +48,6 @@ class Lifts(Saved):
         carried: (lifts,) people whom each has carried.
     """
 
-    saved: ClassVar[Mapping[str, Kind]] = {
-        "at": Array("i8", ("lifts",), 0),
-        "trips": Array("i8", ("lifts",), 0),
-        "carried": Array("i8", ("lifts",), 0),
-        "_from": Array("i8", ("lifts",), NOBODY),
-        "_open": Array("i8", ("lifts",), 0, 2 * LAST_FRAME),
-        "_since": Array("i8", ("lifts",), 0, 2 * LAST_FRAME),
-        "_rides": Array("i8", ("known",), NOBODY),
-        "_to": Array("i8", ("known",), NOBODY),
-        "_spot": Array("f8", ("known", 2), -FARTHEST, FARTHEST),
-        "_calls": Array("i8", ("known",), NOBODY),
-        "_stop": Array("i8", ("known",), NOBODY),
-        "_called": Array("i8", ("known",), 0, LAST_FRAME),
-    }
-
     def __init__(self, shafts: tuple[Shaft, ...]) -> None:
         self.shafts = shafts
         count = len(shafts)
@@ -69,6 +55,50 @@ class Lifts(Saved):
         self._from = np.full(count, NOBODY)
         self._rides, self._to, self._calls, self._stop, self._called = np.empty((5, 0), np.int64)
         self._spot = np.empty((0, 2))
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        lifts, frame = (len(self.shafts),), 2 * LAST_FRAME
+        last = max((len(each.stops) for each in self.shafts), default=0) - 1
+        rows = ("known",)
+        return {
+            "at": Array("i8", lifts, 0, last),
+            "trips": Array("i8", lifts, 0),
+            "carried": Array("i8", lifts, 0),
+            "_from": Array("i8", lifts, NOBODY, last),
+            "_open": Array("i8", lifts, 0, frame),
+            "_since": Array("i8", lifts, 0, frame),
+            "_rides": Array("i8", rows, NOBODY, len(self.shafts) - 1),
+            "_to": Array("i8", rows, NOBODY, last),
+            "_spot": Array("f8", ("known", 2), -FARTHEST, FARTHEST),
+            "_calls": Array("i8", rows, NOBODY, len(self.shafts) - 1),
+            "_stop": Array("i8", rows, NOBODY, last),
+            "_called": Array("i8", rows, 0, LAST_FRAME),
+        }
+
+    def state(self) -> dict[str, Any]:
+        """Where the cars are, and who waits and rides."""
+        return {name: getattr(self, name) for name in self.members()}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given.
+
+        Raises:
+            ContentError: a stop that a lift does not have.
+        """
+        stops = np.array([len(each.stops) for each in self.shafts], dtype=np.int64)
+        every = np.arange(len(stops))
+        for name, lifts in (
+            ("at", every),
+            ("_from", every),
+            ("_to", state["_rides"]),
+            ("_stop", state["_calls"]),
+        ):
+            ours = lifts != NOBODY
+            if (state[name][ours] >= stops[lifts[ours]]).any():
+                raise ContentError(f"lifts, {name}: has a stop that the lift does not have")
+        for name in self.members():
+            setattr(self, name, state[name])
 
     def __len__(self) -> int:
         return len(self.shafts)

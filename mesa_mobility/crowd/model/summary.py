@@ -17,8 +17,9 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         ``stall_reason`` (None unless stalled), ``blocked`` (everybody who has ever stood for a
         minute without a reason: ``person``, ``since_s``, ``ring`` as rows, and whether they
         still do, ``stands``), ``decisions``, ``fallback_decision_share``,
-        ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time) and ``occupancy``
-        ([[t, inside], ...] each second).
+        ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time), ``occupancy``
+        ([[t, inside], ...] each second) and, in buildings with lifts, ``lifts`` (of each ``lift``
+        its ``trips`` and how many people it has ``carried``).
     """
     last_left, standing = model.statistics.last_left, model.blocked
     out = model.inside == 0 and last_left is not None and not model.sources.expecting
@@ -46,4 +47,13 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         "fallback_time_share": model.statistics.fallback_time_share,
         "mean_speed_mps": model.statistics.mean_speed_so_far,
         "occupancy": [list(row) for row in model.statistics.occupancy],
+        **({"lifts": _lifts(model)} if len(model.lifts) else {}),
     }
+
+
+def _lifts(model: CrowdModel) -> list[dict[str, Any]]:
+    lifts = model.lifts
+    return [
+        {"lift": each.name, "trips": int(lifts.trips[k]), "carried": int(lifts.carried[k])}
+        for k, each in enumerate(lifts.shafts)
+    ]

@@ -5,6 +5,7 @@ import pytest
 
 from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.buildings import Building, Level, Lift, Stairs
+from mesa_mobility.errors import ContentError
 from mesa_mobility.floorplan import Exit, Router
 from mesa_mobility.results import check_safety
 from tests.fixtures.checkpoints import check_going_on
@@ -59,6 +60,10 @@ def test_everybody_gets_out_by_stairs_or_lift(rng):
     assert model.without_stairs == []
     # Nobody else uses the lift.
     assert model.lifts.carried.tolist() == [own.count(False)]
+    [lift] = model.summary()["lifts"]
+    assert (lift["lift"], lift["carried"]) == ("car", own.count(False))
+    # It goes up for each, and comes down: a wheelchair fills it.
+    assert lift["trips"] == 2 * own.count(False)
     tracks = Trajectories.of(model)
     plan = building.floor_plan
     assert check_safety(tracks, plan.walls, plan.free, building=building).passed
@@ -143,6 +148,16 @@ def test_steps_and_checkpoints_change_nothing(tmp_path):
     assert all(np.array_equal(each, tracks[0]) for each in tracks)
     # 18 s: somebody rides.
     check_going_on(Office(rng=1), tmp_path, saved_at=18, until=40)
+
+
+def test_a_checkpoint_with_a_stop_that_is_not_there_is_refused():
+    model = crowd(office(), 2, "wheelchair_powered: 1.0")
+    model.run(max_seconds=10)
+    state = {name: each.copy() for name, each in model.lifts.state().items()}
+    assert (state["_calls"] >= 0).any()
+    state["_stop"][state["_calls"] >= 0] = 2
+    with pytest.raises(ContentError, match="lifts, _stop: has a stop that the lift does not have"):
+        model.lifts.restore(state)
 
 
 def test_routes_count_a_ride_as_long_as_it_takes():
