@@ -199,8 +199,8 @@ class Queueing(Tactic):
                     line.insert(k, other)
 
     def _in_the_way(self, row: int, behind: list[int], place: NDArray[np.float64]) -> int | None:
-        """Who of those behind is in the way of somebody who stands before their place; nobody if
-        that person is in the other's way to the same place."""
+        """The person behind who is in the way of somebody who stands before their place; None if
+        that is nobody, or if they are in each other's way to the same place."""
         crowd = self._model.crowd
         away = np.hypot(crowd.x[behind] - crowd.x[row], crowd.y[behind] - crowd.y[row])
         touching = away < crowd.core[behind] + crowd.core[row] + _MOVES_UP

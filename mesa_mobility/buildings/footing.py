@@ -22,7 +22,7 @@ _ROUNDING = 1e-6
 
 
 class Footing:
-    """What carries bodies and feet in a building.
+    """Heights at which bodies and feet are drawn in a building.
 
     A place on a flight has the height of a slope. Treads are above or below this slope by up to
     half a riser.

@@ -80,3 +80,8 @@ class Level:
     def blocked(self) -> tuple[Polygon, ...]:
         """The obstacles as shapely geometries."""
         return tuple(each for each in self.obstacles if isinstance(each, Polygon))
+
+
+def number_of(level: Level | int) -> int:
+    """The number of a level that is given as such, or by its number."""
+    return level.number if isinstance(level, Level) else level

@@ -10,7 +10,7 @@ import numpy as np
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.level import Level, number_of
 from mesa_mobility.buildings.lines import Line, line_of, right_angle
 from mesa_mobility.errors import FloorPlanError
 
@@ -60,7 +60,7 @@ class Lift:
     def __post_init__(self) -> None:
         what = f"lift {self.name!r}"
         object.__setattr__(self, "door", line_of("lift", self.name, "door", self.door))
-        numbers = tuple(each.number if isinstance(each, Level) else each for each in self.levels)
+        numbers = tuple(number_of(each) for each in self.levels)
         object.__setattr__(self, "levels", numbers)
         if len(numbers) < 2 or len(set(numbers)) < len(numbers):
             raise FloorPlanError(f"{what}: expected two levels or more, each once, found {numbers}")
@@ -82,7 +82,7 @@ class Lift:
     @property
     def numbers(self) -> tuple[int, ...]:
         """The numbers of its levels."""
-        return tuple(each.number if isinstance(each, Level) else each for each in self.levels)
+        return tuple(number_of(each) for each in self.levels)
 
     def part(self, first: float, last: float, half: float) -> Polygon:
         """The rectangle from ``first`` to ``last`` metres behind the door.

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.level import Level, number_of
 from mesa_mobility.buildings.lines import Line, line_of, moved, pair, right_angle
 from mesa_mobility.errors import FloorPlanError
 
@@ -180,8 +180,8 @@ class Stairs:
         """Stairs of one straight flight; see the class for the arguments."""
         return cls(
             name,
-            _number(upper),
-            _number(lower),
+            number_of(upper),
+            number_of(lower),
             line_of("stairs", name, "head", head),
             risers,
             tread,
@@ -207,8 +207,8 @@ class Stairs:
         """
         return cls(
             name,
-            _number(upper),
-            _number(lower),
+            number_of(upper),
+            number_of(lower),
             line_of("stairs", name, "head", head),
             risers,
             tread,
@@ -314,7 +314,3 @@ class Stairs:
 def sheet_of(level: int) -> str:
     """Name of the sheet of a level."""
     return f"level {level}"
-
-
-def _number(level: Level | int) -> int:
-    return level.number if isinstance(level, Level) else level

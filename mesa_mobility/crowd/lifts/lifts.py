@@ -264,11 +264,7 @@ class Lifts(Saved):
         doors = np.array([shaft.before_door(k) for k in range(count)])
         destinations = crowd.destination[[row]].astype(np.int64).repeat(count)
         lengths = environment.targets(doors, destinations).distances
-        rides = {(each.leaving, each.arriving): each.length for each in shaft.links}
-        names = [gate.name for gate in shaft.gates]
-        ways = [
-            lengths[k] + (rides[names[stop], names[k]] if k != stop else 0.0) for k in range(count)
-        ]
+        ways = [lengths[k] + shaft.ride_length(stop, k) for k in range(count)]
         # The way from this stop leads through the lift as well, and is as long as that by the best.
         ways[stop] = np.inf
         best = int(np.argmin(ways))

@@ -19,7 +19,6 @@ from mesa_mobility.floorplan.floor.seams import Link
 WALKS = 1.34
 """Metres that people walk in a second, by which times of a ride count in routes (Weidmann 1993)."""
 
-
 _OUTSIDE = 0.8
 """Metres from a door to a place right before it, at which a wheelchair has room."""
 
@@ -114,24 +113,31 @@ class Shaft:
         rise = abs(self.stops[end].elevation - self.stops[start].elevation)
         return 2.0 * self.door_s + rise / self.speed
 
-    @property
-    def links(
-        self,
-    ) -> list[Link]:
-        """How routes lead through the car.
+    def ride_length(self, start: int, end: int) -> float:
+        """Metres as which a ride counts in routes.
 
-        A ride counts as long as it takes, and so does half a ride to and fro, for which people wait
-        on average for a car that nobody else uses.
+        It counts as long as it takes, and so does half a ride to and fro, for which people wait on
+        average for a car that nobody else uses.
         """
-        into, gates, found = self.into(), self.gates, []
-        for start in range(len(self.stops)):
-            for end in range(len(self.stops)):
-                if start != end:
-                    seconds = 2.0 * self.ride_s(start, end)
-                    names = gates[start].name, gates[end].name
-                    shift = self.shift(start, end)
-                    found.append(Link(*names, into, -into, shift, seconds * WALKS))
-        return found
+        return 2.0 * self.ride_s(start, end) * WALKS
+
+    @property
+    def links(self) -> list[Link]:
+        """How routes lead through the car, from each stop to each other."""
+        into, gates, every = self.into(), self.gates, range(len(self.stops))
+        return [
+            Link(
+                gates[start].name,
+                gates[end].name,
+                into,
+                -into,
+                self.shift(start, end),
+                self.ride_length(start, end),
+            )
+            for start in every
+            for end in every
+            if start != end
+        ]
 
     def _axes(
         self, stop: int
