@@ -17,14 +17,14 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from mesa_mobility.behaviors.right_of_way import OPPOSED
 from mesa_mobility.behaviors.steering.anticipation import GAINS, turns
 from mesa_mobility.behaviors.steering.people_ahead import (
-    LIMIT,
     MOTION_FIELDS,
-    WAY_X,
-    WAY_Y,
+    VX,
+    VY,
+    find_between,
     note_motion,
+    somebody_comes,
 )
 from numpy.typing import NDArray
 
@@ -34,7 +34,6 @@ from mesa_mobility.steering import (
     CrowdView,
     Grid,
     Sight,
-    cells_within,
     compiled,
     inner,
     nobody,
@@ -58,10 +57,23 @@ STEPS = 7
 """Number of courses to each side: the last is turned by 62 degrees, by which somebody gets round a
 person whom they stand behind."""
 
-_COURSES = np.stack([np.cos(turns(STEPS)), np.sin(turns(STEPS))])
-"""(2, courses) cosine and sine of the turn of each course."""
+_LANES = 2 * STEPS + 2
+"""Number of courses; the last is the first once more, since a processor takes 8 at a time."""
 
 _FIELDS = 4
+
+
+def _course_table() -> NDArray[np.float64]:
+    """(7, ``_LANES``) cosine and sine of the turn of each course, and the change of velocity that
+    it takes, as a share of the speed; the other rows are workspace."""
+    angles = np.append(turns(STEPS), 0.0)
+    courses = np.zeros((7, _LANES))
+    courses[0], courses[1] = np.cos(angles), np.sin(angles)
+    courses[2] = np.sqrt(2.0 - 2.0 * courses[0])
+    return courses
+
+
+_COURSE_TABLE = _course_table()
 
 
 class CourseSettings(NamedTuple):
@@ -103,10 +115,12 @@ def choose_courses(
     points = points.copy()
     grid, crowd = inside.grid, inside.crowd
     n = len(grid.people)
-    ahead, motion = np.empty((_FIELDS, n)), np.empty((MOTION_FIELDS, n))
+    motion = np.empty((MOTION_FIELDS, n))
     note_motion(grid, frame, crowd.records, crowd.agenda, motion)
     around = _Around(grid, sight, crowd.records, motion)
-    _choose_courses(rows, around, points, speeds, settings, _COURSES, ahead)
+    ahead, found = np.empty((_FIELDS, n)), np.empty(n + 1, dtype=np.int64)
+    courses = _COURSE_TABLE.copy()
+    _choose_courses(rows, around, points, speeds, settings, courses, ahead, found)
     return points
 
 
@@ -119,9 +133,14 @@ def _choose_courses(
     settings: CourseSettings,
     courses: NDArray[np.float64],
     ahead: NDArray[np.float64],
+    found: NDArray[np.int64],
 ) -> None:
-    """Change ``points`` as of ``choose_courses``; ``ahead`` has room for everybody."""
-    state, sight = around.state, around.sight
+    """Change ``points`` as of ``choose_courses``.
+
+    ``ahead`` and ``found`` have room for everybody; ``courses`` is of ``_course_table``.
+    """
+    state, sight, width = around.state, around.sight, settings.width
+    cosine, change, ux, uy, on = courses[0], courses[2], courses[3], courses[4], courses[5]
     for k in range(len(rows)):
         i = rows[k]
         x, y = state[i].x, state[i].y
@@ -133,114 +152,98 @@ def _choose_courses(
         now = math.sqrt(state[i].vx * state[i].vx + state[i].vy * state[i].vy)
         speed = min(speeds[k], now + GAINS)
         far = min(speed * AHEAD, away)
-        count = _people_ahead(x, y, ex, ey, away, around, ahead)
-        if _gets_on(ex, ey, far, speed, settings.width, ahead, count) >= far:
+        way = (x, y, ex, ey, away)
+        count = find_between(way, REACH, around.grid, around.motion, found)
+        for m in range(count):
+            a = found[m]
+            ahead[0, m], ahead[1, m] = around.grid.x[a] - x, around.grid.y[a] - y
+            ahead[2, m], ahead[3, m] = around.motion[VX, a], around.motion[VY, a]
+        if not _held_up(ex, ey, far, speed, width, ahead, count):
             continue
-        if _somebody_comes(x, y, ex, ey, away, around):
+        if somebody_comes(way, COMING, around.grid, around.motion, sight, found):
             continue
-        count = _in_view(x, y, sight, ahead, count)
-        best, bx, by = np.inf, ex, ey
-        for n in range(courses.shape[1]):
-            c, s = courses[0, n], courses[1, n]
-            ux, uy = c * ex - s * ey, s * ex + c * ey
-            cost = speed * math.sqrt(2.0 - 2.0 * c)
+        _set_courses(ex, ey, far, courses)
+        for other in range(count):
+            _hold_up(x, y, far, speed, width, ahead, other, sight, courses)
+        best, at = np.inf, 0
+        for n in range(_LANES):
+            cost = speed * change[n]
             if cost < best:
-                on = c * _gets_on(ux, uy, far, speed, settings.width, ahead, count)
-                cost += settings.haste * speed * (1.0 - on / far)
-            if cost < best and (n == 0 or unwalled(sight, x, y, x + far * ux, y + far * uy)):
-                best, bx, by = cost, ux, uy
-        points[k, 0], points[k, 1] = x + away * bx, y + away * by
+                cost += settings.haste * speed * (1.0 - cosine[n] * on[n] / far)
+            if cost < best and (n == 0 or unwalled(sight, x, y, x + far * ux[n], y + far * uy[n])):
+                best, at = cost, n
+        points[k, 0], points[k, 1] = x + away * ux[at], y + away * uy[at]
 
 
 @inner()
-def _people_ahead(
-    x: float,
-    y: float,
+def _held_up(
     ex: float,
     ey: float,
-    away: float,
-    around: _Around,
-    ahead: NDArray[np.float64],
-) -> int:
-    """Write place, from (x, y) on, and velocity of those on this side of a target; returns their
-    number."""
-    grid = around.grid
-    first, last, low, high = cells_within(grid, x, y, REACH)
-    count = 0
-    for row in range(low, high + 1):
-        for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
-            dx, dy = grid.x[a] - x, grid.y[a] - y
-            along = dx * ex + dy * ey
-            if not 0.0 < along < away or dx * dx + dy * dy > REACH * REACH:
-                continue
-            j = grid.people[a]
-            ahead[0, count], ahead[1, count] = dx, dy
-            ahead[2, count], ahead[3, count] = around.state[j].vx, around.state[j].vy
-            count += 1
-    return count
-
-
-@inner()
-def _somebody_comes(x: float, y: float, ex: float, ey: float, away: float, around: _Around) -> bool:
-    """Whether somebody in view, on this side of a target, wants to go the other way, at more than
-    120 degrees.
-
-    People who wait do not: they always count for others, which is what an endless limit says.
-    """
-    grid, motion = around.grid, around.motion
-    first, last, low, high = cells_within(grid, x, y, COMING)
-    for row in range(low, high + 1):
-        for a in range(grid.offsets[row * grid.nx + first], grid.offsets[row * grid.nx + last + 1]):
-            dx, dy = grid.x[a] - x, grid.y[a] - y
-            if (
-                motion[LIMIT, a] < np.inf
-                and 0.0 < dx * ex + dy * ey < away
-                and dx * dx + dy * dy <= COMING * COMING
-                and motion[WAY_X, a] * ex + motion[WAY_Y, a] * ey
-                < -OPPOSED * math.hypot(motion[WAY_X, a], motion[WAY_Y, a])
-                and unwalled(around.sight, x, y, grid.x[a], grid.y[a])
-            ):
-                return True
-    return False
-
-
-@inner()
-def _in_view(x: float, y: float, sight: Sight, ahead: NDArray[np.float64], count: int) -> int:
-    """Move those whom no wall hides to the front; returns their number."""
-    seen = 0
-    for k in range(count):
-        if unwalled(sight, x, y, x + ahead[0, k], y + ahead[1, k]):
-            for field in range(_FIELDS):
-                ahead[field, seen] = ahead[field, k]
-            seen += 1
-    return seen
-
-
-@inner()
-def _gets_on(
-    ux: float,
-    uy: float,
     far: float,
     speed: float,
     width: float,
     ahead: NDArray[np.float64],
     count: int,
+) -> bool:
+    """Whether somebody who walks ``far`` along (ex, ey) catches up with anybody."""
+    held_up = 0
+    for k in range(count):
+        held_up += int(_gets_on(ex, ey, far, speed, width, ahead, k) < far)
+    return held_up > 0
+
+
+@inner()
+def _gets_on(
+    ux: float, uy: float, far: float, speed: float, width: float, ahead: NDArray[np.float64], k: int
 ) -> float:
-    """Metres that somebody gets along (ux, uy) in the time in which they would walk ``far``.
+    """Metres that somebody gets along (ux, uy) behind the k-th of those ahead, in the time in which
+    they would walk ``far``.
 
     They follow whoever they catch up with.  Somebody half of ``width`` to the side or less counts
     in full, somebody at ``width`` not at all.
     """
-    on = far
-    for k in range(count):
-        dx, dy = ahead[0, k], ahead[1, k]
-        along = dx * ux + dy * uy
-        counts = min(2.0 - 2.0 * abs(dx * uy - dy * ux) / width, 1.0)
-        if along > 0.0 and counts > 0.0:
-            theirs = max(ahead[2, k] * ux + ahead[3, k] * uy, 0.0) * far / speed
-            lost = far - max(along - CLOSE, 0.0) - theirs
-            on = min(on, far - counts * max(lost, 0.0))
-    return on
+    dx, dy = ahead[0, k], ahead[1, k]
+    along = dx * ux + dy * uy
+    counts = min(2.0 - 2.0 * abs(dx * uy - dy * ux) / width, 1.0)
+    theirs = max(ahead[2, k] * ux + ahead[3, k] * uy, 0.0) * far / speed
+    lost = far - max(along - CLOSE, 0.0) - theirs
+    return far - counts * max(lost, 0.0) if (along > 0.0) & (counts > 0.0) else far
+
+
+@inner()
+def _set_courses(ex: float, ey: float, far: float, courses: NDArray[np.float64]) -> None:
+    """Write the directions of courses round (ex, ey), and that nobody is in their way."""
+    cosine, sine, ux, uy, on = courses[0], courses[1], courses[3], courses[4], courses[5]
+    for n in range(_LANES):
+        ux[n] = cosine[n] * ex - sine[n] * ey
+        uy[n] = sine[n] * ex + cosine[n] * ey
+        on[n] = far
+
+
+@inner()
+def _hold_up(
+    x: float,
+    y: float,
+    far: float,
+    speed: float,
+    width: float,
+    ahead: NDArray[np.float64],
+    k: int,
+    sight: Sight,
+    courses: NDArray[np.float64],
+) -> None:
+    """Lower how far somebody at (x, y) gets on each course, if the k-th of those ahead is in view.
+
+    Whether they are is looked up only for those who would lower it.
+    """
+    ux, uy, on, behind = courses[3], courses[4], courses[5], courses[6]
+    lowered = 0
+    for n in range(_LANES):
+        behind[n] = _gets_on(ux[n], uy[n], far, speed, width, ahead, k)
+        lowered += int(behind[n] < on[n])
+    if lowered > 0 and unwalled(sight, x, y, x + ahead[0, k], y + ahead[1, k]):
+        for n in range(_LANES):
+            on[n] = min(on[n], behind[n])
 
 
 class ChooseCourse(Tactic):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from mesa_mobility.behaviors.right_of_way import OPPOSED
 from numpy.typing import NDArray
 
 from mesa_mobility.steering import (
@@ -163,10 +164,95 @@ def _ahead_in_run(
         counts &= wx * wx + wy * wy > SLOWEST * SLOWEST
         counts &= way_x[k] * ex + way_y[k] * ey <= limit[k]
         marks[k] = 1.0 if counts else 0.0
+    return _marked(start, end, marks, found, count)
+
+
+@inner()
+def _marked(
+    start: int, end: int, marks: NDArray[np.float64], found: NDArray[np.int64], count: int
+) -> int:
+    """Add those of the people ``start`` to ``end`` of the grid who are marked to ``found``.
+
+    Returns how many there are by then.
+    """
     for k in range(end - start):
         found[count] = start + k
         count += int(marks[k])
     return count
+
+
+@inner()
+def find_between(
+    way: tuple[float, float, float, float, float],
+    reach: float,
+    grid: Grid,
+    motion: NDArray[np.float64],
+    found: NDArray[np.int64],
+) -> int:
+    """Write those on this side of somebody's target to ``found``, by their places in the grid.
+
+    Args:
+        way: place of the walker, unit vector to their target, and how far that is away; metres.
+        reach: metres within which people count.
+        grid: everybody inside.
+        motion: of the people in the grid.
+        found: is written; with room for all of them and one more.
+
+    Returns:
+        Their number.
+    """
+    px, py, ex, ey, away = way
+    first, last, low, high = cells_within(grid, px, py, reach)
+    count = 0
+    for row in range(low, high + 1):
+        start = grid.offsets[row * grid.nx + first]
+        end = grid.offsets[row * grid.nx + last + 1]
+        x, y, marks = grid.x[start:end], grid.y[start:end], motion[MARKED, start:end]
+        for k in range(end - start):
+            dx, dy = x[k] - px, y[k] - py
+            along = dx * ex + dy * ey
+            counts = (along > 0.0) & (along < away) & (dx * dx + dy * dy <= reach * reach)
+            marks[k] = 1.0 if counts else 0.0
+        count = _marked(start, end, marks, found, count)
+    return count
+
+
+@inner()
+def somebody_comes(
+    way: tuple[float, float, float, float, float],
+    reach: float,
+    grid: Grid,
+    motion: NDArray[np.float64],
+    sight: Sight,
+    found: NDArray[np.int64],
+) -> bool:
+    """Whether somebody in view, on this side of a target, wants to go the other way, at more than
+    120 degrees.
+
+    People who wait do not: they always count for others, which is what an endless limit says.
+
+    Args:
+        way: as of ``find_between``.
+        reach: metres within which people count.
+        grid: everybody inside.
+        motion: of the people in the grid.
+        sight: the walls.
+        found: workspace with room for everybody and one more.
+    """
+    px, py, ex, ey, _ = way
+    count = find_between(way, reach, grid, motion, found)
+    for k in range(count):
+        a = found[k]
+        way_x, way_y = motion[WAY_X, a], motion[WAY_Y, a]
+        theirs = way_x * ex + way_y * ey
+        if (
+            theirs < 0.0
+            and theirs * theirs > OPPOSED * OPPOSED * (way_x * way_x + way_y * way_y)
+            and motion[LIMIT, a] < np.inf
+            and unwalled(sight, px, py, grid.x[a], grid.y[a])
+        ):
+            return True
+    return False
 
 
 @inner()
