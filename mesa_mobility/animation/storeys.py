@@ -23,7 +23,8 @@ from mesa_mobility.animation.meshes import (
     prism,
     wall_surfaces,
 )
-from mesa_mobility.buildings.stairs import sheet_of
+from mesa_mobility.buildings.level import sheet_of
+from mesa_mobility.buildings.places import height_on, place_on
 from mesa_mobility.floorplan.floor.boundaries import boundary_segments, cut_out
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def storey_surfaces(building: Building, most_vertices: int | None = None) -> Ite
             mesh = flat(stripe, level.elevation + _LIFT)
             yield Surface(f"opening_{label}_{number}", *mesh, colour, True)
     for number, flight in enumerate(building.flights):
-        yield Surface(f"flight_{number}", *tread_mesh(flight), STEP, True)
+        yield Surface(f"flight_{number}", *flight_mesh(flight), STEP, True)
     for number, landing in enumerate(building.landings):
         yield Surface(f"landing_{number}", *_landing_mesh(landing), STEP, True)
 
@@ -108,7 +109,7 @@ def drawn_building(building: Building) -> dict[str, Any]:
     ``storeys`` has a floor plan for each level, from the lowest up, and its ``elevation``.
     ``stairs`` has meshes of steps and landings. ``flights`` has what puts feet on treads.
     """
-    parts = [(each.bottom, tread_mesh(each)) for each in building.flights]
+    parts = [(each.bottom, flight_mesh(each)) for each in building.flights]
     parts += [(each.elevation, _landing_mesh(each)) for each in building.landings]
     return {
         "bounds": shapely.total_bounds([level.area for level in building.levels]).tolist(),
@@ -145,8 +146,15 @@ def drawn_building(building: Building) -> dict[str, Any]:
 _OF_FLIGHTS = ("width", "going", "top", "bottom", "risers", "riser", "tread")
 
 
-def tread_mesh(flight: Flight) -> Mesh:
-    """The steps of a flight as boxes, one for each tread, each a riser below the one above."""
+def flight_mesh(flight: Flight) -> Mesh:
+    """The steps of a flight as boxes, one for each tread, each a riser below the one above; the
+    slab of a ramp."""
+    if not flight.risers:
+        ring = np.array(flight.part(0.0, flight.going).exterior.coords)
+        vertices, normals, triangles = prism(ring, -_SLAB, _SLAB)
+        down, _ = place_on(flight, vertices[:, :2].astype(np.float64))
+        vertices[:, 2] += height_on(flight, down)
+        return vertices, normals, triangles
     boxes = []
     for number in range(1, flight.risers):
         area = flight.part((number - 1) * flight.tread, number * flight.tread)

@@ -1,13 +1,15 @@
-"""Buildings of several levels: levels, stairs, lifts, and how they are laid out in one plane."""
+"""Buildings: levels, what joins them, and how they are laid out in one plane."""
 
 from mesa_mobility.buildings.building import Building
 from mesa_mobility.buildings.files import read_floor
+from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
 from mesa_mobility.buildings.level import Level
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import ON_STAIRS
+from mesa_mobility.buildings.ramp import Ramp
 from mesa_mobility.buildings.sheets import Sheet
-from mesa_mobility.buildings.stairs import Flight, Landing, Stairs
+from mesa_mobility.buildings.stairs import Stairs
 
 __all__ = [
     "ON_STAIRS",
@@ -17,6 +19,7 @@ __all__ = [
     "Landing",
     "Level",
     "Lift",
+    "Ramp",
     "Sheet",
     "Stairs",
     "read_floor",

@@ -1,4 +1,4 @@
-"""A building: levels joined by stairs and lifts, laid out in one plane."""
+"""A building: levels joined by stairs, ramps and lifts, laid out in one plane."""
 
 import os
 from collections.abc import Sequence
@@ -12,19 +12,21 @@ from numpy.typing import ArrayLike, NDArray
 from shapely import Polygon
 
 from mesa_mobility.buildings import geojson
+from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
-from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.level import Level, sheet_of
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import Places
+from mesa_mobility.buildings.ramp import Ramp
 from mesa_mobility.buildings.sheets import Sheet, seam_of, shaft_of, sheets_of, zones_of
-from mesa_mobility.buildings.stairs import Flight, Landing, Stairs, sheet_of
+from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, FloorPlan
 from mesa_mobility.floorplan.formats.geojson import label
 
 
 class Building:
-    """Levels that stairs and lifts join.
+    """Levels that stairs, ramps and lifts join.
 
     People are simulated in a plane, in which the levels and landings lie side by side as sheets.
     Each flight of stairs is drawn on both sheets that it joins, up to 0.3 m beyond its end. At its
@@ -33,7 +35,7 @@ class Building:
 
     On a flight, people walk as in a speed zone: at a share of the speed of a level floor, the same
     upwards and downwards, after the SFPE Handbook; see `Flight.factor`. Their movement is that
-    recorded on level floors.
+    recorded on level floors. People who use no stairs use ramps and lifts.
 
     A flight should be at least 2.7 m long in plan, twice the longest step: on a shorter one people
     see less far and walk more slowly. Where a flight passes over a level, or under it, its place
@@ -41,21 +43,21 @@ class Building:
 
     Args:
         levels: at least one.
-        stairs: what joins them.
+        stairs: the stairs and ramps that join them.
         lifts: the lifts.
         name: for titles and files.
 
     Raises:
-        FloorPlanError: levels or stairs of one number or name; stairs that lead nowhere, do not fit
-            their rise, have no floor before them, or overlap an obstacle, an opening or other
-            stairs or a lift; levels from which neither stairs nor a lift lead to an exit; or what
-            `FloorPlan` refuses.
+        FloorPlanError: levels, stairs, ramps or lifts of one number or name; stairs or ramps that
+            lead nowhere, do not fit their rise, have no floor before them, or overlap an obstacle,
+            an opening or each other or a lift; levels from which no stairs, ramp or lift lead to an
+            exit; or what `FloorPlan` refuses.
 
     Attributes:
         levels: the levels, in the order given.
-        stairs: the stairs, in the order given.
+        stairs: the stairs and ramps, in the order given.
         lifts: the lifts, in the order given.
-        flights: the flights of all stairs.
+        flights: the flights of all stairs, and the ramps.
         landings: the landings of all stairs.
         floor_plan: all sheets in one plane, which models use.
         footing: what carries bodies and feet on the stairs, for pictures.
@@ -77,7 +79,7 @@ class Building:
     def __init__(
         self,
         levels: Sequence[Level],
-        stairs: Sequence[Stairs] = (),
+        stairs: Sequence[Stairs | Ramp] = (),
         *,
         lifts: Sequence[Lift] = (),
         name: str = "",
@@ -92,7 +94,7 @@ class Building:
             try:
                 upper, lower = self.level(each.upper), self.level(each.lower)
             except FloorPlanError as error:
-                raise FloorPlanError(f"stairs {each.name!r}: {error}") from None
+                raise FloorPlanError(f"{each.kind} {each.name!r}: {error}") from None
             more, between = each.parts(upper.elevation, lower.elevation)
             flights += more
             landings += between
@@ -139,7 +141,8 @@ class Building:
         an `elevation`. A feature of the kind `stairs` is their upper edge, the end on the left of
         somebody who walks down first. It has `from` and `to`, the numbers of the upper and the
         lower level, `risers`, `tread` and `type`, straight or dog_leg; a dog-leg also `turn`,
-        `well` and, if it is not as deep as wide, `landing`. A feature of the kind `lift` is the
+        `well` and, if it is not as deep as wide, `landing`. A feature of the kind `ramp` is its
+        upper edge, with `from`, `to`, `length` and `factor`. A feature of the kind `lift` is the
         door, with the numbers of its `levels` and the other arguments of `Lift`. A building of one
         level is written as its floor plan.
         """
@@ -203,8 +206,8 @@ class Building:
         """
         return self._places.stairs(places)
 
-    def shapes_of(self, stairs: Stairs) -> list[Polygon]:
-        """The flights and landings of stairs in plan, in the building's coordinates."""
+    def shapes_of(self, stairs: Stairs | Ramp) -> list[Polygon]:
+        """The flights and landings of stairs, or a ramp, in plan, in the building's coordinates."""
         number = self.stairs.index(stairs)
         flights = [each for each in self.flights if self._owners[each.name] == number]
         landings = [each for each in self.landings if self._owners[each.name] == number]
@@ -285,7 +288,7 @@ class Building:
         for joined in nx.connected_components(graph):
             if len(self.levels) > 1 and not joined & leading_out:
                 raise FloorPlanError(
-                    f"level {min(joined)}: neither stairs nor a lift lead from there to a level "
+                    f"level {min(joined)}: no stairs, ramp or lift lead from there to a level "
                     "with an exit"
                 )
 
@@ -314,19 +317,25 @@ class Building:
         )
 
 
-def _check_names(levels: Sequence[Level], stairs: Sequence[Stairs], lifts: Sequence[Lift]) -> None:
+def _check_names(
+    levels: Sequence[Level], stairs: Sequence[Stairs | Ramp], lifts: Sequence[Lift]
+) -> None:
     """Levels, stairs and lifts must be that, and have different numbers and names."""
     if not levels:
         raise FloorPlanError("a building needs at least one level")
-    for given, kind in ((levels, Level), (stairs, Stairs), (lifts, Lift)):
+    for given, kinds in ((levels, (Level,)), (stairs, (Stairs, Ramp)), (lifts, (Lift,))):
         for each in given:
-            if not isinstance(each, kind):
+            if not isinstance(each, kinds):
+                expected = " or ".join(kind.__name__ for kind in kinds)
                 raise FloorPlanError(
-                    f"a building has {kind.__name__} objects, found {type(each).__name__}"
+                    f"a building has {expected} objects, found {type(each).__name__}"
                 )
     for what, names in (
         ("level", sorted(each.number for each in levels)),
-        ("stairs or lift", sorted([each.name for each in stairs] + [each.name for each in lifts])),
+        (
+            "stairs, ramp or lift",
+            sorted([each.name for each in stairs] + [each.name for each in lifts]),
+        ),
     ):
         for one, other in pairwise(names):
             if one == other:

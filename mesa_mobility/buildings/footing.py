@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.buildings.flights import Flight
 from mesa_mobility.buildings.places import height_on, place_on
-from mesa_mobility.buildings.stairs import Flight
 
 _STEP = 0.8
 """Metres beyond either end of a flight from which a foot may be on it."""
@@ -25,7 +25,7 @@ class Footing:
     """Heights at which bodies and feet are drawn in a building.
 
     A place on a flight has the height of a slope. Treads are above or below this slope by up to
-    half a riser.
+    half a riser. On a ramp the slope itself carries people.
 
     Args:
         flights: those of the building.
@@ -48,6 +48,8 @@ class Footing:
         """
         found = places[:, 2].copy()
         for flight in self._flights:
+            if not flight.risers:
+                continue
             down, aside = place_on(flight, places[:, :2])
             on = (down > 0.0) & (down < flight.going) & (aside <= flight.width / 2.0)
             on &= np.abs(height_on(flight, down) - places[:, 2]) <= _SAME
@@ -85,6 +87,10 @@ class Footing:
             down, aside = place_on(flight, points)
             over = near & (aside <= np.where(on, half + _ASIDE, half))
             over &= on | ((down > 0.0) & (down < flight.going + flight.tread))
+            if not flight.risers:
+                slope = height_on(flight, np.clip(down[over], 0.0, flight.going))
+                treads[over] = edges[over] = slope
+                continue
             count = np.ceil((down[over] - _ROUNDING) / flight.tread)
             count[down[over] >= flight.going] = flight.risers
             lowest, highest = flight.bottom, flight.top

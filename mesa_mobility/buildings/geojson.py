@@ -12,13 +12,14 @@ from mesa_mobility._numbers import is_number
 from mesa_mobility.buildings.level import Level
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.lines import Line
+from mesa_mobility.buildings.ramp import Ramp
 from mesa_mobility.buildings.stairs import DOG_LEG, Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.content import Content, content_of
 
-STAIRS, LIFT = "stairs", "lift"
+STAIRS, RAMP, LIFT = Stairs.kind, Ramp.kind, "lift"
 
 _OF_DOG_LEGS = ("turn", "well", "landing")
 
@@ -31,14 +32,14 @@ class Parts:
 
     Attributes:
         levels: its levels.
-        stairs: its stairs.
+        stairs: its stairs and ramps.
         lifts: its lifts.
         name: its name.
         closed: names of the exits and gates that are closed.
     """
 
     levels: Sequence[Level]
-    stairs: Sequence[Stairs]
+    stairs: Sequence[Stairs | Ramp]
     lifts: Sequence[Lift]
     name: str
     closed: Sequence[str]
@@ -72,13 +73,17 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     where, data = geojson.label(source), geojson.load(source)
     by_level: dict[int, list[tuple[object, str]]] = {}
     elevations: dict[int, float] = {}
-    stairs, lifts = [], []
+    stairs: list[Stairs | Ramp] = []
+    lifts = []
     for number, feature in enumerate(geojson.features_of(data, where)):
         at = f"{where}: feature {number}"
         properties = feature.get("properties") if isinstance(feature, Mapping) else None
         given: Mapping[str, Any] = properties if isinstance(properties, Mapping) else {}
         if given.get("kind") == STAIRS:
             stairs.append(_stairs(feature, given, at))
+            continue
+        if given.get("kind") == RAMP:
+            stairs.append(_ramp(feature, given, at))
             continue
         if given.get("kind") == LIFT:
             lifts.append(_lift(feature, given, at))
@@ -135,12 +140,13 @@ def _features(level: Level) -> list[dict[str, Any]]:
     return features
 
 
-def _stairs_feature(stairs: Stairs) -> dict[str, Any]:
-    feature = geojson.feature_of(STAIRS, stairs.name, shapely.LineString(stairs.head))
+def _stairs_feature(stairs: Stairs | Ramp) -> dict[str, Any]:
+    feature = geojson.feature_of(stairs.kind, stairs.name, shapely.LineString(stairs.head))
+    feature["properties"] |= {"level": stairs.upper, "from": stairs.upper, "to": stairs.lower}
+    if isinstance(stairs, Ramp):
+        feature["properties"] |= {"length": stairs.length, "factor": stairs.factor}
+        return feature
     feature["properties"] |= {
-        "level": stairs.upper,
-        "from": stairs.upper,
-        "to": stairs.lower,
         "risers": stairs.risers,
         "tread": stairs.tread,
         "type": stairs.shape,
@@ -192,6 +198,16 @@ def _stairs(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> St
         return Stairs(
             str(given.get("name") or ""), upper, lower, head, risers, tread, shape, **more
         )
+    except FloorPlanError as error:
+        raise FloorPlanError(f"{at}: {error}") from None
+
+
+def _ramp(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Ramp:
+    head, name = _line(feature, RAMP, at), str(given.get("name") or "")
+    upper, lower = (_whole(given, end, at) for end in ("from", "to"))
+    length, factor = _number(given, "length", at), _number({"factor": 1.0, **given}, "factor", at)
+    try:
+        return Ramp(name, upper, lower, head, length, factor)
     except FloorPlanError as error:
         raise FloorPlanError(f"{at}: {error}") from None
 

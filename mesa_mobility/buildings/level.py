@@ -85,3 +85,8 @@ class Level:
 def number_of(level: Level | int) -> int:
     """The number of a level that is given as such, or by its number."""
     return level.number if isinstance(level, Level) else level
+
+
+def sheet_of(level: int) -> str:
+    """Name of the sheet of a level."""
+    return f"level {level}"

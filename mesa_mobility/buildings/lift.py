@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.buildings.level import Level, number_of
-from mesa_mobility.buildings.lines import Line, line_of, right_angle
+from mesa_mobility.buildings.lines import Line, line_of, strip, width_of
 from mesa_mobility.errors import FloorPlanError
 
 DOORWAY = 0.1
@@ -64,7 +62,7 @@ class Lift:
         object.__setattr__(self, "levels", numbers)
         if len(numbers) < 2 or len(set(numbers)) < len(numbers):
             raise FloorPlanError(f"{what}: expected two levels or more, each once, found {numbers}")
-        clear, count = math.dist(*self.door), self.capacity
+        clear, count = width_of(self.door), self.capacity
         for name, value, least, most, unit in (
             ("a door", round(clear, 3), _LEAST_DOOR, 10.0, "m wide"),
             ("a car", self.width, max(_LEAST_CAR, clear), 10.0, "m wide"),
@@ -92,8 +90,4 @@ class Lift:
             last: metres.
             half: half its width, metres.
         """
-        left, right = np.array(self.door)
-        middle, into = (left + right) / 2.0, right_angle(self.door)
-        across = half * (right - left) / math.dist(*self.door)
-        near, far = middle + first * into, middle + last * into
-        return Polygon([near - across, near + across, far + across, far - across])
+        return strip(self.door, first, last, half)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import Polygon
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Gate
@@ -60,3 +61,23 @@ def middle_of(line: Line) -> NDArray[np.float64]:
     """(2,) the middle of a line."""
     middle: NDArray[np.float64] = np.array(line).mean(axis=0)
     return middle
+
+
+def width_of(line: Line) -> float:
+    """Length of a line, metres."""
+    return math.dist(*line)
+
+
+def strip(line: Line, first: float, last: float, half: float) -> Polygon:
+    """The rectangle from `first` to `last` metres behind a line, straight behind its middle.
+
+    Args:
+        line: its first point is on the left of somebody who looks that way.
+        first: metres; below 0 before the line.
+        last: metres.
+        half: half its width, metres.
+    """
+    into, middle = right_angle(line), middle_of(line)
+    aside = half * np.array([into[1], -into[0]])
+    near, far = middle + first * into, middle + last * into
+    return Polygon([near - aside, near + aside, far + aside, far - aside])

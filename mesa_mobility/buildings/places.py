@@ -7,9 +7,9 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility.buildings.flights import Flight
 from mesa_mobility.buildings.lines import middle_of
 from mesa_mobility.buildings.sheets import BEYOND, Sheet
-from mesa_mobility.buildings.stairs import Flight
 from mesa_mobility.errors import FloorPlanError
 
 ON_STAIRS = -32_768

@@ -10,10 +10,10 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.flights import Flight, Landing
+from mesa_mobility.buildings.level import Level, sheet_of
 from mesa_mobility.buildings.lift import DOORWAY, Lift
 from mesa_mobility.buildings.lines import moved, right_angle
-from mesa_mobility.buildings.stairs import Flight, Landing, sheet_of
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, Gate, Seam, Shaft, SpeedZone, Stop
 
@@ -121,11 +121,14 @@ def seam_of(flight: Flight, sheets: Mapping[str, Sheet]) -> Seam:
         tuple((upper - lower).tolist()),
         flight.going / 2.0 + BEYOND,
         extra=flight.going * (1.0 / flight.factor - 1.0),
+        stepless=flight.risers == 0,
     )
 
 
 def zones_of(flight: Flight, sheets: Mapping[str, Sheet]) -> list[SpeedZone]:
-    """The zones in which people walk as fast as on stairs, on both sheets of a flight."""
+    """The zones in which people walk as on a flight, on both its sheets; none for its factor 1."""
+    if flight.factor == 1.0:
+        return []
     area = flight.part(0.0, flight.going)
     names = dict.fromkeys((flight.lower, flight.upper))
     return [
@@ -174,7 +177,7 @@ class _Strip:
 def _strips(sheet: str, flights: Sequence[Flight], lifts: Sequence[Lift] = ()) -> list[_Strip]:
     found = []
     for flight in flights:
-        going, what = flight.going, f"stairs {flight.name!r}"
+        going, what = flight.going, f"{flight.what} {flight.name!r}"
         if flight.upper == sheet:
             found.append(
                 _Strip(
@@ -253,5 +256,5 @@ def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
             spot = missing.representative_point()
             raise FloorPlanError(
                 f"{where}: no floor at ({spot.x:.2f}, {spot.y:.2f}), expected {_FREE} m of free "
-                f"floor before stairs and {_FREE_BEFORE_LIFT:g} m before lifts"
+                f"floor before stairs and ramps, and {_FREE_BEFORE_LIFT:g} m before lifts"
             )

@@ -1,4 +1,4 @@
-"""Stairs between two levels: flights, and landings between them."""
+"""Stairs between two levels."""
 
 import math
 from collections.abc import Sequence
@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.level import Level, number_of
-from mesa_mobility.buildings.lines import Line, line_of, moved, pair, right_angle
+from mesa_mobility.buildings.flights import Flight, Landing
+from mesa_mobility.buildings.level import Level, number_of, sheet_of
+from mesa_mobility.buildings.lines import Line, line_of, pair, width_of
 from mesa_mobility.errors import FloorPlanError
 
 STRAIGHT, DOG_LEG = "straight", "dog_leg"
@@ -50,88 +50,6 @@ def speed_factor(riser: float, tread: float) -> float:
     """
     along_slope = min(_ON_STAIRS * math.sqrt(tread / riser) / _FLAT, 1.0)
     return along_slope * tread / math.hypot(tread, riser)
-
-
-@dataclass(frozen=True)
-class Flight:
-    """A flight of stairs.
-
-    Attributes:
-        name: unique in the building.
-        head: its upper edge, (left, right) as seen by somebody who walks down.
-        going: metres from its upper to its lower edge, in plan.
-        top: elevation of the upper edge, metres.
-        bottom: elevation of the lower edge, metres.
-        upper: name of the sheet from which it leads down.
-        lower: name of the sheet to which it leads.
-        risers: number of its risers.
-        tread: depth of a tread, metres.
-    """
-
-    name: str
-    head: Line
-    going: float
-    top: float
-    bottom: float
-    upper: str
-    lower: str
-    risers: int
-    tread: float
-
-    @property
-    def width(self) -> float:
-        """Clear width, metres."""
-        return math.dist(*self.head)
-
-    @property
-    def down(self) -> NDArray[np.float64]:
-        """(2,) unit vector in which people walk down."""
-        return right_angle(self.head)
-
-    @property
-    def foot(self) -> Line:
-        """Its lower edge, (left, right) as seen by somebody who walks down."""
-        return moved(self.head, self.going * self.down)
-
-    @property
-    def factor(self) -> float:
-        """The share of their speed on a level floor at which people walk; see `speed_factor`."""
-        return speed_factor(self.riser, self.tread)
-
-    @property
-    def riser(self) -> float:
-        """Height of a riser, metres."""
-        return (self.top - self.bottom) / self.risers
-
-    def part(self, first: float, last: float, wider: float = 0.0) -> Polygon:
-        """The strip from `first` to `last` metres below the upper edge, measured in plan.
-
-        Args:
-            first: metres; below 0 before the edge.
-            last: metres.
-            wider: metres by which it is wider to either side.
-        """
-        (left, right), down = np.array(self.head), self.down
-        aside = wider * (left - right) / self.width
-        left, right = left + aside, right - aside
-        return Polygon(
-            [left + first * down, right + first * down, right + last * down, left + last * down]
-        )
-
-
-@dataclass(frozen=True)
-class Landing:
-    """A landing between two flights.
-
-    Attributes:
-        name: unique in the building.
-        area: its floor.
-        elevation: metres.
-    """
-
-    name: str
-    area: Polygon
-    elevation: float
 
 
 @dataclass(frozen=True)
@@ -218,6 +136,9 @@ class Stairs:
             landing,
         )
 
+    kind = "stairs"
+    """How messages and files call it."""
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "head", line_of("stairs", self.name, "head", self.head))
         least = 2 if self.shape == STRAIGHT else 4
@@ -244,7 +165,7 @@ class Stairs:
     @property
     def width(self) -> float:
         """Clear width, metres."""
-        return math.dist(*self.head)
+        return width_of(self.head)
 
     def parts(self, top: float, bottom: float) -> tuple[list[Flight], list[Landing]]:
         """The flights, from the top, and the landings between them.
@@ -273,6 +194,7 @@ class Stairs:
                     bottom,
                     upper,
                     lower,
+                    speed_factor(riser, self.tread),
                     self.risers,
                     self.tread,
                 )
@@ -280,8 +202,9 @@ class Stairs:
         count = self.risers // 2
         going, middle = (count - 1) * self.tread, bottom + (self.risers - count) * riser
         half = f"landing of {self.name}"
+        factor = speed_factor(riser, self.tread)
         first = Flight(
-            f"{self.name} 2", self.head, going, top, middle, upper, half, count, self.tread
+            f"{self.name} 2", self.head, going, top, middle, upper, half, factor, count, self.tread
         )
         left, right = (np.array(each) for each in first.foot)
         across, deep = (left - right) / self.width, self.landing or self.width
@@ -300,6 +223,7 @@ class Stairs:
             bottom,
             half,
             lower,
+            factor,
             count,
             self.tread,
         )
@@ -309,8 +233,3 @@ class Stairs:
 
     def _refuse(self, expected: str, found: object) -> None:
         raise FloorPlanError(f"stairs {self.name!r}: expected {expected}, found {found!r:.60}")
-
-
-def sheet_of(level: int) -> str:
-    """Name of the sheet of a level."""
-    return f"level {level}"

@@ -11,7 +11,7 @@ class Footing {
     let found = z;
     for (const flight of this.flights) {
       const [down, aside] = onFlight(flight, x, y), { going, tread, riser, bottom, top } = flight;
-      if (down <= 0 || down >= going || aside > flight.width / 2 || Math.abs(slope(flight, down) - z) > SAME_FLIGHT) continue;
+      if (!flight.risers || down <= 0 || down >= going || aside > flight.width / 2 || Math.abs(slope(flight, down) - z) > SAME_FLIGHT) continue;
       const end = Math.min(tread, going / 2), drop = (0.5 + end / tread) * riser;
       if (down < end) found = top - (drop * down) / end;
       else if (down > going - end) found = bottom + (drop * (going - down)) / end;
@@ -30,6 +30,10 @@ class Footing {
         || Math.abs(slope(flight, along) - z) > SAME_FLIGHT) continue;
       const on = down === along && aside <= width / 2, [foot, beside] = onFlight(flight, px, py);
       if (beside > width / 2 + (on ? FOOT_ASIDE : 0) || !(on || (foot > 0 && foot < going + tread))) continue;
+      if (!flight.risers) {
+        found[0] = found[1] = slope(flight, Math.min(Math.max(foot, 0), going));
+        continue;
+      }
       const within = (height) => Math.min(Math.max(height, bottom), top);
       const count = foot >= going ? flight.risers : Math.ceil((foot - EDGE) / tread);
       found[0] = within(top - riser * count);

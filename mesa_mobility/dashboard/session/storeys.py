@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from mesa_mobility.buildings import Building
-from mesa_mobility.buildings.stairs import sheet_of
+from mesa_mobility.buildings.level import sheet_of
 
 FAR = 1e9
 """Metres: beyond all sheets."""

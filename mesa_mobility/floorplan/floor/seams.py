@@ -67,6 +67,7 @@ class Seam:
         depth: metres of the strip to either side of the line.
         extra: metres by which routes across the seam count as longer than they are drawn, for a
             strip on which people walk more slowly.
+        stepless: whether people who use no stairs walk over it, too.
 
     Raises:
         FloorPlanError: what `Gate` refuses, a shift of other than two numbers, a depth of less than
@@ -79,6 +80,7 @@ class Seam:
     shift: tuple[float, float]
     depth: float
     extra: float = 0.0
+    stepless: bool = False
 
     def __post_init__(self) -> None:
         line = Gate(self.name, self.a, self.b)

@@ -48,7 +48,8 @@ class Router:
         beyond: how far behind a gate or exit the target lies, metres, above 0; less where a wall
             is nearer.
         climbs: whether routes are for people who use stairs: they lead across seams, and through
-            lifts that are for everybody. Other routes lead through all lifts, and across no seam.
+            lifts that are for everybody. Other routes lead through all lifts, and across seams
+            without steps alone.
 
     Raises:
         FloorPlanError: clearance or beyond out of range.
@@ -65,8 +66,8 @@ class Router:
         self._clearance = float(clearance)
         self._beyond = float(beyond)
         self._links = [link for each in plan.shafts_for(climbs) for link in each.links]
-        if climbs:
-            self._links += [link for each in plan.seams for link in each.links]
+        seams = [each for each in plan.seams if climbs or each.stepless]
+        self._links += [link for each in seams for link in each.links]
         self._destinations: list[Destination] = [None]
         self._version = -1
         self._distances: dict[int, NDArray[np.float64]] = {}

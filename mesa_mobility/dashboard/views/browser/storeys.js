@@ -70,8 +70,9 @@ const STOREYS = {
         ctx.lineTo(...at(own[k + 2], elevation));
         if (level) ctx.fillText(name, left - 6 * r, y + 4 * r);
       }
-      for (const { head, down, top, riser, risers, tread } of flights) {
+      for (const { head, down, going, top, bottom, riser, risers, tread } of flights) {
         ctx.moveTo(...at(head[k], top));
+        if (!risers) ctx.lineTo(...at(head[k] + going * down[k], bottom));
         for (let step = 1; step <= risers; step += 1) {
           ctx.lineTo(...at(head[k] + (step - 1) * tread * down[k], top - step * riser));
           if (step < risers) ctx.lineTo(...at(head[k] + step * tread * down[k], top - step * riser));

@@ -1,0 +1,88 @@
+"""Flights, which lead from one level or landing down to another, and landings."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely import Polygon
+
+from mesa_mobility.buildings.lines import Line, moved, right_angle, strip, width_of
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight of stairs, or a ramp.
+
+    Attributes:
+        name: unique in the building.
+        head: its upper edge, (left, right) as seen by somebody who walks down.
+        going: metres from its upper to its lower edge, in plan.
+        top: elevation of the upper edge, metres.
+        bottom: elevation of the lower edge, metres.
+        upper: name of the sheet from which it leads down.
+        lower: name of the sheet to which it leads.
+        factor: the share of their speed on a level floor at which people walk.
+        risers: number of its risers; 0 for a ramp.
+        tread: depth of a tread, metres; 0 for a ramp.
+    """
+
+    name: str
+    head: Line
+    going: float
+    top: float
+    bottom: float
+    upper: str
+    lower: str
+    factor: float
+    risers: int = 0
+    tread: float = 0.0
+
+    @property
+    def width(self) -> float:
+        """Clear width, metres."""
+        return width_of(self.head)
+
+    @property
+    def down(self) -> NDArray[np.float64]:
+        """(2,) unit vector in which people walk down."""
+        return right_angle(self.head)
+
+    @property
+    def foot(self) -> Line:
+        """Its lower edge, (left, right) as seen by somebody who walks down."""
+        return moved(self.head, self.going * self.down)
+
+    @property
+    def riser(self) -> float:
+        """Height of a riser, metres; 0 for a ramp."""
+        return (self.top - self.bottom) / self.risers if self.risers else 0.0
+
+    @property
+    def what(self) -> str:
+        """What it is part of, for messages."""
+        return "stairs" if self.risers else "ramp"
+
+    def part(self, first: float, last: float, wider: float = 0.0) -> Polygon:
+        """The strip from `first` to `last` metres below the upper edge, measured in plan.
+
+        Args:
+            first: metres; below 0 before the edge.
+            last: metres.
+            wider: metres by which it is wider to either side.
+        """
+        return strip(self.head, first, last, self.width / 2.0 + wider)
+
+
+@dataclass(frozen=True)
+class Landing:
+    """A landing between two flights.
+
+    Attributes:
+        name: unique in the building.
+        area: its floor.
+        elevation: metres.
+    """
+
+    name: str
+    area: Polygon
+    elevation: float
