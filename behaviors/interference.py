@@ -3,6 +3,8 @@
 import math
 from typing import Annotated
 
+from mesa_mobility.behaviors.decay import decay
+
 from mesa_mobility import CompiledTerm, Option, Other, Range, pair_kernel
 
 
@@ -10,24 +12,10 @@ from mesa_mobility import CompiledTerm, Option, Other, Range, pair_kernel
 def _interference(option: Option, other: Other, p: "Interference") -> float:
     dx = other.x + other.vx * option.duration - option.x
     dy = other.y + other.vy * option.duration - option.y
-    # e to the -d as the 1024th power of a polynomial, to 1e-8 of itself: unlike a call of exp,
-    # arithmetic alone runs for several neighbours at once. Beyond 40 (4e-18) it is nothing.
     # Factors and not divisions, of which a processor does few at a time.
-    d = math.sqrt(dx * dx + dy * dy) * (1.0 / (1024.0 * p.b * option.speed))
-    counts = d < 40.0 / 1024.0 and dx * option.facing_x + dy * option.facing_y >= 0.0
-    d = d if counts else 0.0
-    e = 1.0 - d * (1.0 - d * (1.0 / 2.0 - d * (1.0 / 6.0 - d * (1.0 / 24.0 - d * (1.0 / 120.0)))))
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    return p.a * e if counts else 0.0
+    d = math.sqrt(dx * dx + dy * dy) * (1.0 / (p.b * option.speed))
+    counts = d < 40.0 and dx * option.facing_x + dy * option.facing_y >= 0.0
+    return p.a * decay(d if counts else 0.0) if counts else 0.0
 
 
 class Interference(CompiledTerm):

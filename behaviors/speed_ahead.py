@@ -3,6 +3,7 @@
 import math
 from typing import Annotated
 
+from mesa_mobility.behaviors.decay import decay
 from mesa_mobility.behaviors.right_of_way import OPPOSED
 
 from mesa_mobility import CompiledTerm, Me, Option, Other, Range, pair_kernel
@@ -21,12 +22,11 @@ def _speed_ahead(option: Option, me: Me, other: Other, p: "SpeedAhead") -> float
     # By factors that all neighbours share: a processor does few divisions at a time.
     share = 1.0 - abs(dy * ex - dx * ey) * (1.0 / p.width)
     oncoming = ex * other.way_x + ey * other.way_y < -OPPOSED
-    if ahead <= 0.0 or ahead >= way or share <= 0.0 or oncoming:
-        return 0.0
+    counts = ahead > 0.0 and ahead < way and share > 0.0 and not oncoming
     own = ((option.x - me.x) * ex + (option.y - me.y) * ey) / option.duration
     theirs = other.vx * ex + other.vy * ey
     far = max(ahead - p.gap, 0.0) * (1.0 / p.range)
-    return share * abs(own - theirs) * math.exp(-far)
+    return share * abs(own - theirs) * decay(far) if counts else 0.0
 
 
 class SpeedAhead(CompiledTerm):

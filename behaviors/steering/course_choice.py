@@ -62,6 +62,9 @@ _LANES = 2 * STEPS + 2
 
 _FIELDS = 4
 
+ROUNDING = 1e-9
+"""Square metres."""
+
 
 def _course_table() -> NDArray[np.float64]:
     """(7, ``_LANES``) cosine and sine of the turn of each course, and the change of velocity that
@@ -163,8 +166,12 @@ def _choose_courses(
         if somebody_comes(way, COMING, around.grid, around.motion, sight, found):
             continue
         _set_courses(ex, ey, far, courses)
-        for other in range(count):
-            _hold_up(x, y, far, speed, width, ahead, other, sight, courses)
+        most = far
+        for m in range(count):
+            dx, dy, near = ahead[0, m], ahead[1, m], most + CLOSE
+            # Farther people hold nobody up by more than others do already.
+            if dx * dx + dy * dy < near * near + width * width + ROUNDING:
+                most = _hold_up(x, y, far, speed, width, ahead, m, sight, courses)
         best, at = np.inf, 0
         for n in range(_LANES):
             cost = speed * change[n]
@@ -231,10 +238,12 @@ def _hold_up(
     k: int,
     sight: Sight,
     courses: NDArray[np.float64],
-) -> None:
+) -> float:
     """Lower how far somebody at (x, y) gets on each course, if the k-th of those ahead is in view.
 
     Whether they are is looked up only for those who would lower it.
+
+    Returns the most that they get on any course.
     """
     ux, uy, on, behind = courses[3], courses[4], courses[5], courses[6]
     lowered = 0
@@ -244,6 +253,10 @@ def _hold_up(
     if lowered > 0 and unwalled(sight, x, y, x + ahead[0, k], y + ahead[1, k]):
         for n in range(_LANES):
             on[n] = min(on[n], behind[n])
+    most = 0.0
+    for n in range(_LANES):
+        most = max(most, on[n])
+    return most
 
 
 class ChooseCourse(Tactic):

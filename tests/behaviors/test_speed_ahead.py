@@ -47,7 +47,7 @@ def cost(point, *neighbours, target=(20.0, 0.0)) -> float:
     ],
 )
 def test_what_an_option_costs(point, place, velocity, expected):
-    assert cost(point, (place, velocity)) == pytest.approx(expected, abs=1e-12)
+    assert cost(point, (place, velocity)) == pytest.approx(expected, rel=1e-7, abs=1e-12)
 
 
 def test_the_costs_of_neighbours_add_up():

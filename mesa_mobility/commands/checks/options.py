@@ -35,7 +35,7 @@ class CheckOptions:
         str | None,
         typer.Option(
             metavar="NAME|FILE",
-            help="Preset to use instead of the default one: measured, paper or a TOML file.",
+            help="Preset to use instead of the default one: paper or a TOML file.",
         ),
     ] = None
     numbers: Numbers = None

@@ -25,7 +25,7 @@ PresetName = Annotated[
     typer.Option(
         "--preset",
         metavar="NAME|FILE",
-        help="default, measured, paper or a TOML file. By default the model's own.",
+        help="default, paper or a TOML file. By default the model's own.",
     ),
 ]
 Settings = Annotated[
