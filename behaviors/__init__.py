@@ -12,6 +12,7 @@ from mesa_mobility.behaviors.groups.walking_abreast import WalkingAbreast
 from mesa_mobility.behaviors.headway import Headway
 from mesa_mobility.behaviors.interference import Interference
 from mesa_mobility.behaviors.keep_distance import KeepDistance
+from mesa_mobility.behaviors.personal_space import PersonalSpace
 from mesa_mobility.behaviors.places.attraction import Attraction, Attractions
 from mesa_mobility.behaviors.places.queueing import Counter, Queueing
 from mesa_mobility.behaviors.right_of_way import RightOfWay
@@ -61,6 +62,7 @@ __all__ = [
     "Interference",
     "KeepDistance",
     "NearestExit",
+    "PersonalSpace",
     "PreferredSpeed",
     "PreferredVelocity",
     "Queueing",
