@@ -1,9 +1,9 @@
 """Exponential decay for cost kernels."""
 
-from mesa_mobility.steering import inner
+from mesa_mobility.steering import compiled
 
 
-@inner()
+@compiled()
 def decay(d: float) -> float:
     """e to the -d, for d of at least 0, to 1e-8 of itself; beyond d = 40 it is 4e-18.
 
