@@ -68,7 +68,8 @@ ROUNDING = 1e-9
 
 def _course_table() -> NDArray[np.float64]:
     """(7, ``_LANES``) cosine and sine of the turn of each course, and the change of velocity that
-    it takes, as a share of the speed; the other rows are workspace."""
+    it takes, as a share of the speed. The other rows are written for each person: the direction
+    (x, y) of each course, metres that they get on it, and the same behind a single person."""
     angles = np.append(turns(STEPS), 0.0)
     courses = np.zeros((7, _LANES))
     courses[0], courses[1] = np.cos(angles), np.sin(angles)
