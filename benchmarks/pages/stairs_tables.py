@@ -179,7 +179,7 @@ def spread(speeds: NDArray[np.float64]) -> str:
 
 
 def shares(merged: Sequence[dict[str, Any]]) -> str:
-    """Who goes first at a landing."""
+    """The share of people from the stair and from the floor at a landing."""
     rows = []
     for beside, place, reference in (
         (False, "opposite to the foot", "about 50 %"),

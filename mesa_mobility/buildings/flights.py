@@ -59,7 +59,7 @@ class Flight:
 
     @property
     def what(self) -> str:
-        """What it is part of, for messages."""
+        """The kind of the whole, "stairs" or "ramp", for messages."""
         return "stairs" if self.risers else "ramp"
 
     def part(self, first: float, last: float, wider: float = 0.0) -> Polygon:

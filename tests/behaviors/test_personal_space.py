@@ -21,7 +21,8 @@ def costs(endings, neighbours, room=0.3):
 
 def test_what_an_option_costs():
     # After 1 s the first neighbour is at (0.7, 0.3), 0.36 m from (0.5, 0): 0.6 - 0.36; the other is
-    # 0.71 m away. Who stays is 0.76 m from the first and 0.5 m from the other.
+    # 0.71 m away. The place of somebody who
+    # stays is 0.76 m from the first and 0.5 m from the other.
     endings = [Ending((0.5, 0.0), 0.0, 0.5, 1.0), Ending((0.0, 0.0), 0.0, 0.0, 1.0)]
     found = costs(endings, NEIGHBOURS)
     assert found == pytest.approx([0.6 - math.hypot(0.2, 0.3), 0.1])

@@ -1,4 +1,4 @@
-"""Ramps. This one is 15 m long and leads 1.2 m down towards +x, a slope of 8 %."""
+"""Ramps. This one is 15 m long and leads 1.2 m down from a stage into a hall, towards -x: 8 %."""
 
 import numpy as np
 import pytest
@@ -8,9 +8,10 @@ from mesa_mobility.buildings.places import ON_STAIRS
 from mesa_mobility.errors import FloorPlanError
 
 HALL = "POLYGON ((0 0, 30 0, 30 6, 0 6, 0 0))"
+STAGE = "POLYGON ((30 0, 42 0, 42 6, 30 6, 30 0))"
 GROUND = Level(0, HALL, exits=[Exit("street", (0, 1), (0, 3))])
-FIRST = Level(1, HALL, elevation=1.2)
-HEAD = ((8.0, 5.5), (8.0, 3.5))
+FIRST = Level(1, STAGE, elevation=1.2)
+HEAD = ((30.0, 3.5), (30.0, 5.5))
 
 
 def building(**given):
@@ -23,14 +24,14 @@ def test_it_is_a_slope_on_which_feet_are():
     office = building()
     (flight,) = office.flights
     assert (flight.going, flight.factor, flight.risers, flight.riser) == (15.0, 1.0, 0, 0.0)
-    assert np.allclose(flight.foot, ((23.0, 5.5), (23.0, 3.5)))
+    assert np.allclose(flight.foot, ((15.0, 3.5), (15.0, 5.5)))
     # A quarter of the way down.
-    place = np.array([[11.75, 4.5, 0.9]])
+    place = np.array([[26.25, 4.5, 0.9]])
     places, levels = office.true_places(office.plane_places(place))
     assert places == pytest.approx(place)
     assert levels.tolist() == [ON_STAIRS]
     assert office.footing.carried(place).tolist() == [0.9]
-    heights, edges = office.footing.beneath(place, np.array([[12.25, 4.6]]))
+    heights, edges = office.footing.beneath(place, np.array([[25.75, 4.6]]))
     # Half a metre farther down it is 0.04 m lower.
     assert heights == pytest.approx([0.86])
     assert edges == pytest.approx([0.86])
@@ -44,7 +45,7 @@ def test_nobody_is_slower_on_it_unless_said():
 def test_people_in_wheelchairs_use_it():
     office = building()
     model = PedestrianModel(office, population="wheelchair_powered", rng=1, record=True)
-    model.add_pedestrians(office.places([(2.0, 1.5), (12.0, 1.5)], level=1))
+    model.add_pedestrians(office.places([(32.0, 1.5), (40.0, 1.5)], level=1))
     model.run(max_seconds=120)
     assert model.inside == 0
     assert model.without_stairs == []
@@ -55,7 +56,7 @@ def test_people_alone_walk_at_their_share_of_the_speed(factor):
     office = building(factor=factor)
     model = PedestrianModel(office, rng=3, record=True)
     model.add_pedestrians(
-        office.places([(6.0, 4.5)], level=1), preferred_speeds=[1.2], headings=[0.0]
+        office.places([(32.0, 4.5)], level=1), preferred_speeds=[1.2], headings=[np.pi]
     )
     model.run(max_seconds=60)
     tracks = Trajectories.of(model)
@@ -79,7 +80,7 @@ def test_it_is_written_and_read():
         ({"length": 0.1}, r"ramp 'a': expected a length of 0.5 to 200 m, found 0.1"),
         ({"length": float("nan")}, r"ramp 'a': expected a length of"),
         ({"factor": 1.5}, r"ramp 'a': expected a factor of 0.05 to 1, found 1.5"),
-        ({"head": ((8, 4), (8, 3.5))}, r"ramp 'a': expected a clear width of 0.8 to 100 m"),
+        ({"head": ((30, 4), (30, 4.5))}, r"ramp 'a': expected a clear width of 0.8 to 100 m"),
         ({"upper": 0, "lower": 1}, r"ramp 'a': -1.2 m down"),
     ],
 )
