@@ -37,7 +37,6 @@ from mesa_mobility.behaviors.velocity import (
     PreferredVelocity,
     VelocityChange,
 )
-from mesa_mobility.behaviors.wall_distance import WallDistance
 
 __all__ = [
     "AdaptSpeed",
@@ -81,5 +80,4 @@ __all__ = [
     "VelocityChange",
     "WalkTogether",
     "WalkingAbreast",
-    "WallDistance",
 ]

@@ -1,4 +1,4 @@
-"""Five people meet three in a corridor 0.6 m wide: they pass at a niche, or some go back."""
+"""Five people meet three in a corridor 0.55 m wide: they pass at a niche, or some go back."""
 
 from shapely import box, union_all
 
@@ -9,9 +9,9 @@ class NarrowCorridor(PedestrianModel):
     """A corridor between two rooms, with a niche or without."""
 
     def __init__(self, niche=True, rng=None):
-        parts = [box(0, 0, 8, 8), box(8, 3.7, 32, 4.3), box(32, 0, 40, 8)]
+        parts = [box(0, 0, 8, 8), box(8, 3.725, 32, 4.275), box(32, 0, 40, 8)]
         if niche:
-            parts.append(box(18, 4.3, 22, 5.3))
+            parts.append(box(18, 4.275, 22, 5.275))
         exits = [Exit("west", (0, 1), (0, 7)), Exit("east", (40, 1), (40, 7))]
         super().__init__(FloorPlan(union_all(parts), exits=exits), rng=rng)
         self.add_pedestrians([(16 - 0.9 * k, 4) for k in range(5)], headings=0.0, exits=["east"])

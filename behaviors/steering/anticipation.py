@@ -248,8 +248,9 @@ def _cheapest(wanted_x: float, wanted_y: float, left: float, courses: NDArray[np
 class Anticipation(Tactic):
     """People who walk turn aside early for those whom they would come too near.
 
-    Those who walk and turn aside for nobody do not keep their course exactly: it is off by a
-    normally distributed angle, drawn anew for each movement.
+    Those who walk and turn aside for nobody do not keep their course exactly: each movement ends
+    off it by a normally distributed angle, and the next one makes up for that. So people sway about
+    a line.
 
     Args:
         wander: standard deviation of that angle, radians.
@@ -279,9 +280,12 @@ class Anticipation(Tactic):
             desired.speeds,
         )
         if self.wander > 0.0:
-            off = self.wander * deciding.rng.standard_normal(len(rows))
+            ends = self.wander * deciding.rng.standard_normal(len(rows))
             stands = np.hypot(crowd.vx[rows], crowd.vy[rows]) < WALKS
-            off[stands | (points != aims).any(axis=1) | (speeds != desired.speeds)] = 0.0
+            strays = ~stands & (points == aims).all(axis=1) & (speeds == desired.speeds)
+            ends[~strays] = 0.0
+            off = np.where(strays, ends - crowd.agenda["strayed"][rows], 0.0)
+            crowd.agenda["strayed"][rows] = ends
             dx, dy = (points - deciding.positions).T
             c, s = np.cos(off), np.sin(off)
             points = deciding.positions + np.column_stack([c * dx - s * dy, s * dx + c * dy])

@@ -23,11 +23,11 @@ from mesa_mobility.steering import (
     compiled,
 )
 
-SLOWER, FASTER = 0.1, 0.2
+FREELY = 0.2
 """A walker at most so much slower or faster than their preferred speed walks freely, m/s.
 
-Slower is somebody held up.  Faster is mostly somebody whose recordings lack the speed: movements
-of people with a limp, sped up to those of a cane, leave some speeds out.
+Somebody slower is held up.  People who sway about their course, and those whose recordings lack the
+speed, are off by less.
 """
 
 MOST = 0.25
@@ -75,8 +75,8 @@ def _keep_pace(
             walked = (x * tx + y * ty) / away
         short = agenda[i]["desired_speed"] * seconds - walked
         behind, correction = 0.0, agenda[i]["behind"] / MAKES_UP
-        least = (min(correction, 0.0) - SLOWER) * seconds
-        most = (max(correction, 0.0) + FASTER) * seconds
+        least = (min(correction, 0.0) - FREELY) * seconds
+        most = (max(correction, 0.0) + FREELY) * seconds
         if state[i].option > NO_OPTION and least <= -short <= most:
             behind = min(max(agenda[i]["behind"] + short, min(-MOST, short)), MOST)
         agenda[i]["behind"], agenda[i]["desired_speed"] = behind, speeds[k]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.default_preset.closeness import off
-from mesa_mobility.validation.bottleneck import START, density_in_front, plan
+from mesa_mobility.validation.bottleneck import DENSITY_IN_FRONT, START, density_in_front, plan
 from mesa_mobility.validation.scenes import corridors, wide_necks
 from mesa_mobility.verification.references import bottleneck_fit, corridor_band, published
 from mesa_mobility.verification.runs import CLEARANCE, SPACING, crowd_model, evacuate, steady_flow
@@ -51,12 +51,15 @@ def neck(seed: int, *, width: float) -> dict[str, Any]:
     }
 
 
-def of_necks(width: float) -> dict[str, float | None]:
-    """The same, measured: of narrow necks the fit, of wide ones the experiment."""
+def of_necks(width: float) -> dict[str, tuple[float, float]]:
+    """Least and greatest flow and density measured: of narrow necks the fit and the range of many
+    experiments, of wide ones the experiment."""
     if width not in wide_necks.MEASURED:
-        return {"flow": bottleneck_fit(width), "density": None}
+        flow = bottleneck_fit(width)
+        return {"flow": (flow, flow), "density": DENSITY_IN_FRONT}
     row = wide_necks.MEASURED[width]
-    return {"flow": float(row["flow_1_s"]), "density": float(row["density_in_front_1_m2"])}
+    flow, density = float(row["flow_1_s"]), float(row["density_in_front_1_m2"])
+    return {"flow": (flow, flow), "density": (density, density)}
 
 
 def alone(seed: int) -> dict[str, float]:
@@ -82,16 +85,15 @@ def crowded(seed: int, *, density: float) -> dict[str, float]:
     return {"density": found["mean_density"], "speed": max(found["mean_speed"], 0.0) + STANDS}
 
 
-def far(simulated: dict[str, float | None], measured: dict[str, float | None]) -> float:
-    """How far necks are off: 6 % of the flow count as 1, and 12 % of the density."""
+def far(simulated: dict[str, float | None], measured: dict[str, tuple[float, float]]) -> float:
+    """How far necks are off what was measured: 6 % of the flow count as 1, and 12 % of the
+    density."""
     tolerances = {"flow": 0.06, "density": 0.12}
-    return off(
-        {
-            name: ((simulated[name] or 0.0) / value, tolerances[name])
-            for name, value in measured.items()
-            if value is not None
-        }
-    )
+    ratios = {}
+    for name, (low, high) in measured.items():
+        value = simulated[name] or 0.0
+        ratios[name] = (value / min(max(value, low), high), tolerances[name])
+    return off(ratios)
 
 
 def far_alone(simulated: dict[str, float], measured: dict[str, float]) -> float:

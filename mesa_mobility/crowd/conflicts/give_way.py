@@ -230,7 +230,7 @@ class GiveWay(Tactic):
         )
         own = np.minimum(crowd.agenda["speed"][rows], SIDESTEP)
         wishes = self._model.wishes(rows, best, own)
-        blockers = wishes.blockers.copy()
+        blockers, goals = wishes.blockers.copy(), best.copy()
         short = _gains(wishes, best) < GAINED
         arrived = np.hypot(*(best - deciding.positions[who]).T) < ARRIVED
         for k in np.flatnonzero(short & ~arrived).tolist():
@@ -245,8 +245,9 @@ class GiveWay(Tactic):
             moves = np.flatnonzero(_gains(tried, others) >= GAINED)
             at, short[k] = (moves[0], False) if len(moves) else (0, True)
             best[k], blockers[k] = others[at], tried.blockers[at]
+            goals[k] = places[k][at]
         notes["x"][rows], notes["y"][rows] = best.T
-        for row, place in zip(rows.tolist(), best, strict=True):
+        for row, place in zip(rows.tolist(), goals, strict=True):
             free = leaves_free(place[None], crowd.core[row], self._ways(row, firsts, deciding))
             notes["aside"][row] = free[0]
         points[who] = np.where(arrived[:, None], deciding.positions[who], best)

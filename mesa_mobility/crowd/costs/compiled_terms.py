@@ -33,17 +33,28 @@ class CompiledTerm(CostTerm):
             ``pair_kernel``, which is summed over the neighbours. Those over walls and neighbours
             must never be negative: the other terms are then a lower bound of the sum, and they are
             evaluated only for options that can still win.
+        walls: an ``option_kernel`` that asks for ``wall``, beside another ``kernel``: an option
+            costs the sum of both.
         bound: a lower bound of an option kernel: an ``option_kernel`` that asks for ``options``.
             Without one, every term is evaluated for all options, not only for those that can still
             win.
     """
 
     kernel: ClassVar[CostKernel]
+    walls: ClassVar[CostKernel | None] = None
     bound: ClassVar[CostKernel | None] = None
 
+    @classmethod
+    def kernels(cls) -> list[CostKernel]:
+        """Those whose costs are summed."""
+        return [cls.kernel] if cls.walls is None else [cls.kernel, cls.walls]
+
     def cost(self, candidates: Candidates) -> NDArray[np.float64]:
-        """Cost of each option, by calling the kernel on each row."""
-        kernel, of = self.kernel, candidates
+        """Cost of each option, by calling the kernels on each row."""
+        costs = [self._cost(kernel, candidates) for kernel in self.kernels()]
+        return costs[0] if len(costs) == 1 else costs[0] + costs[1]
+
+    def _cost(self, kernel: CostKernel, of: Candidates) -> NDArray[np.float64]:
         directions = [np.cos(of.headings), np.sin(of.headings)]
         ends = np.array([*of.points.T, *directions, of.durations, of.speeds])
         own = np.column_stack(

@@ -121,6 +121,7 @@ AGENDA_FIELDS: dict[str, Array] = {
     "since": _SECONDS,
     "desired_speed": Array("f8", (), 0.0, 100.0),
     "behind": Array("f8", (), -1e3, 1e3),
+    "strayed": _RADIANS,
     PACE: Array("f8", (), 0.0, 1.0),
 }
 
@@ -134,7 +135,8 @@ of the journey they have passed up to frame ``checked``; ``group``, number of th
 none; ``corner``, number of the next corner of their route; ``nearest``, shortest route so far,
 metres; ``since``, time of their last progress, s; ``desired_speed``, the preferred speed of the
 last decision, m/s; ``behind``, metres by which free walking has fallen short of that speed, below 0
-if they are ahead; ``pace``, share of their speed at which the ground lets them walk.
+if they are ahead; ``strayed``, angle by which the movement under way ends off the course;
+``pace``, share of their speed at which the ground lets them walk.
 """
 
 

@@ -55,8 +55,8 @@ def test_small_groups_walk_side_by_side_and_slower(size, places):
     assert speed_of(tracks) == pytest.approx(1.26 - 0.04 * size, abs=0.025)
     dx, dy = np.diff(tracks[:, 0], axis=0), np.diff(tracks[:, 1], axis=0)
     assert dy.mean() == pytest.approx(0.75, abs=0.03)
-    # Those in the middle walk behind: 0.1 to 0.2 m along the way add up to 0.03 m.
-    assert 0.73 < np.hypot(dx, dy).mean() < 0.78
+    # Those in the middle walk behind, and all sway: 0.1 to 0.25 m along the way add up to 0.04 m.
+    assert 0.73 < np.hypot(dx, dy).mean() < 0.79
     # Angle of the line between the outermost members to the way of the group.
     first, last = tracks[0].mean(axis=1), tracks[-1].mean(axis=1)
     angle = np.degrees(np.arctan2(last[1] - first[1], last[0] - first[0]))

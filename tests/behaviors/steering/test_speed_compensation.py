@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesa_mobility.behaviors.steering.speed_compensation import (
-    FASTER,
+    FREELY,
     MAKES_UP,
     MOST,
-    SLOWER,
     compensate_speed,
 )
 
@@ -42,7 +41,8 @@ def next_speed(crowd: Crowd, speed: float = 1.25) -> float:
         (1.80, 0.06, 1.34),  # and 6 cm from before
         (1.80, 0.60, 17 / 12),  # nobody is further behind than 25 cm
         (1.95, -0.60, 13 / 12),
-        (1.70, 0.06, 1.25),  # 0.12 m/s too slow: it could not walk freely, and starts anew
+        (1.70, 0.06, 1.25 + 0.235 / 1.5),  # 0.12 m/s too slow
+        (1.56, 0.06, 1.25),  # 0.21 m/s too slow: it could not walk freely, and starts anew
         # 0.117 m/s too fast, of which 0.04 make up for the 6 cm: it is 11.5 cm ahead now.
         (2.05, 0.06, 1.25 - 0.115 / 1.5),
         # 0.15 m/s too fast, as somebody is whose recordings have no slower step.
@@ -103,10 +103,10 @@ def test_within_bounds(walked, desired, frames, behind, speed):
     got = next_speed(crowd, speed)
     assert got >= 0.0
     # Nobody is further ahead than 25 cm, or than what one free movement leads too far.
-    most = max(MOST, (max(behind / MAKES_UP, 0.0) + FASTER) * frames / 30.0)
+    most = max(MOST, (max(behind / MAKES_UP, 0.0) + FREELY) * frames / 30.0)
     assert -most / MAKES_UP - 1e-12 <= got - speed <= MOST / MAKES_UP + 1e-12
     # Whoever makes up for an error may be faster or slower than preferred by as much.
-    allowed = [min(behind / MAKES_UP, 0.0) - SLOWER, max(behind / MAKES_UP, 0.0) + FASTER]
+    allowed = [min(behind / MAKES_UP, 0.0) - FREELY, max(behind / MAKES_UP, 0.0) + FREELY]
     faster = walked / (frames / 30.0) - desired
     if not allowed[0] - 1e-9 <= faster <= allowed[1] + 1e-9:
         assert got == speed

@@ -71,24 +71,25 @@ def check_terms(
         ModelError: a pair or wall kernel is negative, or a bound exceeds a cost.
     """
     for term in terms:
-        if isinstance(term.kernel, PairKernel | WallKernel):
-            _check_sign(term, candidates)
+        for kernel in term.kernels():
+            if isinstance(kernel, PairKernel | WallKernel):
+                _check_sign(term, kernel, candidates)
         if term.bound is not None:
             _check_bound(term, term.bound, candidates, groups, cluster)
 
 
-def _check_sign(term: CompiledTerm, candidates: Candidates) -> None:
+def _check_sign(term: CompiledTerm, kernel: CostKernel, candidates: Candidates) -> None:
     n = len(candidates)
-    whole = isinstance(term.kernel, PairKernel)
+    whole = isinstance(kernel, PairKernel)
     others = _nearest(candidates) if whole else range(min(len(candidates.walls), WALLS))
     for k in np.unique(np.linspace(0, n - 1, min(n, OPTIONS)).astype(int)).tolist():
         option = _option(candidates, k)
         for other in others:
             if whole:
-                beside = {"other": _neighbour(term.kernel, candidates, other)}
+                beside = {"other": _neighbour(kernel, candidates, other)}
             else:
                 beside = {"wall": Wall(*candidates.walls[other].tolist())}
-            cost = _value(term, term.kernel, candidates, option=option, **beside)
+            cost = _value(term, kernel, candidates, option=option, **beside)
             if cost < -ROUNDING:
                 what = "neighbour" if whole else "wall"
                 raise ModelError(

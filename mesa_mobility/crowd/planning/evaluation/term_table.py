@@ -54,18 +54,25 @@ def compile_terms(
     compiled = [term for term in terms if isinstance(term, CompiledTerm)]
     names = fields_of(compiled)
     option, pair, wall = (
-        [term for term in compiled if isinstance(term.kernel, kind)]
+        [
+            (term, kernel)
+            for term in compiled
+            for kernel in term.kernels()
+            if isinstance(kernel, kind)
+        ]
         for kind in (OptionKernel, PairKernel, WallKernel)
     )
     # A negative weight makes a lower bound an upper one.
-    bounds = [term.bound if (term.weights(types) >= 0.0).all() else None for term in option]
-    pairs = [term.kernel.pairs_address for term in pair if isinstance(term.kernel, PairKernel)]
+    bounds = [
+        (term, term.bound if (term.weights(types) >= 0.0).all() else None) for term, _ in option
+    ]
+    pairs = [kernel.pairs_address for _, kernel in pair if isinstance(kernel, PairKernel)]
     tables = Terms(
-        option=_table(option, [term.kernel for term in option], types, names),
-        bound=_table(option, bounds, types, names),
-        pair=_table(pair, [term.kernel for term in pair], types, names),
+        option=_table(option, types, names),
+        bound=_table(bounds, types, names),
+        pair=_table(pair, types, names),
         pairs_address=np.array(pairs, dtype=np.int64),
-        wall=_table(wall, [term.kernel for term in wall], types, names),
+        wall=_table(wall, types, names),
         fields=np.empty((1, 0)),
     )
     return tables, [term for term in terms if not isinstance(term, CompiledTerm)]
@@ -79,7 +86,7 @@ def fields_of(terms: Sequence[CostTerm]) -> list[str]:
 
 
 def kernels_of(term: CompiledTerm) -> list[CostKernel]:
-    """The kernel of a term, and its bound if it has one.
+    """The kernels of a term, and its bound if it has one.
 
     Raises:
         ModelError: one of them is of the wrong kind.
@@ -90,8 +97,15 @@ def kernels_of(term: CompiledTerm) -> list[CostKernel]:
             f"{called}: its kernel is a {type(kernel).__name__}, expected what option_kernel or "
             "pair_kernel gives for one option"
         )
+    if term.walls is not None and not (
+        isinstance(term.walls, WallKernel) and isinstance(kernel, OptionKernel | PairKernel)
+    ):
+        raise ModelError(
+            f"{called}: has a {type(kernel).__name__} and walls of a {type(term.walls).__name__}, "
+            "expected an OptionKernel or a PairKernel, and a WallKernel"
+        )
     if bound is None:
-        return [kernel]
+        return term.kernels()
     if not isinstance(bound, BoundKernel):
         raise ModelError(
             f"{called}: its bound is a {type(bound).__name__}, expected a BoundKernel: an "
@@ -101,7 +115,7 @@ def kernels_of(term: CompiledTerm) -> list[CostKernel]:
         raise ModelError(
             f"{called}: has a bound and a {type(kernel).__name__}, expected an OptionKernel"
         )
-    return [kernel, bound]
+    return [*term.kernels(), bound]
 
 
 def field_values(names: Sequence[str], crowd: Crowd) -> NDArray[np.float64]:
@@ -171,21 +185,20 @@ def _reader(term: CostTerm) -> Callable[[CostTerm], object]:
 
 
 def _table(
-    terms: Sequence[CompiledTerm],
-    kernels: Sequence[CostKernel | None],
+    kernels: Sequence[tuple[CompiledTerm, CostKernel | None]],
     types: Sequence[str],
     names: list[str],
 ) -> KernelTable:
     """The table of a kernel of each term, where it has one; ``names`` are the fields laid out."""
     numbers, fields = [], []
-    for term, kernel in zip(terms, kernels, strict=True):
+    for term, kernel in kernels:
         numbers.append(np.zeros(1) if kernel is None else checked_numbers(term, kernel))
         taken = () if kernel is None else kernel.fields
         fields.append(np.array([FIELDS + names.index(name) for name in taken], dtype=np.int64))
-    weights = np.array([term.weights(types) for term in terms]).reshape(len(terms), len(types))
+    weights = np.array([term.weights(types) for term, _ in kernels])
     return KernelTable(
-        np.array([0 if each is None else each.address for each in kernels], dtype=np.int64),
-        np.ascontiguousarray(weights.T),
+        np.array([0 if each is None else each.address for _, each in kernels], dtype=np.int64),
+        np.ascontiguousarray(weights.reshape(len(kernels), len(types)).T),
         _rows(numbers, np.float64),
         _rows(fields, np.int64),
     )
