@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+import mesa_mobility
+from mesa_mobility._lazy import names_of
 from mesa_mobility._startup import nothing_collected
 
 
@@ -33,6 +35,25 @@ def test_what_was_made_within_is_not_gone_through_again():
         assert gc.get_freeze_count() >= len(made)
     finally:
         gc.unfreeze()
+
+
+@pytest.mark.parametrize("collects", [True, False])
+def test_names_of_a_package_are_imported_without_looking_for_garbage(collects, monkeypatch):
+    seen, before = [], gc.isenabled()
+
+    def imported(name):
+        seen.append(gc.isenabled())
+        raise ImportError(name)
+
+    monkeypatch.setattr("mesa_mobility._lazy.import_module", imported)
+    get, _ = names_of("mesa_mobility", mesa_mobility.__file__)
+    try:
+        (gc.enable if collects else gc.disable)()
+        with pytest.raises(ImportError):
+            get("PedestrianModel")
+        assert (seen, gc.isenabled()) == ([False], collects)
+    finally:
+        (gc.enable if before else gc.disable)()
 
 
 @pytest.mark.parametrize(

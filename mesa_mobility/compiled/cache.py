@@ -25,6 +25,7 @@ import llvmlite
 import numba
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.ccallback import CFunc
+from numba.core.runtime import rtsys
 
 from mesa_mobility._version import __version__
 
@@ -170,8 +171,15 @@ def _version() -> str:
 
 def _sources() -> Iterator[Path]:
     yield from sorted(PACKAGE.rglob("*.py"))
-    if not (PACKAGE / "behaviors").is_dir():  # a checkout
-        yield from sorted(PACKAGE.parent.glob("behaviors/**/*.py"))
+    if _behaviors().parent != PACKAGE:
+        yield from sorted(_behaviors().rglob("*.py"))
+
+
+@lru_cache
+def _behaviors() -> Path:
+    """The folder of shipped behaviours, which in a checkout lies beside the package."""
+    inside = PACKAGE / "behaviors"
+    return inside if inside.is_dir() else PACKAGE.parent / "behaviors"
 
 
 class _Place:
@@ -183,6 +191,7 @@ class _Place:
         path = Path(source)
         root = folder()
         assert root is not None
+        self.shipped = path.is_relative_to(PACKAGE) or path.is_relative_to(_behaviors())
         if path.is_relative_to(PACKAGE):
             self._stamp = ""  # the folder's name is of all of the package's source
             self._path = root / ".".join(path.parent.relative_to(PACKAGE).parts or ["root"])
@@ -261,6 +270,15 @@ class _Cache(FunctionCache):
         self._cache_file = _Files(
             self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp()
         )
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        if not self._impl.locator.shipped:
+            return super().load_overload(signature, context)
+        # Numba would import first what it needs to compile, which takes a twentieth of a start. It
+        # imports that anyway before it compiles. Code of others may call functions of it.
+        rtsys.initialize(context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(signature, context)
 
     def save_overload(self, signature: Any, result: Any) -> None:
         try:

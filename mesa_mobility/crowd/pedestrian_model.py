@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from copy import deepcopy
 from typing import Any, Self
 
+import mesa  # noqa: F401 - early, as in precompile.py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -219,6 +219,30 @@ def test_of_other_versions_the_last_ones_are_left(places):
     assert (parent / "module.pyc").exists()
 
 
+LOADED = """
+import sys
+import numpy as np
+from mesa_mobility.crowd.state.departed import merge
+sys.path.insert(0, {folder!r})
+from doubling import twice
+nobody = np.empty(0, dtype=np.int64)
+merge(nobody, nobody, nobody)
+print("numba.np.linalg" in sys.modules, end=" ")
+print(twice(4), "numba.np.linalg" in sys.modules)
+"""
+
+
+def test_what_ships_is_loaded_without_what_compiles(module):
+    for _ in range(2):
+        done = subprocess.run(
+            [sys.executable, "-c", LOADED.format(folder=str(module.parent))],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+    assert done.stdout == "False 8 True\n"
+
+
 def test_every_function_is_kept_this_way():
     for path in kernel_cache.PACKAGE.rglob("*.py"):
         assert "cache=True" not in path.read_text(), path
