@@ -28,6 +28,7 @@ from numba.core.ccallback import CFunc
 from numba.core.runtime import rtsys
 
 from mesa_mobility._version import __version__
+from mesa_mobility.compiled import shipped
 
 PACKAGE = Path(__file__).parents[1]
 
@@ -159,6 +160,28 @@ def _prune(place: Path) -> None:
         shutil.rmtree(path, ignore_errors=True)
 
 
+_own_only = False
+
+
+def compile_natively() -> None:
+    """From here on, this process compiles for this processor what it would take from a wheel."""
+    global _own_only
+    _own_only = True
+
+
+def shipped_code() -> shipped.Code | None:
+    """The compiled code of the wheel that this process takes, if there is any."""
+    kept_in = folder()
+    if _own_only or kept_in is None:
+        return None
+    return shipped.code_for(kept_in.name.removeprefix(PREFIX))
+
+
+def make_shipped() -> None:
+    """Compile code for a wheel, into the package itself."""
+    shipped.make(_version())
+
+
 def _version() -> str:
     """The version of the package, and a digest of its source and of what compiles it."""
     made_with = (numba.__version__, llvmlite.__version__, platform.machine(), PLAIN_WANTED)
@@ -244,6 +267,13 @@ class _Files(IndexDataCacheFile):
             self._damaged()
             raise OSError(f"{name}: damaged")
         return super()._load_data(name)
+
+    def load(self, key: Any) -> Any:
+        found = super().load(key)
+        if found is not None or self._source_stamp:  # code of others does not ship
+            return found
+        code, base = shipped_code(), self._index_name.removesuffix(".nbi")
+        return None if code is None else code.find(Path(self._cache_path).name, base, key)
 
     def save(self, key: Any, data: Any) -> None:
         # Processes that compile a function for different types at the same time must not write to

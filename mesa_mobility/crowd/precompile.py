@@ -3,21 +3,27 @@
 Numba compiles one function at a time, and decisions take as long as all other functions together.
 Another process that compiles them at the same time halves the wait at the first run after
 installation.  It leaves them in the cache on disk, where Numba finds them.
+
+Where a wheel brings compiled code, nobody waits. Another process then compiles for this very
+processor, and goes on when the run has ended.
 """
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 # Mesa looks at each frame of the stack when it is imported. Here the stack is short, which spares a
 # tenth of a start.
 import mesa  # noqa: F401
 import numpy as np
+from filelock import FileLock, Timeout
 
+from mesa_mobility.compiled import cache
 from mesa_mobility.compiled.threads import THREADS
 from mesa_mobility.crowd.costs.candidates import Moment
 from mesa_mobility.crowd.options.option_groups import make_groups
@@ -46,6 +52,17 @@ from mesa_mobility.crowd.precompile import compile_decisions
 compile_decisions()
 """
 
+_NATIVELY = """
+import os
+if hasattr(os, "nice"):
+    os.nice(19)
+from mesa_mobility.crowd.precompile import compile_natively
+compile_natively()
+"""
+
+LOCK = "compiling.lock"
+"""A file beside the compiled code: whoever locks it compiles for all."""
+
 
 @contextmanager
 def compiling_ahead() -> Iterator[None]:
@@ -55,6 +72,8 @@ def compiling_ahead() -> Iterator[None]:
     """
     if THREADS < 2 or _cached_in() is None or is_compiled():
         yield
+        if not _is_kept() and is_compiled():
+            _compile_in_background()
         return
     with deaf_children():
         other = _start()
@@ -70,7 +89,12 @@ def compiling_ahead() -> Iterator[None]:
 
 
 def is_compiled() -> bool:
-    """Whether decisions, which take longest to compile, are kept on disk as compiled code."""
+    """Whether decisions, which take longest to compile, need not be compiled."""
+    return _is_kept() or cache.shipped_code() is not None
+
+
+def _is_kept() -> bool:
+    """Whether decisions are kept on disk, as compiled for this processor."""
     where = _cached_in()
     return where is not None and any(where.glob("decision.decide-*.nbi"))
 
@@ -85,6 +109,30 @@ def _start() -> subprocess.Popen[bytes]:
     return subprocess.Popen(
         [sys.executable, "-c", _COMMAND], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
+
+
+def _compile_in_background() -> None:
+    """Compile for this processor in another process, which nobody waits for."""
+    if os.environ.get("MESA_MOBILITY_NATIVE") == "0":
+        return
+    cache.say_once(
+        "compiling for this processor, in the background and at low priority: later runs are faster"
+    )
+    nothing = subprocess.DEVNULL
+    command = [sys.executable, "-c", _NATIVELY]
+    subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing, start_new_session=True)
+
+
+def compile_natively() -> None:
+    """Compile for this processor what a wheel has for its level, unless another process does."""
+    where = cache.folder()
+    assert where is not None
+    # A file system may have no locks.
+    with suppress(Timeout, OSError, NotImplementedError), FileLock(where / LOCK, timeout=0):
+        cache.compile_natively()
+        compile_the_rest()
+        # Last: its file says that all is there.
+        compile_decisions()
 
 
 def compile_the_rest() -> None:

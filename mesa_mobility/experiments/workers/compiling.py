@@ -17,8 +17,9 @@ def compile_once(model: type | str) -> None:
         model: class or name; nothing is compiled for models that neither are nor make models with
             pedestrians.
     """
-    from mesa_mobility.compiled.cache import folder
+    from mesa_mobility.compiled.cache import compile_natively, folder
     from mesa_mobility.crowd import PedestrianModel
+    from mesa_mobility.crowd.precompile import LOCK
 
     kind = model_class(model)
     if not (issubclass(kind, PedestrianModel) or getattr(kind, "makes_models", False)):
@@ -27,11 +28,13 @@ def compile_once(model: type | str) -> None:
     if place is None:  # before the first run, whose time may be limited
         _compile()
         return
+    # A campaign takes long enough to be worth code for this very processor.
+    compile_natively()
     pattern = "*/decision.decide-*.nbc"
     if any(place.glob(pattern)):
         return
     try:
-        with FileLock(place / "compiling.lock"):
+        with FileLock(place / LOCK):
             if not any(place.glob(pattern)):
                 _compile()
     except (OSError, NotImplementedError):  # a cache that cannot be written, or has no locks
