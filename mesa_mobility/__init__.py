@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from mesa_mobility._version import __version__ as __version__
     from mesa_mobility.batch import batch_run as batch_run
     from mesa_mobility.buildings import Building as Building
+    from mesa_mobility.buildings import Escalator as Escalator
     from mesa_mobility.buildings import Level as Level
     from mesa_mobility.buildings import Lift as Lift
     from mesa_mobility.buildings import Ramp as Ramp

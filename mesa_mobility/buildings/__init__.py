@@ -1,6 +1,7 @@
 """Buildings: levels, what joins them, and how they are laid out in one plane."""
 
 from mesa_mobility.buildings.building import Building
+from mesa_mobility.buildings.escalator import Escalator
 from mesa_mobility.buildings.files import read_floor
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
@@ -14,6 +15,7 @@ from mesa_mobility.buildings.stairs import Stairs
 __all__ = [
     "ON_STAIRS",
     "Building",
+    "Escalator",
     "Flight",
     "Footing",
     "Landing",

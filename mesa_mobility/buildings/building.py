@@ -1,4 +1,4 @@
-"""A building: levels joined by stairs, ramps and lifts, laid out in one plane."""
+"""A building: levels joined by stairs, ramps, escalators and lifts, laid out in one plane."""
 
 import os
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from shapely import Polygon
 
 from mesa_mobility.buildings import geojson
+from mesa_mobility.buildings.escalator import DOWN, UP, Escalator
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
 from mesa_mobility.buildings.level import Level, sheet_of
@@ -26,7 +27,7 @@ from mesa_mobility.floorplan.formats.geojson import label
 
 
 class Building:
-    """Levels that stairs, ramps and lifts join.
+    """Levels that stairs, ramps, escalators and lifts join.
 
     People are simulated in a plane, in which the levels and landings lie side by side as sheets.
     Each flight of stairs is drawn on both sheets that it joins, up to 0.3 m beyond its end. At its
@@ -35,7 +36,7 @@ class Building:
 
     On a flight, people walk as in a speed zone: at a share of the speed of a level floor, the same
     upwards and downwards, after the SFPE Handbook; see `Flight.factor`. Their movement is that
-    recorded on level floors. People who use no stairs use ramps and lifts.
+    recorded on level floors. Escalators carry them. People who use no stairs use ramps and lifts.
 
     A flight should be at least 2.7 m long in plan, twice the longest step: on a shorter one people
     see less far and walk more slowly. Where a flight passes over a level, or under it, its place
@@ -43,21 +44,21 @@ class Building:
 
     Args:
         levels: at least one.
-        stairs: the stairs and ramps that join them.
+        stairs: the stairs, ramps and escalators that join them.
         lifts: the lifts.
         name: for titles and files.
 
     Raises:
-        FloorPlanError: levels, stairs, ramps or lifts of one number or name; stairs or ramps that
-            lead nowhere, do not fit their rise, have no floor before them, or overlap an obstacle,
-            an opening or each other or a lift; levels from which no stairs, ramp or lift lead to an
-            exit; or what `FloorPlan` refuses.
+        FloorPlanError: levels, stairs, ramps, escalators or lifts of one number or name; stairs,
+            ramps or escalators that lead nowhere, do not fit their rise, have no floor before them,
+            or overlap an obstacle, an opening or each other or a lift; levels from which nothing
+            leads to an exit; or what `FloorPlan` refuses.
 
     Attributes:
         levels: the levels, in the order given.
-        stairs: the stairs and ramps, in the order given.
+        stairs: the stairs, ramps and escalators, in the order given.
         lifts: the lifts, in the order given.
-        flights: the flights of all stairs, and the ramps.
+        flights: the flights of all stairs, the ramps and the escalators.
         landings: the landings of all stairs.
         floor_plan: all sheets in one plane, which models use.
         footing: what carries bodies and feet on the stairs, for pictures.
@@ -79,7 +80,7 @@ class Building:
     def __init__(
         self,
         levels: Sequence[Level],
-        stairs: Sequence[Stairs | Ramp] = (),
+        stairs: Sequence[Stairs | Ramp | Escalator] = (),
         *,
         lifts: Sequence[Lift] = (),
         name: str = "",
@@ -142,7 +143,8 @@ class Building:
         somebody who walks down first. It has `from` and `to`, the numbers of the upper and the
         lower level, `risers`, `tread` and `type`, straight or dog_leg; a dog-leg also `turn`,
         `well` and, if it is not as deep as wide, `landing`. A feature of the kind `ramp` is its
-        upper edge, with `from`, `to`, `length` and `factor`. A feature of the kind `lift` is the
+        upper edge, with `from`, `to`, `length` and `factor`; one of the kind `escalator` has the
+        other arguments of `Escalator` in place of `factor`. A feature of the kind `lift` is the
         door, with the numbers of its `levels` and the other arguments of `Lift`. A building of one
         level is written as its floor plan.
         """
@@ -206,7 +208,7 @@ class Building:
         """
         return self._places.stairs(places)
 
-    def shapes_of(self, stairs: Stairs | Ramp) -> list[Polygon]:
+    def shapes_of(self, stairs: Stairs | Ramp | Escalator) -> list[Polygon]:
         """The flights and landings of stairs, or a ramp, in plan, in the building's coordinates."""
         number = self.stairs.index(stairs)
         flights = [each for each in self.flights if self._owners[each.name] == number]
@@ -280,16 +282,22 @@ class Building:
 
     def _check_joined(self) -> None:
         """A way must lead from each level to one with an exit; FloorPlanError otherwise."""
-        graph = nx.Graph()
+        graph = nx.DiGraph()
         graph.add_nodes_from(level.number for level in self.levels)
-        graph.add_edges_from((each.upper, each.lower) for each in self.stairs)
-        graph.add_edges_from(pair for each in self.lifts for pair in pairwise(each.numbers))
+        for stairs in self.stairs:
+            ways = {UP: (stairs.lower, stairs.upper), DOWN: (stairs.upper, stairs.lower)}
+            if isinstance(stairs, Escalator) and stairs.speed:
+                graph.add_edges_from([ways[stairs.direction]])
+            else:
+                graph.add_edges_from(ways.values())
+        for one, other in (pair for each in self.lifts for pair in pairwise(each.numbers)):
+            graph.add_edges_from([(one, other), (other, one)])
         leading_out = {level.number for level in self.levels if level.exits}
-        for joined in nx.connected_components(graph):
-            if len(self.levels) > 1 and not joined & leading_out:
+        for number in sorted(graph):
+            if len(self.levels) > 1 and not leading_out & {number, *nx.descendants(graph, number)}:
                 raise FloorPlanError(
-                    f"level {min(joined)}: no stairs, ramp or lift lead from there to a level "
-                    "with an exit"
+                    f"level {number}: no stairs, ramp, escalator or lift lead from there to a "
+                    "level with an exit"
                 )
 
     def _plan(self) -> FloorPlan:
@@ -318,12 +326,12 @@ class Building:
 
 
 def _check_names(
-    levels: Sequence[Level], stairs: Sequence[Stairs | Ramp], lifts: Sequence[Lift]
+    levels: Sequence[Level], stairs: Sequence[Stairs | Ramp | Escalator], lifts: Sequence[Lift]
 ) -> None:
     """Levels, stairs and lifts must be that, and have different numbers and names."""
     if not levels:
         raise FloorPlanError("a building needs at least one level")
-    for given, kinds in ((levels, (Level,)), (stairs, (Stairs, Ramp)), (lifts, (Lift,))):
+    for given, kinds in ((levels, (Level,)), (stairs, (Stairs, Ramp, Escalator)), (lifts, (Lift,))):
         for each in given:
             if not isinstance(each, kinds):
                 expected = " or ".join(kind.__name__ for kind in kinds)
@@ -333,7 +341,7 @@ def _check_names(
     for what, names in (
         ("level", sorted(each.number for each in levels)),
         (
-            "stairs, ramp or lift",
+            "stairs, ramp, escalator or lift",
             sorted([each.name for each in stairs] + [each.name for each in lifts]),
         ),
     ):

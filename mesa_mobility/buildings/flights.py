@@ -11,7 +11,7 @@ from mesa_mobility.buildings.lines import Line, moved, right_angle, strip, width
 
 @dataclass(frozen=True)
 class Flight:
-    """A flight of stairs, or a ramp.
+    """A flight of stairs, a ramp or an escalator.
 
     Attributes:
         name: unique in the building.
@@ -24,6 +24,9 @@ class Flight:
         factor: the share of their speed on a level floor at which people walk.
         risers: number of its risers; 0 for a ramp.
         tread: depth of a tread, metres; 0 for a ramp.
+        moves: m/s in plan at which its treads carry people down, below 0 up; 0 for all but
+            escalators.
+        gap_s: least mean time in seconds from one person who steps on an escalator to the next.
     """
 
     name: str
@@ -36,6 +39,8 @@ class Flight:
     factor: float
     risers: int = 0
     tread: float = 0.0
+    moves: float = 0.0
+    gap_s: float = 0.0
 
     @property
     def width(self) -> float:
@@ -59,7 +64,9 @@ class Flight:
 
     @property
     def what(self) -> str:
-        """The kind of the whole, "stairs" or "ramp", for messages."""
+        """The kind of the whole, "stairs", "ramp" or "escalator", for messages."""
+        if self.moves:
+            return "escalator"
         return "stairs" if self.risers else "ramp"
 
     def part(self, first: float, last: float, wider: float = 0.0) -> Polygon:

@@ -9,6 +9,7 @@ from typing import Any, cast
 import shapely
 
 from mesa_mobility._numbers import is_number
+from mesa_mobility.buildings.escalator import DOWN, Escalator
 from mesa_mobility.buildings.level import Level
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.lines import Line
@@ -19,9 +20,11 @@ from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.content import Content, content_of
 
-STAIRS, RAMP, LIFT = Stairs.kind, Ramp.kind, "lift"
+STAIRS, RAMP, ESCALATOR, LIFT = Stairs.kind, Ramp.kind, Escalator.kind, "lift"
 
 _OF_DOG_LEGS = ("turn", "well", "landing")
+
+_OF_ESCALATORS = ("length", "direction", "speed", "capacity")
 
 _OF_LIFTS = ("capacity", "speed", "door_s", "width", "depth", "everybody")
 
@@ -32,14 +35,14 @@ class Parts:
 
     Attributes:
         levels: its levels.
-        stairs: its stairs and ramps.
+        stairs: its stairs, ramps and escalators.
         lifts: its lifts.
         name: its name.
         closed: names of the exits and gates that are closed.
     """
 
     levels: Sequence[Level]
-    stairs: Sequence[Stairs | Ramp]
+    stairs: Sequence[Stairs | Ramp | Escalator]
     lifts: Sequence[Lift]
     name: str
     closed: Sequence[str]
@@ -73,7 +76,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     where, data = geojson.label(source), geojson.load(source)
     by_level: dict[int, list[tuple[object, str]]] = {}
     elevations: dict[int, float] = {}
-    stairs: list[Stairs | Ramp] = []
+    stairs: list[Stairs | Ramp | Escalator] = []
     lifts = []
     for number, feature in enumerate(geojson.features_of(data, where)):
         at = f"{where}: feature {number}"
@@ -84,6 +87,9 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
             continue
         if given.get("kind") == RAMP:
             stairs.append(_ramp(feature, given, at))
+            continue
+        if given.get("kind") == ESCALATOR:
+            stairs.append(_escalator(feature, given, at))
             continue
         if given.get("kind") == LIFT:
             lifts.append(_lift(feature, given, at))
@@ -140,11 +146,15 @@ def _features(level: Level) -> list[dict[str, Any]]:
     return features
 
 
-def _stairs_feature(stairs: Stairs | Ramp) -> dict[str, Any]:
+def _stairs_feature(stairs: Stairs | Ramp | Escalator) -> dict[str, Any]:
     feature = geojson.feature_of(stairs.kind, stairs.name, shapely.LineString(stairs.head))
     feature["properties"] |= {"level": stairs.upper, "from": stairs.upper, "to": stairs.lower}
     if isinstance(stairs, Ramp):
         feature["properties"] |= {"length": stairs.length, "factor": stairs.factor}
+        return feature
+    if isinstance(stairs, Escalator):
+        values = {name: getattr(stairs, name) for name in _OF_ESCALATORS}
+        feature["properties"] |= {name: each for name, each in values.items() if each is not None}
         return feature
     feature["properties"] |= {
         "risers": stairs.risers,
@@ -208,6 +218,18 @@ def _ramp(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Ramp
     length, factor = _number(given, "length", at), _number({"factor": 1.0, **given}, "factor", at)
     try:
         return Ramp(name, upper, lower, head, length, factor)
+    except FloorPlanError as error:
+        raise FloorPlanError(f"{at}: {error}") from None
+
+
+def _escalator(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Escalator:
+    head, name = _line(feature, ESCALATOR, at), str(given.get("name") or "")
+    upper, lower = (_whole(given, end, at) for end in ("from", "to"))
+    numbers = ("speed", "capacity")
+    more = {each: _number(given, each, at) for each in numbers if given.get(each) is not None}
+    way, length = given.get("direction", DOWN), _number(given, "length", at)
+    try:
+        return Escalator(name, upper, lower, head, length, way, **more)
     except FloorPlanError as error:
         raise FloorPlanError(f"{at}: {error}") from None
 

@@ -15,7 +15,7 @@ from mesa_mobility.buildings.level import Level, sheet_of
 from mesa_mobility.buildings.lift import DOORWAY, Lift
 from mesa_mobility.buildings.lines import moved, right_angle
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Exit, Gate, Seam, Shaft, SpeedZone, Stop
+from mesa_mobility.floorplan import WALKS, Belt, Exit, Gate, Seam, Shaft, SpeedZone, Stop
 
 BEYOND = 0.3
 """Metres by which a strip goes on beyond its flight, on the sheet to which that half is copied."""
@@ -114,14 +114,19 @@ def seam_of(flight: Flight, sheets: Mapping[str, Sheet]) -> Seam:
     """The seam of a flight: at its middle, from the lower sheet to the upper one."""
     lower, upper = (np.array(sheets[name].shift) for name in (flight.lower, flight.upper))
     left, right = (np.array(end) + flight.going / 2.0 * flight.down for end in flight.head)
+    belt, factor = None, flight.factor
+    if flight.moves:
+        belt = Belt(-flight.moves, flight.going, flight.gap_s)
+        factor = abs(flight.moves) / WALKS
     return Seam(
         flight.name,
         tuple((right + lower).tolist()),
         tuple((left + lower).tolist()),
         tuple((upper - lower).tolist()),
         flight.going / 2.0 + BEYOND,
-        extra=flight.going * (1.0 / flight.factor - 1.0),
+        extra=flight.going * (1.0 / factor - 1.0),
         stepless=flight.risers == 0,
+        belt=belt,
     )
 
 

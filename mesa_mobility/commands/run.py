@@ -239,6 +239,11 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
             f"Lift {each['lift']}": f"{each['carried']} people carried in {each['trips']} rides"
             for each in summary.get("lifts", ())
         },
+        **{
+            f"Escalator {each['escalator']}": f"{each['carried']} people carried, "
+            f"stood for {each['stood_s']:.1f} s"
+            for each in summary.get("escalators", ())
+        },
         "Decisions": f"{summary['decisions']}",
         "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
         f"{summary['fallback_time_share']:.1%} of the time",

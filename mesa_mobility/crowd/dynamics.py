@@ -134,8 +134,9 @@ class Dynamics(Saved):
         people.see_off(now)
         known = people.count
         self._let_in()
-        lifts = self._scene.lifts
+        lifts, escalators = self._scene.lifts, self._scene.escalators
         lifts.advance(now, people.present, crowd, self._scene.environment)
+        self._ride(people.present)
         if now == 0:
             types = [each.name for each in model.pedestrian_types]
             if said := without_weight(model.terms, types):
@@ -152,6 +153,8 @@ class Dynamics(Saved):
         end = min(end, max(self._next, now + 1), full_second)
         if len(lifts):
             end = min(end, lifts.next_look(now))
+        if len(escalators):
+            end = min(end, escalators.next_look(now))
         expecting = len(model.sources) > 0 or model.sources.expecting
         if model.recorder is not None or expecting or self._plan_has_changed:
             end = now + 1
@@ -247,6 +250,17 @@ class Dynamics(Saved):
                     break
                 self.insert([place], inflow.newcomers)
                 inflow.let_in()
+
+    def _ride(self, inside: NDArray[np.int64]) -> None:
+        """Carry those on escalators on; they take no decisions."""
+        scene, now = self._scene, self._model.frame
+        if not len(scene.escalators):
+            return
+        table, crowd = scene.repertoire.table, scene.crowd
+        # Those who are carried on lose their paths, on which crossed gates are found.
+        riding = scene.escalators.riders(inside)
+        scene.journeys.advance(riding, now, crowd, table, self._model.rng)
+        scene.escalators.advance(now, inside, crowd, table)
 
     @property
     def _plan_has_changed(self) -> bool:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.journeys.visit import Route
+from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import Lifts
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import Wishes
@@ -83,6 +84,10 @@ class World(Protocol):
     @property
     def lifts(self) -> Lifts:
         """The lifts, and who rides them."""
+
+    @property
+    def escalators(self) -> Escalators:
+        """The escalators that move, and whom they carry."""
 
     @property
     def speed_rules(self) -> Sequence[Any]:

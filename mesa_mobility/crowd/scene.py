@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.journeys.journeys import Journeys
+from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import Lifts
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
 from mesa_mobility.crowd.planning.workspace import Rules
@@ -39,6 +40,7 @@ class Scene:
         reach: metres from a person within which their movements, body included, end.
         strips: the strips of the plan's seams, as in ``Twins``.
         lifts: the lifts of the plan.
+        escalators: the escalators of the plan.
     """
 
     plan: FloorPlan
@@ -53,6 +55,7 @@ class Scene:
     reach: float
     strips: NDArray[np.float64]
     lifts: Lifts
+    escalators: Escalators
 
 
 def make_scene(
@@ -110,4 +113,5 @@ def make_scene(
         reach=float(reach + largest) + 0.02,
         strips=strips_of(plan.seams),
         lifts=Lifts(plan.shafts),
+        escalators=Escalators(plan.seams),
     )

@@ -1,8 +1,9 @@
 """Walkable area, walls, doors, exits and routes."""
 
+from mesa_mobility.floorplan.floor.belts import Belt
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.seams import Seam
-from mesa_mobility.floorplan.floor.shafts import Shaft, Stop
+from mesa_mobility.floorplan.floor.shafts import WALKS, Shaft, Stop
 from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import Content
@@ -13,6 +14,8 @@ from mesa_mobility.floorplan.routing.targets import Targets
 from mesa_mobility.floorplan.walls.line_of_sight import line_of_sight, lines_of_sight
 
 __all__ = [
+    "WALKS",
+    "Belt",
     "CellTable",
     "Content",
     "Exit",

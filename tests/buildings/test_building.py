@@ -185,12 +185,16 @@ def test_a_level_alone_is_a_plan_without_stairs():
     [
         ([], [], "at least one level"),
         ([GROUND, GROUND], [], "level 0 is there twice"),
-        ([GROUND, FIRST], [stairs(), stairs()], "stairs, ramp or lift 'main' is there twice"),
+        (
+            [GROUND, FIRST],
+            [stairs(), stairs()],
+            "escalator or lift 'main' is there twice",
+        ),
         ([GROUND, FIRST], [stairs(upper=3)], "stairs 'main': there is no level 3; there are 0, 1"),
         (
             [GROUND, FIRST],
             [],
-            "level 1: no stairs, ramp or lift lead from there to a level with",
+            "level 1: no stairs, ramp, escalator or lift lead from there to a level with",
         ),
         ([GROUND, FIRST], [stairs(risers=12)], "12 risers for a rise of 3.06 m are 0.255 m each"),
         ([GROUND, FIRST], [stairs(upper=0, lower=1)], "-0.170 m each"),

@@ -69,5 +69,5 @@ def test_a_lift_needs_two_known_levels():
         Lift("car", [0], DOOR)
     with pytest.raises(FloorPlanError, match="lift 'car': there is no level 7; there are 0, 1"):
         Building([GROUND, FIRST], lifts=[Lift("car", [0, 7], DOOR)])
-    with pytest.raises(FloorPlanError, match="stairs, ramp or lift 'car' is there twice"):
+    with pytest.raises(FloorPlanError, match="escalator or lift 'car' is there twice"):
         Building([GROUND, FIRST], lifts=[Lift("car", [0, 1], DOOR)] * 2)

@@ -125,6 +125,7 @@ class CrowdModel(mesa.Model):
         self.floor_plan, self.pedestrian_types = plan, scene.types
         self._agents_step = pedestrian_class.step is not mesa.Agent.step
         self.crowd, self.journeys, self.lifts = scene.crowd, scene.journeys, scene.lifts
+        self.escalators = scene.escalators
         terms: Any = self.rules.make_terms() if behaviors is None else behaviors
         self.terms: list[CostTerm] = terms
         self.speed_rules: list[SpeedRule] = []
@@ -172,6 +173,7 @@ class CrowdModel(mesa.Model):
             "environment": self._scene.environment,
             "journeys": self.journeys,
             "lifts": self.lifts,
+            "escalators": self.escalators,
             "population": self.population,
             "sources": self.sources,
             "statistics": self.statistics,

@@ -19,7 +19,9 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         still do, ``stands``), ``decisions``, ``fallback_decision_share``,
         ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time), ``occupancy``
         ([[t, inside], ...] each second) and, in buildings with lifts, ``lifts`` (of each ``lift``
-        its ``trips`` and how many people it has ``carried``).
+        its ``trips`` and how many people it has ``carried``), in those with moving escalators
+        ``escalators`` (of each ``escalator`` how many people it has ``carried``, and the seconds
+        for which it ``stood_s`` with people on it).
     """
     last_left, standing = model.statistics.last_left, model.blocked
     out = model.inside == 0 and last_left is not None and not model.sources.expecting
@@ -48,6 +50,7 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         "mean_speed_mps": model.statistics.mean_speed_so_far,
         "occupancy": [list(row) for row in model.statistics.occupancy],
         **({"lifts": _lifts(model)} if len(model.lifts) else {}),
+        **({"escalators": _escalators(model)} if len(model.escalators) else {}),
     }
 
 
@@ -56,4 +59,16 @@ def _lifts(model: CrowdModel) -> list[dict[str, Any]]:
     return [
         {"lift": each.name, "trips": int(lifts.trips[k]), "carried": int(lifts.carried[k])}
         for k, each in enumerate(lifts.shafts)
+    ]
+
+
+def _escalators(model: CrowdModel) -> list[dict[str, Any]]:
+    found = model.escalators
+    return [
+        {
+            "escalator": each.name,
+            "carried": int(found.carried[k]),
+            "stood_s": round(float(found.stood_s[k]), 6),
+        }
+        for k, each in enumerate(found.seams)
     ]

@@ -49,7 +49,7 @@ PERSON_FIELDS: dict[str, Array] = {
     "start": _FRAME,
     "gone": Array("i4", (), -1, LAST_FRAME),
     "spacing": Array("i4", (), 1, LAST_FRAME),
-    "option": Array("i4", (), -2, below="options"),
+    "option": Array("i4", (), -3, below="options"),
     "from_x": _METRES,
     "from_y": _METRES,
     "from_c": Array("f8", (), -1.0, 1.0),
@@ -83,7 +83,8 @@ PERSON = _record(PERSON_FIELDS)
 Now: ``x``, ``y``, ``heading`` (metres, radians), ``vx``, ``vy`` (mean velocity of the movement
 under way, m/s), ``active`` (in the model).  Person: ``preferred`` speed (m/s), ``core`` radius
 (m), ``type_index`` (index of the pedestrian type), ``destination`` (the router's number).  Movement
-under way: ``option`` (row of the option table; -1 none yet, -2 fallback), ``cluster`` (at its
+under way: ``option`` (row of the option table; -1 none yet, -2
+fallback, -3 carried), ``cluster`` (at its
 end), ``start`` and ``end`` frames, ``gone`` (frame at which the person has crossed an exit,
 or -1), ``spacing`` (frames between knots), ``knots`` (their number), ``from_x``, ``from_y``,
 ``from_heading`` where it starts, with cosine and sine ``from_c`` and ``from_s`` of an option's,
@@ -102,6 +103,7 @@ CrowdState: TypeAlias = "np.recarray[Any, Any]"
 NO_OPTION = -1
 NO_CORNER = -1
 FALLBACK = -2
+CARRIED = -3
 
 
 _SECONDS = Array("f8", (), -1e9, 1e9)

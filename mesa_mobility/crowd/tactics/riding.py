@@ -1,4 +1,4 @@
-"""Waiting for a lift, getting in, and standing in the car."""
+"""Waiting for a lift, getting in, and standing in the car; waiting for a place on escalators."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import NOBODY, Lifts
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
@@ -33,23 +34,35 @@ THERE = 0.15
 
 
 class RideLifts(Tactic):
-    """People wait before lifts until there is room for them, get in, and stand in the car."""
+    """People wait before lifts until there is room for them, get in, and stand in the car.
+
+    On the first step of an escalator they stand until it takes them up.
+    """
 
     name = "lifts"
-    saved: ClassVar[Mapping[str, Kind]] = {}  # the lifts are the model's
+    saved: ClassVar[Mapping[str, Kind]] = {}  # lifts and escalators are the model's
 
     _lifts: Lifts
+    _escalators: Escalators
 
     def bind(self, model: World) -> None:
-        """Keep the lifts, and which openings are their doors."""
-        self._lifts = model.lifts
+        """Keep lifts and escalators, and which openings are doors of lifts."""
+        self._lifts, self._escalators = model.lifts, model.escalators
         numbers = {opening.name: k for k, opening in enumerate(model.floor_plan.openings())}
         self._doors = [[numbers[gate.name] for gate in each.gates] for each in self._lifts.shafts]
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
-        """Have people stand before the doors, or go to their spot in the car."""
-        if desired.newcomers or not len(self._lifts):
+        """Have people stand before doors or on a first step, or go to their spot in the car."""
+        if desired.newcomers:
             return
+        if len(self._lifts):
+            self._ride(deciding, desired)
+        if len(self._escalators):
+            waits = self._escalators.waits(deciding.pedestrians, deciding.positions)
+            if waits.any():
+                deciding.hold(desired, waits)
+
+    def _ride(self, deciding: Deciding, desired: Desired) -> None:
         rows, lifts = deciding.pedestrians, self._lifts
         inside = lifts.car_of(deciding.positions) != NOBODY
         new = lifts.rides(rows) == NOBODY

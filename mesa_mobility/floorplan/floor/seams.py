@@ -18,6 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.floor.belts import Belt
 from mesa_mobility.floorplan.floor.openings import Gate
 
 LEAST_DEPTH = 0.2
@@ -68,6 +69,7 @@ class Seam:
         extra: metres by which routes across the seam count as longer than they are drawn, for a
             strip on which people walk more slowly.
         stepless: whether people who use no stairs walk over it, too.
+        belt: what carries people over it, who then cross it in that direction alone.
 
     Raises:
         FloorPlanError: what `Gate` refuses, a shift of other than two numbers, a depth of less than
@@ -81,6 +83,7 @@ class Seam:
     depth: float
     extra: float = 0.0
     stepless: bool = False
+    belt: Belt | None = None
 
     def __post_init__(self) -> None:
         line = Gate(self.name, self.a, self.b)
@@ -171,13 +174,14 @@ class Seam:
 
     @property
     def links(self) -> list[Link]:
-        """How routes lead from sheet to sheet, up and back."""
+        """How routes lead from sheet to sheet: both ways, or as a belt moves."""
         forward, shift = np.array(self.direction), np.array(self.shift)
         before, after = f"{self.name} {BEFORE}", f"{self.name} {AFTER}"
-        return [
-            Link(after + _COPY, after, forward, forward, shift, self.extra),
-            Link(before + _COPY, before, -forward, -forward, -shift, self.extra),
-        ]
+        on = Link(after + _COPY, after, forward, forward, shift, self.extra)
+        back = Link(before + _COPY, before, -forward, -forward, -shift, self.extra)
+        if self.belt is None:
+            return [on, back]
+        return [on if self.belt.way > 0 else back]
 
     def _gate(self, name: str, past: float, second: bool, copy: str) -> Gate:
         a, b = shapely.get_coordinates(self.part(past, past, second).exterior)[:2].tolist()
