@@ -15,6 +15,7 @@ from mesa_mobility.buildings import geojson
 from mesa_mobility.buildings.escalator import DOWN, UP, Escalator
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
+from mesa_mobility.buildings.headroom import check_headroom
 from mesa_mobility.buildings.level import Level, sheet_of
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import Places
@@ -52,7 +53,7 @@ class Building:
         FloorPlanError: levels, stairs, ramps, escalators or lifts of one number or name; stairs,
             ramps or escalators that lead nowhere, do not fit their rise, have no floor before them,
             or overlap an obstacle, an opening or each other or a lift; levels from which nothing
-            leads to an exit; or what `FloorPlan` refuses.
+            leads to an exit; floors less than 1.5 m above each other; or what `FloorPlan` refuses.
 
     Attributes:
         levels: the levels, in the order given.
@@ -110,6 +111,7 @@ class Building:
                     raise FloorPlanError(f"lift {lift.name!r}: {error}") from None
         self._sheets = sheets_of(self.levels, flights, landings, self.lifts)
         self._check_joined()
+        check_headroom(self._sheets, flights)
         self._places = Places(self._sheets, flights, self._owners)
         self.footing = Footing(flights)
         self.floor_plan = self._plan()

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from mesa_mobility.buildings.headroom import HEADROOM_M
 from mesa_mobility.results.trajectories import Trajectories
 
 # Rounding of floats may bring two bodies that just touch this much closer, metres.
 TOLERANCE_M = 1e-5
-# Two people whose heights differ by more are on different storeys, or flights of stairs, metres.
-HEADROOM_M = 1.5
 # Overlaps, or wall crossings, that a report lists individually, at most.
 NAMED = 10
 

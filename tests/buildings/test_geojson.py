@@ -55,7 +55,7 @@ def test_what_is_written_is_read_again(make, tmp_path):
 
 
 @given(
-    risers=st.integers(8, 24),
+    risers=st.integers(18, 24),
     tread=st.floats(0.25, 0.4),
     well=st.floats(0.1, 0.5),
     landing=st.none() | st.floats(1.2, 2.0),
