@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from mesa_mobility.buildings import Level as Level
     from mesa_mobility.buildings import Lift as Lift
     from mesa_mobility.buildings import Ramp as Ramp
+    from mesa_mobility.buildings import Refuge as Refuge
     from mesa_mobility.buildings import Stairs as Stairs
     from mesa_mobility.crowd import Candidates as Candidates
     from mesa_mobility.crowd import Capability as Capability

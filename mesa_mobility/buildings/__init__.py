@@ -5,7 +5,7 @@ from mesa_mobility.buildings.escalator import Escalator
 from mesa_mobility.buildings.files import read_floor
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
-from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.level import Level, Refuge
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import ON_STAIRS
 from mesa_mobility.buildings.ramp import Ramp
@@ -22,6 +22,7 @@ __all__ = [
     "Level",
     "Lift",
     "Ramp",
+    "Refuge",
     "Sheet",
     "Stairs",
     "read_floor",

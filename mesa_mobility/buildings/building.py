@@ -3,7 +3,7 @@
 import os
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, cast
 
 import networkx as nx
 import numpy as np
@@ -16,7 +16,7 @@ from mesa_mobility.buildings.escalator import DOWN, UP, Escalator
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
 from mesa_mobility.buildings.headroom import check_headroom
-from mesa_mobility.buildings.level import Level, sheet_of
+from mesa_mobility.buildings.level import Level, Refuge, sheet_of
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import Places
 from mesa_mobility.buildings.ramp import Ramp
@@ -173,6 +173,15 @@ class Building:
     def exits(self, level: int) -> tuple[str, ...]:
         """Names of the exits on a level."""
         return tuple(each.name for each in self.level(level).exits)
+
+    @property
+    def refuges(self) -> tuple[Refuge, ...]:
+        """The refuges of all levels, as drawn in the plane."""
+        return tuple(
+            Refuge(each.name, cast("Polygon", self._sheet(level.number).in_plane(each.shape)))
+            for level in self.levels
+            for each in level.refuges
+        )
 
     @property
     def sheets(self) -> tuple[Sheet, ...]:
@@ -346,6 +355,7 @@ def _check_names(
             "stairs, ramp, escalator or lift",
             sorted([each.name for each in stairs] + [each.name for each in lifts]),
         ),
+        ("refuge", sorted(each.name for level in levels for each in level.refuges)),
     ):
         for one, other in pairwise(names):
             if one == other:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.buildings.escalator import DOWN, Escalator
-from mesa_mobility.buildings.level import Level
+from mesa_mobility.buildings.level import Level, Refuge
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.lines import Line
 from mesa_mobility.buildings.ramp import Ramp
@@ -21,6 +22,8 @@ from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.content import Content, content_of
 
 STAIRS, RAMP, ESCALATOR, LIFT = Stairs.kind, Ramp.kind, Escalator.kind, "lift"
+
+REFUGE = "refuge"
 
 _OF_DOG_LEGS = ("turn", "well", "landing")
 
@@ -78,6 +81,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     elevations: dict[int, float] = {}
     stairs: list[Stairs | Ramp | Escalator] = []
     lifts = []
+    refuges: dict[int, list[Refuge]] = {}
     for number, feature in enumerate(geojson.features_of(data, where)):
         at = f"{where}: feature {number}"
         properties = feature.get("properties") if isinstance(feature, Mapping) else None
@@ -95,6 +99,10 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
             lifts.append(_lift(feature, given, at))
             continue
         level = _whole(given, "level", at, 0)
+        if given.get("kind") == REFUGE:
+            refuges.setdefault(level, []).append(_refuge(feature, given, at))
+            by_level.setdefault(level, [])
+            continue
         by_level.setdefault(level, []).append((feature, at))
         if given.get("kind") == "walkable":
             elevations[level] = given.get("elevation", 0.0)
@@ -106,14 +114,17 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
         for level, features in by_level.items()
     }
     try:
-        levels = [_level(level, each, elevations[level]) for level, each in contents.items()]
+        levels = [
+            _level(level, each, elevations[level], refuges.get(level, ()))
+            for level, each in contents.items()
+        ]
     except FloorPlanError as error:
         raise FloorPlanError(f"{where}: {error}") from None
     closed = [name for content in contents.values() for name in content.closed]
     return Parts(levels, stairs, lifts, name, closed)
 
 
-def _level(number: int, content: Content, elevation: Any) -> Level:
+def _level(number: int, content: Content, elevation: Any, refuges: Sequence[Refuge]) -> Level:
     if content.cut_off:
         raise FloorPlanError(f"level {number}: cut_off is for floor plans, found it in a building")
     return Level(
@@ -125,6 +136,7 @@ def _level(number: int, content: Content, elevation: Any) -> Level:
         obstacles=content.obstacles,
         zones=content.zones,
         name=content.name,
+        refuges=refuges,
     )
 
 
@@ -141,6 +153,7 @@ def _features(level: Level) -> list[dict[str, Any]]:
     for zone in level.zones:
         features.append(geojson.feature_of("zone", zone.name, zone.area))
         features[-1]["properties"]["factor"] = zone.factor
+    features += [geojson.feature_of(REFUGE, each.name, each.shape) for each in level.refuges]
     for feature in features:
         feature["properties"]["level"] = level.number
     return features
@@ -188,14 +201,27 @@ def _lift(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Lift
         raise FloorPlanError(f"{at}: {error}") from None
 
 
-def _line(feature: Mapping[str, Any], kind: str, at: str) -> Line:
+def _refuge(feature: Mapping[str, Any], given: Mapping[str, Any], at: str) -> Refuge:
+    area = _geometry(feature, "Polygon", REFUGE, at)
+    try:
+        return Refuge(str(given.get("name") or ""), cast("shapely.Polygon", area))
+    except FloorPlanError as error:
+        raise FloorPlanError(f"{at}: {error}") from None
+
+
+def _geometry(feature: Mapping[str, Any], what: str, kind: str, at: str) -> BaseGeometry:
     try:
         geometry = shapely.geometry.shape(feature.get("geometry"))
     except Exception as error:  # shapely raises whatever the malformed mapping led it into
         text = " ".join(str(error).split())
         raise FloorPlanError(f"{at}: the geometry cannot be read ({text})") from None
-    if geometry.geom_type != "LineString":
-        raise FloorPlanError(f"{at}: {kind} must be a LineString, found {geometry.geom_type}")
+    if geometry.geom_type != what:
+        raise FloorPlanError(f"{at}: {kind} must be a {what}, found {geometry.geom_type}")
+    return geometry
+
+
+def _line(feature: Mapping[str, Any], kind: str, at: str) -> Line:
+    geometry = _geometry(feature, "LineString", kind, at)
     return cast("Line", tuple(map(tuple, shapely.get_coordinates(geometry).tolist())))
 
 

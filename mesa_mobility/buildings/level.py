@@ -18,6 +18,35 @@ HIGHEST = 10_000.0
 
 
 @dataclass(frozen=True)
+class Refuge:
+    """A refuge area: a part of a level where people wait who cannot leave.
+
+    Args:
+        name: unique in the building.
+        area: its floor; shapely or WKT, metres.
+
+    Raises:
+        FloorPlanError: no name, or no polygon.
+    """
+
+    name: str
+    area: Polygon | str
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name:
+            raise FloorPlanError(
+                f"refuge: expected a name of at least one letter, found {self.name!r:.60}"
+            )
+        object.__setattr__(self, "area", read_polygon(self.area, f"refuge {self.name!r}"))
+
+    @property
+    def shape(self) -> Polygon:
+        """The area as a shapely geometry."""
+        assert isinstance(self.area, Polygon)
+        return self.area
+
+
+@dataclass(frozen=True)
 class Level:
     """A level of a building.
 
@@ -31,11 +60,13 @@ class Level:
         gates: doors, and other lines to cross, inside the walkable area.
         obstacles: polygons (shapely or WKT) to subtract.
         zones: parts of the floor where people walk more slowly.
+        refuges: parts of the floor where people wait who cannot leave.
         name: for titles and files.
 
     Raises:
-        FloorPlanError: a number that is not whole, an elevation that is not finite, or what
-            `FloorPlan` refuses of the walkable area and the obstacles.
+        FloorPlanError: a number that is not whole, an elevation that is not finite, a refuge that
+            is not on the walkable area, or what `FloorPlan` refuses of the walkable area and the
+            obstacles.
     """
 
     number: int
@@ -46,6 +77,7 @@ class Level:
     obstacles: Sequence[Polygon | str] = ()
     zones: Sequence[SpeedZone] = ()
     name: str = ""
+    refuges: Sequence[Refuge] = ()
 
     def __post_init__(self) -> None:
         number = self.number
@@ -65,10 +97,21 @@ class Level:
             "obstacles": tuple(
                 read_polygon(each, f"{where}obstacle {k}") for k, each in enumerate(self.obstacles)
             ),
-            **{name: tuple(getattr(self, name)) for name in ("exits", "gates", "zones")},
+            **{name: tuple(getattr(self, name)) for name in ("exits", "gates", "zones", "refuges")},
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
+        for refuge in self.refuges:
+            if not isinstance(refuge, Refuge):
+                raise FloorPlanError(
+                    f"{where}refuges must be Refuge objects, found {type(refuge).__name__}"
+                )
+            if not self.area.buffer(1e-6).covers(refuge.shape):
+                spot = refuge.shape.difference(self.area).representative_point()
+                raise FloorPlanError(
+                    f"{where}refuge {refuge.name!r} leaves the walkable area at "
+                    f"({spot.x:.2f}, {spot.y:.2f})"
+                )
 
     @property
     def area(self) -> Polygon:

@@ -244,6 +244,10 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
             f"stood for {each['stood_s']:.1f} s"
             for each in summary.get("escalators", ())
         },
+        **{
+            f"Refuge {each['refuge']}": f"{each['waiting']} people wait there"
+            for each in summary.get("refuges", ())
+        },
         "Decisions": f"{summary['decisions']}",
         "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
         f"{summary['fallback_time_share']:.1%} of the time",

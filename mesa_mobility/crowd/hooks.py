@@ -13,6 +13,7 @@ from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.journeys.visit import Route
 from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import Lifts
+from mesa_mobility.crowd.lifts.refuges import Refuges
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import Wishes
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
@@ -88,6 +89,10 @@ class World(Protocol):
     @property
     def escalators(self) -> Escalators:
         """The escalators that move, and whom they carry."""
+
+    @property
+    def refuges(self) -> Refuges:
+        """Where people wait who cannot leave."""
 
     @property
     def speed_rules(self) -> Sequence[Any]:

@@ -90,8 +90,7 @@ class Escalators(Saved):
     @property
     def stood_s(self) -> NDArray[np.float64]:
         """(escalators,) seconds for which each has stood with people on it."""
-        seconds: NDArray[np.float64] = self._stood * FRAME_SECONDS
-        return seconds
+        return np.multiply(self._stood, FRAME_SECONDS, dtype=np.float64)
 
     def riders(self, inside: NDArray[np.int64]) -> NDArray[np.int64]:
         """Rows of those inside whom an escalator carries."""

@@ -26,6 +26,7 @@ from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.dynamics import Dynamics
 from mesa_mobility.crowd.insertion.inflow import Sources
 from mesa_mobility.crowd.journeys.waiting import Waits
+from mesa_mobility.crowd.lifts.refuges import Refuges
 from mesa_mobility.crowd.model.clock import scheduled_events, set_clock, tell_time
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
@@ -126,6 +127,11 @@ class CrowdModel(mesa.Model):
         self._agents_step = pedestrian_class.step is not mesa.Agent.step
         self.crowd, self.journeys, self.lifts = scene.crowd, scene.journeys, scene.lifts
         self.escalators = scene.escalators
+        self.refuges = Refuges(
+            self.building.refuges if self.building else (),
+            scene.environment,
+            [bool(each.climbs) for each in scene.types],
+        )
         terms: Any = self.rules.make_terms() if behaviors is None else behaviors
         self.terms: list[CostTerm] = terms
         self.speed_rules: list[SpeedRule] = []
@@ -227,15 +233,31 @@ class CrowdModel(mesa.Model):
     def without_stairs(self) -> list[int]:
         """Rows of the people inside who have no way to go since they cannot use stairs.
 
-        They stay on their level, where they stand.
+        They go to a refuge on their level, or stay where they stand if there is none.
         """
         if not self.floor_plan.in_sheets:
             return []
         rows, crowd = self.population.present, self.crowd
         climbs = np.array([each.climbs for each in self.pedestrian_types])
-        lost = rows[~climbs[crowd.type_index[rows]] & np.isinf(crowd.route[rows])]
-        found: list[int] = lost.tolist()
+        lost = ~climbs[crowd.type_index[rows]] & np.isinf(crowd.route[rows])
+        found: list[int] = rows[lost | (self.refuges.bound_for(rows, crowd) >= 0)].tolist()
         return found
+
+    @property
+    def in_refuges(self) -> dict[str, list[int]]:
+        """By the name of each refuge, rows of the people who wait there since they cannot leave."""
+        rows = self.population.present
+        number = self.refuges.waiting(rows, self.frame, self.crowd)
+        return {
+            each.name: rows[number == k].tolist() for k, each in enumerate(self.refuges.refuges)
+        }
+
+    @property
+    def all_in_refuges(self) -> bool:
+        """Whether people are inside, and all of them wait in refuges."""
+        if not len(self.refuges) or not self.inside:
+            return False
+        return sum(map(len, self.in_refuges.values())) == self.inside
 
     @property
     def blocked(self) -> list[Blocked]:
@@ -308,7 +330,8 @@ class CrowdModel(mesa.Model):
             rings = Blockers(self, self._standing_watch.minute).rings(self.rows.tolist())
             self._stall_watch.ring = rings[0] if rings else []
         self.datacollector.collect(self)
-        self.running = (self.inside > 0 or self.sources.expecting) and not self.stalled
+        going_on = self.inside > 0 and not self.all_in_refuges
+        self.running = (going_on or self.sources.expecting) and not self.stalled
 
     def go_on(self) -> None:
         """Let an evacuation that has stalled run on: people have another minute to come nearer.
@@ -324,7 +347,9 @@ class CrowdModel(mesa.Model):
         max_seconds: float | None = None,
         progress: Callable[[float, int], None] | None = None,
     ) -> None:
-        """Step until everybody has left, the evacuation stalls or time is up.
+        """Step until all have left who can, the evacuation stalls or time is up.
+
+        People who cannot use stairs may be left in refuges.
 
         Args:
             max_seconds: simulated seconds at most.

@@ -12,8 +12,8 @@ def summary(model: CrowdModel) -> dict[str, Any]:
 
     Returns:
         ``model``, ``preset``, ``rules`` (all that the preset decides), ``pedestrians``,
-        ``simulated_s``, ``egress_s`` (None while anybody is inside or to come, or where nobody
-        ever was), ``left_inside``, ``stalled``,
+        ``simulated_s``, ``egress_s`` (None while anybody is inside, but for people in refuges, or
+        to come, or where nobody has left), ``left_inside``, ``stalled``,
         ``stall_reason`` (None unless stalled), ``blocked`` (everybody who has ever stood for a
         minute without a reason: ``person``, ``since_s``, ``ring`` as rows, and whether they
         still do, ``stands``), ``decisions``, ``fallback_decision_share``,
@@ -21,10 +21,13 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         ([[t, inside], ...] each second) and, in buildings with lifts, ``lifts`` (of each ``lift``
         its ``trips`` and how many people it has ``carried``), in those with moving escalators
         ``escalators`` (of each ``escalator`` how many people it has ``carried``, and the seconds
-        for which it ``stood_s`` with people on it).
+        for which it ``stood_s`` with people on it) and in those with refuges ``refuges`` (of each
+        ``refuge`` how many people are ``waiting`` there and, ``by_type``, of which types) and
+        ``cannot_leave`` (all ``people`` who have no way since they cannot use stairs, ``by_type``).
     """
     last_left, standing = model.statistics.last_left, model.blocked
-    out = model.inside == 0 and last_left is not None and not model.sources.expecting
+    left = model.inside == 0 or model.all_in_refuges
+    out = left and last_left is not None and not model.sources.expecting
     return {
         "model": type(model).__name__,
         "preset": model.preset,
@@ -51,6 +54,7 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         "occupancy": [list(row) for row in model.statistics.occupancy],
         **({"lifts": _lifts(model)} if len(model.lifts) else {}),
         **({"escalators": _escalators(model)} if len(model.escalators) else {}),
+        **(_refuges(model) if len(model.refuges) else {}),
     }
 
 
@@ -72,3 +76,13 @@ def _escalators(model: CrowdModel) -> list[dict[str, Any]]:
         }
         for k, each in enumerate(found.seams)
     ]
+
+
+def _refuges(model: CrowdModel) -> dict[str, Any]:
+    refuges = [{"refuge": name, **_counted(model, rows)} for name, rows in model.in_refuges.items()]
+    return {"refuges": refuges, "cannot_leave": _counted(model, model.without_stairs, "people")}
+
+
+def _counted(model: CrowdModel, rows: list[int], what: str = "waiting") -> dict[str, Any]:
+    kinds = [model.pedestrian_types[k].name for k in model.crowd.type_index[rows].tolist()]
+    return {what: len(rows), "by_type": {kind: kinds.count(kind) for kind in sorted(set(kinds))}}

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import NOBODY, Lifts
+from mesa_mobility.crowd.lifts.refuges import Refuges
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.visits import slow_down
@@ -36,18 +37,21 @@ THERE = 0.15
 class RideLifts(Tactic):
     """People wait before lifts until there is room for them, get in, and stand in the car.
 
-    On the first step of an escalator they stand until it takes them up.
+    On the first step of an escalator they stand until it takes them up. Those who have no way out,
+    since they cannot use stairs, go to a refuge.
     """
 
     name = "lifts"
-    saved: ClassVar[Mapping[str, Kind]] = {}  # lifts and escalators are the model's
+    saved: ClassVar[Mapping[str, Kind]] = {}  # what they ride is the model's
 
     _lifts: Lifts
     _escalators: Escalators
+    _refuges: Refuges
 
     def bind(self, model: World) -> None:
         """Keep lifts and escalators, and which openings are doors of lifts."""
         self._lifts, self._escalators = model.lifts, model.escalators
+        self._refuges = model.refuges
         numbers = {opening.name: k for k, opening in enumerate(model.floor_plan.openings())}
         self._doors = [[numbers[gate.name] for gate in each.gates] for each in self._lifts.shafts]
 
@@ -61,6 +65,22 @@ class RideLifts(Tactic):
             waits = self._escalators.waits(deciding.pedestrians, deciding.positions)
             if waits.any():
                 deciding.hold(desired, waits)
+        if len(self._refuges):
+            self._seek_refuge(deciding, desired)
+
+    def _seek_refuge(self, deciding: Deciding, desired: Desired) -> None:
+        """Send those without a way out to a refuge, and have them wait there."""
+        rows, crowd = deciding.pedestrians, deciding.inside.crowd
+        sent = self._refuges.send(rows, crowd)
+        if sent.any():
+            there = deciding.site.targets(
+                deciding.positions[sent], crowd.destination[rows[sent]].astype(np.int64)
+            )
+            desired.points = desired.points.copy()
+            desired.points[sent] = there.points
+        arrived = self._refuges.arrived(rows, deciding.inside.pedestrians, deciding.frame, crowd)
+        if arrived.any():
+            deciding.hold(desired, arrived)
 
     def _ride(self, deciding: Deciding, desired: Desired) -> None:
         rows, lifts = deciding.pedestrians, self._lifts

@@ -1,0 +1,149 @@
+"""People who cannot leave go to a refuge and wait there; the run ends when all others are out."""
+
+import numpy as np
+import pytest
+import shapely
+
+from mesa_mobility import Building, Exit, Level, Lift, PedestrianModel, Refuge, Stairs, Trajectories
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.results import check_safety
+
+HALL = "POLYGON ((0 0, 24 0, 24 8, 0 8, 0 0))"
+SAFE = "POLYGON ((19 1, 23 1, 23 4, 19 4, 19 1))"
+GROUND = Level(0, HALL, exits=[Exit("street", (0, 3), (0, 5))])
+STAIRS = Stairs.dog_leg("stairs", 1, 0, ((8, 1.4), (8, 0.2)), risers=18)
+
+
+LOBBY = Refuge("lobby", SAFE)
+
+
+def office(refuges=(LOBBY,), lifts=()):
+    return Building([GROUND, Level(1, HALL, 3.0, refuges=refuges)], [STAIRS], lifts=lifts)
+
+
+def crowd(building, population="able_bodied: 0.6, wheelchair_powered: 0.4", rng=1):
+    model = PedestrianModel(building, population=population, record=True, rng=rng)
+    places = building.random_points(12, model.rng, level=1, spacing=1.3, clearance=0.65)
+    model.add_pedestrians(places)
+    return model
+
+
+def test_those_who_cannot_leave_wait_in_the_refuge():
+    building = office()
+    model = crowd(building)
+    own = [person.row for person in model.agents if not person.pedestrian_type.climbs]
+    assert len(own) > 2
+    model.run(max_seconds=200)
+    assert not model.stalled
+    assert sorted(model.rows.tolist()) == own
+    assert model.without_stairs == own
+    assert model.in_refuges == {"lobby": own}
+    tracks, plan = Trajectories.of(model), building.floor_plan
+    assert check_safety(tracks, plan.walls, plan.free, building=building).passed
+    last = np.array([tracks.rows_of(row)[-1] for row in own])
+    assert (tracks.z[last] == 3.0).all()
+    # Somebody whom others keep out may wait right before it: a wheelchair is 0.7 m wide.
+    area = shapely.from_wkt(SAFE)
+    away = shapely.distance(area, shapely.points(tracks.x[last], tracks.y[last]))
+    assert away.max() < 1.0
+    assert (away == 0.0).sum() > len(own) / 2
+    summary = model.summary()
+    counted = {"wheelchair_powered": len(own)}
+    assert summary["refuges"] == [{"refuge": "lobby", "waiting": len(own), "by_type": counted}]
+    assert summary["cannot_leave"] == {"people": len(own), "by_type": counted}
+    assert summary["left_inside"] == len(own)
+    # The others are out.
+    assert summary["egress_s"] == pytest.approx(np.nanmax(_times_out(tracks, own)), abs=0.05)
+
+
+def _times_out(tracks, stay):
+    return [
+        tracks.frame[tracks.rows_of(person)[-1]] / 30.0
+        for person in range(tracks.people)
+        if person not in stay
+    ]
+
+
+def test_with_a_lift_nobody_needs_it_unless_the_lift_is_closed():
+    lift = Lift("car", [0, 1], ((20.0, 6.5), (20.9, 6.5)), speed=2.0)
+    model = crowd(office(lifts=[lift]))
+    assert model.without_stairs == []
+    assert model.in_refuges == {"lobby": []}
+    building = office(lifts=[lift])
+    for gate in ("car at level 0", "car at level 1"):
+        building.floor_plan.close_gate(gate)
+    model = crowd(building)
+    model.run(max_seconds=200)
+    assert model.in_refuges["lobby"] == model.without_stairs == model.rows.tolist() != []
+
+
+def test_without_a_refuge_they_stay_where_they_are():
+    model = crowd(office(refuges=()), population="wheelchair_powered")
+    before = model.crowd.x[model.rows].copy()
+    model.run(max_seconds=20)
+    assert np.allclose(model.crowd.x[model.rows], before, atol=0.05)
+    assert model.in_refuges == {}
+    assert "refuges" not in model.summary()
+
+
+def test_refuges_are_written_and_read():
+    building = office(refuges=[Refuge("lobby", SAFE), Refuge("stair head", HALL)])
+    read = Building.from_geojson(building.to_geojson())
+    assert read.levels[1].refuges == building.levels[1].refuges
+    assert read.to_geojson() == building.to_geojson()
+    [lobby, _] = read.refuges
+    shift = read.sheets[1].shift[0]
+    assert lobby.shape.bounds == pytest.approx((19.0 + shift, 1.0, 23.0 + shift, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("refuges", "said"),
+    [
+        ([Refuge("a", SAFE)] * 2, "refuge 'a' is there twice"),
+        (["lobby"], "level 1: refuges must be Refuge objects, found str"),
+        (
+            [Refuge("a", "POLYGON ((22 1, 26 1, 26 4, 22 4, 22 1))")],
+            r"level 1: refuge 'a' leaves the walkable area at \(25.00, 2.50\)",
+        ),
+    ],
+)
+def test_bad_refuges_get_one_line(refuges, said):
+    with pytest.raises(FloorPlanError, match=said) as caught:
+        office(refuges=refuges)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_refuge_needs_a_name_and_an_area():
+    with pytest.raises(FloorPlanError, match="refuge: expected a name"):
+        Refuge("", SAFE)
+    with pytest.raises(FloorPlanError, match="refuge 'a'"):
+        Refuge("a", "POINT (1 2)")
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"geometry": {"type": "Point", "coordinates": [0, 0]}}, "refuge must be a Polygon"),
+        ({"geometry": None}, "the geometry cannot be read"),
+        ({"name": ""}, "refuge: expected a name"),
+        ({"level": "roof"}, "level must be a whole number"),
+        ({"level": 7}, "level 7: expected one walkable area, found 0"),
+    ],
+)
+def test_bad_files_name_the_feature(change, said):
+    collection = office().to_geojson()
+    [feature] = [each for each in collection["features"] if each["properties"]["kind"] == "refuge"]
+    for name, value in change.items():
+        (feature if name == "geometry" else feature["properties"])[name] = value
+    with pytest.raises(FloorPlanError, match=said) as caught:
+        Building.from_geojson(collection)
+    assert "\n" not in str(caught.value)
+
+
+def test_those_for_whom_there_is_no_room_wait_before_the_refuge():
+    small = Refuge("small", "POLYGON ((22.8 6.8, 24 6.8, 24 8, 22.8 8, 22.8 6.8))")
+    model = crowd(office(refuges=[small]), population="wheelchair_powered")
+    model.run(max_seconds=300)
+    assert model.elapsed < 200
+    assert not model.stalled
+    assert model.in_refuges == {"small": list(range(12))}
