@@ -99,7 +99,7 @@ def test_it_stands_while_somebody_is_in_the_way_at_its_end():
     model.run(max_seconds=39)
     carried = model.escalators.riders(model.rows)
     assert len(carried) > 5
-    assert model.escalators.carried[0] <= 3  # those who have come to the end
+    assert model.escalators.carried[0] <= 4  # those for whom there is room before the three
     assert model.escalators.stood_s[0] > 10.0
     before = model.crowd.x[carried].copy()
     model.run(max_seconds=40)
