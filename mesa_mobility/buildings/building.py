@@ -147,11 +147,12 @@ class Building:
         `well` and, if it is not as deep as wide, `landing`. A feature of the kind `ramp` is its
         upper edge, with `from`, `to`, `length` and `factor`; one of the kind `escalator` has the
         other arguments of `Escalator` in place of `factor`. A feature of the kind `lift` is the
-        door, with the numbers of its `levels` and the other arguments of `Lift`. A building of one
-        level is written as its floor plan.
+        door, with the numbers of its `levels` and the other arguments of `Lift`. One of the kind
+        `refuge` is an area. A building of one level without refuges is written as its floor plan.
         """
         first, plan = self.levels[0], self.floor_plan
-        if len(self.levels) == 1 and first.number == 0 and first.elevation == 0.0:
+        plain = first.number == 0 and first.elevation == 0.0 and not first.refuges
+        if len(self.levels) == 1 and plain:
             return plan.to_geojson()
         closed = [each.name for each in plan.openings() if not plan.is_open(each.name)]
         return geojson.feature_collection(

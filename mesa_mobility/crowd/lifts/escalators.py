@@ -116,14 +116,14 @@ class Escalators(Saved):
         # People who had to stop for a change of the plan have decided by themselves.
         riding = inside[self._rides[inside] != NOBODY]
         self._rides[riding[crowd.option[riding] != CARRIED]] = NOBODY
-        if not len(inside):
+        # In frames between two looks, which some runs pass over, nothing happens.
+        if frame % EVERY or not len(inside):
             return
         points = np.column_stack([crowd.x[inside], crowd.y[inside]])
         for number, belt in enumerate(self._belts):
             near = belt.near(points)
             near = near._replace(who=inside[near.who])
-            if frame % EVERY == 0:
-                self._move_on(number, near, frame, crowd, table)
+            self._move_on(number, near, frame, crowd, table)
             self._take_up(number, near, frame, crowd, table)
 
     def waits(self, rows: NDArray[np.int64], points: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import shapely
@@ -11,8 +12,10 @@ from shapely.ops import polylabel
 
 from mesa_mobility.buildings import Refuge
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
+from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd
+from mesa_mobility.schema import Array, Kind
 
 NOWHERE = -1
 
@@ -29,7 +32,7 @@ _EXACT = 0.05
 """Metres to which the middle of a refuge is found."""
 
 
-class Refuges:
+class Refuges(Saved):
     """The refuge areas of a building, and who is bound for them. Rows are those of the crowd.
 
     People who do not use stairs and have no way out get the middle of the nearest refuge as their
@@ -52,6 +55,19 @@ class Refuges:
         self._site, self._climbs = site, np.array(climbs, dtype=np.bool_)
         spots = [polylabel(each.shape, _EXACT) for each in self.refuges]
         self._middles = [(float(each.x), float(each.y)) for each in spots]
+        self._there = np.empty(0, np.bool_)
+
+    def members(self) -> Mapping[str, Kind]:
+        """What the members of ``state`` are."""
+        return {"there": Array("?", ("known",))}
+
+    def state(self) -> dict[str, Any]:
+        """Who has come to a refuge."""
+        return {"there": self._there}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what ``state`` has given."""
+        self._there = state["there"]
 
     def __len__(self) -> int:
         return len(self.refuges)
@@ -90,8 +106,8 @@ class Refuges:
     def arrived(
         self, rows: NDArray[np.int64], inside: NDArray[np.int64], frame: int, crowd: Crowd
     ) -> NDArray[np.bool_]:
-        """(n,) whether people in ``rows``, of those ``inside``, wait where they are."""
-        waits = self.waiting(inside, frame, crowd)
+        """(n,) whether people in ``rows``, of those ``inside``, wait where they are from now on."""
+        waits = self.waiting(inside, crowd)
         others, theirs = inside[waits != NOWHERE], waits[waits != NOWHERE]
         there = np.zeros(len(rows), np.bool_)
         for k, number in enumerate(self.bound_for(rows, crowd).tolist()):
@@ -107,9 +123,12 @@ class Refuges:
             within = bool(shapely.intersects_xy(area, crowd.x[row], crowd.y[row]))
             stuck = frame * FRAME_SECONDS - crowd.agenda["since"][row] > GIVES_UP
             there[k] = away < THERE or (beside and (within or stuck))
+        self._there[rows] = there
         return there
 
-    def waiting(self, rows: NDArray[np.int64], frame: int, crowd: Crowd) -> NDArray[np.int64]:
+    def waiting(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.int64]:
         """(n,) number of the refuge in which each person in ``rows`` waits; -1 for none."""
-        waits = crowd.agenda["waits_until"][rows] >= frame
-        return np.where(waits & (crowd.stride[rows] == 0.0), self.bound_for(rows, crowd), NOWHERE)
+        more = int(rows.max(initial=-1)) + 1 - len(self._there)
+        if more > 0:
+            self._there = np.append(self._there, np.zeros(more, np.bool_))
+        return np.where(self._there[rows], self.bound_for(rows, crowd), NOWHERE)

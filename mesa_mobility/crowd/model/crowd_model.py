@@ -180,6 +180,7 @@ class CrowdModel(mesa.Model):
             "journeys": self.journeys,
             "lifts": self.lifts,
             "escalators": self.escalators,
+            "refuges": self.refuges,
             "population": self.population,
             "sources": self.sources,
             "statistics": self.statistics,
@@ -247,7 +248,7 @@ class CrowdModel(mesa.Model):
     def in_refuges(self) -> dict[str, list[int]]:
         """By the name of each refuge, rows of the people who wait there since they cannot leave."""
         rows = self.population.present
-        number = self.refuges.waiting(rows, self.frame, self.crowd)
+        number = self.refuges.waiting(rows, self.crowd)
         return {
             each.name: rows[number == k].tolist() for k, each in enumerate(self.refuges.refuges)
         }

@@ -22,11 +22,13 @@ A_FRAME = 0.75 * 0.5 / 30.0
 """Metres of height in a frame."""
 
 
-def crowd(count, *, rng=1, spacing=0.6, population="able_bodied", **given):
+def crowd(count, *, rng=1, spacing=0.6, population="able_bodied", record=True, steps=3, **given):
     """A hall, and people on the storey from which its escalator leads."""
     building = hall(**given)
     level = 0 if given.get("direction") == "up" else 1
-    model = PedestrianModel(building, population=population, record=True, rng=rng)
+    model = PedestrianModel(
+        building, population=population, record=record, frames_per_step=steps, rng=rng
+    )
     places = building.random_points(count, model.rng, level=level, spacing=spacing, clearance=0.3)
     model.add_pedestrians(places, exits=["east" if level == 0 else "west"])
     return model
@@ -145,6 +147,18 @@ def test_threads_steps_and_checkpoints_change_nothing(monkeypatch, tmp_path):
     model.run(max_seconds=12)
     assert len(model.escalators.riders(model.rows)) > 2
     check_going_on(Hall(rng=1), tmp_path, saved_at=12, until=25)
+
+
+@pytest.mark.parametrize("capacity", [1700, None])
+def test_recording_and_steps_change_nothing(capacity):
+    """A recorded run looks at each frame, another one passes over those without decisions."""
+    places = []
+    for record, frames in ((True, 3), (False, 1), (False, 3), (False, 30)):
+        model = crowd(30, record=record, steps=frames, capacity=capacity)
+        model.run(max_seconds=18)
+        assert model.escalators.carried[0] > 3
+        places.append(model.crowd.x[model.rows].tobytes())
+    assert len(set(places)) == 1
 
 
 def test_a_checkpoint_with_an_escalator_that_is_not_there_is_refused():

@@ -5,8 +5,10 @@ import pytest
 import shapely
 
 from mesa_mobility import Building, Exit, Level, Lift, PedestrianModel, Refuge, Stairs, Trajectories
+from mesa_mobility.buildings import read_floor
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.results import check_safety
+from tests.fixtures.checkpoints import check_going_on
 
 HALL = "POLYGON ((0 0, 24 0, 24 8, 0 8, 0 0))"
 SAFE = "POLYGON ((19 1, 23 1, 23 4, 19 4, 19 1))"
@@ -75,6 +77,44 @@ def test_with_a_lift_nobody_needs_it_unless_the_lift_is_closed():
     model = crowd(building)
     model.run(max_seconds=200)
     assert model.in_refuges["lobby"] == model.without_stairs == model.rows.tolist() != []
+
+
+def test_nobody_is_in_a_refuge_who_stands_elsewhere():
+    lift = Lift("car", [1, 2], ((20.0, 6.5), (20.9, 6.5)))
+    levels = [GROUND, Level(1, HALL, 3.0, refuges=[LOBBY]), Level(2, HALL, 6.0)]
+    above = Stairs.dog_leg("above", 2, 1, ((8, 1.4), (8, 0.2)), risers=18)
+    building = Building(levels, [STAIRS, above], lifts=[lift])
+    model = PedestrianModel(building, population="wheelchair_powered", rng=1)
+    waits, rides = model.add_pedestrians(
+        [*building.places([(12.0, 5.0)], level=1), *building.places([(20.4, 4.0)], level=2)]
+    )
+    waits.wait(20.0)
+    model.run(max_seconds=15)
+    # One stands where they are told to, the other before the lift or in it.
+    assert model.in_refuges == {"lobby": []}
+    assert not model.all_in_refuges
+    model.run(max_seconds=150)
+    assert model.in_refuges == {"lobby": [waits.row, rides.row]}
+    assert model.lifts.carried[0] == 1
+    assert model.elapsed < 120
+
+
+def test_who_waits_in_a_refuge_is_in_checkpoints(tmp_path):
+    class Office(PedestrianModel):
+        def __init__(self, rng=None):
+            super().__init__(office(), population="wheelchair_powered", record=True, rng=rng)
+            self.add_pedestrians(self.building.places([(19.0, 2.5), (5.0, 4.0)], level=1))
+
+    check_going_on(Office(rng=1), tmp_path, saved_at=8, until=40)
+    model = Office(rng=1)
+    model.run(max_seconds=8)
+    assert len(model.in_refuges["lobby"]) == 1
+
+
+def test_a_level_with_a_refuge_is_written_and_read(tmp_path):
+    hall = Building([Level(0, HALL, exits=[Exit("street", (0, 3), (0, 5))], refuges=[LOBBY])])
+    hall.write_geojson(tmp_path / "hall.geojson")
+    assert [each.name for each in read_floor(tmp_path / "hall.geojson").refuges] == ["lobby"]
 
 
 def test_without_a_refuge_they_stay_where_they_are():
