@@ -189,6 +189,7 @@ def test_code_of_others_is_not_looked_for(tmp_path, monkeypatch):
 
 
 def test_what_is_compiled_natively_is_not_taken_from_a_wheel(folder, monkeypatch):
+    monkeypatch.setattr(kernel_cache, "_own_only", False)  # another test may have compiled
     monkeypatch.setattr(kernel_cache, "folder", lambda: Path(kernel_cache.PREFIX + VERSION))
     shipped.code_for.cache_clear()
     assert kernel_cache.shipped_code() is not None
