@@ -33,9 +33,8 @@ class PersonalSpace(CompiledTerm):
     missing to the nearest wall. Bodies are where they will be when the option ends, at constant
     velocity of the neighbour.
 
-    In a jam people spread by this term, as far as the room ahead of them lets them. Without it they
-    crowd to 8 persons/m2 before a narrow opening, where 3.5 to 6 are measured, and block each
-    other.
+    In a jam people spread by this term, as far as the room ahead of them lets them. Without it
+    people before an exit change their direction and step aside more than measured people do.
 
     Args:
         weight: factor in the sum.

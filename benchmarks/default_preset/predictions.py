@@ -31,6 +31,7 @@ FloatArray = NDArray[np.float64]
 AFTER_S = (1.5, 3.0, 4.8)
 """Seconds after the instant."""
 SLOWEST = 1.0 / 40.0
+"""Share of people who prefer less than the least speed that anybody is given."""
 RADIUS_M = 0.137
 """Of bodies in JuPedSim: half the distance that replays leave between people."""
 

@@ -74,7 +74,7 @@ class Code:
         target = triple, CPU, _switched_on(self.level)
         try:
             return _Files(self, module, base).load((signature, target, bytecode))
-        # What another version has made may raise anything.
+        # Files of another version may raise anything.
         except Exception:
             return None
 
@@ -124,7 +124,7 @@ def code_for(version: str) -> Code | None:
 
 
 def _made_with(version: str) -> list[object]:
-    """What code depends on besides the processor."""
+    """The versions and the setting on which code depends, besides the processor."""
     numpy = np.__version__.split(".")[0]
     return [version, sys.implementation.cache_tag, numpy, bool(config.USING_SVML)]
 

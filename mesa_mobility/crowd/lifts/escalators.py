@@ -180,7 +180,7 @@ class Escalators(Saved):
         on &= self._rides[near.who] == NOBODY
         on &= (crowd.end[near.who] <= frame) | (crowd.stride[near.who] == 0.0)
         now = frame * FRAME_SECONDS
-        # Who is in the way of somebody behind them on the belt does not wait there.
+        # People do not wait on the first step if somebody comes from behind them on the belt.
         behind = near.along[self._rides[near.who] == number].min(initial=FIRST)
         for k in np.flatnonzero(on)[np.argsort(-near.along[on], kind="stable")].tolist():
             who = near.who[k : k + 1]
