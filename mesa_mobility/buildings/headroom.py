@@ -27,10 +27,12 @@ _ROUNDING = 1e-9
 def check_headroom(sheets: Mapping[str, Sheet], flights: Iterable[Flight]) -> None:
     """Levels, landings and flights must not lie above each other with too little between.
 
+    Two flights that meet on a sheet do not overlap in plan; see ``sheets_of``.
+
     Raises:
         FloorPlanError: naming both, the place and the metres between.
     """
-    floors = list(sheets.values())
+    floors, flights = list(sheets.values()), tuple(flights)
     for one, other in combinations(floors, 2):
         between = abs(one.elevation - other.elevation)
         if between < HEADROOM_M - _ROUNDING:
@@ -47,6 +49,33 @@ def check_headroom(sheets: Mapping[str, Sheet], flights: Iterable[Flight]) -> No
                 height = height_on(flight, place_on(flight, np.array([[spot.x, spot.y]]))[0])
                 between = float(abs(height[0] - sheet.elevation))
                 raise _refusal(f"{flight.what} {flight.name!r}", sheet.name, between, spot)
+
+    for one, other in combinations(flights, 2):
+        spot, between = _nearest(one, other)
+        if spot is not None and between < HEADROOM_M - _ROUNDING:
+            names = [f"{each.what} {each.name!r}" for each in (one, other)]
+            raise _refusal(names[0], names[1], between, spot)
+
+
+def _nearest(one: Flight, other: Flight) -> tuple[Point | None, float]:
+    """Where two flights are nearest above each other, and the metres between; None and infinity
+    if they are nowhere above each other.
+
+    What they share in plan is a convex polygon, on which the difference of their heights is linear.
+    So it has its least and its greatest value at corners, and any value between on a line of these.
+    """
+    shared = shapely.intersection(one.part(0.0, one.going), other.part(0.0, other.going))
+    if shared.area <= _LEAST_AREA:
+        return None, np.inf
+    corners = shapely.get_coordinates(shared)
+    above, below = (height_on(each, place_on(each, corners)[0]) for each in (one, other))
+    between = above - below
+    low, high = int(np.argmin(between)), int(np.argmax(between))
+    if between[low] < 0.0 < between[high]:
+        share = -between[low] / (between[high] - between[low])
+        return Point(corners[low] + share * (corners[high] - corners[low])), 0.0
+    nearest = int(np.argmin(np.abs(between)))
+    return Point(corners[nearest]), float(abs(between[nearest]))
 
 
 def _close(flight: Flight, elevation: float) -> tuple[float, float]:

@@ -1,6 +1,7 @@
 """Floors above each other need 1.5 m between them, as the safety check of runs assumes."""
 
 import pytest
+import shapely
 
 from mesa_mobility import Building, Exit, Level, Ramp, Stairs
 from mesa_mobility.errors import FloorPlanError
@@ -53,3 +54,38 @@ def test_a_ramp_over_another_level():
     said = refusal([upper, ground, dais], [ramp])
     assert said.startswith("ramp 'ramp' and level 2: one lies 0.3")
     assert "at (15." in said
+
+
+def floor(number, x, y, elevation, exit_y):
+    area = shapely.box(x[0], y[0], x[1], y[1])
+    street = Exit(f"street {number}", (x[0], exit_y), (x[1], exit_y))
+    return Level(number, area, elevation, exits=[street])
+
+
+def crossing_ramps(higher):
+    """Ramp A from 3 to 0 m eastwards, and ramp B from 4 to 1 m southwards across it, or higher."""
+    levels = [
+        floor(1, (-4, 0), (0, 8), 3.0, 8),
+        floor(0, (20, 24), (0, 8), 0.0, 8),
+        floor(3, (5, 15), (20, 24), 4.0 + higher, 24),
+        floor(2, (5, 15), (-20, -16), 1.0 + higher, -20),
+    ]
+    one = Ramp.straight("A", 1, 0, ((0, 5), (0, 3)), length=20)
+    return Building(levels, [one, Ramp.straight("B", 3, 2, ((11, 20), (9, 20)), length=36)])
+
+
+# At (9, 3) A is 1.65 m and B 4 - 17 / 12 = 2.583 m high: the least difference, 0.933 m.
+@pytest.mark.parametrize(
+    ("higher", "between", "spot"),
+    [(0.0, "0.93", r"9.00, 3.00"), (0.566, "1.50", r"9.00, 3.00"), (-1.1, "0.00", "")],
+)
+def test_flights_too_close_above_each_other_are_refused(higher, between, spot):
+    said = f"ramp 'A' and ramp 'B': one lies {between} m above the other at \\({spot}"
+    with pytest.raises(FloorPlanError, match=said) as caught:
+        crossing_ramps(higher)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("higher", [0.567, -2.9])
+def test_flights_may_cross_far_enough_above_each_other(higher):
+    assert len(crossing_ramps(higher).flights) == 2
