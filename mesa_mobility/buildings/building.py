@@ -148,7 +148,9 @@ class Building:
         upper edge, with `from`, `to`, `length` and `factor`; one of the kind `escalator` has the
         other arguments of `Escalator` in place of `factor`. A feature of the kind `lift` is the
         door, with the numbers of its `levels` and the other arguments of `Lift`. One of the kind
-        `refuge` is an area. A building of one level without refuges is written as its floor plan.
+        `refuge` is an area. Stairs, ramps, escalators and lifts have a list `closed` of the names
+        of their gates that are closed. A building of one level without refuges is written as its
+        floor plan.
         """
         first, plan = self.levels[0], self.floor_plan
         plain = first.number == 0 and first.elevation == 0.0 and not first.refuges
