@@ -133,7 +133,10 @@ class Building:
         except FloorPlanError as error:
             raise FloorPlanError(f"{where}: {error}") from None
         for closed in parts.closed:
-            building.floor_plan.close_gate(closed)
+            try:
+                building.floor_plan.close_gate(closed)
+            except FloorPlanError as error:
+                raise FloorPlanError(f"{where}: {error}") from None
         building.floor_plan.version = 0
         return building
 
@@ -157,8 +160,14 @@ class Building:
         if len(self.levels) == 1 and plain:
             return plan.to_geojson()
         closed = [each.name for each in plan.openings() if not plan.is_open(each.name)]
+        gates: dict[str, list[str]] = {}
+        for flight, seam in zip(self.flights, plan.seams, strict=True):
+            own = gates.setdefault(self.stairs[self._owners[flight.name]].name, [])
+            own += [gate.name for gate in seam.gates]
+        for shaft in plan.shafts:
+            gates[shaft.name] = [gate.name for gate in shaft.gates]
         return geojson.feature_collection(
-            geojson.Parts(self.levels, self.stairs, self.lifts, self.name, closed)
+            geojson.Parts(self.levels, self.stairs, self.lifts, self.name, closed, gates)
         )
 
     def write_geojson(self, path: "str | os.PathLike[str]") -> None:

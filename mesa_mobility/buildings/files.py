@@ -6,14 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from mesa_mobility.buildings.building import Building
-from mesa_mobility.buildings.geojson import ESCALATOR, LIFT, RAMP, REFUGE, STAIRS
+from mesa_mobility.buildings.features import KINDS
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.floorplan.formats import geojson
 
 _SUFFIXES = ".geojson", ".json"
-
-_KINDS = STAIRS, RAMP, ESCALATOR, LIFT, REFUGE
-"""Of features that only buildings have."""
 
 
 def read_floor(path: str | os.PathLike[str]) -> FloorPlan | Building:
@@ -35,4 +32,4 @@ def read_floor(path: str | os.PathLike[str]) -> FloorPlan | Building:
 def _of_a_building(feature: Any) -> bool:
     properties = feature.get("properties") if isinstance(feature, Mapping) else None
     given = properties if isinstance(properties, Mapping) else {}
-    return given.get("kind") in _KINDS or given.get("level", 0) != 0
+    return given.get("kind") in KINDS or given.get("level", 0) != 0

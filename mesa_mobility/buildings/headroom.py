@@ -50,10 +50,10 @@ def check_headroom(sheets: Mapping[str, Sheet], flights: Iterable[Flight]) -> No
                 between = float(abs(height[0] - sheet.elevation))
                 raise _refusal(f"{flight.what} {flight.name!r}", sheet.name, between, spot)
 
-    for one, other in combinations(flights, 2):
-        spot, between = _nearest(one, other)
+    for above, below in combinations(flights, 2):
+        spot, between = _nearest(above, below)
         if spot is not None and between < HEADROOM_M - _ROUNDING:
-            names = [f"{each.what} {each.name!r}" for each in (one, other)]
+            names = [f"{each.what} {each.name!r}" for each in (above, below)]
             raise _refusal(names[0], names[1], between, spot)
 
 

@@ -6,7 +6,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesa_mobility import Building, Exit, FloorPlan, Level, SpeedZone, Stairs
+from mesa_mobility import (
+    Building,
+    Escalator,
+    Exit,
+    FloorPlan,
+    Level,
+    Lift,
+    Refuge,
+    SpeedZone,
+    Stairs,
+)
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Gate
 from tests.fixtures.buildings import HALL, two_storeys
@@ -157,3 +167,68 @@ def test_a_building_has_no_pieces_cut_off():
     collection["features"][0]["properties"]["cut_off"] = True
     with pytest.raises(FloorPlanError, match="level 0: cut_off is for floor plans"):
         Building.from_geojson(collection)
+
+
+def of_all_kinds():
+    """Two storeys with stairs, an escalator, a lift and a refuge."""
+    ground = Level(0, HALL, exits=[Exit("street", (0, 3), (0, 5))])
+    lobby = Refuge("lobby", "POLYGON ((19 1, 22 1, 22 3, 19 3, 19 1))")
+    first = Level(1, HALL, 3.06, refuges=[lobby])
+    return Building(
+        [ground, first],
+        [
+            Stairs.dog_leg("stairs", first, ground, ((8, 1.4), (8, 0.2)), risers=18),
+            Escalator.straight("escalator", first, ground, ((16, 3), (16, 4)), length=5.3),
+        ],
+        lifts=[Lift("car", [0, 1], ((20.0, 6.5), (20.9, 6.5)))],
+    )
+
+
+def test_closed_doors_of_lifts_and_closed_flights_are_read_again():
+    building = of_all_kinds()
+    shut = ["street", "car at level 1", "stairs 2 before", "escalator after"]
+    for name in shut:
+        building.floor_plan.close_gate(name)
+    collection = building.to_geojson()
+    read = Building.from_geojson(collection)
+    plan = read.floor_plan
+    assert sorted(shut) == sorted(e.name for e in plan.openings() if not plan.is_open(e.name))
+    assert read.to_geojson() == collection
+    assert "closed" not in str(of_all_kinds().to_geojson())
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "said"),
+    [
+        ("escalator", {"spede": 0.5}, "escalator has no property 'spede', expected some of kind"),
+        ("refuge", {"capacity": 5}, "refuge has no property 'capacity', expected some of kind"),
+        ("escalator", {"level": 0}, "level must be that of from, 1, found 0"),
+        ("stairs", {"level": 7}, "level must be that of from, 1, found 7"),
+        ("lift", {"level": 7}, r"level must be one of its levels \[0, 1\], found 7"),
+        ("escalator", {"name": 5}, "name must be a text, found 5"),
+        ("refuge", {"name": ["a"]}, r"name must be a text, found \['a'\]"),
+        ("lift", {"closed": True}, "closed must be a list of names of gates, found True"),
+        ("lift", {"closed": ["car at level 9"]}, "'car at level 9'"),
+    ],
+)
+def test_a_bad_property_gets_one_line(kind, change, said):
+    collection = of_all_kinds().to_geojson()
+    for feature in collection["features"]:
+        if feature["properties"]["kind"] == kind:
+            feature["properties"] |= change
+    with pytest.raises(FloorPlanError, match=said) as caught:
+        Building.from_geojson(collection)
+    assert str(caught.value).startswith("GeoJSON: ")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", ["refuge", "walkable", "escalator"])
+def test_a_coordinate_that_is_no_number_gives_no_further_warning(kind, recwarn):
+    collection = of_all_kinds().to_geojson()
+    for feature in collection["features"]:
+        if feature["properties"]["kind"] == kind:
+            points = feature["geometry"]["coordinates"]
+            (points if kind == "escalator" else points[0])[1] = [23.0, float("nan")]
+    with pytest.raises(FloorPlanError):
+        Building.from_geojson(collection)
+    assert not recwarn

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -99,7 +100,8 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, Mapping[st
             f"{at}: property kind must be one of {', '.join(KINDS)}, found {kind!r}"
         )
     try:
-        geometry = shapely.geometry.shape(feature.get("geometry"))
+        with np.errstate(invalid="ignore"):  # coordinates that are no numbers are refused below
+            geometry = shapely.geometry.shape(feature.get("geometry"))
     except Exception as error:  # shapely raises whatever the malformed mapping led it into
         text = " ".join(str(error).split())
         raise FloorPlanError(f"{at}: the geometry cannot be read ({text})") from None
