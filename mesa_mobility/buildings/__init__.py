@@ -5,10 +5,11 @@ from mesa_mobility.buildings.escalator import Escalator
 from mesa_mobility.buildings.files import read_floor
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
-from mesa_mobility.buildings.level import Level, Refuge
+from mesa_mobility.buildings.level import Level
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import ON_STAIRS
 from mesa_mobility.buildings.ramp import Ramp
+from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet
 from mesa_mobility.buildings.stairs import Stairs
 

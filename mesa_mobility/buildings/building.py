@@ -16,10 +16,11 @@ from mesa_mobility.buildings.escalator import DOWN, UP, Escalator
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
 from mesa_mobility.buildings.headroom import check_headroom
-from mesa_mobility.buildings.level import Level, Refuge, sheet_of
+from mesa_mobility.buildings.level import Level, sheet_of
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import Places
 from mesa_mobility.buildings.ramp import Ramp
+from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet, seam_of, shaft_of, sheets_of, zones_of
 from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
@@ -52,7 +53,8 @@ class Building:
     Raises:
         FloorPlanError: levels, stairs, ramps, escalators or lifts of one number or name; stairs,
             ramps or escalators that lead nowhere, do not fit their rise, have no floor before them,
-            or overlap an obstacle, an opening or each other or a lift; levels from which nothing
+            or overlap an obstacle, an opening, a refuge, each other or a lift; refuges that overlap
+            each other or a lift; levels from which nothing
             leads to an exit; floors less than 1.5 m above each other; or what `FloorPlan` refuses.
 
     Attributes:

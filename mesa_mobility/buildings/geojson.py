@@ -16,9 +16,10 @@ from mesa_mobility.buildings.features import (
     part_of,
     whole,
 )
-from mesa_mobility.buildings.level import Level, Refuge
+from mesa_mobility.buildings.level import Level
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.ramp import Ramp
+from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing

@@ -1,11 +1,12 @@
 """A level of a building: its floor in true coordinates."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
+from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit, Gate, SpeedZone
 from mesa_mobility.floorplan.floor.checks import read_polygon
@@ -15,35 +16,6 @@ MOST_LEVEL = 1_000
 
 HIGHEST = 10_000.0
 """Greatest elevation of a level, metres, above or below the origin."""
-
-
-@dataclass(frozen=True)
-class Refuge:
-    """A refuge area: a part of a level where people wait who cannot leave.
-
-    Args:
-        name: unique in the building.
-        area: its floor; shapely or WKT, metres.
-
-    Raises:
-        FloorPlanError: no name, or no polygon.
-    """
-
-    name: str
-    area: Polygon | str
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.name, str) or not self.name:
-            raise FloorPlanError(
-                f"refuge: expected a name of at least one letter, found {self.name!r:.60}"
-            )
-        object.__setattr__(self, "area", read_polygon(self.area, f"refuge {self.name!r}"))
-
-    @property
-    def shape(self) -> Polygon:
-        """The area as a shapely geometry."""
-        assert isinstance(self.area, Polygon)
-        return self.area
 
 
 @dataclass(frozen=True)
@@ -97,7 +69,7 @@ class Level:
             "obstacles": tuple(
                 read_polygon(each, f"{where}obstacle {k}") for k, each in enumerate(self.obstacles)
             ),
-            **{name: tuple(getattr(self, name)) for name in ("exits", "gates", "zones", "refuges")},
+            **{name: self._listed(name) for name in ("exits", "gates", "zones", "refuges")},
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -112,6 +84,14 @@ class Level:
                     f"{where}refuge {refuge.name!r} leaves the walkable area at "
                     f"({spot.x:.2f}, {spot.y:.2f})"
                 )
+
+    def _listed(self, name: str) -> tuple[object, ...]:
+        given = getattr(self, name)
+        if not isinstance(given, Iterable):
+            raise FloorPlanError(
+                f"level {self.number}: {name} must be a list, found {type(given).__name__}"
+            )
+        return tuple(given)
 
     @property
     def area(self) -> Polygon:

@@ -39,6 +39,9 @@ _FREE = 0.5
 _FREE_BEFORE_LIFT = 1.5
 """The same before the door of a lift: room for a wheelchair to turn (ISO 21542)."""
 
+_LEAST_SHARED = 1e-6
+"""Square metres that two areas share if they overlap."""
+
 Opening = TypeVar("Opening", Exit, Gate)
 
 
@@ -86,8 +89,8 @@ def sheets_of(
     The first level keeps its coordinates.
 
     Raises:
-        FloorPlanError: a flight or a lift without floor before it, or over an obstacle or opening,
-            or two that overlap.
+        FloorPlanError: a flight or a lift without floor before it, or over an obstacle, an opening
+            or a refuge, or two that overlap, as well as refuges that do.
     """
     sheets = []
     for level in levels:
@@ -225,7 +228,7 @@ def _sheet(
     for k, one in enumerate(strips):
         for other in strips[:k]:
             shared = shapely.intersection(one.taken, other.taken, grid_size=_GRID)
-            if shared.area > 1e-6:
+            if shared.area > _LEAST_SHARED:
                 spot = shared.representative_point()
                 raise FloorPlanError(
                     f"{other.what} and {one.what} overlap on the plan of {name} at "
@@ -239,7 +242,17 @@ def _sheet(
 
 
 def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
-    """Raise FloorPlanError without floor before stairs and lifts, or with something on them."""
+    """Raise FloorPlanError without floor before stairs and lifts, or with something on them, or for
+    refuges that overlap."""
+    for k, one in enumerate(level.refuges):
+        for other in level.refuges[:k]:
+            shared = shapely.intersection(one.shape, other.shape, grid_size=_GRID)
+            if shared.area > _LEAST_SHARED:
+                spot = shared.representative_point()
+                raise FloorPlanError(
+                    f"level {level.number}: refuges {other.name!r} and {one.name!r} overlap at "
+                    f"({spot.x:.2f}, {spot.y:.2f})"
+                )
     obstacles = {f"obstacle {k}": each for k, each in enumerate(level.blocked)}
     openings = {f"{each.kind} {each.name!r}": each.line for each in (*level.exits, *level.gates)}
     free = shapely.difference(
@@ -253,6 +266,16 @@ def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
                 spot = strip.taken.intersection(shape).representative_point()
                 raise FloorPlanError(
                     f"{where}: {what} is in their way at ({spot.x:.2f}, {spot.y:.2f})"
+                )
+        for refuge in level.refuges:
+            # A refuge may reach as far as the wall of a shaft.
+            inner = strip.taken.buffer(-_WALL, join_style="mitre")
+            shared = shapely.intersection(inner, refuge.shape, grid_size=_GRID)
+            if shared.area > _LEAST_SHARED:
+                spot = shared.representative_point()
+                raise FloorPlanError(
+                    f"{where}: refuge {refuge.name!r} is in their way at "
+                    f"({spot.x:.2f}, {spot.y:.2f})"
                 )
         others = [each.taken for each in strips if each is not strip]
         left = shapely.difference(free, shapely.union_all(others), grid_size=_GRID)

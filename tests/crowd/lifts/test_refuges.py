@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 import shapely
 
-from mesa_mobility import Building, Exit, Level, Lift, PedestrianModel, Refuge, Stairs, Trajectories
+from mesa_mobility import (
+    Building,
+    Escalator,
+    Exit,
+    Level,
+    Lift,
+    PedestrianModel,
+    Refuge,
+    Stairs,
+    Trajectories,
+)
 from mesa_mobility.buildings import read_floor
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.results import check_safety
@@ -12,6 +22,7 @@ from tests.fixtures.checkpoints import check_going_on
 
 HALL = "POLYGON ((0 0, 24 0, 24 8, 0 8, 0 0))"
 SAFE = "POLYGON ((19 1, 23 1, 23 4, 19 4, 19 1))"
+CORNER = "POLYGON ((0 0, 2 0, 2 3, 0 3, 0 0))"
 GROUND = Level(0, HALL, exits=[Exit("street", (0, 3), (0, 5))])
 STAIRS = Stairs.dog_leg("stairs", 1, 0, ((8, 1.4), (8, 0.2)), risers=18)
 
@@ -127,7 +138,7 @@ def test_without_a_refuge_they_stay_where_they_are():
 
 
 def test_refuges_are_written_and_read():
-    building = office(refuges=[Refuge("lobby", SAFE), Refuge("stair head", HALL)])
+    building = office(refuges=[Refuge("lobby", SAFE), Refuge("corner", CORNER)])
     read = Building.from_geojson(building.to_geojson())
     assert read.levels[1].refuges == building.levels[1].refuges
     assert read.to_geojson() == building.to_geojson()
@@ -151,6 +162,49 @@ def test_bad_refuges_get_one_line(refuges, said):
     with pytest.raises(FloorPlanError, match=said) as caught:
         office(refuges=refuges)
     assert "\n" not in str(caught.value)
+
+
+LIFT = Lift("car", [0, 1], ((20.0, 6.5), (20.9, 6.5)))
+
+
+@pytest.mark.parametrize(
+    ("area", "said"),
+    [
+        (
+            "POLYGON ((7 0, 9 0, 9 1, 7 1, 7 0))",
+            r"stairs 'stairs 2' on level 1: refuge 'a' is in their way at \(8.5",
+        ),
+        (
+            "POLYGON ((11 3, 12 3, 12 5, 11 5, 11 3))",
+            r"escalator 'belt' on level 1: refuge 'a' is in their way at \(11.5",
+        ),
+        (
+            "POLYGON ((20 6.8, 21 6.8, 21 8, 20 8, 20 6.8))",
+            "lift 'car' on level 1: refuge 'a' is in their way at",
+        ),
+        (
+            "POLYGON ((22 3, 24 3, 24 6, 22 6, 22 3))",
+            r"level 1: refuges 'lobby' and 'a' overlap at \(22.50, 3.50\)",
+        ),
+    ],
+)
+def test_refuges_lie_on_free_floor(area, said):
+    belt = Escalator.straight("belt", 1, 0, ((14, 3), (14, 4)), length=5.2)
+    level = Level(1, HALL, 3.0, refuges=[LOBBY, Refuge("a", area)])
+    with pytest.raises(FloorPlanError, match=said) as caught:
+        Building([GROUND, level], [STAIRS, belt], lifts=[LIFT])
+    assert "\n" not in str(caught.value)
+
+
+def test_refuges_may_touch_each_other_and_the_edges_of_stairs():
+    beside = Refuge("beside", "POLYGON ((19 4, 23 4, 23 6, 19 6, 19 4))")
+    stairs = Refuge("stairs", "POLYGON ((6 0, 8 0, 8 3, 6 3, 6 0))")
+    assert office(refuges=[LOBBY, beside, stairs]).refuges
+
+
+def test_what_is_no_list_of_refuges_gets_one_line():
+    with pytest.raises(FloorPlanError, match="level 1: refuges must be a list, found int"):
+        Level(1, HALL, refuges=5)
 
 
 def test_a_refuge_needs_a_name_and_an_area():
