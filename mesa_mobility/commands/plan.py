@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +14,10 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+
+if TYPE_CHECKING:
+    from mesa_mobility.buildings import Building
+    from mesa_mobility.floorplan import FloorPlan
 
 
 def plan(
@@ -48,10 +52,12 @@ def plan(
         bool, typer.Option("--json", help="Print one JSON object instead of a table.")
     ] = False,
 ) -> None:
-    """Check a floor plan and say what it holds; -o writes it to another file.
+    """Check a floor plan or a building and say what it holds; -o writes it to another file.
 
-    DXF needs the extra `cad`.
+    DXF needs the extra `cad`. Buildings are read from GeoJSON and written to it.
     """
+    from mesa_mobility.buildings import Building, read_floor
+    from mesa_mobility.errors import FloorPlanError
     from mesa_mobility.floorplan import FloorPlan
     from mesa_mobility.floorplan.formats.plan_format import PLANS
     from mesa_mobility.plugins.formats import READ, WRITE
@@ -60,9 +66,51 @@ def plan(
     options = PLANS.chosen_options(PLANS.of(file, READ), READ, given, settings or ())
     if output is not None:
         PLANS.of(output, WRITE)  # before anything is read
-    found = FloorPlan.from_file(file, **options)
+    found = FloorPlan.from_file(file, **options) if options else read_floor(file)
+    if isinstance(found, Building):
+        if output is not None:
+            if output.suffix.lower() not in (".geojson", ".json"):
+                raise FloorPlanError(f"{output}: buildings are written to .geojson files alone")
+            found.write_geojson(output)
+        _say_building(found, as_json)
+    else:
+        if output is not None:
+            found.to_file(output)
+        _say_plan(found, as_json)
     if output is not None:
-        found.to_file(output)
+        say(f"written to {output}")
+
+
+def _say_building(building: Building, as_json: bool) -> None:
+    plan = building.floor_plan
+    exits = {each.name: each.length for each in plan.exits}
+    levels = {str(each.number): each.elevation for each in building.levels}
+    stairs = {each.name: each.kind for each in building.stairs}
+    lifts, refuges = [each.name for each in building.lifts], [e.name for e in building.refuges]
+    if as_json:
+        answer_json(
+            {
+                "name": building.name,
+                "levels": levels,
+                "stairs": stairs,
+                "lifts": lifts,
+                "refuges": refuges,
+                "exits": exits,
+            }
+        )
+        return
+    answer_table(
+        {
+            "levels": ", ".join(f"{name} at {height:g} m" for name, height in levels.items()),
+            "stairs": ", ".join(f"{name} ({kind})" for name, kind in stairs.items()) or "none",
+            "lifts": ", ".join(lifts) or "none",
+            "refuges": ", ".join(refuges) or "none",
+            "exits": _listed(exits),
+        }
+    )
+
+
+def _say_plan(found: FloorPlan, as_json: bool) -> None:
     low, high = found.bounds[:2], found.bounds[2:]
     exits = {each.name: each.length for each in found.exits}
     gates = {each.name: each.length for each in found.gates}
@@ -89,8 +137,6 @@ def plan(
                 "zones": ", ".join(each.name for each in found.zones) or "none",
             }
         )
-    if output is not None:
-        say(f"written to {output}")
 
 
 def _kinds(texts: list[str] | None) -> dict[str, str] | None:

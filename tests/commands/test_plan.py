@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from mesa_mobility import FloorPlan
+from mesa_mobility import Building, Escalator, Exit, FloorPlan, Level, Refuge
+from tests.fixtures.buildings import HALL
 
 WKT = """walkable POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))
 obstacle POLYGON ((1 1, 2 1, 2 2, 1 2, 1 1))
@@ -77,3 +78,25 @@ def test_what_a_drawing_lacks_is_said_in_one_line(command, drawing, arguments, m
     done = command("plan", str(drawing), *arguments)
     assert message in done.err
     assert (done.status, done.err.count("\n")) == (2, 1)
+
+
+def test_what_a_building_holds(command, tmp_path):
+    first, second = tmp_path / "office.geojson", tmp_path / "again.geojson"
+    lobby = Refuge("lobby", "POLYGON ((19 1, 23 1, 23 4, 19 4, 19 1))")
+    ground = Level(0, HALL, exits=[Exit("street", (0, 3), (0, 5))])
+    belt = Escalator.straight("belt", 1, 0, ((16, 3), (16, 4)), length=5.3)
+    Building([ground, Level(1, HALL, 3.06, refuges=[lobby])], [belt]).write_geojson(first)
+    done = command("plan", str(first), "--json", "-o", str(second))
+    assert json.loads(done.out) == {
+        "name": "",
+        "levels": {"0": 0.0, "1": 3.06},
+        "stairs": {"belt": "escalator"},
+        "lifts": [],
+        "refuges": ["lobby"],
+        "exits": {"street": 2.0},
+    }
+    assert second.read_text() == first.read_text()
+    assert "1 at 3.06 m" in command("plan", str(first)).out
+    refused = command("plan", str(first), "-o", str(tmp_path / "office.svg"))
+    assert refused.status != 0
+    assert refused.err.count("\n") == 1
