@@ -9,6 +9,7 @@ from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.planning.explanation import Explanation
 from mesa_mobility.crowd.running.blocking import Blockers
 from mesa_mobility.crowd.running.recorder import movements_under_way
+from mesa_mobility.errors import ModelError
 
 
 def decided(model: CrowdModel, since: int = 0) -> dict[str, NDArray[np.generic]] | None:
@@ -36,9 +37,11 @@ def explain(model: CrowdModel, row: int) -> Explanation:
     They keep the target of their last decision. Set ``watch`` to have decisions as they are taken.
 
     Raises:
-        ModelError: nobody inside has this row.
+        ModelError: nobody inside has this row, or an escalator carries the person.
     """
     model.check_inside(row)
+    if len(model.escalators) and len(model.escalators.riders(np.array([row]))):
+        raise ModelError(f"pedestrian {row}: decides nothing while an escalator carries them")
     return model.dynamics.explain(row)
 
 

@@ -11,7 +11,7 @@ from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.compiled import threads
 from mesa_mobility.crowd.lifts.clear_way import way_is_clear
 from mesa_mobility.crowd.lifts.escalators import carry
-from mesa_mobility.errors import ContentError
+from mesa_mobility.errors import ContentError, ModelError
 from mesa_mobility.results import check_safety, climbs
 from mesa_mobility.schema import Members, check
 from tests.fixtures.checkpoints import check_going_on
@@ -188,3 +188,13 @@ def test_a_rider_must_not_come_to_touch_others(frames, clear):
         state.records,
     )
     assert found is clear
+
+
+def test_who_is_carried_has_no_decision_to_explain():
+    model = PedestrianModel(hall(), rng=1)
+    model.add_pedestrians(model.building.places([(15.0, 3.0)], level=1), exits=["west"])
+    while not len(model.escalators.riders(model.rows)):
+        model.step()
+        assert model.elapsed < 10
+    with pytest.raises(ModelError, match="pedestrian 0: decides nothing while an escalator"):
+        model.explain(0)
