@@ -17,7 +17,8 @@ from mesa_mobility.errors import FloorPlanError
 UP, DOWN = "up", "down"
 
 SLOPES = 10.0, 35.0
-"""Least and greatest inclination, degrees; 35 degrees is the greatest of EN 115-1."""
+"""Least and greatest inclination, degrees. EN 115-1 allows 35 degrees up to 0.5 m/s and 6 m of
+rise, otherwise 30."""
 
 STEP = 0.4
 """Metres along the slope from one step to the next, by which EN 115-1 counts people."""
@@ -41,8 +42,8 @@ class Escalator:
             of somebody who looks down it. Its length is the width of the steps.
         length: metres from its upper to its lower edge, in plan.
         direction: "up" or "down", the way that it carries people; nobody walks the other way.
-        speed: along the slope, 0.1 to 1 m/s. With 0 it stands, and people walk on it both ways as
-            on stairs with the same steps.
+        speed: along the slope, 0.1 to 1 m/s; EN 115-1 has 0.5, 0.65 and 0.75 m/s. With 0 it stands,
+            and people walk on it both ways as on stairs with the same steps.
         capacity: people an hour whom it takes at most; by default one on each step 1 m wide: 6,750
             at 0.75 m/s, half of the nominal 13,500, which is not reached.
 
