@@ -113,5 +113,5 @@ def make_scene(
         reach=float(reach + largest) + 0.02,
         strips=strips_of(plan.seams),
         lifts=Lifts(plan.shafts),
-        escalators=Escalators(plan.seams),
+        escalators=Escalators(plan.seams, float(reach + 2.0 * largest) + 0.02),
     )

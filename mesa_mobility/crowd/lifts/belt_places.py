@@ -10,9 +10,6 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.floorplan import Belt, Seam
 
-_AROUND = 2.0
-"""Metres from a belt within which people may be in the way of those on it."""
-
 
 class Near(NamedTuple):
     """People on a belt or near it.
@@ -36,6 +33,9 @@ class BeltPlaces:
     Args:
         seam: the seam of the belt.
         belt: the belt.
+        reach: metres that people may cover with one movement, their bodies and those of riders
+            included.
+        ahead: frames for which the belt may move on for certain.
 
     Attributes:
         half: half its width, metres.
@@ -45,12 +45,14 @@ class BeltPlaces:
         velocity: (2,) of those on it, m/s.
     """
 
-    def __init__(self, seam: Seam, belt: Belt) -> None:
+    def __init__(self, seam: Seam, belt: Belt, reach: float, ahead: int) -> None:
         self._seam, self._way = seam, belt.way
         self.half, self.length, self.gap_s = seam.width / 2.0, belt.length, belt.gap_s
         self.direction = belt.way * np.array(seam.direction)
         self._speed = abs(belt.speed)
         self.velocity = belt.speed * np.array(seam.direction)
+        # Within so many metres people may be in the way of riders.
+        self._around = reach + self.metres(ahead)
 
     def metres(self, frames: int) -> float:
         """Metres by which the belt moves on in a number of frames."""
@@ -65,9 +67,11 @@ class BeltPlaces:
             across = np.array([-self.direction[1], self.direction[0]])
             aside = np.abs((points - self._middle(second)) @ across)
             # Beyond the far end of a drawing is the floor of another storey.
-            first, last = self.length / 2.0 + _AROUND, self._seam.depth
+            first, last = self.length / 2.0 + self._around, self._seam.depth
             low, high = (-first, last) if steps_on else (-last, first)
-            who = np.flatnonzero((past >= low) & (past <= high) & (aside <= self.half + _AROUND))
+            who = np.flatnonzero(
+                (past >= low) & (past <= high) & (aside <= self.half + self._around)
+            )
             shift = np.zeros(2) if steps_on else -self._way * np.array(self._seam.shift)
             shifts = np.tile(shift, (len(who), 1))
             found.append((who, past[who] + self.length / 2.0, aside[who], shifts))

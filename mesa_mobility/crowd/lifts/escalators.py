@@ -49,6 +49,8 @@ class Escalators(Saved):
 
     Args:
         seams: those of the floor plan; the ones with belts count.
+        reach: metres that people may cover with one movement, their bodies and those of riders
+            included.
 
     Attributes:
         seams: (escalators,) those with belts.
@@ -56,9 +58,14 @@ class Escalators(Saved):
         stood_s: (escalators,) seconds for which each has stood with people on it.
     """
 
-    def __init__(self, seams: Sequence[Seam]) -> None:
+    def __init__(self, seams: Sequence[Seam], reach: float) -> None:
         self.seams = tuple(each for each in seams if each.belt is not None)
-        self._belts = [BeltPlaces(each, each.belt) for each in self.seams if each.belt is not None]
+        # What a rider moves on in one look may come on top of what is certain.
+        self._belts = [
+            BeltPlaces(each, each.belt, reach, AHEAD + EVERY)
+            for each in self.seams
+            if each.belt is not None
+        ]
         count = len(self.seams)
         self.carried, self._until, self._stood = np.zeros((3, count), np.int64)
         self._next_on = np.zeros(count)

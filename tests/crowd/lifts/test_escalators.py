@@ -9,13 +9,14 @@ import pytest
 
 from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.compiled import threads
+from mesa_mobility.crowd.lifts.belt_places import BeltPlaces
 from mesa_mobility.crowd.lifts.clear_way import way_is_clear
 from mesa_mobility.crowd.lifts.escalators import carry
 from mesa_mobility.errors import ContentError, ModelError
 from mesa_mobility.results import check_safety, climbs
 from mesa_mobility.schema import Members, check
 from tests.fixtures.checkpoints import check_going_on
-from tests.fixtures.escalators import RISE, hall
+from tests.fixtures.escalators import HEAD, RISE, hall
 from tests.fixtures.seams import overlaps
 
 A_FRAME = 0.75 * 0.5 / 30.0
@@ -198,3 +199,12 @@ def test_who_is_carried_has_no_decision_to_explain():
         assert model.elapsed < 10
     with pytest.raises(ModelError, match="pedestrian 0: decides nothing while an escalator"):
         model.explain(0)
+
+
+@pytest.mark.parametrize(("reach", "seen"), [(1.0, False), (3.0, True)])
+def test_people_count_as_near_who_may_come_into_the_way(reach, seen):
+    """Somebody 2.5 m before the belt, which moves on by 0.39 m in 18 frames."""
+    plan = hall().floor_plan
+    belt = BeltPlaces(plan.seams[0], plan.seams[0].belt, reach, 18)
+    place = hall().places([(HEAD[0][0] + 2.5, 3.0)], level=1)
+    assert bool(len(belt.near(place).who)) is seen
