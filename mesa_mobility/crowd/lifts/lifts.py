@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -119,6 +119,18 @@ class Lifts(Saved):
             for stop in range(len(shaft.stops)):
                 found[shaft.in_car(stop, points)] = number
         return found
+
+    def shut_in(
+        self, rows: NDArray[np.int64], crowd: Crowd, is_open: Callable[[str], bool]
+    ) -> list[int]:
+        """Those in ``rows`` who are in a car at a stop whose door ``is_open`` calls closed."""
+        points, found = np.column_stack([crowd.x[rows], crowd.y[rows]]), np.zeros(len(rows), bool)
+        for shaft in self.shafts:
+            for stop, gate in enumerate(shaft.gates):
+                if not is_open(gate.name):
+                    found[shaft.in_car(stop, points)] = True
+        those: list[int] = rows[found].tolist()
+        return those
 
     def call(
         self,

@@ -137,7 +137,11 @@ class StallWatch(Saved):
 
 
 def stall_reason(
-    plan: FloorPlan, seen: Aggregates, ring: Sequence[int] = (), upstairs: Sequence[int] = ()
+    plan: FloorPlan,
+    seen: Aggregates,
+    ring: Sequence[int] = (),
+    upstairs: Sequence[int] = (),
+    shut_in: Sequence[int] = (),
 ) -> str:
     """Why an evacuation has stalled, in a few words.
 
@@ -146,11 +150,19 @@ def stall_reason(
         seen: aggregates of the people inside.
         ring: rows of people who are in each other's way.
         upstairs: rows of people who would have to climb stairs, which they cannot.
+        shut_in: rows of people in lifts whose doors are closed.
     """
     if plan.exits and not plan.open_exits():
         return "every exit is closed"
     if seen.going == 0:
-        said = "nobody inside has a way to go"
-        return f"{said}: people {in_words(upstairs)} cannot use stairs" if upstairs else said
+        reasons = [
+            f"people {in_words(those)} {why}"
+            for those, why in (
+                (upstairs, "cannot use stairs"),
+                (shut_in, "are in lifts whose doors are closed"),
+            )
+            if those
+        ]
+        return "nobody inside has a way to go" + ": " * bool(reasons) + "; ".join(reasons)
     said = f"nobody has come nearer to an exit for {STALL_SECONDS:.0f} s"
     return f"{said}: people {in_words(ring)} are in each other's way" if ring else said
