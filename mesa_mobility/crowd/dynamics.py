@@ -273,6 +273,7 @@ class Dynamics(Saved):
         self._plan_version = scene.plan.version
         # Those who stop lose their paths, on which crossed gates are found.
         scene.journeys.advance(rows, now, scene.crowd, scene.repertoire.table, self._model.rng)
+        self._model.refuges.look_over(rows, scene.crowd)
         stop_where_blocked(
             rows,
             now,

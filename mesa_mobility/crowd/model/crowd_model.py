@@ -28,6 +28,7 @@ from mesa_mobility.crowd.insertion.inflow import Sources
 from mesa_mobility.crowd.journeys.waiting import Waits
 from mesa_mobility.crowd.lifts.refuges import Refuges
 from mesa_mobility.crowd.model.clock import scheduled_events, set_clock, tell_time
+from mesa_mobility.crowd.model.refuge_figures import RefugeFigures
 from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.people.pedestrian import Pedestrian
@@ -65,7 +66,7 @@ REPORTERS: dict[str, Any] = {
 """What is collected of every model."""
 
 
-class CrowdModel(mesa.Model):
+class CrowdModel(RefugeFigures, mesa.Model):
     """A Mesa model that runs a crowd; see ``PedestrianModel``, which can do more with it."""
 
     reference_occupancy: dict[float, int] | None = None
@@ -228,37 +229,8 @@ class CrowdModel(mesa.Model):
             self.population.aggregates,
             self._stall_watch.ring,
             self.without_stairs,
+            self.lifts.shut_in(self.population.present, self.crowd, self.floor_plan.is_open),
         )
-
-    @property
-    def without_stairs(self) -> list[int]:
-        """Rows of the people inside who have no way to go since they cannot use stairs.
-
-        They go to a refuge on their level, or stay where they stand if there is none.
-        """
-        if not self.floor_plan.in_sheets:
-            return []
-        rows, crowd = self.population.present, self.crowd
-        climbs = np.array([each.climbs for each in self.pedestrian_types])
-        lost = ~climbs[crowd.type_index[rows]] & np.isinf(crowd.route[rows])
-        found: list[int] = rows[lost | (self.refuges.bound_for(rows, crowd) >= 0)].tolist()
-        return found
-
-    @property
-    def in_refuges(self) -> dict[str, list[int]]:
-        """By the name of each refuge, rows of the people who wait there since they cannot leave."""
-        rows = self.population.present
-        number = self.refuges.waiting(rows, self.crowd)
-        return {
-            each.name: rows[number == k].tolist() for k, each in enumerate(self.refuges.refuges)
-        }
-
-    @property
-    def all_in_refuges(self) -> bool:
-        """Whether people are inside, and all of them wait in refuges."""
-        if not len(self.refuges) or not self.inside:
-            return False
-        return sum(map(len, self.in_refuges.values())) == self.inside
 
     @property
     def blocked(self) -> list[Blocked]:

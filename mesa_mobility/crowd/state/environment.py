@@ -68,6 +68,7 @@ class Environment(Saved):
     def _make_routers(self, destinations: list[Destination]) -> None:
         self._routers: list[Router | None] = [None] * len(self._radii)
         self._destinations = destinations
+        self._climber: Router | None = None
         self._version = -1
         self.corners = Corners(self._routers)
 
@@ -130,7 +131,7 @@ class Environment(Saved):
             self._destinations.append(names)
             self._version = -1
             # All routers number destinations alike.
-            for router in self._routers:
+            for router in (*self._routers, self._climber):
                 if router is not None:
                     self._add_destination(router, names)
         return number * self.bodies + body
@@ -252,6 +253,20 @@ class Environment(Saved):
         if lost.any() and not (self._all_open() and self._climbing[body]):
             lost[lost] = _without_way(self._router_when_open(body), points[lost], number)
         return lost
+
+    def leads_over_stairs(
+        self, points: NDArray[np.float64], destinations: NDArray[np.int64]
+    ) -> NDArray[np.bool_]:
+        """(n,) whether a slim person who uses stairs has a way from (n, 2) places, metres, to (n,)
+        destinations, by the doors that are open now."""
+        if self._climber is None:
+            self._climber = self._new_router(self.plan, _SLIM)
+        found = np.empty(len(points), np.bool_)
+        numbers = np.asarray(destinations, dtype=np.int64) // self.bodies
+        for number in np.unique(numbers).tolist():
+            own = numbers == number
+            found[own] = ~_without_way(self._climber, points[own], number)
+        return found
 
     def _too_narrow(self, lost: NDArray[np.float64], destination: int) -> str:
         """Text naming what is too narrow on the way of (n, 2) lost people, or an empty one."""

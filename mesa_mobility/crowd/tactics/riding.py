@@ -78,7 +78,14 @@ class RideLifts(Tactic):
             )
             desired.points = desired.points.copy()
             desired.points[sent] = there.points
-        arrived = self._refuges.arrived(rows, deciding.inside.pedestrians, deciding.frame, crowd)
+        inside, frame = deciding.inside.pedestrians, deciding.frame
+        who, spots = self._refuges.spots(rows, inside, frame, crowd)
+        if len(who):
+            left = np.hypot(*(spots - deciding.positions[who]).T)
+            desired.points, desired.speeds = desired.points.copy(), desired.speeds.copy()
+            desired.points[who] = spots
+            desired.speeds[who] = slow_down(desired.speeds[who], left)
+        arrived = self._refuges.arrived(rows, inside, frame, crowd)
         if arrived.any():
             deciding.hold(desired, arrived)
 

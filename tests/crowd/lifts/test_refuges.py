@@ -241,3 +241,76 @@ def test_those_for_whom_there_is_no_room_wait_before_the_refuge():
     assert model.elapsed < 200
     assert not model.stalled
     assert model.in_refuges == {"small": list(range(12))}
+
+
+def test_the_area_is_filled_first():
+    model = PedestrianModel(office(), population="wheelchair_powered", rng=1)
+    model.add_pedestrians(
+        model.building.places([(13, 5), (11, 3), (10, 6), (12, 7), (15, 3)], level=1)
+    )
+    model.run(max_seconds=120)
+    assert model.in_refuges == {"lobby": [0, 1, 2, 3, 4]}
+    [lobby] = model.building.refuges
+    assert shapely.intersects_xy(lobby.shape, model.crowd.x[:5], model.crowd.y[:5]).all()
+
+
+def sent_then(change, seconds=90, lifts=(LIFT,), start=(9.0, 5.0)):
+    """A model of one person in a wheelchair, who is sent to the lobby, and to whom ``change``
+    happens 3 s later."""
+    building = office(lifts=lifts)
+    for gate in ("car at level 0", "car at level 1") if lifts else ():
+        building.floor_plan.close_gate(gate)
+    model = PedestrianModel(building, population="wheelchair_powered", rng=1)
+    model.add_pedestrians(building.places([start], level=1))
+    model.run(max_seconds=3)
+    change(building.floor_plan)
+    model.run(max_seconds=seconds)
+    return model
+
+
+def reopen(plan):
+    for gate in ("car at level 0", "car at level 1"):
+        plan.open_gate(gate)
+
+
+def test_who_has_not_come_to_a_refuge_takes_a_lift_that_is_in_use_again():
+    model = sent_then(reopen)
+    assert model.inside == 0
+    assert model.lifts.carried.tolist() == [1]
+
+
+def test_an_obstacle_on_the_middle_moves_the_target():
+    shift = office().sheets[1].shift[0]
+    block = shapely.box(20.5 + shift, 2.0, 21.5 + shift, 3.0)
+    model = sent_then(lambda plan: plan.add_obstacle(block), lifts=())
+    assert model.in_refuges == {"lobby": [0]}
+    assert not model.stalled
+
+
+def test_nobody_goes_to_a_refuge_because_an_exit_is_closed_for_everybody():
+    ground = Level(0, HALL, exits=GROUND.exits, refuges=[LOBBY])
+    building = Building([ground, Level(1, HALL, 3.0)], [STAIRS])
+    model = PedestrianModel(building, population="wheelchair_powered", rng=1)
+    model.add_pedestrians(building.places([(9.0, 5.0)], level=0))
+    building.floor_plan.close_gate("street")
+    model.run(max_seconds=4)
+    assert model.without_stairs == []
+    building.floor_plan.open_gate("street")
+    model.run(max_seconds=60)
+    assert model.inside == 0
+
+
+def test_whom_a_closed_lift_holds_is_not_said_to_need_stairs():
+    building = office(lifts=[LIFT])
+    model = PedestrianModel(building, population="wheelchair_powered", rng=1)
+    model.add_pedestrians(building.places([(20.4, 5.0)], level=1))
+    while model.lifts.car_of(np.column_stack([model.crowd.x[:1], model.crowd.y[:1]]))[0] < 0:
+        model.step()
+        assert model.elapsed < 40
+    for gate in ("car at level 0", "car at level 1"):
+        building.floor_plan.close_gate(gate)
+    model.run(max_seconds=model.elapsed + 90)
+    assert model.stall_reason == (
+        "nobody inside has a way to go: people 0 are in lifts whose doors are closed"
+    )
+    assert model.without_stairs == []
