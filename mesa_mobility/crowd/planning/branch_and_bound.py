@@ -154,7 +154,8 @@ def cheapest_free(
             # All relevant neighbours.
             options.approximate[this] = False
             enough, some, around = _enough(most, options.costs[this]), now.foremost, work.neighbours
-            more = pair_cost(me, this, options.ends, some, 0, around, enough, terms.pair)
+            known = options.known[this]
+            more = pair_cost(me, this, options.ends, some, 0, around, known, enough, terms.pair)
             if more == ENOUGH:
                 continue
             bound = options.costs[this] + LITTLE_LESS * more
@@ -171,8 +172,9 @@ def cheapest_free(
         cost = options.costs[this]
         if not now.has_negative_pairs:
             enough, everybody, around = _enough(most, cost), now.neighbours, work.neighbours
+            moved, known = now.foremost, options.known[this]
             more = pair_cost(
-                me, this, options.ends, everybody, now.foremost, around, enough, terms.pair
+                me, this, options.ends, everybody, moved, around, known, enough, terms.pair
             )
             if more == ENOUGH:
                 continue

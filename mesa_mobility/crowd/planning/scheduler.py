@@ -220,14 +220,14 @@ class DecisionScheduler:
         if works and (
             people > len(works[0].neighbours.marks)
             or walls > len(works[0].walls)
-            or terms > len(works[0].neighbours.by_term)
+            or terms > len(works[0].opened.known[0])
             or FIELDS + fields != len(works[0].neighbours.others)
         ):
             works.clear()
         while len(works) < threads:
             if works:
                 people, walls = len(works[0].neighbours.marks), len(works[0].walls)
-                terms = len(works[0].neighbours.by_term)
+                terms = len(works[0].opened.known[0])
             options = int(np.diff(self._repertoire.table.offsets).max())
             clusters = self._repertoire.groups.clusters
             most = int((clusters["last"] - clusters["first"]).max())

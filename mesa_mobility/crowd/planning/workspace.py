@@ -114,7 +114,6 @@ class Neighbours(NamedTuple):
         moved: for each of these, the column with which it has changed places, one after the other.
         marks: for each of these, bits of the pair terms that it matters to.
         marked: their columns that matter to one pair term.
-        by_term: cost by pair term.
         first: (1,) the pair term to evaluate first.
     """
 
@@ -126,7 +125,6 @@ class Neighbours(NamedTuple):
     moved: NDArray[np.int64]
     marks: NDArray[np.int64]
     marked: NDArray[np.int64]
-    by_term: NDArray[np.float64]
     first: NDArray[np.int64]
 
 
@@ -142,6 +140,7 @@ class Opened(NamedTuple):
         ends: the option's end.
         costs: the option's cost without pair terms.
         least: lower bound of the option's whole cost.
+        known: (options, terms) lower bounds of its costs by pair term.
         approximate: whether the bound can still be raised by more neighbours.
         unwalled: whether the wall terms are left out of the cost so far.
     """
@@ -154,6 +153,7 @@ class Opened(NamedTuple):
     ends: NDArray[np.float64]
     costs: NDArray[np.float64]
     least: NDArray[np.float64]
+    known: NDArray[np.float64]
     approximate: NDArray[np.bool_]
     unwalled: NDArray[np.bool_]
 
@@ -182,7 +182,7 @@ class Workspace(NamedTuple):
     path: NDArray[np.float64]
 
 
-def make_neighbours(people: int, terms: int, fields: int) -> Neighbours:
+def make_neighbours(people: int, fields: int) -> Neighbours:
     """Arrays of ``Neighbours`` for at most so many people near; see ``make_workspace``."""
     return Neighbours(
         own=np.empty(FIELDS + fields),
@@ -193,7 +193,6 @@ def make_neighbours(people: int, terms: int, fields: int) -> Neighbours:
         moved=np.empty(people + 1, np.int64),
         marks=np.empty(people, np.int64),
         marked=np.empty(people + 1, np.int64),
-        by_term=np.empty(terms),
         first=np.zeros(1, np.int64),
     )
 
@@ -215,7 +214,7 @@ def make_workspace(
     """
     lanes = LANES * groups
     return Workspace(
-        neighbours=make_neighbours(people, terms, fields),
+        neighbours=make_neighbours(people, fields),
         unsure=np.empty(people, np.int64),
         blocks=Blocks(
             Bodies(
@@ -240,6 +239,7 @@ def make_workspace(
             ends=np.empty((SPEED + 1, options + LANES)),
             costs=np.empty(options + LANES),
             least=np.empty(options + AT_ONCE),
+            known=np.empty((options, terms)),
             approximate=np.empty(options, np.bool_),
             unwalled=np.empty(options, np.bool_),
         ),

@@ -29,6 +29,7 @@ def pair_cost(
     count: int,
     moved: int,
     around: Neighbours,
+    known: NDArray[np.float64],
     enough: float,
     table: KernelTable,
 ) -> float:
@@ -42,6 +43,8 @@ def pair_cost(
         moved: number of them who were moved to the front, if they are to be summed in the order of
             the grid: the last bit of a sum depends on it.
         around: these, in full lanes (see ``fill_lane``).
+        known: (terms,) lower bounds of the sums by term, such as those over fewer neighbours; gets
+            these sums as far as they are evaluated. 0 where nothing is known.
         enough: limit above which the sum does not matter; finite only if no pair cost is negative.
         table: the pair terms; that which exceeds the limit is the first to be evaluated next time.
 
@@ -49,7 +52,9 @@ def pair_cost(
         The sum, or ``ENOUGH`` if it certainly exceeds the limit.
     """
     others, n, so_far, option = around.others, len(table.address), 0.0, ends[:, k:]
-    costs, by_term = others[COST], around.by_term
+    costs = others[COST]
+    for t in range(n):
+        so_far += known[t]
     lanes, first_term = in_lanes(count), around.first[0] if around.first[0] < n else 0
     for q in range(n):
         t = first_term + q if first_term + q < n else first_term + q - n
@@ -67,15 +72,16 @@ def pair_cost(
             if any_of(costs, first):
                 for a in range(first, min(first + LANES, count)):
                     summed += costs[a]
-        by_term[t] = table.weight[me.kind, t] * summed
-        so_far += by_term[t]
+        more = table.weight[me.kind, t] * summed
+        so_far += more - known[t]
+        known[t] = more
         if enough < so_far * LITTLE_LESS < np.inf:
             around.first[0] = t
             return ENOUGH
     # In the order of the terms, whichever came first.
     total = 0.0
     for t in range(n):
-        total += by_term[t]
+        total += known[t]
     return total
 
 

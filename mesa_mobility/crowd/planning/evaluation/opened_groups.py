@@ -92,10 +92,12 @@ def open_groups(
         compress(to.lane_costs, 0, LANES * q, bits, to.costs, 0, kept, 1)
         compress(to.lanes, 0, LANES * q, bits, to.ends, 0, kept, END_ROWS)
         kept += bits_set(bits)
+    to.known[count:kept] = 0.0
     if now.has_negative_pairs:
         around, everybody = work.neighbours, now.neighbours
         for k in range(count, kept):
-            pairs = pair_cost(me, k, to.ends, everybody, 0, around, np.inf, terms.pair)
+            known = to.known[k]
+            pairs = pair_cost(me, k, to.ends, everybody, 0, around, known, np.inf, terms.pair)
             to.costs[k] += pairs + wall_cost(me, k, to.ends, now.walls, terms.wall)
             bad |= int(not abs(to.costs[k]) < np.inf)
     if bad != 0:

@@ -18,9 +18,9 @@ NEIGHBOURS = 21
 
 
 @njit
-def _cost(own, ends, count, moved, neighbours, enough, table):
+def _cost(own, ends, count, moved, neighbours, known, enough, table):
     fill_lane(count, neighbours.others)
-    return pair_cost(own, 0, ends, count, moved, neighbours, enough, table)
+    return pair_cost(own, 0, ends, count, moved, neighbours, known, enough, table)
 
 
 @njit
@@ -35,12 +35,12 @@ def _pick(bounds, above, up_to, first, picked):
 
 @pytest.fixture
 def cost():
-    """A function of what is enough and of the term to begin with, and the costs by term."""
+    """A function of what is enough, the term to begin with and what is known; costs by term."""
     rng = np.random.default_rng(8)
     record = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14, np.inf, 1.0])
     own = Decider(0, 0, 0.0, 0.0, 1.0, 0.0, 0.14, record)
     ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
-    neighbours = make_neighbours(24, 3, 1)  # the pace is a field
+    neighbours = make_neighbours(24, 1)  # the pace is a field
     others = neighbours.others
     others[:] = 0.0
     others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
@@ -49,9 +49,9 @@ def cost():
     terms = [Interference(weight=1000.0), Headway(weight=2.0), RightOfWay(weight=3.0)]
     compiled, _ = compile_terms(terms)
 
-    def of(enough, first, moved=0):
+    def of(enough, first, moved=0, known=(0.0, 0.0, 0.0)):
         neighbours.first[0] = first
-        given = own, ends, NEIGHBOURS, moved, neighbours, enough, compiled.pair
+        given = own, ends, NEIGHBOURS, moved, neighbours, np.array(known), enough, compiled.pair
         return _cost(*given), neighbours.first[0]
 
     paces = [1.0]
@@ -87,6 +87,14 @@ def test_a_sum_ends_with_the_term_that_makes_it_enough(cost):
         assert of(each[first] + 0.5 * each[second], first) == (ENOUGH, second)
         assert of(0.999 * sum(each), first) == (ENOUGH, (first + 2) % 3)
         assert of(1.001 * sum(each), first)[0] == pytest.approx(sum(each), rel=1e-6)
+
+
+def test_a_sum_ends_early_where_much_of_it_is_known(cost):
+    of, each, *_ = cost
+    for first in range(3):
+        known = [0.9 * of_term for of_term in each]
+        assert of(0.9 * sum(each) + 0.09 * each[first], first, 0, known) == (ENOUGH, first)
+        assert of(np.inf, first, 0, known) == of(np.inf, first)
 
 
 def test_a_sum_is_the_same_to_the_last_bit_where_the_relevant_come_first(cost):
