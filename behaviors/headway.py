@@ -8,8 +8,8 @@ from mesa_mobility.behaviors.stepping import STANDS
 from mesa_mobility import CompiledTerm, Option, Other, Range, pair_kernel
 
 
-# ``me`` is a Me with the field ``pace``.
-@pair_kernel(fields=("pace",))
+# ``me`` is a Me with the fields ``pace`` and ``tread``.
+@pair_kernel(fields=("pace", "tread"))
 def _headway(option: Option, me: Any, other: Other, p: "Headway") -> float:
     wx = me.target_x - me.x
     wy = me.target_y - me.y
@@ -25,7 +25,7 @@ def _headway(option: Option, me: Any, other: Other, p: "Headway") -> float:
     ahead = dx * mx + dy * my
     # By factors that all neighbours share: a processor does few divisions at a time.
     share = 1.0 - abs(dy * mx - dx * my) * (1.0 / p.width)
-    excess = option.speed - me.pace * (ahead - p.distance) * (1.0 / p.time)
+    excess = option.speed - me.pace * (ahead - p.distance - me.tread) * (1.0 / p.time)
     if ahead <= 0.0 or share <= 0.0 or excess <= 0.0:
         return 0.0
     if (other.x - me.x) * wx + (other.y - me.y) * wy >= way2:
@@ -45,10 +45,10 @@ class Headway(CompiledTerm):
     when they walk. Ahead is where one faces at the mobility point or, for an option that covers no
     ground, where one's target is: nobody makes room by looking elsewhere.
 
-    s is the share of their speed at which the ground lets people walk. On stairs and in speed zones
-    people keep the same distances at a lower speed, so flows fall as speeds do. In the SFPE
-    Handbook, too, speeds on stairs are a share of those on a level floor at every density (chapter
-    on employing the hydraulic model).
+    s is the share of their speed at which the ground lets people walk. In speed zones people keep
+    the same distances at a lower speed, so flows fall as speeds do. In the SFPE Handbook, too,
+    speeds on stairs are a share of those on a level floor at every density (chapter on employing
+    the hydraulic model). On stairs l is a tread longer, since a body needs the tread before it.
 
     The cost of a neighbour is 1.5 h(e), in metres over the 1.5 s of the paper. h is Huber's loss
     (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 b) for e up to b, ``softness``,

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, cast
 
@@ -36,9 +37,10 @@ class Building:
     middle people change from one drawing to the other. So all that is made for floor plans works
     in buildings. `true_places` and `plane_places` lead from the plane to true coordinates and back.
 
-    On a flight, people walk as in a speed zone: at a share of the speed of a level floor, the same
-    upwards and downwards, after the SFPE Handbook; see `Flight.factor`. Their movement is that
-    recorded on level floors. Escalators carry them. People who use no stairs use ramps and lifts.
+    On a flight, people walk as in a speed zone: at a share of the speed of a level floor, after the
+    SFPE Handbook, and more slowly up than down (`Flight.factor`, `Flight.uphill`). They keep a
+    tread more than elsewhere to those ahead. Their movement is that recorded on level floors.
+    Escalators carry them. People who use no stairs use ramps and lifts.
 
     A flight should be at least 2.7 m long in plan, twice the longest step: on a shorter one people
     see less far and walk more slowly. Where a flight passes over a level, or under it, its place
@@ -333,7 +335,7 @@ class Building:
             gates += [sheet.opening(each) for each in level.gates]
             obstacles += [sheet.in_plane(each) for each in level.blocked]
             for zone in level.zones:
-                zones.append(type(zone)(sheet.in_plane(zone.area), zone.factor, zone.name))
+                zones.append(replace(zone, polygon=sheet.in_plane(zone.area)))
         for flight in self.flights:
             zones += zones_of(flight, self._sheets)
         areas = [sheet.in_plane(sheet.area) for sheet in self._sheets.values()]

@@ -8,6 +8,10 @@ from shapely import Polygon
 
 from mesa_mobility.buildings.lines import Line, moved, right_angle, strip, width_of
 
+UPWARDS = 0.8
+"""Speed up stairs as a share of that down: 0.8 and 1.0 m/s in IMO MSC.1/Circ.1533. The speeds of
+Fruin (1971) give 0.71 to 0.77, by age."""
+
 
 @dataclass(frozen=True)
 class Flight:
@@ -21,7 +25,7 @@ class Flight:
         bottom: elevation of the lower edge, metres.
         upper: name of the sheet from which it leads down.
         lower: name of the sheet to which it leads.
-        factor: the share of their speed on a level floor at which people walk.
+        factor: the share of their speed on a level floor at which people walk down.
         risers: number of its risers; 0 for a ramp.
         tread: depth of a tread, metres; 0 for a ramp.
         moves: m/s in plan at which its treads carry people down, below 0 up; 0 for all but
@@ -61,6 +65,11 @@ class Flight:
     def riser(self) -> float:
         """Height of a riser, metres; 0 for a ramp."""
         return (self.top - self.bottom) / self.risers if self.risers else 0.0
+
+    @property
+    def uphill(self) -> float:
+        """The share of their speed on a level floor at which people walk up."""
+        return UPWARDS * self.factor if self.risers and not self.moves else self.factor
 
     @property
     def what(self) -> str:

@@ -148,8 +148,7 @@ def _features(level: Level) -> list[dict[str, Any]]:
         geojson.feature_of(each.kind, each.name, each.line) for each in (*level.gates, *level.exits)
     ]
     for zone in level.zones:
-        features.append(geojson.feature_of("zone", zone.name, zone.area))
-        features[-1]["properties"]["factor"] = zone.factor
+        features.append(geojson.zone_feature(zone))
     features += [geojson.feature_of(REFUGE, each.name, each.shape) for each in level.refuges]
     for feature in features:
         feature["properties"]["level"] = level.number

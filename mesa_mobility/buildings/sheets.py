@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.level import Level, sheet_of
 from mesa_mobility.buildings.lift import DOORWAY, Lift
-from mesa_mobility.buildings.lines import moved, right_angle
+from mesa_mobility.buildings.lines import moved, pair, right_angle
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import WALKS, Belt, Exit, Gate, Seam, Shaft, SpeedZone, Stop
 
@@ -117,7 +117,8 @@ def seam_of(flight: Flight, sheets: Mapping[str, Sheet]) -> Seam:
     """The seam of a flight: at its middle, from the lower sheet to the upper one."""
     lower, upper = (np.array(sheets[name].shift) for name in (flight.lower, flight.upper))
     left, right = (np.array(end) + flight.going / 2.0 * flight.down for end in flight.head)
-    belt, factor = None, flight.factor
+    # A route counts the same both ways: the mean of up and down.
+    belt, factor = None, 2.0 / (1.0 / flight.factor + 1.0 / flight.uphill)
     if flight.moves:
         belt = Belt(-flight.moves, flight.going, flight.gap_s)
         factor = abs(flight.moves) / WALKS
@@ -140,7 +141,14 @@ def zones_of(flight: Flight, sheets: Mapping[str, Sheet]) -> list[SpeedZone]:
     area = flight.part(0.0, flight.going)
     names = dict.fromkeys((flight.lower, flight.upper))
     return [
-        SpeedZone(sheets[name].in_plane(area), flight.factor, f"{flight.name} on {name}")
+        SpeedZone(
+            sheets[name].in_plane(area),
+            flight.factor,
+            f"{flight.name} on {name}",
+            uphill=flight.uphill,
+            downhill=pair(flight.down),
+            tread=flight.tread,
+        )
         for name in names
     ]
 

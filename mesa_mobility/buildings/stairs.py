@@ -39,10 +39,10 @@ _ROUNDING = 1e-9
 
 
 def speed_factor(riser: float, tread: float) -> float:
-    """The share of their speed on a level floor at which people cover ground on stairs.
+    """The share of their speed on a level floor at which people cover ground down stairs.
 
-    It is for ground as a plan shows it, and the same upwards and downwards: the SFPE Handbook does
-    not tell these apart.
+    It is for ground as a plan shows it. The SFPE Handbook does not tell down from up; see
+    ``Flight.uphill``.
 
     Args:
         riser: height of a riser, metres.

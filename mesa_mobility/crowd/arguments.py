@@ -15,7 +15,7 @@ from mesa_mobility.crowd.people.pedestrian import Pedestrian, check_pedestrian_c
 from mesa_mobility.crowd.presets.preset import Preset
 from mesa_mobility.crowd.scene import Scene, make_scene
 from mesa_mobility.crowd.state.fields import read_fields
-from mesa_mobility.crowd.state.records import PACE
+from mesa_mobility.crowd.state.records import GROUND_FIELDS
 from mesa_mobility.crowd.tactics.speed_rules import SpeedRule
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
@@ -68,7 +68,9 @@ def read_scene(
         MapError: an unusable map file.
     """
     check_pedestrian_class(pedestrian_class)
-    kinds = read_fields(fields, taken=[*dir(pedestrian_class), "row", *KERNEL_FIELDS, PACE])
+    kinds = read_fields(
+        fields, taken=[*dir(pedestrian_class), "row", *KERNEL_FIELDS, *GROUND_FIELDS]
+    )
     shares = None if population is None else Population.of(population)
     types = types_of(mobility_map, pedestrian_types, shares)
     for map_ in dict.fromkeys(kind.mobility_map for kind in types):

@@ -65,7 +65,7 @@ SHORT_NECK = case(necks.neck, effort=3.0, width=1.0, length=0.2, goal=10.0)
 
 def climb(speed: float, *, up: bool) -> Case:
     """A case of one person on ``STAIR``, at this speed along the slope, m/s."""
-    preferred = stairs.preferred_for(speed, **STAIR)
+    preferred = stairs.preferred_for(speed, up=up, **STAIR)
     return case(stairs.lone_climber, up=up, preferred=preferred, **STAIR)
 
 

@@ -194,3 +194,13 @@ def test_slow_ground_lets_people_walk_that_much_slower_at_the_same_distance(pace
         costs.append(float(term.cost(option)[0]))
     # A tenth of a metre nearer the speed is pace / 10 too high, which counts by its square.
     assert costs == pytest.approx([0.0, 1.5 * (0.1 * pace) ** 2 / 0.4])
+
+
+def test_on_stairs_people_keep_a_tread_more():
+    ending, term, costs = Ending(displacement=1.5, duration=1.5), Headway(**ROUND), []
+    for ahead, tread in ((1.5, 0.0), (1.8, 0.3), (1.7, 0.2), (1.5, 0.1)):
+        around = [((ahead, 0.0), STILL)]
+        option = one_option(ending, target=(20.0, 0.0), neighbours=around, tread=tread)
+        costs.append(float(term.cost(option)[0]))
+    # The last is a tenth of a metre too near: 0.1 m/s too fast, which counts by its square.
+    assert costs == pytest.approx([0.0, 0.0, 0.0, 1.5 * 0.1**2 / 0.4])

@@ -33,7 +33,10 @@ def parts(building):
             tuple(each.exits),
             tuple(each.gates),
             tuple(one.wkt for one in each.blocked),
-            tuple((zone.area.wkt, zone.factor, zone.name) for zone in each.zones),
+            tuple(
+                (zone.area.wkt, zone.factor, zone.name, zone.uphill, zone.downhill)
+                for zone in each.zones
+            ),
         )
         for each in building.levels
     ]
@@ -47,7 +50,7 @@ def furnished():
         exits=[Exit("street", (0, 3), (0, 5))],
         gates=[Gate("door", (20, 0), (20, 8))],
         obstacles=["POLYGON ((21 1, 22 1, 22 2, 21 2, 21 1))"],
-        zones=[SpeedZone("POLYGON ((2 1, 3 1, 3 2, 2 2, 2 1))", 0.7, "mud")],
+        zones=[SpeedZone("POLYGON ((2 1, 3 1, 3 2, 2 2, 2 1))", 0.7, "bank", 0.5, (0.0, 1.0))],
         name="ground floor",
     )
     cellar = Level(-1, HALL, -2.72)

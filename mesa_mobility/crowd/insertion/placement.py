@@ -308,7 +308,7 @@ def write_records(
     agenda["journey"][rows], agenda["crossed"][rows] = new.journey, 0
     agenda["checked"][rows] = frame - 1
     agenda["nearest"][rows] = np.inf
-    agenda["pace"][rows] = 1.0
+    agenda["pace"][rows], agenda["tread"][rows] = 1.0, 0.0
     agenda["corner"][rows] = NO_CORNER
     agenda["sets_off"][rows] = agenda["waits_until"][rows] = sets_off
 

@@ -108,7 +108,7 @@ CARRIED = -3
 
 _SECONDS = Array("f8", (), -1e9, 1e9)
 
-PACE = "pace"
+PACE, TREAD = GROUND_FIELDS = "pace", "tread"
 
 AGENDA_FIELDS: dict[str, Array] = {
     "speed": Array("f8", (), 0.0, 100.0),
@@ -125,6 +125,7 @@ AGENDA_FIELDS: dict[str, Array] = {
     "behind": Array("f8", (), -1e3, 1e3),
     "strayed": _RADIANS,
     PACE: Array("f8", (), 0.0, 1.0),
+    TREAD: Array("f8", (), 0.0, 100.0),
 }
 
 AGENDA = _record(AGENDA_FIELDS)
@@ -138,7 +139,8 @@ none; ``corner``, number of the next corner of their route; ``nearest``, shortes
 metres; ``since``, time of their last progress, s; ``desired_speed``, the preferred speed of the
 last decision, m/s; ``behind``, metres by which free walking has fallen short of that speed, below 0
 if they are ahead; ``strayed``, angle by which the movement under way ends off the course;
-``pace``, share of their speed at which the ground lets them walk.
+``pace``, share of their speed at which the ground lets them walk; ``tread``, metres that they keep
+from those ahead on stairs, more than elsewhere.
 """
 
 
@@ -207,7 +209,7 @@ class Crowd:
     def kernel_fields(self) -> dict[str, NDArray[Any]]:
         """(capacity,) values that a kernel may ask for by ``fields``: those of the fields that the
         model declares, and ``pace``."""
-        return {PACE: self.agenda[PACE], **self.fields}
+        return {**{name: self.agenda[name] for name in GROUND_FIELDS}, **self.fields}
 
     def first(self, count: int) -> dict[str, Any]:
         """The records of the first people."""

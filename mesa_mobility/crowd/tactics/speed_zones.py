@@ -7,7 +7,7 @@ import numpy as np
 from mesa_mobility.crowd.options.table import LONGEST_MOVEMENT_S
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
-from mesa_mobility.floorplan.floor.zones import mean_factors
+from mesa_mobility.floorplan.floor.zones import ground_ahead
 
 
 class SlowInZones(Tactic):
@@ -16,13 +16,15 @@ class SlowInZones(Tactic):
     name = "speed_zones"
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
-        """Multiply speeds by the mean factor on the way ahead."""
+        """Multiply speeds by the mean factor on the way ahead, and note the ground there."""
         zones = deciding.site.plan.zones
         if zones:
             way = desired.points - deciding.positions
             way *= (desired.speeds * LONGEST_MOVEMENT_S / np.maximum(np.hypot(*way.T), 1e-9))[
                 :, None
             ]
-            factors = mean_factors(zones, deciding.positions, deciding.positions + way)
+            factors, treads = ground_ahead(zones, deciding.positions, deciding.positions + way)
             desired.speeds = desired.speeds * factors
-            deciding.inside.crowd.agenda["pace"][deciding.pedestrians] = factors
+            agenda = deciding.inside.crowd.agenda
+            agenda["pace"][deciding.pedestrians] = factors
+            agenda["tread"][deciding.pedestrians] = treads

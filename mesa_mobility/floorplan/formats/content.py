@@ -1,7 +1,7 @@
 """The parts of a floor plan as files hold them, before they are checked together."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,9 @@ from mesa_mobility.floorplan.floor.extent import check_coordinates
 from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.zones import SpeedZone
+
+OF_ZONES = [each for each in fields(SpeedZone) if each.name not in ("polygon", "name")]
+"""What zones have besides their place and name: fields of ``SpeedZone``."""
 
 KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
 """Values of the property `kind` of a feature."""
@@ -77,7 +80,10 @@ def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
                 content.closed.append(name)
         elif kind == "zone":
             try:
-                content.zones.append(SpeedZone(geometry, properties.get("factor", 0.0), name))
+                given = {
+                    each.name: properties[each.name] for each in OF_ZONES if each.name in properties
+                }
+                content.zones.append(SpeedZone(geometry, name=name, **{"factor": 0.0, **given}))
             except FloorPlanError as error:
                 raise FloorPlanError(f"{at}: {error}") from None
     return content

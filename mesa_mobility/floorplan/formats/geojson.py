@@ -13,7 +13,8 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
-from mesa_mobility.floorplan.formats.content import Content, content_of
+from mesa_mobility.floorplan.floor.zones import SpeedZone
+from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 
 
@@ -57,9 +58,7 @@ def feature_collection(plan: Floor) -> dict[str, Any]:
             feature["properties"]["closed"] = True
         features.append(feature)
     for zone in plan.zones:
-        feature = feature_of("zone", zone.name, zone.area)
-        feature["properties"]["factor"] = zone.factor
-        features.append(feature)
+        features.append(zone_feature(zone))
     return {"type": "FeatureCollection", "features": features}
 
 
@@ -123,6 +122,17 @@ def features_of(data: object, where: str) -> list[Any]:
     if not isinstance(features, list):
         raise FloorPlanError(f"{where}: features must be a list")
     return features
+
+
+def zone_feature(zone: SpeedZone) -> dict[str, Any]:
+    """The feature of a speed zone, with all that is not as it is by default."""
+    feature = feature_of("zone", zone.name, zone.area)
+    feature["properties"] |= {
+        each.name: getattr(zone, each.name)
+        for each in OF_ZONES
+        if getattr(zone, each.name) != each.default
+    }
+    return feature
 
 
 def feature_of(kind: str, name: str, geometry: BaseGeometry) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any
 from shapely import Polygon, box
 
 from mesa_mobility import Building, Exit, Level, Stairs
+from mesa_mobility.buildings.flights import UPWARDS
 from mesa_mobility.buildings.stairs import speed_factor
 from mesa_mobility.verification.runs import (
     CLEARANCE,
@@ -83,17 +84,19 @@ def lone_climber(
     }
 
 
-def preferred_for(speed: float, *, risers: int, riser: float, tread: float) -> float:
+def preferred_for(speed: float, *, up: bool, risers: int, riser: float, tread: float) -> float:
     """Speed on a level floor, m/s, of people who the model lets walk on a stair at ``speed``.
 
     Args:
         speed: along the slope, m/s.
+        up: whether they walk up.
         risers: how many risers the stair has.
         riser: height of a riser, metres.
         tread: depth of a tread, metres.
     """
     going, rise = (risers - 1) * tread, risers * riser
-    return speed * going / math.hypot(going, rise) / speed_factor(riser, tread)
+    factor = speed_factor(riser, tread) * (UPWARDS if up else 1.0)
+    return speed * going / math.hypot(going, rise) / factor
 
 
 def down_from_a_room(

@@ -62,6 +62,24 @@ def test_where_zones_overlap_their_factors_multiply():
     assert plan.speed_factors(points).tolist() == pytest.approx([0.5, 0.2, 0.4, 1.0, 0.2])
 
 
+def test_people_walk_uphill_at_a_factor_of_its_own():
+    slope = SpeedZone(box(3, 0, 30, 2), 0.8, uphill=0.5, downhill=(-2.0, 0.0))
+    assert wanted_at(10.0, slope) == pytest.approx(0.5 * 1.25)
+    falling = SpeedZone(box(3, 0, 30, 2), 0.8, uphill=0.5, downhill=(1.0, 0.1))
+    assert wanted_at(10.0, falling) == pytest.approx(0.8 * 1.25)
+    # Of those who do not say where they walk, nobody walks uphill.
+    assert strip(slope).speed_factors([(10.0, 1.0)]).tolist() == [0.8]
+
+
+def test_treads_count_as_far_as_the_way_ahead_leads_over_stairs():
+    model = model_of(strip(SpeedZone(box(3, 0, 10, 2), 1.0, tread=0.3)), shipped_map())
+    # In 1.5 s at 1.25 m/s they come 1.875 m far: over stairs, half-way onto them, not so far.
+    people = [put(model, x, 1.0, preferred_speeds=1.25) for x in (5.0, 3.0 - 0.9375, 0.5)]
+    advance(model, 1)
+    treads = [model.crowd.agenda["tread"][person.row] for person in people]
+    assert treads == pytest.approx([0.3, 0.15, 0.0], abs=0.3 / 15)
+
+
 def test_ten_metres_at_half_a_metre_a_second():
     # ISO 20414 test 3, flat: 1 m/s, half of it from x = 10 to 20 m.
     plan = strip(SpeedZone("POLYGON ((10 0, 20 0, 20 2, 10 2, 10 0))", 0.5, name="stair"))
@@ -75,15 +93,17 @@ def test_ten_metres_at_half_a_metre_a_second():
 
 
 def test_zones_survive_a_file(tmp_path):
-    plan = strip(SpeedZone(box(1, 0, 2, 2), 0.3, name="mud"))
+    steps = SpeedZone(box(5, 0, 8, 2), 0.7, "steps", uphill=0.5, downhill=(1, 0), tread=0.3)
+    plan = strip(steps, SpeedZone(box(1, 0, 2, 2), 0.3, name="mud"))
     plan.write_geojson(tmp_path / "plan.geojson")
     again = FloorPlan.from_geojson(tmp_path / "plan.geojson")
-    (zone,) = again.zones
-    assert (zone.name, zone.factor) == ("mud", 0.3)
+    first, zone = again.zones
+    assert (zone.name, zone.factor, zone.uphill, zone.tread) == ("mud", 0.3, None, 0.0)
     assert zone.area.equals(box(1, 0, 2, 2))
+    assert (first.uphill, first.downhill, first.tread) == (0.5, (1.0, 0.0), 0.3)
     broken = plan.to_geojson()
     broken["features"][-1]["properties"]["factor"] = "slow"
-    with pytest.raises(FloorPlanError, match="feature 2: speed zone 'mud': factor"):
+    with pytest.raises(FloorPlanError, match="feature 3: speed zone 'mud': factor"):
         FloorPlan.from_geojson(broken)
 
 
@@ -91,6 +111,22 @@ def test_zones_survive_a_file(tmp_path):
 def test_factors_that_cannot_be(factor):
     with pytest.raises(FloorPlanError, match="factor"):
         SpeedZone(box(0, 0, 1, 1), factor)
+
+
+@pytest.mark.parametrize(
+    ("given", "what"),
+    [
+        ({"uphill": 0.0, "downhill": (1, 0)}, "uphill must be above 0, at most 1, found 0.0"),
+        ({"uphill": 0.5}, "downhill must be a direction .*, found None"),
+        ({"downhill": (0, 0)}, "downhill must be a direction .*, found \\(0, 0\\)"),
+        ({"downhill": "down"}, "downhill must be a direction"),
+        ({"tread": -0.1}, "tread must be 0 to 1 m, found -0.1"),
+        ({"tread": True}, "tread must be 0 to 1 m, found True"),
+    ],
+)
+def test_slopes_and_treads_that_cannot_be(given, what):
+    with pytest.raises(FloorPlanError, match=f"^speed zone: {what}"):
+        SpeedZone(box(0, 0, 1, 1), 0.5, **given)
 
 
 def test_zones_that_cannot_be():
