@@ -56,10 +56,6 @@ def test_the_pelvis_sways_three_to_twelve_centimetres(tracks):
     assert 0.03 <= np.median([sway(t) for t in tracks]) <= 0.12
 
 
-@pytest.mark.xfail(
-    strict=False,
-    reason="known: 3 of 50 walkers sway 2.4 to 2.7 cm, as some of the recorded people do",
-)
 def test_the_pelvis_of_each_walker_sways_three_to_twelve_centimetres(tracks):
     outside = {
         round(float(speed), 3): round(sway(t), 4)
