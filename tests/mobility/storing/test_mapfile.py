@@ -130,9 +130,11 @@ def test_a_file_that_contradicts_itself_is_refused(saved, name, array, message):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("block", [1, 2, 1024])
 @pytest.mark.parametrize("sample", [0, 4, 9])
-def test_a_file_with_an_option_that_outruns_everybody_is_refused(saved, sample):
+def test_a_file_with_an_option_that_outruns_everybody_is_refused(saved, sample, block, monkeypatch):
     """Out by 1.3 m in 0.1 s and back, at the start of an option or later on its path."""
+    monkeypatch.setattr("mesa_mobility.mobility.map_data._BLOCK", block)
     with np.load(saved) as archive:
         steps = archive["path_steps"].copy()
     row = 0 if sample < 4 else 1 if sample < 8 else 2
