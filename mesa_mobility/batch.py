@@ -9,9 +9,9 @@ from functools import partial
 from itertools import product
 from typing import Any, TypeAlias
 
-import mesa
 from tqdm.auto import tqdm
 
+from mesa_mobility._mesa import mesa
 from mesa_mobility.errors import ModelError
 from mesa_mobility.runs.choice import workers_for
 from mesa_mobility.runs.jobs import Failed, run_jobs

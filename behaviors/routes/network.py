@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-import networkx as nx
 import numpy as np
 from mesa_mobility.behaviors.exits.quickest_exit import people_a_second
 from numpy.typing import NDArray
 
 from mesa_mobility import FloorPlan
 from mesa_mobility.floorplan import lines_of_sight
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 # Metres by which a way through a gate may be longer for the gate still to lie on it.
 _ON_THE_WAY = 0.1
@@ -38,6 +41,8 @@ class Network:
     """
 
     def __init__(self, graph: nx.DiGraph, plan: FloorPlan) -> None:
+        import networkx as nx
+
         self.graph = graph
         self._plan = plan
         openings: dict[tuple[str, tuple[float, float]], list[int]] = {}

@@ -6,7 +6,6 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any, cast
 
-import networkx as nx
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
@@ -309,6 +308,8 @@ class Building:
 
     def _check_joined(self) -> None:
         """A way must lead from each level to one with an exit; FloorPlanError otherwise."""
+        import networkx as nx
+
         graph = nx.DiGraph()
         graph.add_nodes_from(level.number for level in self.levels)
         for stairs in self.stairs:

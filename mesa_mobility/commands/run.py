@@ -92,15 +92,8 @@ def run(
                 find_model(model), model, options, record=record or True, buildings=True
             )
 
-    import pandas as pd
-
-    from mesa_mobility.results import (
-        Trajectories,
-        by_type,
-        check_safety,
-        check_writable,
-        write_run,
-    )
+    from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run
+    from mesa_mobility.results.measures.by_type import rows_by_type
     from mesa_mobility.results.run import RUN_FILES
 
     if out is not None:
@@ -113,13 +106,12 @@ def run(
             trajectories = Trajectories.of(simulation)
             plan, building = simulation.floor_plan, getattr(simulation, "building", None)
             safety = check_safety(trajectories, plan.walls, plan.free, building=building)
-            table = by_type(trajectories) if "type" in trajectories.person_data else pd.DataFrame()
             summary = {
                 **simulation.summary(),
                 "model": model,
                 "preset": options.preset or getattr(simulation, "preset", "default"),
                 "seed": options.seed,
-                "by_type": table.reset_index().to_dict("records"),
+                "by_type": rows_by_type(trajectories) if "type" in trajectories.person_data else [],
                 **_by_storey(trajectories, building),
                 **origin_of(given, simulation),
                 "behaviors": options.behaviors or [],

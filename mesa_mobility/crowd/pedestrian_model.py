@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from copy import deepcopy
 from typing import Any, Self
 
-import mesa  # noqa: F401 - early, as in precompile.py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility import _mesa  # noqa: F401 - early, as in precompile.py
 from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.insertion.newcomers import Newcomers

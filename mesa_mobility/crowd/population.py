@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
-import mesa
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from mesa_mobility._mesa import mesa
 from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.insertion.free_space import first_free, too_close
 from mesa_mobility.crowd.insertion.newcomers import Newcomers

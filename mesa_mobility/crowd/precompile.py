@@ -17,12 +17,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-# Mesa looks at each frame of the stack when it is imported. Here the stack is short, which spares a
-# tenth of a start.
-import mesa  # noqa: F401
 import numpy as np
 from filelock import FileLock, Timeout
 
+# Mesa looks at each frame of the stack when it is imported. Here the stack is short, which spares a
+# tenth of a start.
+from mesa_mobility import _mesa  # noqa: F401
 from mesa_mobility.compiled import cache
 from mesa_mobility.compiled.threads import THREADS
 from mesa_mobility.crowd.costs.candidates import Moment

@@ -1,12 +1,13 @@
 """The floor plan: a layout, the obstacles on it, and what is closed."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Iterable, Mapping
 from copy import copy
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import networkx as nx
 from shapely import Polygon
 
 from mesa_mobility.errors import FloorPlanError
@@ -27,6 +28,9 @@ from mesa_mobility.floorplan.formats.plan_format import PLANS
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.plugins.formats import READ, WRITE
 from mesa_mobility.schema import Flag, Kind, Object, Several, Text, Whole, check
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 
 class FloorPlan(Floor):
@@ -114,12 +118,12 @@ class FloorPlan(Floor):
         obstacles: Iterable[Polygon | str] = (),
         zones: Iterable[SpeedZone] = (),
         name: str = "",
-    ) -> "FloorPlan":
+    ) -> FloorPlan:
         """A floor plan whose walkable area is given as the WKT of a POLYGON, in metres."""
         return cls(wkt, exits=exits, gates=gates, obstacles=obstacles, zones=zones, name=name)
 
     @classmethod
-    def from_geojson(cls, source: "str | os.PathLike[str] | dict[str, Any]") -> "FloorPlan":
+    def from_geojson(cls, source: str | os.PathLike[str] | dict[str, Any]) -> FloorPlan:
         """Read a plan from a GeoJSON file, or from the FeatureCollection itself.
 
         See `to_geojson` for what it holds. Raises FloorPlanError naming the file
@@ -130,11 +134,11 @@ class FloorPlan(Floor):
     @classmethod
     def from_dxf(
         cls,
-        path: "str | os.PathLike[str]",
+        path: str | os.PathLike[str],
         *,
         layers: Mapping[str, str] | None = None,
         unit: str | None = None,
-    ) -> "FloorPlan":
+    ) -> FloorPlan:
         """Read a plan from a CAD drawing in DXF. Needs the extra `cad`.
 
         Outlines on layers of areas are closed polylines, circles, or lines and arcs that meet; one
@@ -157,7 +161,7 @@ class FloorPlan(Floor):
         return cls._of(dxf.read(path, layers, unit), str(path))
 
     @classmethod
-    def from_file(cls, path: "str | os.PathLike[str]", **options: Any) -> "FloorPlan":
+    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> FloorPlan:
         """Read a plan from a file, in the format that the end of its name says.
 
         GeoJSON, WKT and DXF ship; other packages may add formats. `mesa-mobility formats` lists
@@ -176,7 +180,7 @@ class FloorPlan(Floor):
         options = PLANS.chosen_options(chosen, READ, options)
         return cls._of(chosen.read(Path(path), **options), str(path))
 
-    def to_file(self, path: "str | os.PathLike[str]", **options: Any) -> None:
+    def to_file(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the plan to a file, in the format that the end of its name says.
 
         Args:
@@ -192,7 +196,7 @@ class FloorPlan(Floor):
         chosen.write(self, Path(path), **options)
 
     @classmethod
-    def _of(cls, content: Content, where: str) -> "FloorPlan":
+    def _of(cls, content: Content, where: str) -> FloorPlan:
         """The plan of a file's content; `where` names the file in errors."""
         try:
             plan = cls(
@@ -265,7 +269,7 @@ class FloorPlan(Floor):
 
     def altered(
         self, *, obstacles: Iterable[Polygon] = (), closed: Iterable[str] | None = None
-    ) -> "FloorPlan":
+    ) -> FloorPlan:
         """A plan of its own, without people, that differs from this one as it is now.
 
         Args:

@@ -1,102 +1,63 @@
-"""Trajectories, measures, pictures and exports."""
+"""Trajectories, measures, pictures and exports.
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+A run needs few of them, so the names are imported when they are first used.
+"""
 
-from mesa_mobility.results.excerpts import Excerpt, Selection
-from mesa_mobility.results.files import check_writable
-from mesa_mobility.results.formats.export import to_pedpy
-from mesa_mobility.results.formats.juelich import write_juelich_text
-from mesa_mobility.results.formats.jupedsim import write_jupedsim_sqlite
-from mesa_mobility.results.formats.output_format import OutputFormat
-from mesa_mobility.results.formats.parquet import write_parquet
-from mesa_mobility.results.measures.by_type import by_type, occupancy_by_type
-from mesa_mobility.results.measures.climbs import Climbs, by_stairs, climbs, occupancy_by_stairs
-from mesa_mobility.results.measures.crossings import (
-    Crossings,
-    crossings,
-    flow,
-    flow_over_time,
-    passages,
-    passed_by,
-)
-from mesa_mobility.results.measures.density import (
-    density,
-    individual_densities,
-    voronoi_cells,
-    voronoi_density,
-)
-from mesa_mobility.results.measures.gait import Sway, lateral_sway
-from mesa_mobility.results.measures.occupancy import departures, egress_time, occupancy
-from mesa_mobility.results.measures.speeds import (
-    SpeedsAlong,
-    direction_changes,
-    mean_speed,
-    speeds,
-    speeds_along,
-)
-from mesa_mobility.results.measures.storeys import by_level, leaving_times, occupancy_by_level
-from mesa_mobility.results.overlaps import Overlap
-from mesa_mobility.results.run import write_run
-from mesa_mobility.results.safety import SafetyReport, WallCrossing, check_safety
-from mesa_mobility.results.trajectories import Trajectories, read_parquet
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
-    from mesa_mobility.results.plots import plot_occupancy, plot_snapshots, plot_trajectories
+    from mesa_mobility.results.excerpts import Excerpt as Excerpt
+    from mesa_mobility.results.excerpts import Selection as Selection
+    from mesa_mobility.results.files import check_writable as check_writable
+    from mesa_mobility.results.formats.export import to_pedpy as to_pedpy
+    from mesa_mobility.results.formats.juelich import write_juelich_text as write_juelich_text
+    from mesa_mobility.results.formats.jupedsim import (
+        write_jupedsim_sqlite as write_jupedsim_sqlite,
+    )
+    from mesa_mobility.results.formats.output_format import OutputFormat as OutputFormat
+    from mesa_mobility.results.formats.parquet import write_parquet as write_parquet
+    from mesa_mobility.results.measures.by_type import by_type as by_type
+    from mesa_mobility.results.measures.by_type import occupancy_by_type as occupancy_by_type
+    from mesa_mobility.results.measures.climbs import Climbs as Climbs
+    from mesa_mobility.results.measures.climbs import by_stairs as by_stairs
+    from mesa_mobility.results.measures.climbs import climbs as climbs
+    from mesa_mobility.results.measures.climbs import occupancy_by_stairs as occupancy_by_stairs
+    from mesa_mobility.results.measures.crossings import Crossings as Crossings
+    from mesa_mobility.results.measures.crossings import crossings as crossings
+    from mesa_mobility.results.measures.crossings import flow as flow
+    from mesa_mobility.results.measures.crossings import flow_over_time as flow_over_time
+    from mesa_mobility.results.measures.crossings import passages as passages
+    from mesa_mobility.results.measures.crossings import passed_by as passed_by
+    from mesa_mobility.results.measures.density import density as density
+    from mesa_mobility.results.measures.density import individual_densities as individual_densities
+    from mesa_mobility.results.measures.density import voronoi_cells as voronoi_cells
+    from mesa_mobility.results.measures.density import voronoi_density as voronoi_density
+    from mesa_mobility.results.measures.gait import Sway as Sway
+    from mesa_mobility.results.measures.gait import lateral_sway as lateral_sway
+    from mesa_mobility.results.measures.occupancy import departures as departures
+    from mesa_mobility.results.measures.occupancy import egress_time as egress_time
+    from mesa_mobility.results.measures.occupancy import occupancy as occupancy
+    from mesa_mobility.results.measures.speeds import SpeedsAlong as SpeedsAlong
+    from mesa_mobility.results.measures.speeds import direction_changes as direction_changes
+    from mesa_mobility.results.measures.speeds import mean_speed as mean_speed
+    from mesa_mobility.results.measures.speeds import speeds as speeds
+    from mesa_mobility.results.measures.speeds import speeds_along as speeds_along
+    from mesa_mobility.results.measures.storeys import by_level as by_level
+    from mesa_mobility.results.measures.storeys import leaving_times as leaving_times
+    from mesa_mobility.results.measures.storeys import occupancy_by_level as occupancy_by_level
+    from mesa_mobility.results.overlaps import Overlap as Overlap
+    from mesa_mobility.results.plots import plot_occupancy as plot_occupancy
+    from mesa_mobility.results.plots import plot_snapshots as plot_snapshots
+    from mesa_mobility.results.plots import plot_trajectories as plot_trajectories
+    from mesa_mobility.results.run import write_run as write_run
+    from mesa_mobility.results.safety import SafetyReport as SafetyReport
+    from mesa_mobility.results.safety import WallCrossing as WallCrossing
+    from mesa_mobility.results.safety import check_safety as check_safety
+    from mesa_mobility.results.trajectories import Trajectories as Trajectories
+    from mesa_mobility.results.trajectories import read_parquet as read_parquet
 
-__all__ = [
-    "Climbs",
-    "Crossings",
-    "Excerpt",
-    "OutputFormat",
-    "Overlap",
-    "SafetyReport",
-    "Selection",
-    "SpeedsAlong",
-    "Sway",
-    "Trajectories",
-    "WallCrossing",
-    "by_level",
-    "by_stairs",
-    "by_type",
-    "check_safety",
-    "check_writable",
-    "climbs",
-    "crossings",
-    "density",
-    "departures",
-    "direction_changes",
-    "egress_time",
-    "flow",
-    "flow_over_time",
-    "individual_densities",
-    "lateral_sway",
-    "leaving_times",
-    "mean_speed",
-    "occupancy",
-    "occupancy_by_level",
-    "occupancy_by_stairs",
-    "occupancy_by_type",
-    "passages",
-    "passed_by",
-    "plot_occupancy",
-    "plot_snapshots",
-    "plot_trajectories",
-    "read_parquet",
-    "speeds",
-    "speeds_along",
-    "to_pedpy",
-    "voronoi_cells",
-    "voronoi_density",
-    "write_juelich_text",
-    "write_jupedsim_sqlite",
-    "write_parquet",
-    "write_run",
-]
-
-
-def __getattr__(name: str) -> Any:
-    # Matplotlib takes half a second to load, so it is imported only when a picture is drawn.
-    if name.startswith("plot_") and name in __all__:
-        return getattr(import_module("mesa_mobility.results.plots"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__ = names_of(__name__, __file__)

@@ -78,8 +78,6 @@ class Trajectories(Tracks):
         recorder = getattr(model, "recorder", None)
         if recorder is None:
             raise ResultsError("the model has recorded nothing: create it with record=True")
-        from mesa_mobility.results.decisions import Decisions
-
         arrays = recorder.arrays()
         rows = {name: arrays.pop(name) for name in COLUMNS}
         if len(model.rows) and not len(rows["frame"]):
@@ -88,6 +86,11 @@ class Trajectories(Tracks):
             places, levels = model.building.true_places(np.column_stack([rows["x"], rows["y"]]))
             rows["x"], rows["y"], arrays["z"] = places.T
             arrays["level"] = levels
+        decisions = None
+        if getattr(model, "decisions", None):
+            from mesa_mobility.results.decisions import Decisions
+
+            decisions = Decisions.of(model)
         return cls(
             **rows,
             frame_rate=float(model.frame_rate),
@@ -96,7 +99,7 @@ class Trajectories(Tracks):
             inside_at_end=model.rows,
             person_data=model.person_data() if hasattr(model, "person_data") else {},
             fields=arrays,
-            decisions=Decisions.of(model) if getattr(model, "decisions", None) else None,
+            decisions=decisions,
         )
 
     @classmethod

@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
 
-import mesa
 import numpy as np
-from mesa.datacollection import DataCollector
 from numpy.typing import NDArray
 
+from mesa_mobility._mesa import DataCollector, mesa
 from mesa_mobility.buildings import Building
 from mesa_mobility.crowd.arguments import (
     SETTABLE,

@@ -6,11 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-import mesa
 import numpy as np
-from mesa.experimental.continuous_space import ContinuousSpaceAgent
 from numpy.typing import NDArray
 
+from mesa_mobility._mesa import ContinuousSpaceAgent, mesa
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.journeys.visit import Route, Visit
 from mesa_mobility.crowd.journeys.waiting import waiting

@@ -5,8 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
-
+from mesa_mobility._mesa import ContinuousSpace, ContinuousSpaceAgent
 from mesa_mobility.floorplan import FloorPlan
 
 _FEW = 50

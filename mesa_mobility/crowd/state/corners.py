@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from mesa_mobility.floorplan import Router
+from mesa_mobility.floorplan.routing.route_nodes import CORNER, Nodes
 
 # Two bodies pass the same edge at places that are no farther apart than this multiple of the
 # difference of their clearances (1.41 at a right angle), plus a little.
@@ -32,7 +33,7 @@ class Corners:
 
     def __init__(self, routers: Sequence[Router | None]) -> None:
         self._routers = routers
-        self._graphs: list[object] = []
+        self._nodes: list[Nodes | None] = []
         self._count = 0
         self._shared: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 
@@ -69,13 +70,13 @@ class Corners:
         return np.where(corners >= 0, self._shared[corners], -1)
 
     def _update(self) -> None:
-        graphs = [None if router is None else router.graph for router in self._routers]
-        if self._graphs and all(new is old for new, old in zip(graphs, self._graphs, strict=True)):
+        nodes = [None if router is None else router.nodes for router in self._routers]
+        if self._nodes and all(new is old for new, old in zip(nodes, self._nodes, strict=True)):
             return
-        self._graphs = list(graphs)
-        most = max((len(graph) for graph in graphs if graph is not None), default=0)
-        self._count = most * len(graphs)
-        if len(graphs) > 1:
+        self._nodes = nodes
+        most = max((len(each.kind) for each in nodes if each is not None), default=0)
+        self._count = most * len(nodes)
+        if len(nodes) > 1:
             self._shared = self._share()
 
     def _share(self) -> NDArray[np.int64]:
@@ -101,12 +102,5 @@ class Corners:
 
 def _corners(router: Router) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """(k,) the nodes of a router that are corners, and their (k, 2) positions, metres."""
-    found = [
-        (number, node["position"])
-        for number, node in router.graph.nodes(data=True)
-        if node["kind"] == "corner"
-    ]
-    return (
-        np.array([number for number, _ in found], dtype=np.int64),
-        np.array([place for _, place in found], dtype=np.float64).reshape(-1, 2),
-    )
+    corners = np.flatnonzero(router.nodes.kind == CORNER)
+    return corners, router.nodes.xy[corners]

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +17,9 @@ from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.annotations import Range
 from mesa_mobility.schema import Array, Kind
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 AGAIN = Array("f8", high=1e9, infinite=True)
 """When each person chooses again, s, in a checkpoint: -inf before the first time."""

@@ -1,6 +1,9 @@
 """The route graph made of its nodes: arrays for compiled functions, a network for Python."""
 
-import networkx as nx
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +12,9 @@ from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.route_graph import Ways
 from mesa_mobility.floorplan.routing.route_nodes import VIEW_SHARE, Nodes
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 _KIND_NAMES = ("corner", "gate", "exit")
 
@@ -64,6 +70,8 @@ def network(
         lengths: (k,) metres.
         openings: the gates and exits that nodes number.
     """
+    import networkx as nx
+
     graph = nx.DiGraph()
     for i, (x, y) in enumerate(nodes.xy.tolist()):
         number = int(nodes.opening[i])

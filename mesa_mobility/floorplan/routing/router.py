@@ -1,8 +1,10 @@
 """Shortest routes to exits and gates, and the target of each person."""
 
-from collections.abc import Sequence
+from __future__ import annotations
 
-import networkx as nx
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_matrix
@@ -20,6 +22,7 @@ from mesa_mobility.floorplan.routing.route_graph import edges_in_view
 from mesa_mobility.floorplan.routing.route_nodes import (
     EDGE_SHARE,
     NODE_SHARE,
+    Nodes,
     find_nodes,
     with_points,
 )
@@ -30,6 +33,9 @@ from mesa_mobility.floorplan.routing.targets import Destination, Targets, is_poi
 from mesa_mobility.floorplan.routing.visibility_cache import Views, no_views, with_room
 from mesa_mobility.floorplan.walls.narrow_gaps import closed_gaps
 from mesa_mobility.floorplan.walls.sight import Sight, sight_of
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 
 class Router:
@@ -83,6 +89,12 @@ class Router:
     def clearance(self) -> float:
         """Distance in metres that routes keep from walls."""
         return self._clearance
+
+    @property
+    def nodes(self) -> Nodes:
+        """The nodes of ``graph``, as arrays; the same object until the floor plan changes."""
+        self._update()
+        return self._nodes
 
     @property
     def graph(self) -> nx.DiGraph:

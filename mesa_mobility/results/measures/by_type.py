@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,15 @@ def by_type(trajectories: Tracks, key: str = "type") -> pd.DataFrame:
     """
     import pandas as pd
 
+    return pd.DataFrame(rows_by_type(trajectories, key), columns=[key, *COLUMNS]).set_index(key)
+
+
+def rows_by_type(trajectories: Tracks, key: str = "type") -> list[dict[str, Any]]:
+    """The rows of ``by_type``, each with its type by the name of ``key``, in order of the types.
+
+    Raises:
+        ResultsError: the trajectories have no such data.
+    """
     rows = []
     seconds = _egress_seconds(trajectories)
     for name, own in people_by(trajectories, key).items():
@@ -50,12 +59,12 @@ def by_type(trajectories: Tracks, key: str = "type") -> pd.DataFrame:
                 key: name,
                 "people": len(own),
                 "left": left,
-                "mean_egress_s": times.mean() if left == len(times) else np.nan,
+                "mean_egress_s": float(times.mean()) if left == len(times) else np.nan,
                 "p95_egress_s": np.nan if p95 is None else p95,
                 "mean_speed_mps": np.nan if speed is None else speed,
             }
         )
-    return pd.DataFrame(rows, columns=[key, *COLUMNS]).set_index(key)
+    return rows
 
 
 def occupancy_by_type(
