@@ -287,12 +287,13 @@ class Building:
     def floor_plan_of(self, level: int) -> FloorPlan:
         """The floor of one level as a plan of its own, in the building's coordinates.
 
-        Stairs and lifts are not part of it: people leave by the end of a flight as by an exit,
-        which has the name of the flight.
+        Stairs and lifts are not part of it: people leave by the end of a flight or the door of a
+        lift as by an exit, which has the name of the flight or the lift.
         """
         own, sheet = self.level(level), self._sheet(level)
         ends = [Exit(each.name, *each.head) for each in self.flights if each.upper == sheet.name]
         ends += [Exit(each.name, *each.foot) for each in self.flights if each.lower == sheet.name]
+        ends += [Exit(each.name, *each.door) for each in self.lifts if level in each.numbers]
         return FloorPlan(
             max(shapely.get_parts(sheet.floor), key=lambda part: part.area),
             exits=[*own.exits, *ends],

@@ -36,6 +36,13 @@ def test_the_car_may_lie_outside_the_level():
     assert building(door=((8.0, 6.0), (8.9, 6.0))).floor_plan.contains([(8.45, 7.0)])[0]
 
 
+def test_a_level_without_an_exit_has_the_door_in_its_own_plan():
+    plan = building().floor_plan_of(1)
+    assert [(each.name, each.a, each.b) for each in plan.exits] == [("car", *DOOR)]
+    # The hall less the doorway of 0.1 m, the car, and 0.05 m of wall beside and behind it.
+    assert plan.free.area == pytest.approx(12 * 6 - (1.1 + 0.1) * (0.1 + 1.4 + 0.05))
+
+
 def test_it_is_written_and_read():
     own = building(capacity=12, speed=2.5, everybody=True)
     read = Building.from_geojson(own.to_geojson())
