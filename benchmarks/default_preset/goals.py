@@ -15,7 +15,8 @@ from benchmarks.default_preset.closeness import beyond
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.verification.references import bottleneck_envelope
 from mesa_mobility.verification.runs import crowd_model
-from mesa_mobility.verification.scenarios import counterflow, necks, stairs, walks
+from mesa_mobility.verification.scenarios import counterflow, necks, walks
+from mesa_mobility.verification.scenarios.buildings import stairs
 
 LIMIT_S = 240.0
 LONG_NECK_M = 1.1, 4.0

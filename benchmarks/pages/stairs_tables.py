@@ -20,7 +20,7 @@ from stairs_scenes import ENDS, RISER, TREAD, WIDTH, merging, office, stream
 
 from mesa_mobility.verification import catalogue, suite
 from mesa_mobility.verification.report import measured_text
-from mesa_mobility.verification.scenarios.stairs import lone_climber
+from mesa_mobility.verification.scenarios.buildings.stairs import lone_climber
 from mesa_mobility.verification.suite import verify
 
 FREE_SPEED = 1.34

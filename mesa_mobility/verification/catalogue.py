@@ -21,7 +21,7 @@ class Entry:
         id: its name.
         what: its subject, in one line.
         source: standard, and where its numbers were read.
-        applies: "flat", "stairs", or "flat*" for a stand-in on a level floor.
+        applies: "flat", "stairs", "lifts", or "flat*" for a stand-in on a level floor.
         geometry: floor, start and exits; WKT in metres where the source gives it.
         population: people.
         criterion: the requirement, as text.

@@ -16,7 +16,8 @@ from mesa_mobility.verification.checks import (
     rising,
     within,
 )
-from mesa_mobility.verification.scenarios import closures, halls, stairs
+from mesa_mobility.verification.scenarios import closures, halls
+from mesa_mobility.verification.scenarios.buildings import stairs
 from mesa_mobility.verification.suite import VerificationTest
 
 PEOPLE = (60, 120, 240, 360, 480)

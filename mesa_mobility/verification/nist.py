@@ -1,4 +1,4 @@
-"""NIST Technical Note 1822: the tests of level floors and stairs."""
+"""NIST Technical Note 1822: the tests of level floors, stairs and lifts."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from mesa_mobility.verification.scenarios import (
     impaired,
     premovement,
     stair_foot,
-    stairs,
     walks,
 )
+from mesa_mobility.verification.scenarios.buildings import lifts, stairs
 from mesa_mobility.verification.suite import VerificationTest
 
 PRE_MOVEMENT = {
@@ -50,6 +50,46 @@ LONG_STAIR = [
     for up in (True, False)
 ]
 """100 m along the slope, walked at 1 m/s."""
+
+SLOW_CAR: dict[str, Any] = {"speed": 1.0, "door_s": 3.0}
+FAST_CAR: dict[str, Any] = {"speed": 2.5, "door_s": 1.5}
+RIDERS, CAPACITY = 10, 4
+LATE_S = 0.3
+"""Seconds by which a ride may end later or earlier than its numbers say."""
+CHANGE_S = 8.0
+"""Seconds that people may take to get out of a car and into it, beyond those that it stays open."""
+
+
+def lift_usage(runs: Sequence[Figures]) -> Verdict:
+    """People get out at the level to which they have to go, after as many rides as the capacity
+    asks for, each as long as doors and speed say."""
+    *lone, many = runs
+    there_and_back = 2.0 * lifts.way_s(1, **SLOW_CAR) + lifts.OPEN_S
+    return Verdict(
+        (
+            *judging.everybody_out(runs),
+            exactly("people on a wrong level", sum(run["elsewhere"] for run in runs), 0),
+            *(
+                within(
+                    f"arrival {k} s",
+                    run["arrived_s"],
+                    run["expected_s"] - LATE_S,
+                    run["expected_s"] + LATE_S,
+                )
+                for k, run in enumerate(lone, 1)
+            ),
+            exactly("rides of many", many["rides"], math.ceil(RIDERS / CAPACITY)),
+            exactly("most people of a ride", many["most"], CAPACITY),
+            at_least(
+                "least time between rides s", min(many["between_s"], default=None), there_and_back
+            ),
+            at_most(
+                "greatest time between rides s",
+                max(many["between_s"], default=None),
+                there_and_back + CHANGE_S,
+            ),
+        )
+    )
 
 
 def impaired_person(seeds: Sequence[Sequence[Figures]]) -> Verdict:
@@ -181,6 +221,15 @@ TESTS = {
     "nist-2.4": VerificationTest(
         (case(walks.normal_speeds, effort=2.0, people=100, mean=1.2, sd=0.2),),
         pooled=judging.speed_spread(stats.norm(1.2, 0.2), 1.2, 0.2),
+    ),
+    "nist-2.7": VerificationTest(
+        (
+            case(lifts.one_rider, car=1, start=1, goal=0, **SLOW_CAR),
+            case(lifts.one_rider, car=0, start=1, goal=2, **SLOW_CAR),
+            case(lifts.one_rider, car=2, start=0, goal=2, **FAST_CAR),
+            case(lifts.many_riders, people=RIDERS, capacity=CAPACITY, **SLOW_CAR),
+        ),
+        judge=lift_usage,
     ),
     "nist-2.8": VerificationTest(imo.COUNTERFLOW, judge=judging.counterflow),
     "nist-2.9": VerificationTest(

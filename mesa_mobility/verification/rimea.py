@@ -31,9 +31,9 @@ from mesa_mobility.verification.scenarios import (
     necks,
     premovement,
     rooms,
-    stairs,
     walks,
 )
+from mesa_mobility.verification.scenarios.buildings import stairs
 from mesa_mobility.verification.scenarios.tracks.single_file import CASES as SINGLE_FILE
 from mesa_mobility.verification.scenarios.tracks.track import DENSITY_BIN, binned, track
 from mesa_mobility.verification.suite import VerificationTest

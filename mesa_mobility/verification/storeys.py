@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from mesa_mobility.verification.cases import Figures, case
 from mesa_mobility.verification.checks import Verdict, exactly, falling
 from mesa_mobility.verification.judging import everybody_out
-from mesa_mobility.verification.scenarios import storeys
+from mesa_mobility.verification.scenarios.buildings import storeys
 from mesa_mobility.verification.suite import VerificationTest
 
 SPEEDS = (0.5, 0.75, 1.0)

@@ -14,9 +14,9 @@ from mesa_mobility.verification.scenarios import (
     impaired,
     necks,
     rooms,
-    storeys,
     walks,
 )
+from mesa_mobility.verification.scenarios.buildings import lifts, storeys
 from mesa_mobility.verification.scenarios.tracks.oval import Oval
 
 
@@ -149,3 +149,16 @@ def test_the_way_over_the_bridge_is_short_and_the_way_round_is_long():
     # Two legs of 30 m, a cross-piece between them, and what is left to the feet of the stairs.
     assert ground.area.area == pytest.approx(2 * 60.0 + 20.0 * 2.0 + 2 * 2.0 * (10.0 - 4.93 - 2.0))
     assert [flight.foot[0][0] for flight in building.flights] == pytest.approx([5.07, 18.93])
+
+
+def test_the_tower_has_three_storeys_and_a_car_for_all_riders():
+    building = lifts.tower(1, speed=1.0, door_s=3.0, capacity=4)
+    assert [level.elevation for level in building.levels] == [0.0, 3.5, 7.0]
+    assert building.lifts[0].numbers == (1, 0, 2)
+    # People start where they call the car: within 4 m of the middle of the door.
+    assert all(
+        math.dist(c, (6.0, 6.0)) < 4.0 for c in [*lifts.WAITING.exterior.coords, lifts.LOBBY]
+    )
+    # Doors close and open in 3 s each; 3.5 m and 7 m at 1 m/s.
+    assert lifts.way_s(1, speed=1.0, door_s=3.0) == 9.5
+    assert lifts.way_s(2, speed=1.0, door_s=3.0) == 13.0

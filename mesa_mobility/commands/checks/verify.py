@@ -22,7 +22,7 @@ def verify(
     *,
     options: CheckOptions,
 ) -> None:
-    """Run the verification tests of RiMEA, IMO, NIST and ISO for level floors and stairs.
+    """Run the verification tests of RiMEA, IMO, NIST and ISO for floors, stairs and lifts.
 
     Ends with status 1 if a test fails.
     """

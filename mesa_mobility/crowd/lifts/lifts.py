@@ -24,7 +24,7 @@ EVERY = 3
 """Frames from one look at the cars to the next."""
 
 DWELL = 3 * FRAMES_A_SECOND
-"""Frames for which the doors stay open after the last person has got in."""
+"""Frames for which the doors stay open at least after the last person was let in."""
 
 GIVES_UP = 20 * FRAMES_A_SECOND
 """Frames after which those who have not got in are no longer waited for."""

@@ -1,0 +1,1 @@
+"""Scenarios with stairs, several storeys and lifts."""
