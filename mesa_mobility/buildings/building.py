@@ -115,7 +115,7 @@ class Building:
         self._sheets = sheets_of(self.levels, flights, landings, self.lifts)
         self._check_joined()
         check_headroom(self._sheets, flights)
-        self._places = Places(self._sheets, flights, self._owners)
+        self._places = Places(self._sheets, flights, self._owners, self.lifts)
         self.footing = Footing(flights)
         self.floor_plan = self._plan()
 
@@ -218,8 +218,10 @@ class Building:
     def plane_places(self, places: ArrayLike) -> NDArray[np.float64]:
         """(n, 2) points in the plane of (n, 3) true places, metres.
 
+        Places in the car of a lift, at any height, are on its drawing at the nearest of its levels.
+
         Raises:
-            FloorPlanError: a place more than a centimetre above or below any floor.
+            FloorPlanError: a place more than a centimetre above or below any floor, in no lift.
         """
         return self._places.plane(places)
 

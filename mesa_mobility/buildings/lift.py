@@ -82,6 +82,11 @@ class Lift:
         """The numbers of its levels."""
         return tuple(number_of(each) for each in self.levels)
 
+    @property
+    def car(self) -> Polygon:
+        """The floor of the car, in the building's coordinates."""
+        return self.part(DOORWAY, DOORWAY + self.depth, self.width / 2.0)
+
     def part(self, first: float, last: float, half: float) -> Polygon:
         """The rectangle from ``first`` to ``last`` metres behind the door.
 

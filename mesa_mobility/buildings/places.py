@@ -8,6 +8,8 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from mesa_mobility.buildings.flights import Flight
+from mesa_mobility.buildings.level import sheet_of
+from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.lines import middle_of
 from mesa_mobility.buildings.sheets import BEYOND, Sheet
 from mesa_mobility.errors import FloorPlanError
@@ -29,6 +31,7 @@ class Places:
         sheets: the sheets of a building.
         flights: its flights.
         owners: for the name of each flight and landing, the number of its stairs.
+        lifts: its lifts.
     """
 
     def __init__(
@@ -36,8 +39,10 @@ class Places:
         sheets: Mapping[str, Sheet],
         flights: Sequence[Flight],
         owners: Mapping[str, int],
+        lifts: Sequence[Lift],
     ) -> None:
         self._sheets, self._owners = list(sheets.values()), dict(owners)
+        self._lifts = tuple(lifts)
         self._number = {sheet.name: number for number, sheet in enumerate(self._sheets)}
         self._flights = tuple(flights)
         bounds = [sheet.in_plane(sheet.area).bounds for sheet in self._sheets]
@@ -72,8 +77,10 @@ class Places:
     def plane(self, places: ArrayLike) -> NDArray[np.float64]:
         """(n, 2) points in the plane of (n, 3) true places, metres.
 
+        Those in the car of a lift are on its drawing at the nearest level at which it stops.
+
         Raises:
-            FloorPlanError: a place that is on no level, landing or flight.
+            FloorPlanError: a place that is on no level, landing or flight, and in no lift.
         """
         xyz = np.asarray(places, dtype=np.float64).reshape(-1, 3)
         sheet = np.full(len(xyz), -1, dtype=np.int64)
@@ -88,11 +95,20 @@ class Places:
             on, down = _at(flight, xyz)
             lower, upper = self._number[flight.lower], self._number[flight.upper]
             sheet[on] = np.where(down[on] >= flight.going / 2.0, lower, upper)
+            nearest[on] = 0.0
+        for lift in self._lifts:
+            off = np.flatnonzero((sheet < 0) | (nearest > _OFF))
+            stops = np.array([self._number[sheet_of(number)] for number in lift.numbers])
+            heights = self._elevations[stops]
+            off = off[(xyz[off, 2] >= heights.min() - _OFF) & (xyz[off, 2] <= heights.max() + _OFF)]
+            riding = off[shapely.distance(lift.car, points[off]) <= _OFF]
+            away = np.abs(xyz[riding, 2][:, None] - heights)
+            sheet[riding] = stops[np.argmin(away, axis=1)]
         if (sheet < 0).any():
             lost = xyz[np.argmax(sheet < 0)].tolist()
             raise FloorPlanError(
                 f"({', '.join(f'{each:.2f}' for each in lost)}): expected a place on a level, a "
-                "landing or a flight of stairs"
+                "landing or a flight of stairs, or in a lift"
             )
         return xyz[:, :2] + self._shifts[sheet]
 

@@ -220,7 +220,7 @@ def _strips(sheet: str, flights: Sequence[Flight], lifts: Sequence[Lift] = ()) -
             found.append(
                 _Strip(
                     f"lift {lift.name!r}",
-                    shapely.union(doorway, lift.part(DOORWAY, end, car), grid_size=_GRID),
+                    shapely.union(doorway, lift.car, grid_size=_GRID),
                     lift.part(0.0, end + _WALL, car + _WALL),
                     lift.part(-_FREE_BEFORE_LIFT, 0.0, door),
                 )

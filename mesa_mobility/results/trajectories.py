@@ -47,7 +47,8 @@ class Trajectories(Tracks):
             is an empty text for people without one.
         fields: (n,) values of each field that the model declares for its people, by name.
             Trajectories from a building also have the fields ``z`` and ``level`` (see
-            ``Building.true_places``).
+            ``Building.true_places``). ``z`` of people in a lift is that of the floor of the car.
+            Their ``level`` is that on which they got in, until the doors are open at another.
         decisions: the movement option that each person took in each decision; None if not
             recorded. The animation shows bodies in the recorded poses of these options.
         reading: how the source file was read, and what is wrong with it; None if these
@@ -69,8 +70,9 @@ class Trajectories(Tracks):
             model: anything with ``recorder.arrays()`` (a dict of frame, person, x, y, heading,
                 and of fields, if any), ``frame_rate`` (1/s), ``core_radii`` ((people,) metres),
                 ``elapsed`` (s) and ``rows`` (the people inside now). It may also have
-                ``person_data()`` and, for several levels, a ``building`` with ``true_places``. If
-                it has recorded ``decisions``, the trajectories have them, too.
+                ``person_data()`` and, for several levels, a ``building`` with ``true_places`` and
+                ``lifts`` with a ``log`` of rides. If it has recorded ``decisions``, the
+                trajectories have them, too.
 
         Raises:
             ResultsError: the model was not recording, or has taken no step.
@@ -83,7 +85,10 @@ class Trajectories(Tracks):
         if len(model.rows) and not len(rows["frame"]):
             raise ResultsError("the model has recorded nothing: expected a step before")
         if getattr(model, "building", None) is not None:
-            places, levels = model.building.true_places(np.column_stack([rows["x"], rows["y"]]))
+            points = np.column_stack([rows["x"], rows["y"]])
+            places, levels = model.building.true_places(points)
+            if hasattr(model, "lifts"):
+                places[:, 2] += model.lifts.log.risen(rows["frame"], points)
             rows["x"], rows["y"], arrays["z"] = places.T
             arrays["level"] = levels
         decisions = None

@@ -209,8 +209,8 @@ class Dashboard:
         return self.page.evaluate(f"() => {SHOWN}")
 
     def people(self) -> np.ndarray:
-        """(n, 5) row, x, y, heading, value of everybody on the canvas."""
-        return np.array(self.shown()["people"]).reshape(-1, 5)
+        """(n, 6) row, x, y, heading, value and rise of everybody on the canvas."""
+        return np.array(self.shown()["people"]).reshape(-1, 6)
 
     def decision(self) -> dict[str, Any]:
         """The state drawn in the decision view."""

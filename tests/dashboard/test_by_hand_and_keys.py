@@ -40,7 +40,7 @@ def test_a_door_is_closed_by_its_name_although_people_stand_there(tab):
         """([x, y]) => {
             const vue = document.querySelector('.mm-crowd').__vue__, people = vue.to.people;
             const [mx, my] = vue.metres({ clientX: x, clientY: y });
-            for (let k = 0; k < people.length; k += 5) [people[k + 1], people[k + 2]] = [mx, my];
+            for (let k = 0; k < people.length; k += 6) [people[k + 1], people[k + 2]] = [mx, my];
         }""",
         [where["x"] + plate["x"], where["y"] + plate["y"]],
     )

@@ -106,7 +106,7 @@ def hit(click):
     flat = click["people"]
     away = {
         int(flat[k]): ((flat[k + 1] - x) ** 2 + (flat[k + 2] - y) ** 2) ** 0.5
-        for k in range(0, len(flat), 5)
+        for k in range(0, len(flat), 6)
     }
     least = min(away.values(), default=float("inf"))
     if least >= max(0.25, 8 / scale):
@@ -157,9 +157,9 @@ class Monkey:
                 const canvas = {CANVAS};
                 if (!canvas.offsetParent) return null;
                 canvas.scrollIntoView({{ block: "center" }});
-                const {{ people }} = canvas.shown(), n = people.length / 5;
+                const {{ people }} = canvas.shown(), n = people.length / 6;
                 if (!n) return null;
-                const k = 5 * Math.floor(share * n);
+                const k = 6 * Math.floor(share * n);
                 return canvas.onPage(people[k + 1], people[k + 2]);
             }}""",
             self.rng.random(),

@@ -41,7 +41,7 @@ def frame_people(session):
     import base64
 
     flat = np.frombuffer(base64.b64decode(session.frame.value["people"]), dtype="<f4")
-    return flat.reshape(-1, 5)
+    return flat.reshape(-1, 6)
 
 
 def answering(session):

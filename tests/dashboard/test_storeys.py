@@ -4,9 +4,15 @@ Both levels are 24 m by 8 m. The upper one lies 3.06 m higher, and 24 + 20 m to 
 plane. The straight stair goes down from x = 8 to x = 12.93.
 """
 
+import base64
+
 import numpy as np
 import pytest
 
+from mesa_mobility import Building, Exit, Level, Lift, PedestrianModel, Trajectories
+from mesa_mobility.dashboard.session.colouring import COLOURINGS
+from mesa_mobility.dashboard.session.observer import Observer
+from mesa_mobility.dashboard.session.serialization import frame
 from mesa_mobility.dashboard.session.storeys import storeys
 from tests.dashboard.selectors import CANVAS, SHOWN
 from tests.fixtures.buildings import two_storeys
@@ -36,6 +42,27 @@ def test_sheets_tell_where_they_are():
     assert (south["upper"], south["lower"], south["risers"]) == (1, 0, 18)
     assert south["head"] == pytest.approx([8.0, 0.6])
     assert south["riser"] == pytest.approx(0.17)
+
+
+def test_frames_tell_how_far_a_lift_has_carried_somebody():
+    hall = "POLYGON ((0 0, 24 0, 24 8, 0 8, 0 0))"
+    levels = [Level(0, hall, exits=[Exit("west", (0, 3), (0, 5))]), Level(1, hall, 3.0)]
+    lift = Lift("lift", [1, 0], ((20.0, 6.5), (20.9, 6.5)), everybody=True, door_s=2.0)
+    building = Building(levels, lifts=[lift])
+    model = PedestrianModel(building, record=True, rng=1)
+    model.add_pedestrians(building.places([(20.45, 4.5)], level=1))
+    observer, colouring, found = Observer(model), COLOURINGS["speed"], []
+    while model.inside and model.elapsed < 15.0:
+        model.step()
+        drawn = frame(model, colouring, observer, run=1, number=1)["people"]
+        found.append(np.frombuffer(base64.b64decode(drawn), "<f4")[5])
+    # From the upper level they come down by 3 m; from where they get out, they have not risen.
+    assert min(found) == -3.0
+    assert (found[0], found[-1]) == (0.0, 0.0)
+    tracks = Trajectories.of(model)
+    on = np.where(tracks.level == 1, 3.0, 0.0)
+    shown = np.arange(1, len(found) + 1) * model.frames_per_step  # the only person has a row each
+    assert (tracks.z - on)[shown] == pytest.approx(np.array(found), abs=1e-5)
 
 
 @pytest.mark.slow
@@ -85,7 +112,7 @@ def test_the_running_crowd_stands_on_its_storeys_in_three_dimensions(
     page.set_default_timeout(180_000)
     page.goto(server.address)
     page.wait_for_function(f"() => {CANVAS}?.shown?.().drawn > 0")
-    plane = np.array(page.evaluate(f"{SHOWN}.people")).reshape(-1, 5)
+    plane = np.array(page.evaluate(f"{SHOWN}.people")).reshape(-1, 6)
     places, levels = OFFICE.true_places(plane[:, 1:3])
     assert set(levels) == {0, 1}
     page.get_by_role("button", name="three dimensions", exact=True).click()

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.lifts.rides import Rides
 from mesa_mobility.crowd.lifts.spots import free_spot
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.saved import Saved
@@ -46,10 +47,11 @@ class Lifts(Saved):
         at: (lifts,) number of the stop at which each car is, or to which it goes.
         trips: (lifts,) how often each has gone from one stop to another.
         carried: (lifts,) people whom each has carried.
+        log: the rides with people, which tells how high they were.
     """
 
     def __init__(self, shafts: tuple[Shaft, ...]) -> None:
-        self.shafts = shafts
+        self.shafts, self.log = shafts, Rides(shafts, EVERY)
         count = len(shafts)
         self.at, self.trips, self.carried, self._open, self._since = np.zeros((5, count), np.int64)
         self._from = np.full(count, NOBODY)
@@ -229,7 +231,9 @@ class Lifts(Saved):
                 for to in self._to[there].tolist()
             ]
             self.carried[lift] += len(there)
-            self._go(lift, int(self._to[there[int(np.argmin(rise))]]), frame)
+            to = int(self._to[there[int(np.argmin(rise))]])
+            self.log.add(lift, stop, to, frame)
+            self._go(lift, to, frame)
         elif not len(there):
             calls = [
                 (int(called.min()), to)

@@ -179,6 +179,7 @@ class CrowdModel(RefugeFigures, mesa.Model):
             "environment": self._scene.environment,
             "journeys": self.journeys,
             "lifts": self.lifts,
+            "rides": self.lifts.log,
             "escalators": self.escalators,
             "refuges": self.refuges,
             "population": self.population,

@@ -37,7 +37,8 @@ def frame(
 ) -> dict[str, Any]:
     """The crowd as the canvas draws it.
 
-    ``people`` holds five numbers each: row, x, y, heading, and the value that gives the colour.
+    ``people`` holds six numbers each: row, x, y, heading, the value that gives the colour, and how
+    far the car of a lift has carried the person from the floor on which it is drawn, metres.
     Float32 holds rows up to 16 million, and places on a plan 1 km wide to 0.1 mm.
 
     Args:
@@ -49,13 +50,15 @@ def frame(
         bodies: adds ``bodies``, the poses in the three-dimensional view.
     """
     rows, crowd = model.rows, model.crowd
-    people = np.empty((len(rows), 5), dtype="<f4")
+    people = np.empty((len(rows), 6), dtype="<f4")
     people[:, 0] = rows
     people[:, 1] = crowd.x[rows]
     people[:, 2] = crowd.y[rows]
     # Within one round: a heading that has wound up keeps its precision.
     people[:, 3] = np.remainder(crowd.heading[rows], 2.0 * np.pi)
     people[:, 4] = colouring.values(model, observer)
+    points = np.column_stack([crowd.x[rows], crowd.y[rows]])
+    people[:, 5] = model.lifts.log.risen(np.full(len(rows), model.frame), points)
     posed = {} if bodies is None else {"bodies": packed(bodies.now())}
     return {
         **posed,

@@ -1,11 +1,13 @@
 """People who do not climb wait for a lift, ride down in it, and leave; others take the stairs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.buildings import Building, Level, Lift, Stairs
-from mesa_mobility.errors import ContentError
+from mesa_mobility.errors import ContentError, FloorPlanError
 from mesa_mobility.floorplan import Exit, Router
 from mesa_mobility.results import check_safety
 from tests.fixtures.checkpoints import check_going_on
@@ -106,8 +108,53 @@ def test_a_car_stops_where_somebody_wants_to_get_out():
     tracks = Trajectories.of(model)
     for person, start in enumerate((0.0, 6.0)):
         rows = tracks.rows_of(person)
-        assert tracks.z[rows[0]] == start
-        assert set(tracks.z[rows].tolist()) == {start, 3.0}
+        assert set(tracks.level[rows].tolist()) == {2 * person, 1}
+        assert tracks.z[rows[[0, -1]]].tolist() == [start, 3.0]
+
+
+def test_riders_rise_with_the_car_and_are_on_their_level_until_the_doors_open():
+    levels = [Level(0, HALL), Level(1, HALL, 3.0, exits=[Exit("out", (0, 3), (0, 5))])]
+    lift = Lift("car", levels, DOOR, everybody=True, speed=1.5, door_s=2.0)
+    building = Building(levels, lifts=[lift])
+    model = PedestrianModel(building, record="decisions", rng=1)
+    model.add_pedestrians(building.places([(20.45, 4.5)], level=0))
+    model.run(max_seconds=60)
+    tracks = Trajectories.of(model)
+    rows = tracks.rows_of(0)
+    z, level = tracks.z[rows], tracks.level[rows]
+    moving = np.flatnonzero((z > 0.0) & (z < 3.0))
+    # 3 m at 1.5 m/s take 60 frames, after the first of which the car has risen by 5 cm.
+    assert np.diff(moving).tolist() == [1] * 58
+    assert z[moving] == pytest.approx(0.05 * np.arange(1, 60))
+    # The doors open in 2 s: 60 frames and one look at the cars, every third frame.
+    opened = int(np.argmax(level == 1))
+    assert 60 <= opened - (moving[-1] + 1) <= 63
+    assert (level[:opened] == 0).all()
+    assert (level[opened:] == 1).all()
+    assert (z[moving[-1] + 1 :] == 3.0).all()
+    # Bodies are those on a level floor, as high as the car.
+    level_floor = replace(tracks, fields={**tracks.fields, "z": np.zeros(len(tracks))})
+    risen = tracks.poses(0, building=building).positions - level_floor.poses(0).positions
+    assert risen == pytest.approx(np.broadcast_to([0.0, 0.0, 1.0], risen.shape) * z[:, None, None])
+    # They are in the car meanwhile: 1.1 m wide about x = 20.45, from y = 6.6 to 8.0.
+    riding = rows[moving[0] : opened]
+    assert np.abs(tracks.x[riding] - 20.45).max() < 0.55
+    assert (tracks.y[riding].min() > 6.6) & (tracks.y[riding].max() < 8.0)
+    plan = building.floor_plan
+    assert check_safety(tracks, plan.walls, plan.free, building=building).passed
+
+
+def test_places_in_a_car_are_on_the_drawing_of_the_nearest_level():
+    building = office(storeys=3)
+    inside = (20.45, 7.4)
+    found = building.plane_places([(*inside, z) for z in (0.0, 1.4, 1.6, 4.4, 4.6, 6.0)])
+    places, levels = building.true_places(found)
+    assert levels.tolist() == [0, 0, 1, 1, 2, 2]
+    assert places[:, :2] == pytest.approx(np.tile(inside, (6, 1)))
+    with pytest.raises(FloorPlanError, match="a landing or a flight of stairs, or in a lift"):
+        building.plane_places([(*inside, 6.5)])
+    with pytest.raises(FloorPlanError, match="or in a lift"):
+        building.plane_places([(20.45, 5.0, 1.4)])
 
 
 def test_people_of_a_level_without_a_lift_stay():
@@ -156,6 +203,8 @@ def test_a_checkpoint_with_a_stop_that_is_not_there_is_refused():
     state = {name: each.copy() for name, each in model.lifts.state().items()}
     assert (state["_calls"] >= 0).any()
     state["_stop"][state["_calls"] >= 0] = 2
+    with pytest.raises(ContentError, match="rides, begun, row 0: there is no such lift or stop"):
+        model.lifts.log.restore({"begun": np.array([[0, 1, 2, 300]])})
     with pytest.raises(ContentError, match="lifts, _stop: has a stop that the lift does not have"):
         model.lifts.restore(state)
 

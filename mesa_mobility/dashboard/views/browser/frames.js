@@ -1,6 +1,6 @@
 // What comes from the server, and everybody's place between two pictures: a part of the crowd's view.
 
-const FIELDS = 5; // row, x, y, heading, value: see serialization.py
+const FIELDS = 6; // row, x, y, heading, value, metres that a lift has carried: see serialization.py
 
 const FRAMES = {
   created() {
@@ -59,6 +59,7 @@ const FRAMES = {
         let turn = b[k + 3] - a[j + 3];
         turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
         people[k + 3] = a[j + 3] + share * turn;
+        people[k + 5] = a[j + 5] + share * (b[k + 5] - a[j + 5]);
       }
       return { ...to, people,
         elapsed: this.from.elapsed + share * (to.elapsed - this.from.elapsed) };

@@ -2,8 +2,8 @@
 
 const STAIR_END = 0.3; // metres that a flight goes on on its copy
 
-// The true place [x, y, z] of a place in the plane.
-function trueOf({ sheets, flights }, px, py) {
+// The true place [x, y, z] of a place in the plane, from whose floor a lift has carried somebody by risen.
+function trueOf({ sheets, flights }, px, py, risen = 0) {
   const number = sheets.findIndex(({ right }) => px <= right), { shift, elevation } = sheets[number];
   const x = px - shift[0], y = py - shift[1];
   for (const { head, down, width, going, top, bottom, upper, lower } of flights) {
@@ -15,5 +15,5 @@ function trueOf({ sheets, flights }, px, py) {
     if (away > going && number === lower) continue; // or before its foot
     return [x, y, top + (Math.min(Math.max(away, 0), going) / going) * (bottom - top)];
   }
-  return [x, y, elevation];
+  return [x, y, elevation + risen];
 }

@@ -83,7 +83,8 @@ const STOREYS = {
       ctx.fillText(`${k ? "y" : "x"} against z, ${(most - least).toFixed(0)} m wide`, 8 * r, canvas.height - 7 * r);
       const size = Math.max(0.25 * scale, 2 * r);
       for (let j = 0; j < now.people.length; j += FIELDS) {
-        const place = trueOf(this.storeys, now.people[j + 1], now.people[j + 2]), [x, y] = at(place[k], place[2]);
+        const place = trueOf(this.storeys, now.people[j + 1], now.people[j + 2], now.people[j + 5]);
+        const [x, y] = at(place[k], place[2]);
         ctx.fillStyle = now.people[j] === this.selected ? "#e6007e" : colourOf(now.people[j + 4], now.legend);
         ctx.beginPath();
         ctx.arc(x, y - size, size, 0, 2 * Math.PI);
