@@ -125,7 +125,7 @@ class _Panel:
 
         from mesa_mobility.results.floor import draw_floor
 
-        draw_floor(axes, storey.plan, storey.stairs)
+        draw_floor(axes, storey.plan, storey.stairs, storey.refuges)
         self._axes, self._storey = axes, storey
         self.bodies = EllipseCollection(
             [], [], [], units="xy", cmap="viridis", offset_transform=axes.transData, zorder=5

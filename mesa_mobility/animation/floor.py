@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 
 if TYPE_CHECKING:
+    from mesa_mobility.buildings import Refuge
     from mesa_mobility.floorplan import FloorPlan
     from mesa_mobility.floorplan.floor.openings import Opening
 
@@ -30,6 +31,12 @@ def drawn_opening(opening: Opening, is_open: bool) -> dict[str, Any]:
     """An exit or a gate, metres, and whether it is open."""
     line = {"a": list(opening.a), "b": list(opening.b)}
     return {"name": opening.name, "kind": opening.kind, **line, "open": is_open}
+
+
+def drawn_refuge(refuge: Refuge) -> dict[str, Any]:
+    """A refuge: its name, its rings, and a place within it for the name, metres."""
+    spot = refuge.shape.representative_point()
+    return {"name": refuge.name, "rings": rings(refuge.shape), "middle": [spot.x, spot.y]}
 
 
 def rings(area: shapely.Polygon) -> list[list[list[float]]]:

@@ -5,6 +5,7 @@ All but the lowest floors let one see through, so that lower storeys are visible
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from mesa_mobility.animation.floor import drawn_opening, rings
+from mesa_mobility.animation.floor import drawn_opening, drawn_refuge, rings
 from mesa_mobility.animation.meshes import (
     FLOOR,
     Mesh,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from mesa_mobility.buildings import Building, Flight, Landing, Level
     from mesa_mobility.floorplan.floor.openings import Opening
 
-STEP, EXIT, DOOR, CLOSED = "#c9b79c", "#00795a", "#0072b2", "#b23c00"
+STEP, EXIT, DOOR, CLOSED, REFUGE = "#c9b79c", "#00795a", "#0072b2", "#b23c00", "#7fc9a0"
 
 SEE_THROUGH = 0.4
 """Opacity of floors with others below them."""
@@ -41,6 +42,9 @@ _SLAB = 0.04
 
 _STRIPE, _LIFT = 0.12, 0.01
 """Half the width of the stripe that shows an opening, and its height above the floor, metres."""
+
+_MARKING = 0.005
+"""Height of the area that shows a refuge above the floor, metres."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +85,7 @@ def storeys_of(building: Building) -> list[Storey]:
 
 
 def storey_surfaces(building: Building, most_vertices: int | None = None) -> Iterator[Surface]:
-    """Floor, walls and openings of each level, from the lowest up, then treads and landings.
+    """Floor, walls, openings and refuges of each level, from the lowest up, then stairs.
 
     Args:
         building: what to show.
@@ -97,6 +101,10 @@ def storey_surfaces(building: Building, most_vertices: int | None = None) -> Ite
             stripe = opening.line.buffer(_STRIPE, cap_style="flat")
             mesh = flat(stripe, level.elevation + _LIFT)
             yield Surface(f"opening_{label}_{number}", *mesh, colour, True)
+        for number, refuge in enumerate(level.refuges):
+            named = re.sub(r"\W", "_", refuge.name, flags=re.ASCII)
+            mesh = flat(refuge.shape, level.elevation + _MARKING)
+            yield Surface(f"refuge_{label}_{number}_{named}", *mesh, REFUGE, True)
     for number, flight in enumerate(building.flights):
         yield Surface(f"flight_{number}", *flight_mesh(flight), STEP, True)
     for number, landing in enumerate(building.landings):
@@ -120,6 +128,7 @@ def drawn_building(building: Building) -> dict[str, Any]:
                 "free": [rings(part) for part in shapely.get_parts(each.floor)],
                 "walls": each.walls.tolist(),
                 "openings": [drawn_opening(*opening) for opening in each.openings],
+                "refuges": [drawn_refuge(refuge) for refuge in each.level.refuges],
             }
             for each in storeys_of(building)
         ],

@@ -87,6 +87,11 @@ class Lift:
         """The floor of the car, in the building's coordinates."""
         return self.part(DOORWAY, DOORWAY + self.depth, self.width / 2.0)
 
+    @property
+    def shape(self) -> Polygon:
+        """The car and its doorway, as wide as the car, in the building's coordinates."""
+        return self.part(0.0, DOORWAY + self.depth, self.width / 2.0)
+
     def part(self, first: float, last: float, half: float) -> Polygon:
         """The rectangle from ``first`` to ``last`` metres behind the door.
 

@@ -20,10 +20,10 @@ from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
-    from mesa_mobility.buildings import Building
+    from mesa_mobility.buildings import Building, Refuge
 
 OUTSIDE, OBSTACLE, WALL, EXIT, DOOR = "#f2f2f0", "#b5b5b5", "#2b2b2b", "#00a03c", "#18a5d6"
-ZONE, STAIRS = "#fbe9c8", "#e3def2"
+ZONE, STAIRS, REFUGE = "#fbe9c8", "#e3def2", "#d3ecdb"
 # Room on the page for labels, colour bar and legend, inches.
 FRAME = (1.6, 1.4)
 LARGEST = (11.0, 9.5)
@@ -35,13 +35,15 @@ class Storey:
 
     Attributes:
         plan: the floor plan.
-        stairs: polygons of flights and landings that lead up or down from there.
+        stairs: polygons of flights, landings and cars of lifts that lead up or down from there.
+        refuges: its refuges.
         rows: (n,) bool; rows of the run of people on it, and on the stairs up from it.
         title: of the panel.
     """
 
     plan: FloorPlan
     stairs: tuple[shapely.Polygon, ...]
+    refuges: tuple[Refuge, ...]
     rows: NDArray[np.bool_]
     title: str = ""
 
@@ -49,7 +51,7 @@ class Storey:
 def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
     """The panels of a run: one for a floor plan, one for each level of a building, from the top."""
     if isinstance(plan, FloorPlan):
-        return [Storey(plan, (), np.ones(len(tracks), dtype=np.bool_))]
+        return [Storey(plan, (), (), np.ones(len(tracks), dtype=np.bool_))]
     levels = sorted(plan.levels, key=lambda level: level.elevation, reverse=True)
     found, above = list[Storey](), np.inf
     for level in levels:
@@ -59,6 +61,7 @@ def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
             Storey(
                 plan.floor_plan_of(level.number),
                 tuple(_stairs_of(plan, level.number)),
+                tuple(level.refuges),
                 rows | (tracks.level == level.number),
                 level.name or f"level {level.number}",
             )
@@ -88,10 +91,13 @@ def panels_of(
 
 
 def _stairs_of(building: Building, level: int) -> Iterator[shapely.Polygon]:
-    """The flights and landings of the stairs that lead up or down from a level."""
+    """The flights, landings and cars of lifts that lead up or down from a level."""
     for stairs in building.stairs:
         if level in (stairs.upper, stairs.lower):
             yield from building.shapes_of(stairs)
+    for lift in building.lifts:
+        if level in lift.numbers:
+            yield lift.shape
 
 
 def floor_figure(
@@ -116,14 +122,20 @@ def floor_figure(
 
 
 def draw_floor(
-    axes: Axes, plan: FloorPlan, stairs: Sequence[shapely.Polygon] = ()
+    axes: Axes,
+    plan: FloorPlan,
+    stairs: Sequence[shapely.Polygon] = (),
+    refuges: Sequence[Refuge] = (),
 ) -> list[Line2D | Patch]:
     """Draw free floor white, obstacles grey, walls dark, exits, doors and slow zones coloured.
+
+    Refuges are coloured areas with their names.
 
     Args:
         axes: to draw on.
         plan: the floor plan.
-        stairs: flights and landings beside it, coloured.
+        stairs: flights, landings and cars of lifts beside it, coloured.
+        refuges: areas on it.
 
     Returns:
         Handles for a legend that explains what was drawn.
@@ -140,7 +152,7 @@ def draw_floor(
     for part in stairs:
         axes.add_patch(PathPatch(_path(part), facecolor=STAIRS, edgecolor=WALL, lw=0.5, zorder=2))
     if stairs:
-        handles.append(Patch(color=STAIRS, label="stairs"))
+        handles.append(Patch(color=STAIRS, label="stairs or lift"))
     for zone in plan.zones:
         inside = shapely.intersection(zone.area, plan.free)
         if inside.is_empty:
@@ -148,6 +160,13 @@ def draw_floor(
         axes.add_patch(PathPatch(_path(inside), facecolor=ZONE, linewidth=0, zorder=2))
     if plan.zones:
         handles.append(Patch(color=ZONE, label="slow zone"))
+    for refuge in refuges:
+        axes.add_patch(PathPatch(_path(refuge.shape), facecolor=REFUGE, edgecolor=EXIT, zorder=2))
+        spot = refuge.shape.representative_point()
+        name = axes.text(spot.x, spot.y, refuge.name, ha="center", va="center", zorder=2)
+        name.set(color=EXIT, fontsize=7)
+    if refuges:
+        handles.append(Patch(facecolor=REFUGE, edgecolor=EXIT, label="refuge"))
     axes.add_collection(
         LineCollection(
             list(np.asarray(plan.walls).reshape(-1, 2, 2)), colors=WALL, linewidths=1.1, zorder=4

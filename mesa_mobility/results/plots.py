@@ -87,7 +87,7 @@ def plot_trajectories(
     figure, panels = panels_of(storeys)
     handles: dict[str, Line2D | Patch] = {}
     for panel, storey in panels:
-        drawn = draw_floor(panel, storey.plan, storey.stairs)
+        drawn = draw_floor(panel, storey.plan, storey.stairs, storey.refuges)
         panel.set_title(storey.title, fontsize=10)
         own = trajectories if storey.rows.all() else trajectories.only(storey.rows)
         tracks = _tracks(own)
@@ -141,7 +141,7 @@ def plot_snapshots(
     known: dict[str, Line2D | Patch] = {}
     for number, (panel, storey) in enumerate(panels):
         time = times[number // len(storeys)]
-        for each in draw_floor(panel, storey.plan, storey.stairs):
+        for each in draw_floor(panel, storey.plan, storey.stairs, storey.refuges):
             known.setdefault(str(each.get_label()), each)
         rows = _inside_at(trajectories, round(time * trajectories.frame_rate))
         rows = rows[storey.rows[rows]]

@@ -15,7 +15,7 @@ from mesa_mobility.bodies.feet import LEGS, soles
 from mesa_mobility.bodies.rotations import matrices
 from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.results import Trajectories
-from tests.fixtures.buildings import two_storeys
+from tests.fixtures.buildings import two_storeys, with_refuge_and_lift
 
 OFFICE = two_storeys()
 HEAD, FOOT = 8.0, 12.93
@@ -28,6 +28,21 @@ def tracks():
     model.add_pedestrians(OFFICE.places([(5.0, 0.6), (5.8, 0.6), (6.6, 0.6), (7.4, 0.6)], level=1))
     model.run(max_seconds=16)
     return Trajectories.of(model)
+
+
+def test_refuges_are_areas_on_the_floor_of_their_level():
+    building = with_refuge_and_lift()
+    found = {surface.name: surface for surface in surfaces(building)}
+    [refuge] = [each for name, each in found.items() if name.startswith("refuge")]
+    assert refuge.name == "refuge_level_1_0_north_lobby"
+    assert refuge.vertices[:, 2] == pytest.approx(3.065)
+    assert area_of(refuge) == pytest.approx(4 * 3)
+    ground, upper = drawn_building(building)["storeys"]
+    assert ground["refuges"] == []
+    [drawn] = upper["refuges"]
+    assert drawn["name"] == "north lobby"
+    assert shapely.Polygon(drawn["rings"][0]).bounds == (15, 1, 19, 4)
+    assert drawn["middle"] == [17, 2.5]
 
 
 def named():

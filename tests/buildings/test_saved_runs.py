@@ -4,9 +4,10 @@ import json
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
-from mesa_mobility import Building, FloorPlan, Trajectories
+from mesa_mobility import Building, FloorPlan, PedestrianModel, Trajectories
 from mesa_mobility.buildings import read_floor
 from mesa_mobility.commands.app import app
 from mesa_mobility.errors import FloorPlanError, ResultsError
@@ -18,9 +19,9 @@ from mesa_mobility.results import (
     occupancy_by_level,
     occupancy_by_stairs,
 )
-from mesa_mobility.results.floor import storeys_of
+from mesa_mobility.results.floor import draw_floor, storeys_of
 from mesa_mobility.results.run import read_run
-from tests.fixtures.buildings import RISE, two_storeys
+from tests.fixtures.buildings import RISE, two_storeys, with_refuge_and_lift
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +58,23 @@ def test_each_level_has_a_panel_and_each_row_is_in_one(folder):
     assert (tracks.z[lower.rows] < RISE).all()
     # A straight flight, and two flights and a landing, from either end.
     assert len(upper.stairs) == len(lower.stairs) == 4
+
+
+def test_panels_have_refuges_with_their_names_and_cars_of_lifts():
+    building = with_refuge_and_lift()
+    model = PedestrianModel(building, record=True, rng=1)
+    model.add_pedestrians(building.places([(4.0, 4.0)], level=1))
+    model.run(max_seconds=1)
+    upper, lower = storeys_of(Trajectories.of(model), building)
+    # A flight, and a car of 1.1 m by 1.4 m with the 0.1 m of its doorway.
+    assert [each.area for each in upper.stairs] == pytest.approx([17 * 0.29 * 1.2, 1.1 * 1.5])
+    assert lower.refuges == ()
+    axes = Figure().subplots()
+    handles = draw_floor(axes, upper.plan, upper.stairs, upper.refuges)
+    # The door of the lift is not an exit to the eye.
+    assert [each.get_label() for each in handles] == ["wall", "stairs or lift", "refuge"]
+    [name] = axes.texts
+    assert (name.get_text(), name.get_position()) == ("north lobby", (17, 2.5))
 
 
 def test_what_takes_one_plan_says_so(folder, tmp_path):

@@ -12,10 +12,10 @@ import pytest
 from mesa_mobility import Building, Exit, Level, Lift, PedestrianModel, Trajectories
 from mesa_mobility.dashboard.session.colouring import COLOURINGS
 from mesa_mobility.dashboard.session.observer import Observer
-from mesa_mobility.dashboard.session.serialization import frame
+from mesa_mobility.dashboard.session.serialization import floor, frame
 from mesa_mobility.dashboard.session.storeys import storeys
 from tests.dashboard.selectors import CANVAS, SHOWN
-from tests.fixtures.buildings import two_storeys
+from tests.fixtures.buildings import two_storeys, with_refuge_and_lift
 
 DRAWN_BY_THE_PROCESSOR = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
@@ -42,6 +42,14 @@ def test_sheets_tell_where_they_are():
     assert (south["upper"], south["lower"], south["risers"]) == (1, 0, 18)
     assert south["head"] == pytest.approx([8.0, 0.6])
     assert south["riser"] == pytest.approx(0.17)
+
+
+def test_refuges_are_drawn_on_the_sheet_of_their_level():
+    building = with_refuge_and_lift()
+    [refuge] = floor(building.floor_plan, building=building)["refuges"]
+    # The sheet of the upper level is 44 m to the right.
+    assert (refuge["name"], refuge["middle"]) == ("north lobby", [44 + 17, 2.5])
+    assert sorted(map(tuple, refuge["rings"][0]))[0] == (44 + 15, 1)
 
 
 def test_frames_tell_how_far_a_lift_has_carried_somebody():

@@ -4,7 +4,8 @@
 const WALL_HEIGHT = 1.2, STRIPE = 0.12, OVER_FLOOR = 0.01; // metres; half the width of an opening's stripe
 const CUT_ROUNDED = 0.005; // metres: people's elevations are rounded
 const SEE_THROUGH = 0.4; // opacity of floors with others below them
-const STEPS = "#c9b79c", OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
+const MARKING = 0.005; // metres: height of refuges above the floor
+const STEPS = "#c9b79c", REFUGE = "#7fc9a0", OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
 const channels = (colour) => (colour[0] === "#" ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
   : colour.match(/\d+/g).map(Number)).map((each) => each / 255);
 
@@ -40,16 +41,20 @@ class Scenery {
     this.cut(this.below);
   }
 
-  storey({ free, walls, openings, elevation }, colours, through) {
+  storey({ free, walls, openings, refuges, elevation }, colours, through) {
     const points = (ring, path) => path.setFromPoints(ring.map(([x, y]) => new THREE.Vector3(x, y, 0)));
-    const shapes = free.map(([outer, ...holes]) => {
-      const shape = points(outer, new THREE.Shape());
-      shape.holes = holes.map((each) => points(each, new THREE.Path()));
-      return shape;
-    });
+    const shape = ([outer, ...holes]) => {
+      const found = points(outer, new THREE.Shape());
+      found.holes = holes.map((each) => points(each, new THREE.Path()));
+      return found;
+    };
     const look = through ? { transparent: true, opacity: SEE_THROUGH, depthWrite: false, side: THREE.DoubleSide } : {};
-    this.put(new THREE.ShapeGeometry(shapes).translate(0, 0, elevation),
+    this.put(new THREE.ShapeGeometry(free.map(shape)).translate(0, 0, elevation),
       new THREE.MeshBasicMaterial({ color: colours.free, ...look }), elevation);
+    for (const refuge of refuges || []) {
+      this.put(new THREE.ShapeGeometry(shape(refuge.rings)).translate(0, 0, elevation + MARKING),
+        new THREE.MeshBasicMaterial({ color: REFUGE, side: THREE.DoubleSide }), elevation);
+    }
     for (const { a, b, kind, open } of openings || []) {
       const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
       const across = [(-STRIPE * (b[1] - a[1])) / long, (STRIPE * (b[0] - a[0])) / long];

@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import ArrayLike
 
 from mesa_mobility import Building, FloorPlan, PedestrianModel
-from mesa_mobility.animation.floor import drawn_floor, ring
+from mesa_mobility.animation.floor import drawn_floor, drawn_refuge, ring
 from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.colouring import Colouring
 from mesa_mobility.dashboard.session.observer import Observer
@@ -81,9 +81,12 @@ def floor(
     Args:
         plan: the plan.
         obstacles: those that a click takes away or brings back, and whether each is there now.
-        building: adds ``storeys`` where the plan has those of a building.
+        building: adds its ``storeys`` and ``refuges``.
     """
-    several = {} if building is None else {"storeys": storeys(building)}
+    several: dict[str, Any] = {}
+    if building is not None:
+        several["storeys"] = storeys(building)
+        several["refuges"] = [drawn_refuge(refuge) for refuge in building.refuges]
     return {
         **drawn_floor(plan),
         **several,

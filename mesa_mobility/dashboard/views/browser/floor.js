@@ -23,6 +23,7 @@ function paintFloor(ctx, floor, place, r, colours) {
     outlined(ctx, [zone], place);
     ctx.fill();
   }
+  for (const refuge of floor.refuges || []) paintRefuge(ctx, refuge, place, r, colours);
   ctx.strokeStyle = colours.away;
   ctx.lineWidth = r;
   ctx.setLineDash([4 * r, 4 * r]);
@@ -41,6 +42,19 @@ function paintFloor(ctx, floor, place, r, colours) {
   }
   ctx.stroke();
   for (const opening of floor.openings) paintOpening(ctx, opening, place, r, colours);
+}
+
+function paintRefuge(ctx, { name, rings, middle: spot }, place, r, colours) {
+  outlined(ctx, rings, place);
+  ctx.fillStyle = colours.refuge;
+  ctx.fill("evenodd");
+  ctx.strokeStyle = ctx.fillStyle = colours.exit;
+  ctx.lineWidth = r;
+  ctx.stroke();
+  ctx.font = `${12 * r}px sans-serif`;
+  ctx.textAlign = "center";
+  ctx.textBaseline = "middle";
+  ctx.fillText(name, ...place(...spot));
 }
 
 function openingColour(opening, colours) {
