@@ -24,7 +24,7 @@ from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet, seam_of, shaft_of, sheets_of, zones_of
 from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Exit, FloorPlan
+from mesa_mobility.floorplan import Exit, FloorPlan, Gate
 from mesa_mobility.floorplan.formats.geojson import label
 
 
@@ -163,12 +163,7 @@ class Building:
         if len(self.levels) == 1 and plain:
             return plan.to_geojson()
         closed = [each.name for each in plan.openings() if not plan.is_open(each.name)]
-        gates: dict[str, list[str]] = {}
-        for flight, seam in zip(self.flights, plan.seams, strict=True):
-            own = gates.setdefault(self.stairs[self._owners[flight.name]].name, [])
-            own += [gate.name for gate in seam.gates]
-        for shaft in plan.shafts:
-            gates[shaft.name] = [gate.name for gate in shaft.gates]
+        gates = {name: [gate.name for gate in own] for name, own in self.gates.items()}
         return geojson.feature_collection(
             geojson.Parts(self.levels, self.stairs, self.lifts, self.name, closed, gates)
         )
@@ -188,6 +183,15 @@ class Building:
     def exits(self, level: int) -> tuple[str, ...]:
         """Names of the exits on a level."""
         return tuple(each.name for each in self.level(level).exits)
+
+    @property
+    def gates(self) -> dict[str, tuple[Gate, ...]]:
+        """The gates in the plane of each stair, ramp, escalator and lift, by its name."""
+        found: dict[str, tuple[Gate, ...]] = {}
+        for flight, seam in zip(self.flights, self.floor_plan.seams, strict=True):
+            name = self.stairs[self._owners[flight.name]].name
+            found[name] = (*found.get(name, ()), *seam.gates)
+        return found | {shaft.name: shaft.gates for shaft in self.floor_plan.shafts}
 
     @property
     def refuges(self) -> tuple[Refuge, ...]:

@@ -12,6 +12,7 @@ import pytest
 from mesa_mobility import Building, Exit, Level, Lift, PedestrianModel, Trajectories
 from mesa_mobility.dashboard.session.colouring import COLOURINGS
 from mesa_mobility.dashboard.session.observer import Observer
+from mesa_mobility.dashboard.session.plan_changes import PlanChanges
 from mesa_mobility.dashboard.session.serialization import floor, frame
 from mesa_mobility.dashboard.session.storeys import storeys
 from tests.dashboard.selectors import CANVAS, SHOWN
@@ -42,6 +43,33 @@ def test_sheets_tell_where_they_are():
     assert (south["upper"], south["lower"], south["risers"]) == (1, 0, 18)
     assert south["head"] == pytest.approx([8.0, 0.6])
     assert south["riser"] == pytest.approx(0.17)
+
+
+def test_stairs_and_lifts_have_their_own_names_and_close_as_a_whole():
+    building = with_refuge_and_lift()
+    model = PedestrianModel(building, rng=1)
+    assert Observer(model).openings == ("west",)
+    changes = PlanChanges(model)
+
+    def found():
+        return [(each["name"], each["a"][0], each["open"]) for each in changes.drawn()["openings"]]
+
+    # The flight is 4.93 m long from x = 8, and drawn 0.3 m beyond either end. Its gates are
+    # half-way from the middle to the ends of the drawing. The upper sheet is 44 m to the right.
+    half = (4.93 / 2 + 0.3) / 2
+    lines = [("west", 0.0), ("south", 8 + 4.93 / 2 + half), ("south", 44 + 8 + 4.93 / 2 - half)]
+    lines += [("lift", 20.0), ("lift", 64.0)]
+    assert [each[0] for each in found()] == [name for name, _ in lines]
+    assert [each[1] for each in found()] == pytest.approx([x for _, x in lines])
+    kinds = [each["kind"] for each in changes.drawn()["openings"]]
+    assert kinds == ["exit", "stairs", "stairs", "lift", "lift"]
+    for _ in range(2):
+        assert all(is_open for _, _, is_open in found())
+        changes.toggle_opening("south")
+        changes.toggle_opening("lift")
+        assert [is_open for _, _, is_open in found()] == [True, False, False, False, False]
+        changes.toggle_opening("south")
+        changes.toggle_opening("lift")
 
 
 def test_refuges_are_drawn_on_the_sheet_of_their_level():

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from mesa_mobility import PedestrianModel
+from mesa_mobility.dashboard.session.storeys import own_openings
 from mesa_mobility.results import passages
 
 SLOW = 0.2
@@ -43,12 +44,12 @@ class Observer:
         model: the model, before its first step.
 
     Attributes:
-        openings: names of the doors and exits.
+        openings: names of the doors and exits, without those of stairs and lifts.
     """
 
     def __init__(self, model: PedestrianModel) -> None:
         self._model = model
-        self._openings = model.floor_plan.openings()
+        self._openings = own_openings(model.floor_plan, model.building)
         self.openings = tuple(opening.name for opening in self._openings)
         self._net = np.zeros(len(self._openings), dtype=np.int64)
         self._waited = np.zeros(0)

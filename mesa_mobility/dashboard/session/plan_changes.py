@@ -33,11 +33,14 @@ class PlanChanges:
         return {} if self._building is None else drawn_building(self._building)
 
     def toggle_opening(self, name: str) -> None:
-        """Close a door or exit that is open, open one that is closed."""
-        if self._plan.is_open(name):
-            self._plan.close_gate(name)
-        else:
-            self._plan.open_gate(name)
+        """Close a door or exit, or stairs or a lift of this name, or open what is closed."""
+        joints = {} if self._building is None else self._building.gates
+        names = [gate.name for gate in joints[name]] if name in joints else [name]
+        change = self._plan.open_gate
+        if all(self._plan.is_open(each) for each in names):
+            change = self._plan.close_gate
+        for each in names:
+            change(each)
 
     def toggle_obstacle(self, number: int) -> None:
         """Take away an obstacle of the plan as it was made, or bring it back.

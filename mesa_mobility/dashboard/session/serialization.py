@@ -11,11 +11,11 @@ import shapely
 from numpy.typing import ArrayLike
 
 from mesa_mobility import Building, FloorPlan, PedestrianModel
-from mesa_mobility.animation.floor import drawn_floor, drawn_refuge, ring
+from mesa_mobility.animation.floor import drawn_floor, drawn_opening, drawn_refuge, ring
 from mesa_mobility.dashboard.session.bodies import Bodies
 from mesa_mobility.dashboard.session.colouring import Colouring
 from mesa_mobility.dashboard.session.observer import Observer
-from mesa_mobility.dashboard.session.storeys import storeys
+from mesa_mobility.dashboard.session.storeys import drawn_joints, own_openings, storeys
 
 
 def packed(values: ArrayLike) -> str:
@@ -81,11 +81,15 @@ def floor(
     Args:
         plan: the plan.
         obstacles: those that a click takes away or brings back, and whether each is there now.
-        building: adds its ``storeys`` and ``refuges``.
+        building: adds its ``storeys`` and ``refuges``. Its stairs and lifts are openings, with
+            their own names.
     """
     several: dict[str, Any] = {}
     if building is not None:
         several["storeys"] = storeys(building)
+        own = own_openings(plan, building)
+        several["openings"] = [drawn_opening(each, plan.is_open(each.name)) for each in own]
+        several["openings"] += drawn_joints(building)
         several["refuges"] = [drawn_refuge(refuge) for refuge in building.refuges]
     return {
         **drawn_floor(plan),

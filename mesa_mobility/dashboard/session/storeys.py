@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import shapely
 
+from mesa_mobility.animation.floor import drawn_opening
 from mesa_mobility.buildings import Building
 from mesa_mobility.buildings.level import sheet_of
+from mesa_mobility.floorplan import Exit, FloorPlan, Gate
 
 FAR = 1e9
 """Metres: beyond all sheets."""
+
+Opening: TypeAlias = Exit | Gate
 
 _OF_FLIGHTS = ("width", "going", "top", "bottom", "riser", "tread", "risers")
 
@@ -59,3 +63,27 @@ def storeys(building: Building) -> dict[str, Any]:
             for flight in building.flights
         ],
     }
+
+
+def own_openings(plan: FloorPlan, building: Building | None) -> tuple[Opening, ...]:
+    """The gates and exits of a plan without those of stairs and lifts."""
+    joints = {} if building is None else building.gates
+    names = {gate.name for gates in joints.values() for gate in gates}
+    return tuple(each for each in plan.openings() if each.name not in names)
+
+
+def drawn_joints(building: Building) -> list[dict[str, Any]]:
+    """Stairs, ramps, escalators and lifts as openings with their own names and kinds.
+
+    Each has a line on every sheet from which it leads, and is open if all of its gates are.
+    """
+    plan = building.floor_plan
+    lines = {gate.name for seam in plan.seams for gate in seam.ends}
+    lines |= {gate.name for shaft in plan.shafts for gate in shaft.gates}
+    kinds = {each.name: each.kind for each in building.stairs}
+    found = []
+    for name, gates in building.gates.items():
+        named = {"name": name, "kind": kinds.get(name, "lift")}
+        is_open = all(plan.is_open(gate.name) for gate in gates)
+        found += [{**drawn_opening(gate, is_open), **named} for gate in gates if gate.name in lines]
+    return found

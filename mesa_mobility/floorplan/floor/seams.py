@@ -173,6 +173,12 @@ class Seam:
         )
 
     @property
+    def ends(self) -> tuple[Gate, Gate]:
+        """The gate before the line on the first sheet, and that after it on the second."""
+        gates = self.gates
+        return gates[0], gates[3]
+
+    @property
     def links(self) -> list[Link]:
         """How routes lead from sheet to sheet: both ways, or as a belt moves."""
         forward, shift = np.array(self.direction), np.array(self.shift)

@@ -15,6 +15,8 @@ const STOREYS = {
         .sort((a, b) => b.elevation - a.elevation).map(({ name }) => name);
       return this.storeys ? [...names(true), ...names(false)] : [];
     },
+    // Stairs and lifts have a line on each of their levels.
+    listed() { return [...new Map((this.floor.openings || []).map((each) => [each.name, each])).values()]; },
     sheet() { return this.storeys && this.storeys.sheets.find(({ name }) => name === this.storey); },
     shownBounds() { return this.sheet ? this.sheet.bounds : this.floor && this.floor.bounds; },
   },
