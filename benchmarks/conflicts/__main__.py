@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from benchmarks.conflicts import arena, corridor, gate, lone, mixed, narrow, queue
+from benchmarks.conflicts.buildings import scene as buildings
 from benchmarks.conflicts.resuming import run_missing
 from benchmarks.conflicts.table import print_table
 from mesa_mobility.verification import Case
@@ -30,6 +31,7 @@ SCENES: dict[str, tuple[Cases, int]] = {
     "mixed": (lambda _: mixed.cases(), 500),
     "lone": (lambda _: lone.cases(), lone.STARTS),
     "queue": (lambda _: queue.cases(), 20),
+    "buildings": (lambda _: buildings.cases(), 500),
 }
 """The cases of each scene, given the folder of plans, and how many seeds each has."""
 

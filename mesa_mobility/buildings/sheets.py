@@ -243,10 +243,16 @@ def _sheet(
                     f"({spot.x:.2f}, {spot.y:.2f})"
                 )
     taken = shapely.union_all([each.taken for each in strips], grid_size=_GRID)
-    floor = shapely.difference(area, taken, grid_size=_GRID)
+    floor = _polygons(shapely.difference(area, taken, grid_size=_GRID))
     drawn = [each.drawn for each in strips]
-    whole = shapely.union_all([floor, *drawn], grid_size=_GRID)
+    whole = _polygons(shapely.union_all([floor, *drawn], grid_size=_GRID))
     return Sheet(name, level, elevation, floor, whole)
+
+
+def _polygons(area: BaseGeometry) -> BaseGeometry:
+    """An area without lines: on the grid, a spike that is narrower becomes one."""
+    parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
+    return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
 def _check_level(level: Level, strips: Sequence[_Strip]) -> None:

@@ -181,6 +181,17 @@ def test_a_level_alone_is_a_plan_without_stairs():
     ]
 
 
+def test_a_spike_of_the_outline_without_width_is_no_floor():
+    # Along x = 24, from y = 6 to 8: 4e-15 m wide.
+    beside = 24.0 - 4e-15
+    spike = f"POLYGON ((24 8, 24 0, 0 0, 0 8, 20 8, 20 6, {beside} 6, {beside} 8, 24 8))"
+    cut = Building([GROUND, Level(1, spike, RISE)], [stairs()])
+    floors = [sheet.floor.area for sheet in cut.sheets]
+    # Without 4 m by 2 m of the whole.
+    whole = Building([GROUND, FIRST], [stairs()]).sheets
+    assert floors == pytest.approx([whole[0].floor.area, whole[1].floor.area - 8.0])
+
+
 @pytest.mark.parametrize(
     ("levels", "given", "said"),
     [

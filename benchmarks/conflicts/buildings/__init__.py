@@ -1,0 +1,1 @@
+"""Random buildings, in which people pass from level to level."""
