@@ -121,6 +121,9 @@ def count(
     crowd = Crowd(crowd.frame[order], crowd.person[order], crowd.xyz[order], crowd.last_frame,
                   crowd.radii, crowd.fastest)  # fmt: skip
     found = Found()
+    if not len(order):
+        found.lost = len(crowd.radii)
+        return found
     alien = np.flatnonzero(crowd.person >= len(crowd.radii))
     same = np.diff(crowd.person) == 0
     twice = np.flatnonzero(same & (np.diff(crowd.frame) == 0))

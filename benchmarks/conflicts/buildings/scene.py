@@ -51,14 +51,13 @@ def buildings(seed: int) -> dict[str, Any]:
         seed: of the building, the crowd and the run.
     """
     rng = np.random.default_rng([seed, 5])
-    drawn = draw_building(rng)
-    building, shares = drawn.building, _shares(rng)
-    names = shares.names
-    keywords: dict[str, Any] = {"pedestrian_types": [PedestrianType.named(names[0])]}
-    if len(names) > 1:
-        keywords = {"pedestrian_types": None, "population": shares}
-    model = crowd_model(building, seed, **keywords)
-    _fill(model, building, int(rng.integers(FEWEST, MOST + 1)))
+    while True:
+        drawn = draw_building(rng)
+        building, shares = drawn.building, _shares(rng)
+        model = _model(seed, building, shares)
+        _fill(model, building, int(rng.integers(FEWEST, MOST + 1)))
+        if model.population.count:  # otherwise something stands in the way of each exit
+            break
     closures = _closures(rng, building)
     begun = time.process_time()
     _run(model, closures)
@@ -88,7 +87,7 @@ def buildings(seed: int) -> dict[str, Any]:
         "ways": dict(kinds) | {"lift": len(building.lifts)},
         "refuges": len(building.refuges),
         "named": found.named,
-        "what": f"{', '.join(names)}; {', '.join(each.name for each in closures) or '-'}",
+        "what": f"{', '.join(shares.names)}; {', '.join(each.name for each in closures) or '-'}",
     }
 
 
@@ -139,6 +138,13 @@ def _shares(rng: np.random.Generator) -> Population:
     some = rng.choice(names, size=int(rng.integers(2, 5)), replace=False).tolist()
     parts = rng.dirichlet(np.ones(len(some))) * 0.9 + 0.1 / len(some)
     return Population(dict(zip(some, parts.tolist(), strict=True)))
+
+
+def _model(seed: int, building: Building, shares: Population) -> PedestrianModel:
+    """A model without people yet."""
+    if len(shares.names) > 1:
+        return crowd_model(building, seed, pedestrian_types=None, population=shares)
+    return crowd_model(building, seed, pedestrian_types=[PedestrianType.named(shares.names[0])])
 
 
 def _fill(model: PedestrianModel, building: Building, total: int) -> None:

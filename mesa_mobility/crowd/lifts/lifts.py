@@ -186,11 +186,21 @@ class Lifts(Saved):
             return
         self._make_room(inside)
         for lift, shaft in enumerate(self.shafts):
+            if self._from[lift] != NOBODY:
+                self._leave_behind(lift, inside, crowd)
             if frame < self._open[lift]:
                 continue
             if self._from[lift] != NOBODY:
                 self._arrive(lift, frame, inside, crowd)
             self._stand(lift, shaft, frame, inside, crowd, environment)
+
+    def _leave_behind(self, lift: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
+        """Those who have gone out of a car that has left its stop do not ride, and wait again."""
+        riding = inside[self._rides[inside] == lift]
+        there = self._in_car(lift, int(self._from[lift]), riding, crowd)
+        outside = np.setdiff1d(riding, there, assume_unique=True)
+        self._rides[outside], self._calls[outside] = NOBODY, NOBODY
+        self.carried[lift] -= len(outside)
 
     def _arrive(self, lift: int, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
         """Open the doors: those who have ridden are at the new stop from now on."""

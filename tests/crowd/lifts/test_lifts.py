@@ -7,6 +7,7 @@ import pytest
 
 from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.buildings import Building, Level, Lift, Stairs
+from mesa_mobility.crowd.state.twins import shift_people
 from mesa_mobility.errors import ContentError, FloorPlanError
 from mesa_mobility.floorplan import Exit, Router
 from mesa_mobility.results import check_safety
@@ -69,6 +70,30 @@ def test_everybody_gets_out_by_stairs_or_lift(rng):
     tracks = Trajectories.of(model)
     plan = building.floor_plan
     assert check_safety(tracks, plan.walls, plan.free, building=building).passed
+
+
+def test_who_goes_out_while_the_doors_close_stays_on_their_level_and_rides_later():
+    building = office(stairs=False)
+    model = PedestrianModel(
+        building, population="wheelchair_manual: 1.0", record=True, rng=1, frames_per_step=1
+    )
+    model.add_pedestrians(building.places([(20.45, 4.0)], level=1))
+    while not model.lifts.carried[0]:
+        model.step()
+    # From the middle of the car, 1.4 m deep and 0.1 m behind the door, to 1.1 m before it.
+    x, y = model.crowd.x[0], model.crowd.y[0]
+    to = building.places([(20.45, 5.4)], level=1)[0]
+    shift_people(model.crowd, np.array([0]), np.array([to - (x, y)]))
+    model.run(max_seconds=300)
+    assert model.inside == 0
+    tracks = Trajectories.of(model)
+    # Each change of level is one in the car.
+    first, later = tracks.steps()
+    changes = np.flatnonzero(tracks.level[first] != tracks.level[later])
+    assert len(changes) == 1
+    assert model.lifts.carried.tolist() == [1]
+    assert tracks.y[first[changes[0]]] > 6.6
+    assert tracks.y[later[changes[0]]] == pytest.approx(tracks.y[first[changes[0]]], abs=0.05)
 
 
 def test_the_car_holds_no_more_than_its_capacity_and_they_ride_together():
