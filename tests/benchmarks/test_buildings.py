@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from benchmarks.conflicts.buildings.counting import Crowd, count
-from benchmarks.conflicts.buildings.scene import COUNTED, buildings, fastest_of
+from benchmarks.conflicts.buildings.scene import COUNTED, buildings, fastest_of, on_steps
 from benchmarks.conflicts.buildings.surfaces import level_name, surfaces_of
-from mesa_mobility import Building, Exit, Level, Lift, MobilityMap
+from mesa_mobility import Building, Exit, Level, Lift, MobilityMap, PedestrianType, Trajectories
 from tests.fixtures.buildings import HALL, RISE, two_storeys
 
 HALLS = two_storeys()
@@ -135,6 +135,16 @@ def test_a_ride_takes_the_time_of_the_car(before, jumps):
     # Beside the car, it is through the floor.
     track[:, 1] = 2.0
     assert counted(track, building=building)[0] == {"floor_crossings": 1, "jumps": 1}
+
+
+@pytest.mark.parametrize(("kind", "found"), [("wheelchair_manual", [0]), ("child", [])])
+def test_who_does_not_use_stairs_is_found_on_them(kind, found):
+    x, y, z = walk().T
+    tracks = Trajectories(
+        np.arange(len(x)), np.zeros(len(x), int), x, y, 0.0 * x, fields={"z": z},
+        person_data={"type": np.array([kind])},
+    )  # fmt: skip
+    assert on_steps(tracks, HALLS, [PedestrianType.named(kind)], surfaces_of(HALLS)) == found
 
 
 def test_the_fastest_movement_is_far_below_a_sprint():

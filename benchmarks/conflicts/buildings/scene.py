@@ -74,6 +74,7 @@ def buildings(seed: int) -> dict[str, Any]:
         "stood": sum(reason == "stands" for reason in reasons.values()),
         "stood_from": [person for person, reason in reasons.items() if reason == "stands"],
         **{name: getattr(found, name) for name in COUNTED},
+        "on_steps": on_steps(tracks, building, model.pedestrian_types, surfaces),
         "out_s": model.statistics.last_left if model.inside == 0 else None,
         "simulated_s": round(model.elapsed, 3),
         "stalled_frames": 0,
@@ -118,6 +119,23 @@ def count_run(
     )
     exits = {level_name(own.number): [each.line for each in own.exits] for own in building.levels}
     return count(crowd, surfaces, exits, {lift.name: lift.speed for lift in building.lifts})
+
+
+def on_steps(
+    tracks: Trajectories,
+    building: Building,
+    types: Sequence[PedestrianType],
+    surfaces: Sequence[Surface],
+) -> list[int]:
+    """People who do not use stairs and were on them, or on an escalator, at a whole second."""
+    sits = np.isin(tracks.person_data["type"], [each.name for each in types if not each.climbs])
+    rows = np.flatnonzero(sits[tracks.person] & (tracks.frame % FRAMES == 0))
+    where = surfaces_at(np.column_stack([tracks.x[rows], tracks.y[rows], tracks.z[rows]]), surfaces)
+    level = {level_name(each.number) for each in building.levels}
+    level |= {way.name for way in building.stairs if isinstance(way, Ramp)}
+    steps = [each.name not in level and not each.lift for each in surfaces]
+    found: list[int] = np.unique(tracks.person[rows[np.append(steps, False)[where]]]).tolist()
+    return found
 
 
 def fastest_of(movements: MapData) -> float:
