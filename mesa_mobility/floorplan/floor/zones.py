@@ -49,8 +49,9 @@ class SpeedZone:
     def __post_init__(self) -> None:
         what = f"speed zone {self.name!r}" if self.name else "speed zone"
         object.__setattr__(self, "polygon", read_polygon(self.polygon, what))
-        for called, factor in (("factor", self.factor), ("uphill", self.uphill)):
-            if factor is not None and not (is_number(factor) and 0.0 < factor <= 1.0):
+        uphill = self.factor if self.uphill is None else self.uphill
+        for called, factor in (("factor", self.factor), ("uphill", uphill)):
+            if not (is_number(factor) and 0.0 < factor <= 1.0):
                 raise FloorPlanError(
                     f"{what}: {called} must be above 0, at most 1, found {factor!r}"
                 )

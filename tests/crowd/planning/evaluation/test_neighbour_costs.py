@@ -37,10 +37,10 @@ def _pick(bounds, above, up_to, first, picked):
 def cost():
     """A function of what is enough, the term to begin with and what is known; costs by term."""
     rng = np.random.default_rng(8)
-    record = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14, np.inf, 1.0])
+    record = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14, np.inf, 1.0, 0.0])
     own = Decider(0, 0, 0.0, 0.0, 1.0, 0.0, 0.14, record)
     ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
-    neighbours = make_neighbours(24, 1)  # the pace is a field
+    neighbours = make_neighbours(24, 2)  # pace and tread are fields
     others = neighbours.others
     others[:] = 0.0
     others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
@@ -54,13 +54,13 @@ def cost():
         given = own, ends, NEIGHBOURS, moved, neighbours, np.array(known), enough, compiled.pair
         return _cost(*given), neighbours.first[0]
 
-    paces = [1.0]
+    ground = [1.0, 0.0]
     each = [
         term.weight
         * sum(
             term.kernel.value(
                 option=Option(*ends[:, 0]),
-                me=term.kernel.kinds["me"](*me(), *paces[: len(term.kernel.declared)]),
+                me=term.kernel.kinds["me"](*me(), *ground[: len(term.kernel.declared)]),
                 other=Other(*others[:7, a], 0.0, 0.0, 0.0, 0.0),
                 p=term,
             )
