@@ -27,6 +27,9 @@ EVERY = 3
 DWELL = 3 * FRAMES_A_SECOND
 """Frames for which the doors stay open at least after the last person was let in."""
 
+CLEAR = 0.5
+"""Core radii by which people must be past the front edge of a car before it goes."""
+
 GIVES_UP = 20 * FRAMES_A_SECOND
 """Frames after which those who have not got in are no longer waited for."""
 
@@ -187,24 +190,30 @@ class Lifts(Saved):
         self._make_room(inside)
         for lift, shaft in enumerate(self.shafts):
             if self._from[lift] != NOBODY:
-                self._leave_behind(lift, inside, crowd)
+                self._leave_behind(lift, inside, crowd, -shaft.before)
             if frame < self._open[lift]:
                 continue
             if self._from[lift] != NOBODY:
                 self._arrive(lift, frame, inside, crowd)
             self._stand(lift, shaft, frame, inside, crowd, environment)
 
-    def _leave_behind(self, lift: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
-        """Those who have gone out of a car that has left its stop do not ride, and wait again."""
+    def _leave_behind(
+        self, lift: int, inside: NDArray[np.int64], crowd: Crowd, clear: float
+    ) -> None:
+        """Those who have gone out of a car that has left its stop do not ride, and wait again.
+
+        On the way people may step into the doorway. When the car arrives, they must be in it.
+        """
         riding = inside[self._rides[inside] == lift]
-        there = self._in_car(lift, int(self._from[lift]), riding, crowd)
-        outside = np.setdiff1d(riding, there, assume_unique=True)
+        points = np.column_stack([crowd.x[riding], crowd.y[riding]])
+        outside = riding[~self.shafts[lift].in_car(int(self._from[lift]), points, clear)]
         self._rides[outside], self._calls[outside] = NOBODY, NOBODY
         self.carried[lift] -= len(outside)
 
     def _arrive(self, lift: int, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
         """Open the doors: those who have ridden are at the new stop from now on."""
         start, end, shaft = int(self._from[lift]), int(self.at[lift]), self.shafts[lift]
+        self._leave_behind(lift, inside, crowd, 0.0)
         riding = inside[self._rides[inside] == lift]
         shift_people(crowd, riding, np.tile(shaft.shift(start, end), (len(riding), 1)))
         self._spot[riding] += shaft.shift(start, end)
@@ -229,8 +238,10 @@ class Lifts(Saved):
             return
         if self._admit(lift, stop, inside, crowd, environment):
             self._since[lift] = frame
+        # Doors do not close on somebody who has just set foot in the car, and may step back.
         ours = inside[self._rides[inside] == lift]
-        outside = np.setdiff1d(ours, there, assume_unique=True)
+        points = np.column_stack([crowd.x[ours], crowd.y[ours]])
+        outside = ours[~shaft.in_car(stop, points, CLEAR * crowd.core[ours])]
         waited = frame - self._since[lift]
         if len(outside) and waited < GIVES_UP:
             return

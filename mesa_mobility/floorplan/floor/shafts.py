@@ -77,12 +77,20 @@ class Shaft:
         far = self.depth * into
         return Polygon([near - half, near + half, near + half + far, near - half + far])
 
-    def in_car(self, stop: int, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) whether (n, 2) points, metres, are in the car as drawn at a stop."""
+    def in_car(
+        self, stop: int, points: NDArray[np.float64], clear: NDArray[np.float64] | float = 0.0
+    ) -> NDArray[np.bool_]:
+        """(n,) whether points are in the car as drawn at a stop.
+
+        Args:
+            stop: number of the stop.
+            points: (n, 2) metres.
+            clear: (n,) metres that they must be past its front edge; below 0 before it.
+        """
         middle, into, across = self._axes(stop)
         deep, aside = (points - middle) @ into - self.before, (points - middle) @ across
         inside: NDArray[np.bool_] = (
-            (deep >= 0.0) & (deep <= self.depth) & (np.abs(aside) <= self.width / 2.0)
+            (deep >= clear) & (deep <= self.depth) & (np.abs(aside) <= self.width / 2.0)
         )
         return inside
 

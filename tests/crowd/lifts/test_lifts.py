@@ -96,6 +96,21 @@ def test_who_goes_out_while_the_doors_close_stays_on_their_level_and_rides_later
     assert tracks.y[later[changes[0]]] == pytest.approx(tracks.y[first[changes[0]]], abs=0.05)
 
 
+def test_who_steps_back_into_the_doorway_while_a_car_leaves_still_rides():
+    building = office(stairs=False)
+    model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
+    model.add_pedestrians(building.places([(20.45, 4.0)], level=1))
+    while not model.lifts.carried[0]:
+        model.step()
+    # The line of the door is y = 6.5, and the car begins 0.1 m behind it.
+    here = model.crowd.x[0], model.crowd.y[0]
+    to = building.places([(20.45, 6.52)], level=1)[0]
+    shift_people(model.crowd, np.array([0]), np.array([to - here]))
+    model.run(max_seconds=300)
+    # Down with them, after the way up to them: nobody had to wait for another ride.
+    assert (model.inside, model.lifts.carried.tolist(), model.lifts.trips.tolist()) == (0, [1], [2])
+
+
 def test_the_car_holds_no_more_than_its_capacity_and_they_ride_together():
     building = office(stairs=False, everybody=True, capacity=4)
     model = crowd(building, 10, "able_bodied: 1.0")
