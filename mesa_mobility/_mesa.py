@@ -18,7 +18,7 @@ HARMLESS = {f"mesa-mobility {name}" for name in ("interrupts", "progress", "pare
 
 
 class _Later:
-    """What Mesa has in place of a module: it imports the module when an attribute is asked for.
+    """A stand-in for a module, which imports the module when Mesa asks for an attribute.
 
     It is no ``ModuleType``, so those who look through ``sys.modules`` for modules pass it over.
     """
@@ -41,7 +41,7 @@ def _remove(name: str) -> None:
 
 @contextmanager
 def _imported_later(*names: str) -> Iterator[None]:
-    """What the block imports gets these modules only when it uses them.
+    """Let modules that the block imports get the named ones only when they use them.
 
     After the block ``sys.modules`` has none of what stands in for them. In the block other threads
     could find it there, so if any runs that may import modules, they are imported as usual.

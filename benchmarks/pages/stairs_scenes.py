@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -210,6 +211,17 @@ def office(seed: int, *, phased: bool) -> dict[str, Any]:
         "clear": by_level(run.trajectories, building).clear_s.tolist(),
         "on_stairs_s": float(np.concatenate([(each.end - each.start) for each in ways]).mean()),
     }
+
+
+def counted(runs: Sequence[dict[str, Any]]) -> str:
+    """The figures of ``safety`` over all runs, as a sentence."""
+    left, overlaps, crossings = (
+        sum(run[name] for run in runs) for name in ("left_inside", "overlaps", "wall_crossings")
+    )
+    return (
+        f"People left inside {left}, overlaps {overlaps}, wall crossings {crossings}, in "
+        f"{len(runs)} runs."
+    )
 
 
 def safety(run: Run) -> dict[str, Any]:

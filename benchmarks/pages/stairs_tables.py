@@ -16,7 +16,7 @@ import numpy as np
 from blocks import give, table
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from stairs_scenes import ENDS, RISER, TREAD, WIDTH, merging, office, stream
+from stairs_scenes import ENDS, RISER, TREAD, WIDTH, counted, merging, office, stream
 
 from mesa_mobility.verification import catalogue, suite
 from mesa_mobility.verification.report import measured_text
@@ -77,14 +77,7 @@ def main() -> None:
     merged = [merging(seed, beside=beside) for beside in (False, True) for seed in seeds]
     offices = [office(seed, phased=phased) for phased in (False, True) for seed in seeds]
     runs = [*streams, *merged, *offices]
-    counts = {
-        name: sum(run[name] for run in runs)
-        for name in ("left_inside", "overlaps", "wall_crossings")
-    }
-    told = (
-        f"Seeds 1 to {given.seeds}. People left inside {counts['left_inside']}, overlaps "
-        f"{counts['overlaps']}, wall crossings {counts['wall_crossings']}, in {len(runs)} runs."
-    )
+    told = f"Seeds 1 to {given.seeds}. {counted(runs)}"
     give(given.out, "stairs-free", free_speeds())
     give(given.out, "stairs-flow", f"{told}\n\n{flows(streams)}")
     give(given.out, "stairs-merging", shares(merged))

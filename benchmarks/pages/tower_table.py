@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from blocks import give, table
-from stairs_scenes import safety
+from stairs_scenes import counted, safety
 
 from mesa_mobility.results import by_level, by_stairs
 from mesa_mobility.verification.runs import evacuate
@@ -60,13 +60,7 @@ def times(runs: Sequence[dict[str, Any]]) -> str:
         ("by the last flights west and east", *map(_both, runs), ""),
     ]
     heads = ["storey empty, s", *(f"seed {k + 1}" for k in range(len(runs))), "mean"]
-    left, overlaps, crossings = (
-        sum(run[name] for run in runs) for name in ("left_inside", "overlaps", "wall_crossings")
-    )
-    return (
-        f"People left inside {left}, overlaps {overlaps}, wall crossings {crossings}, in "
-        f"{len(runs)} runs.\n\n{table(heads, rows)}"
-    )
+    return f"{counted(runs)}\n\n{table(heads, rows)}"
 
 
 def _both(run: dict[str, Any]) -> str:

@@ -235,18 +235,25 @@ def _sheet(
         return Sheet(name, level, elevation, area, area)
     for k, one in enumerate(strips):
         for other in strips[:k]:
-            shared = shapely.intersection(one.taken, other.taken, grid_size=_GRID)
-            if shared.area > _LEAST_SHARED:
-                spot = shared.representative_point()
+            at = _shared(one.taken, other.taken)
+            if at:
                 raise FloorPlanError(
-                    f"{other.what} and {one.what} overlap on the plan of {name} at "
-                    f"({spot.x:.2f}, {spot.y:.2f})"
+                    f"{other.what} and {one.what} overlap on the plan of {name} at {at}"
                 )
     taken = shapely.union_all([each.taken for each in strips], grid_size=_GRID)
     floor = _polygons(shapely.difference(area, taken, grid_size=_GRID))
     drawn = [each.drawn for each in strips]
     whole = _polygons(shapely.union_all([floor, *drawn], grid_size=_GRID))
     return Sheet(name, level, elevation, floor, whole)
+
+
+def _shared(one: BaseGeometry, other: BaseGeometry) -> str | None:
+    """A place at which two areas overlap, for messages; None if they do not."""
+    shared = shapely.intersection(one, other, grid_size=_GRID)
+    if shared.area <= _LEAST_SHARED:
+        return None
+    spot = shared.representative_point()
+    return f"({spot.x:.2f}, {spot.y:.2f})"
 
 
 def _polygons(area: BaseGeometry) -> BaseGeometry:
@@ -260,12 +267,10 @@ def _check_level(level: Level, strips: Sequence[_Strip]) -> None:
     refuges that overlap."""
     for k, one in enumerate(level.refuges):
         for other in level.refuges[:k]:
-            shared = shapely.intersection(one.shape, other.shape, grid_size=_GRID)
-            if shared.area > _LEAST_SHARED:
-                spot = shared.representative_point()
+            at = _shared(one.shape, other.shape)
+            if at:
                 raise FloorPlanError(
-                    f"level {level.number}: refuges {other.name!r} and {one.name!r} overlap at "
-                    f"({spot.x:.2f}, {spot.y:.2f})"
+                    f"level {level.number}: refuges {other.name!r} and {one.name!r} overlap at {at}"
                 )
     obstacles = {f"obstacle {k}": each for k, each in enumerate(level.blocked)}
     openings = {f"{each.kind} {each.name!r}": each.line for each in (*level.exits, *level.gates)}

@@ -1,4 +1,4 @@
-"""Who is lost, doubled, in others, off the floors or through them, from tracks in true coordinates.
+"""Counts people lost, doubled, in others, off the floors or through them, from their true tracks.
 
 It takes recorded places and the surfaces of `surfaces`, and nothing of what the model itself says.
 """
@@ -62,7 +62,7 @@ class Crowd:
 
 @dataclass
 class Found:
-    """What was counted, and the last place of those who are inside at the end.
+    """The counts, and the last rows of people who are inside at the end.
 
     Attributes:
         lost: people without a row, with a gap, or whose rows end elsewhere than at an exit.

@@ -60,7 +60,7 @@ class Escalators(Saved):
 
     def __init__(self, seams: Sequence[Seam], reach: float) -> None:
         self.seams = tuple(each for each in seams if each.belt is not None)
-        # What a rider moves on in one look may come on top of what is certain.
+        # Between two looks a rider moves on by up to EVERY frames more.
         self._belts = [
             BeltPlaces(each, each.belt, reach, AHEAD + EVERY)
             for each in self.seams

@@ -91,7 +91,7 @@ class Refuges(Saved):
         }
 
     def state(self) -> dict[str, Any]:
-        """Who is bound for which refuge and where there, and who has come there."""
+        """The refuge and place for which each person is bound, and whether they are there."""
         return {name: getattr(self, name) for name in self.members()}
 
     def restore(self, state: Mapping[str, Any]) -> None:

@@ -9,7 +9,7 @@ from mesa_mobility.floorplan import FloorPlan
 
 
 class RefugeFigures:
-    """What a model says of people who cannot leave."""
+    """Figures of a model about people who cannot leave."""
 
     floor_plan: FloorPlan
     population: Population

@@ -120,7 +120,7 @@ _PARTS = 15
 def ground_ahead(
     zones: Sequence[SpeedZone], starts: NDArray[np.float64], ends: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """What the ground on their straight ways does to people.
+    """Speeds and distances that the ground allows people on straight ways.
 
     A movement that leads into a zone or out of it is decided on as a whole. With the factor where
     it starts alone, people would be up to a movement late in slowing down, and in speeding up.

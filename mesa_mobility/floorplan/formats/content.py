@@ -16,7 +16,7 @@ from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 
 OF_ZONES = [each for each in fields(SpeedZone) if each.name not in ("polygon", "name")]
-"""What zones have besides their place and name: fields of ``SpeedZone``."""
+"""Fields of ``SpeedZone`` that a file gives as properties, besides its name."""
 
 KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
 """Values of the property `kind` of a feature."""
