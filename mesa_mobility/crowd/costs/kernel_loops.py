@@ -79,13 +79,19 @@ def me_of(fields: Sequence[str], declared: Sequence[str]) -> str:
     return f"Me({', '.join([*known, *more])})"
 
 
-def other_of(fields: Sequence[str], declared: Sequence[str]) -> str:
+def other_of(fields: Sequence[str], declared: Sequence[str], of_others: Sequence[str]) -> str:
     """Python source of the expression that makes the ``Other`` of neighbour number ``a`` in a loop.
 
-    Arguments as for ``me_of``.
+    Args:
+        fields: as for ``me_of``.
+        declared: as for ``me_of``.
+        of_others: names of the fields that are laid out for neighbours.
     """
     known = [f"others[{row} * row + a]" for row in range(7)]
-    more = [_laid(name, fields, "others[at[{}] * row + a]") for name in (*KERNEL_FIELDS, *declared)]
+    more = [
+        _laid(name, fields if name in of_others else (), "others[at[{}] * row + a]")
+        for name in (*KERNEL_FIELDS, *declared)
+    ]
     return f"Other({', '.join([*known, *more])})"
 
 

@@ -62,6 +62,7 @@ class CostKernel:
         arguments: names of the records that it takes, in its order.
         numbers: names of the term's attributes that it reads by ``p``.
         fields: names of the fields of people that are laid out for it.
+        of_others: names of those among them that it reads of neighbours.
         kinds: the class of each record; those of people also have the fields that it asks for.
     """
 
@@ -88,21 +89,19 @@ class CostKernel:
                 self.kinds[name] = namedtuple(RECORDS[name].__name__, [*own, *fields])
         check_fields_read(function, self.arguments, self.declared)
         self.numbers = self._reads(NUMBERS).fields
-        self.fields = (*self._shared_fields(), *self.declared)
+        me, other = self._reads("me"), self._reads("other")
+        known = (*KERNEL_FIELDS, *self.declared)
+        self.of_others = tuple(name for name in known if name in other.fields or other.whole)
+        self.fields = tuple(
+            name
+            for name in known
+            if name in self.of_others
+            or name in self.declared
+            or (name != "core" and (name in me.fields or me.whole))
+        )
 
     def _reads(self, name: str) -> Reads:
         return reads_of(self.function, name) if name in self.arguments else Reads((), False)
-
-    def _shared_fields(self) -> list[str]:
-        """The fields of any model that the kernel reads, or may read."""
-        me, other = self._reads("me"), self._reads("other")
-        return [
-            name
-            for name in KERNEL_FIELDS
-            if name in other.fields
-            or other.whole
-            or (name != "core" and (name in me.fields or me.whole))
-        ]
 
     def value(self, **records: Any) -> float:
         """What the function gives in Python.
@@ -148,7 +147,7 @@ class CostKernel:
             arguments=", ".join(self.arguments),
             option=OPTION,
             me=me_of(self.fields, self.declared),
-            other=other_of(self.fields, self.declared),
+            other=other_of(self.fields, self.declared, self.of_others),
             p=numbers_of(self.numbers),
         )
         source = "\n" * (code.co_firstlineno - 1) + text.lstrip("\n")

@@ -15,7 +15,7 @@ END_ROWS = 6
 
 
 # Others (9 + fields, n), the neighbours of a pedestrian: the first fields of the record Other, room
-# for costs, workspace, and from row FIELDS on the fields that terms take.
+# for costs, workspace, and from row FIELDS on the fields that terms take of neighbours.
 OTHER_X, OTHER_Y, OTHER_VX, OTHER_VY, OTHER_EX, OTHER_EY, LEAD, COST, AWAY, FIELDS = range(10)
 
 # The pedestrian (9 + fields,): the first fields of the record Me, and from FIELDS on the fields
@@ -52,6 +52,7 @@ class Terms(NamedTuple):
         pairs_address: of the same kernels, by the loop over some neighbours and many options.
         wall: kernels over options and walls.
         fields: (people, fields) the values that any of the terms takes.
+        of_others: number of those fields, the first ones, that terms read of neighbours.
     """
 
     option: KernelTable
@@ -60,3 +61,4 @@ class Terms(NamedTuple):
     pairs_address: NDArray[np.int64]
     wall: KernelTable
     fields: NDArray[np.float64]
+    of_others: int

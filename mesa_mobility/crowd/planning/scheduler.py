@@ -15,7 +15,7 @@ from mesa_mobility.compiled.decorators import Entry
 from mesa_mobility.compiled.threads import in_threads, threads_for
 from mesa_mobility.compiled.twins import PLAIN
 from mesa_mobility.crowd.costs.candidates import Moment
-from mesa_mobility.crowd.costs.layout import FIELDS
+from mesa_mobility.crowd.costs.layout import FIELDS, Terms
 from mesa_mobility.crowd.costs.terms import CostTerm
 from mesa_mobility.crowd.options.repertoire import Repertoire
 from mesa_mobility.crowd.planning.alone import wishes_of
@@ -114,10 +114,9 @@ class DecisionScheduler:
             moment.frame, table, groups, state, grid, around, compiled, self._rules, twins
         )
         threads = 1 if PLAIN else threads_for(len(order))
-        fields = compiled.fields.shape[1]
         # Each sheet has room for a body at the same place.
         most = min(len(rows), self._most_near * (1 + len(twins.strips)))
-        works = self._works_for(threads, most, around, len(terms), fields)
+        works = self._works_for(threads, most, around, len(terms), compiled)
 
         def part(first: int, last: int) -> None:
             people, offsets = order[first:last], extra_offsets[first : last + 1]
@@ -198,7 +197,7 @@ class DecisionScheduler:
         )
         extra, offsets = NO_EXTRA
         most = min(len(inside), self._most_near)
-        [work] = self._works_for(1, most, around, len(terms), fields.shape[1])
+        [work] = self._works_for(1, most, around, len(terms), compiled)
         self._decide(order, new_queue(len(order)), scene, extra, offsets, work)
         seen = np.concatenate([inside, crowd.copies]) if len(crowd.copies) else inside
         everybody = build_grid(seen, crowd.x, crowd.y)
@@ -212,16 +211,18 @@ class DecisionScheduler:
         return found
 
     def _works_for(
-        self, threads: int, people: int, around: Surroundings, terms: int, fields: int
+        self, threads: int, people: int, around: Surroundings, terms: int, compiled: Terms
     ) -> list[Workspace]:
         """A workspace for each thread."""
         walls = len(around.segments) + len(around.exits)
+        fields, of_others = compiled.fields.shape[1], compiled.of_others
         works = self._works
         if works and (
             people > len(works[0].neighbours.marks)
             or walls > len(works[0].walls)
             or terms > len(works[0].opened.known[0])
-            or FIELDS + fields != len(works[0].neighbours.others)
+            or FIELDS + fields != len(works[0].neighbours.own)
+            or FIELDS + of_others != len(works[0].neighbours.others)
         ):
             works.clear()
         while len(works) < threads:
@@ -231,7 +232,7 @@ class DecisionScheduler:
             options = int(np.diff(self._repertoire.table.offsets).max())
             clusters = self._repertoire.groups.clusters
             most = int((clusters["last"] - clusters["first"]).max())
-            works.append(make_workspace(people, walls, options, most, terms, fields))
+            works.append(make_workspace(people, walls, options, most, terms, fields, of_others))
         return works[:threads]
 
 

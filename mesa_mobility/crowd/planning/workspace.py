@@ -110,7 +110,8 @@ class Neighbours(NamedTuple):
         near: places in the grid of those whose paths may lead to where the pedestrian may walk.
         close: their movements in the pedestrian's coordinates.
         rows: rows in the crowd of those who count in cost terms.
-        others: (9 + fields, n) the same as cost terms read them, first those likely to cost most.
+        others: (9 + fields of others, n) the same as cost terms read them, first those likely to
+            cost most.
         moved: for each of these, the column with which it has changed places, one after the other.
         marks: for each of these, bits of the pair terms that it matters to.
         marked: their columns that matter to one pair term.
@@ -182,14 +183,14 @@ class Workspace(NamedTuple):
     path: NDArray[np.float64]
 
 
-def make_neighbours(people: int, fields: int) -> Neighbours:
+def make_neighbours(people: int, fields: int, of_others: int) -> Neighbours:
     """Arrays of ``Neighbours`` for at most so many people near; see ``make_workspace``."""
     return Neighbours(
         own=np.empty(FIELDS + fields),
         near=np.empty(people + LANES, np.int64),
         close=make_close(people),
         rows=np.empty(people + LANES, np.int64),
-        others=np.empty((FIELDS + fields, people + LANES)),
+        others=np.empty((FIELDS + of_others, people + LANES)),
         moved=np.empty(people + 1, np.int64),
         marks=np.empty(people, np.int64),
         marked=np.empty(people + 1, np.int64),
@@ -198,7 +199,7 @@ def make_neighbours(people: int, fields: int) -> Neighbours:
 
 
 def make_workspace(
-    people: int, walls: int, options: int, groups: int, terms: int, fields: int
+    people: int, walls: int, options: int, groups: int, terms: int, fields: int, of_others: int
 ) -> Workspace:
     """Scratch arrays for one thread, of the greatest sizes that a decision needs.
 
@@ -211,10 +212,11 @@ def make_workspace(
         groups: most groups in a cluster.
         terms: number of cost terms.
         fields: number of people's fields that terms read.
+        of_others: number of those that they read of neighbours.
     """
     lanes = LANES * groups
     return Workspace(
-        neighbours=make_neighbours(people, fields),
+        neighbours=make_neighbours(people, fields, of_others),
         unsure=np.empty(people, np.int64),
         blocks=Blocks(
             Bodies(

@@ -10,7 +10,9 @@ from numba import njit
 from mesa_mobility import CompiledTerm, Me, Option, Options, Other, Wall, option_kernel, pair_kernel
 from mesa_mobility.crowd.costs.kernel_arguments import reads_of
 from mesa_mobility.crowd.costs.kernel_calls import call_bound_loop
+from mesa_mobility.crowd.costs.layout import FIELDS
 from mesa_mobility.crowd.costs.records import RECORDS
+from mesa_mobility.crowd.planning.evaluation.term_table import compile_terms, fields_of
 from mesa_mobility.errors import ModelError
 from tests.fixtures.maps import strider
 from tests.fixtures.options import Ending, one_option
@@ -151,6 +153,30 @@ def test_only_fields_that_are_read_are_laid_out():
         return me.core + other.group + me.mood
 
     assert some.fields == ("group", "mood")
+    assert some.of_others == ("group",)
+
+
+def test_fields_that_are_read_of_the_pedestrian_alone_come_last():
+    @pair_kernel(fields=("mood", "haste"))
+    def one(me, other):
+        return me.type + me.mood + other.haste
+
+    @pair_kernel(fields=("haste",))
+    def more(me, other):
+        return other.core + me.haste
+
+    class One(CompiledTerm):
+        name = "one"
+        kernel = one
+
+    class More(CompiledTerm):
+        name = "more"
+        kernel = more
+
+    assert fields_of([One(), More()]) == (["haste", "core", "type", "mood"], 2)
+    terms, _ = compile_terms([One(), More()])
+    assert terms.of_others == 2
+    assert terms.pair.fields.tolist() == [[FIELDS + 2, FIELDS + 3, FIELDS], [FIELDS + 1, FIELDS, 0]]
 
 
 def refused(made, function, **given):

@@ -75,7 +75,7 @@ def test_what_somebody_covers_is_kept_up_to_date(crowd):
 @pytest.mark.parametrize(("radius", "range_"), [(0.5, 0.5), (3.0, 2.0), (30.0, 4.0)])
 def test_neighbours_are_found_in_the_order_of_the_grid(crowd, radius, range_):
     grid = grid_of_frame(np.arange(50), crowd.records)
-    x, y, to = grid.x, grid.y, make_neighbours(50, 0)
+    x, y, to = grid.x, grid.y, make_neighbours(50, 0, 0)
     c, s, x0, y0, x1, y1 = 0.6, 0.8, -0.5, -1.0, 1.5, 0.75
     for i in range(0, 50, 7):
         px, py = crowd.x[i], crowd.y[i]

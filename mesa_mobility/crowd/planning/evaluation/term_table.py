@@ -52,7 +52,7 @@ def compile_terms(
             kernel reads, or a weight for an unknown type.
     """
     compiled = [term for term in terms if isinstance(term, CompiledTerm)]
-    names = fields_of(compiled)
+    names, of_others = fields_of(compiled)
     option, pair, wall = (
         [
             (term, kernel)
@@ -74,15 +74,21 @@ def compile_terms(
         pairs_address=np.array(pairs, dtype=np.int64),
         wall=_table(wall, types, names),
         fields=np.empty((1, 0)),
+        of_others=of_others,
     )
     return tables, [term for term in terms if not isinstance(term, CompiledTerm)]
 
 
-def fields_of(terms: Sequence[CostTerm]) -> list[str]:
-    """Names of the fields that any of the compiled terms takes."""
+def fields_of(terms: Sequence[CostTerm]) -> tuple[list[str], int]:
+    """Names of the fields that compiled terms take, and how many they take of neighbours.
+
+    The latter come first.
+    """
     compiled = [term for term in terms if isinstance(term, CompiledTerm)]
     kernels = [kernel for term in compiled for kernel in kernels_of(term)]
-    return list(dict.fromkeys(name for kernel in kernels for name in kernel.fields))
+    of_others = dict.fromkeys(name for kernel in kernels for name in kernel.of_others)
+    names = of_others | dict.fromkeys(name for kernel in kernels for name in kernel.fields)
+    return list(names), len(of_others)
 
 
 def kernels_of(term: CompiledTerm) -> list[CostKernel]:
@@ -160,7 +166,7 @@ class CompiledTerms:
         if self._terms != terms or self._key != self._read():
             self._terms = list(terms)
             self._now = compile_terms(terms, self._types)
-            self._fields = fields_of(terms)
+            self._fields, _ = fields_of(terms)
             self._reads = [_reader(term) for term in terms]
             self._key = self._read()
         compiled, others = self._now

@@ -40,7 +40,7 @@ def cost():
     record = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.14, np.inf, 1.0, 0.0])
     own = Decider(0, 0, 0.0, 0.0, 1.0, 0.0, 0.14, record)
     ends = np.array([0.9, 0.1, 1.0, 0.0, 0.8, 1.1]).reshape(6, 1)
-    neighbours = make_neighbours(24, 2)  # pace and tread are fields
+    neighbours = make_neighbours(24, 2, 0)  # pace and tread are fields of the pedestrian
     others = neighbours.others
     others[:] = 0.0
     others[:2, :NEIGHBOURS] = rng.uniform(-1.5, 2.5, (2, NEIGHBOURS))
