@@ -125,6 +125,20 @@ def test_any_truncated_normal_that_can_be_is_found(low, below, above, share):
     assert middles.std() == pytest.approx(share * most, rel=2e-3)
 
 
+@pytest.mark.parametrize("sd", [0.1, 0.2887, 0.5, math.inf])
+def test_nearest_keeps_the_mean_and_as_much_of_the_deviation_as_bounds_allow(sd):
+    """Within 0 and 1 around their middle no normal distribution is wider than the uniform one."""
+    nearest = TruncatedNormal.nearest(0.5, sd, 0.0, 1.0)
+    widest = 1 / math.sqrt(12)
+    assert nearest.sd == pytest.approx(min(sd, widest), rel=0.002)
+    x = drawn(nearest)
+    assert x.mean() == pytest.approx(0.5, abs=0.001)
+    assert x.std() == pytest.approx(min(sd, widest), rel=0.005)
+    for bounds in ((0.6, 1.0), (0.0, 0.5), (1.0, 0.0), (math.nan, 1.0)):
+        with pytest.raises(ModelError, match="low < mean < high"):
+            TruncatedNormal.nearest(0.5, 0.1, *bounds)
+
+
 def test_a_cut_normal_has_no_lumps_at_its_bounds():
     x = drawn(Normal(0.0, 1.0, -1.0, 1.0))
     # One deviation either side holds 68.27 %; the middle of that, from -0.5 to 0.5, 38.29 %.

@@ -18,6 +18,9 @@ from mesa_mobility.distributions.truncation import (
 )
 from mesa_mobility.errors import ModelError
 
+_WIDEST = 0.999
+"""Share of the widest deviation that is accepted: the widest is not normal, but exponential."""
+
 
 @dataclass(frozen=True)
 class Constant(Distribution):
@@ -110,11 +113,22 @@ class TruncatedNormal(Distribution):
             _ordered(self.low, self.high) and self.low < self.mean < self.high,
             "low < mean < high",
         )
-        most = widest(self.mean, self.low, self.high)
-        # The widest of all is no normal distribution, but exponential.
-        _check(
-            self, self.sd <= 0.999 * most, f"an sd of at most {0.999 * most:.4g} in these bounds"
-        )
+        most = _WIDEST * widest(self.mean, self.low, self.high)
+        _check(self, self.sd <= most, f"an sd of at most {most:.4g} in these bounds")
+
+    @classmethod
+    def nearest(cls, mean: float, sd: float, low: float, high: float) -> TruncatedNormal:
+        """The one with this mean whose deviation is ``sd``, or as much of it as the bounds allow.
+
+        Few people who were measured may have a greater deviation than any normal distribution
+        has between the slowest and the fastest of them.
+
+        Raises:
+            ModelError: as the class, but for the deviation.
+        """
+        if _finite(mean, low, high) and low < mean < high:
+            sd = min(sd, _WIDEST * widest(mean, low, high))
+        return cls(mean, sd, low, high)
 
     @property
     def uncut(self) -> Normal:

@@ -21,8 +21,8 @@ STEADY = "p75"
 """Quantile of recorded speeds that stands for a steady walk: clips are full of starts and turns."""
 
 SLOWEST = 0.05
-"""Least preferred speed of a type, m/s: the slowest at which people get anywhere. Where published
-deviations are half the mean, a normal curve reaches people who do not move."""
+"""Least preferred speed where no source states one, m/s: the slowest at which people get anywhere.
+Where deviations are half the mean, a normal curve reaches people who do not move."""
 
 
 def free_speeds(mobility_map: MobilityMap) -> Distribution:
@@ -30,19 +30,26 @@ def free_speeds(mobility_map: MobilityMap) -> Distribution:
 
     By the map's metadata, in this order:
 
-    1. ``preferred_speed_m_s``: ``mean`` and ``standard_deviation`` of a published source.
+    1. ``preferred_speed_m_s``: ``mean`` and ``standard_deviation`` of a published source, and
+       ``least`` and ``most``, the speeds of the slowest and the fastest who were measured.
     2. ``walking_speed_m_s``: quantiles of the recorded speeds. Mean and deviation are those of
        adults, scaled to the steady walk that was recorded.
     3. Neither: those of adults.
 
-    The distribution is normal, with this mean and deviation within its bounds. These lie as many
-    deviations from the mean as those of adults do, but not below ``SLOWEST``, nor beyond what the
-    fastest option of the map reaches. Where the fastest option is too slow for any distribution
-    with this mean and deviation, it is no bound: people then walk as fast as they can.
+    The distribution is normal, with this mean and deviation within its bounds. These are ``least``
+    and ``most``. Without them they lie as many deviations from the mean as those of adults do, but
+    not below ``SLOWEST``. Nobody prefers more than the fastest option of the map reaches. Where
+    the fastest option is too slow for any distribution with this mean and deviation, it is no
+    bound: people then walk as fast as they can.
+
+    The mean is always that of the source. Within ``least`` and ``most``, a deviation that is too
+    large for them is the largest that they allow. Few people were measured, and no normal
+    distribution is as wide as they were.
 
     Raises:
-        MapError: the metadata hold something else than speeds, or a deviation that is too large for
-            positive speeds with this mean.
+        MapError: the metadata hold something else than speeds, a mean that is not between
+            ``least`` and ``most``, one of these alone, or without them a deviation that is too
+            large for positive speeds with this mean.
     """
     metadata = mobility_map.metadata
     recorded = _numbers(mobility_map, "walking_speed_m_s", metadata.get("walking_speed_m_s"))
@@ -50,28 +57,40 @@ def free_speeds(mobility_map: MobilityMap) -> Distribution:
     if published:
         if "mean" not in published:
             raise _not_speeds(mobility_map, "preferred_speed_m_s", "a mean")
-        return _about(published["mean"], published.get("standard_deviation", 0.0), mobility_map)
+        if ("least" in published) != ("most" in published):
+            raise _not_speeds(mobility_map, "preferred_speed_m_s", "'least' and 'most' together")
+        extremes = (published["least"], published["most"]) if "least" in published else None
+        deviation = published.get("standard_deviation", 0.0)
+        return _about(published["mean"], deviation, extremes, mobility_map)
     if STEADY in recorded:
         factor = recorded[STEADY] / MEAN
-        return _about(MEAN * factor, DEVIATION * factor, mobility_map)
+        return _about(MEAN * factor, DEVIATION * factor, None, mobility_map)
     return ADULTS
 
 
-def _about(mean: float, deviation: float, mobility_map: MobilityMap) -> Distribution:
+def _about(
+    mean: float,
+    deviation: float,
+    extremes: tuple[float, float] | None,
+    mobility_map: MobilityMap,
+) -> Distribution:
     """A normal distribution within the bounds of ``free_speeds``, m/s."""
     if deviation == 0.0:
         return Constant(mean)
     steps = np.hypot(*mobility_map.end_points.T)
     fastest = float((steps / mobility_map.durations).max()) * FRAMES_A_SECOND
     # Those whose mean is near the least are slower still.
-    least = max(mean - deviation * (MEAN - LEAST) / DEVIATION, min(SLOWEST, mean / 4.0))
-    most = mean + deviation * (MOST - MEAN) / DEVIATION
+    least, most = extremes or (
+        max(mean - deviation * (MEAN - LEAST) / DEVIATION, min(SLOWEST, mean / 4.0)),
+        mean + deviation * (MOST - MEAN) / DEVIATION,
+    )
     try:
         return TruncatedNormal(mean, deviation, least, min(most, fastest))
     except ModelError:
         pass
+    within = TruncatedNormal.nearest if extremes else TruncatedNormal
     try:
-        return TruncatedNormal(mean, deviation, least, most)
+        return within(mean, deviation, least, most)
     except ModelError as error:
         raise MapError(f"{_where(mobility_map, 'preferred_speed_m_s')}, {error}") from None
 

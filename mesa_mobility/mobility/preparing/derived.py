@@ -12,7 +12,13 @@ from mesa_mobility.capture import Recording, scale
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility.map_data import CORE_RADIUS
 from mesa_mobility.mobility.poses import STANDING_SPEED, STANDING_TURN_RATE, pose_table
-from mesa_mobility.mobility.preparing.wheelchairs import BOYCE, WHEELCHAIRS
+from mesa_mobility.mobility.preparing.published import (
+    CANE,
+    CRUTCHES,
+    WALKING_FRAME,
+    PublishedSpeed,
+)
+from mesa_mobility.mobility.preparing.wheelchairs import WHEELCHAIRS
 
 STEADY = 75
 """Percentile of the speeds of moving poses that stands for a steady walk.
@@ -27,8 +33,7 @@ class DerivedType:
 
     Attributes:
         source: type of the recordings.
-        speed: mean and standard deviation of the free speed, m/s.
-        reference: where the speeds come from.
+        speed: free speeds, as published.
         length: factor of all lengths.
         time: factor of all times; None for the one that gives the mean free speed.
         core_radius: of the body, metres.
@@ -36,8 +41,7 @@ class DerivedType:
     """
 
     source: str
-    speed: tuple[float, float]
-    reference: str
+    speed: PublishedSpeed
     length: float = 1.0
     time: float | None = None
     core_radius: float = CORE_RADIUS
@@ -55,7 +59,7 @@ class DerivedType:
                 STANDING_SPEED * factor / self.length, STANDING_TURN_RATE * factor
             )
             steady = float(np.percentile(poses.speed[~standing], STEADY))
-            factor = self.length * steady / self.speed[0]
+            factor = self.length * steady / self.speed.mean
         return factor
 
     def derive(
@@ -67,14 +71,9 @@ class DerivedType:
             recordings: of the source type.
             time: from ``time_factor``.
         """
-        mean, deviation = self.speed
         metadata = {
             "body": {"core_radius_m": round(self.core_radius, 3), "source": self.body},
-            "preferred_speed_m_s": {
-                "mean": mean,
-                "standard_deviation": deviation,
-                "source": self.reference,
-            },
+            "preferred_speed_m_s": self.speed.metadata,
             "derived": {
                 "from": self.source,
                 "length_factor": round(self.length, 4),
@@ -91,8 +90,11 @@ _CHILD_SPEED = round(1.34 * _CHILD**0.5, 2)
 DERIVED_TYPES = {
     "child": DerivedType(
         "able_bodied",
-        (_CHILD_SPEED, round(0.26 * _CHILD**0.5, 2)),
-        "able-bodied speeds (Weidmann 1993) at the Froude number of an adult",
+        PublishedSpeed(
+            _CHILD_SPEED,
+            round(0.26 * _CHILD**0.5, 2),
+            "able-bodied speeds (Weidmann 1993) at the Froude number of an adult",
+        ),
         length=_CHILD,
         time=_CHILD**0.5,
         core_radius=CORE_RADIUS * 0.42 / 0.46,
@@ -100,21 +102,24 @@ DERIVED_TYPES = {
     ),
     "older_adult": DerivedType(
         "able_bodied",
-        (1.23, 0.2),
-        "means of 27 people of 50 to 84 years (BMClab, CC BY 4.0); deviation assumed",
+        PublishedSpeed(
+            1.23,
+            0.2,
+            "means of 27 people of 50 to 84 years (BMClab, CC BY 4.0); deviation assumed",
+        ),
         # Steps of 0.715 and 0.722 leg lengths at 121 and 118 a minute, 1.23 and 1.25 m/s.
         length=(1.23 / 121) / (1.25 / 118),
         time=118 / 121,
     ),
     "frail_older_adult": DerivedType(
-        "slow", (0.80, 0.30), "elderly people of FDS+Evac, guide, table 1"
+        "slow", PublishedSpeed(0.80, 0.30, "elderly people of FDS+Evac, guide, table 1")
     ),
-    "cane": DerivedType("limping", (0.81, 0.38), BOYCE),
+    "cane": DerivedType("limping", CANE),
     "crutches": DerivedType(
-        "limping", (0.94, 0.30), BOYCE, core_radius=0.22, body="assumed: crutches held 0.7 m apart"
+        "limping", CRUTCHES, core_radius=0.22, body="assumed: crutches held 0.7 m apart"
     ),
     "walking_frame": DerivedType(
-        "slow", (0.57, 0.29), BOYCE, core_radius=0.20, body="assumed: a frame 0.65 m wide"
+        "slow", WALKING_FRAME, core_radius=0.20, body="assumed: a frame 0.65 m wide"
     ),
 }
 """Types by name."""

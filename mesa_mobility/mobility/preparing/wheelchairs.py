@@ -9,8 +9,12 @@ import numpy as np
 
 from mesa_mobility.mobility.map import MobilityMap
 from mesa_mobility.mobility.preparing.primitives import DifferentialDrive, map_of_primitives
-
-BOYCE = "Boyce, Shields and Silcock 1999"
+from mesa_mobility.mobility.preparing.published import (
+    ASSISTED_WHEELCHAIR,
+    MANUAL_WHEELCHAIR,
+    POWERED_WHEELCHAIR,
+    PublishedSpeed,
+)
 
 LENGTH, WIDTH = 1.2, 0.7
 """Footprint of an occupied wheelchair in metres: the greatest of class A of EN 12184:2014, powered
@@ -23,14 +27,12 @@ class Wheelchair:
 
     Attributes:
         drive: limits of its movements.
-        speed: mean and standard deviation of the free speed, m/s.
-        reference: where the speeds come from.
+        speed: free speeds, as published.
         limits: where the limits come from.
     """
 
     drive: DifferentialDrive
-    speed: tuple[float, float]
-    reference: str
+    speed: PublishedSpeed
     limits: str
 
     def build(self, type_name: str, metadata: dict[str, Any] | None = None) -> MobilityMap:
@@ -40,7 +42,6 @@ class Wheelchair:
             type_name: name of the pedestrian type.
             metadata: further entries for the map's metadata, such as the command.
         """
-        mean, deviation = self.speed
         drive = self.drive
         return map_of_primitives(
             drive,
@@ -52,11 +53,7 @@ class Wheelchair:
                     "width_m": WIDTH,
                     "source": "greatest of class A of EN 12184:2014; a disc as wide as that",
                 },
-                "preferred_speed_m_s": {
-                    "mean": mean,
-                    "standard_deviation": deviation,
-                    "source": self.reference,
-                },
+                "preferred_speed_m_s": self.speed.metadata,
                 "derived": {
                     "by": "motion primitives of a differential drive; nobody is recorded",
                     "fastest_m_s": drive.fastest,
@@ -79,20 +76,17 @@ _LIMITS = "accelerations up to 0.1 g and turn rates assumed"
 WHEELCHAIRS = {
     "wheelchair_manual": Wheelchair(
         DifferentialDrive(1.4, 0.6, _COMFORT, np.deg2rad(90.0), _COMFORT),
-        (0.69, 0.35),
-        BOYCE,
+        MANUAL_WHEELCHAIR,
         f"fastest: two deviations above the mean; acceleration by hand assumed; {_LIMITS}",
     ),
     "wheelchair_powered": Wheelchair(
         DifferentialDrive(1.6, _COMFORT, _COMFORT, np.deg2rad(90.0), _COMFORT),
-        (0.89, 0.22),
-        f"{BOYCE} (two people); deviation assumed",
+        POWERED_WHEELCHAIR,
         f"fastest: 6 km/h, assumed; {_LIMITS}",
     ),
     "wheelchair_assisted": Wheelchair(
         DifferentialDrive(2.0, _COMFORT, _COMFORT, np.deg2rad(60.0), _COMFORT),
-        (1.30, 0.34),
-        BOYCE,
+        ASSISTED_WHEELCHAIR,
         f"fastest: two deviations above the mean; who pushes is not part of the body; {_LIMITS}",
     ),
 }
