@@ -131,6 +131,7 @@ def seam_of(flight: Flight, sheets: Mapping[str, Sheet]) -> Seam:
         extra=flight.going * (1.0 / factor - 1.0),
         stepless=flight.risers == 0,
         belt=belt,
+        before=BEYOND,
     )
 
 

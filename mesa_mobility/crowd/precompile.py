@@ -177,6 +177,9 @@ def compile_decisions() -> None:
         indices=np.empty(0, dtype=np.int32),
         exits=np.empty((0, 4)),
         leads_out=np.zeros((1, 0), dtype=np.bool_),
+        steps=np.empty((0, 4)),
+        climbs=np.ones(1, dtype=np.bool_),
+        most_walls=0,
     )
     first = np.zeros(1, dtype=np.int64)
     standing = np.zeros(1, dtype=np.int32)

@@ -31,6 +31,26 @@ def test_people_cross_with_the_first_end_on_their_left():
     assert there.equals(box(56, 0, 60, 2))
 
 
+def test_steps_begin_at_two_edges_on_the_sheets_from_which_they_lead():
+    own = seam(before=0.5)
+    ends = [sorted([edge[:2].tolist(), edge[2:].tolist()]) for edge in own.steps]
+    assert ends == [[[6.5, 0.0], [6.5, 2.0]], [[63.5, 0.0], [63.5, 2.0]]]
+    places = [(6.4, 1.0), (6.6, 1.0), (13.4, 1.0), (13.6, 1.0), (10.0, 2.1)]
+    assert own.on_steps(places).tolist() == [False, True, True, False, False]
+    assert own.on_steps([(63.4, 1.0), (63.6, 1.0)], second=True).tolist() == [True, False]
+
+
+def test_a_strip_without_steps_has_no_edges_of_them():
+    assert seam(before=0.5, stepless=True).steps.shape == (0, 4)
+    assert not seam(stepless=True).on_steps([(10.0, 1.0)]).any()
+
+
+@pytest.mark.parametrize("before", [-0.1, 4.0, float("nan"), "a"])
+def test_steps_must_reach_the_line(before):
+    with pytest.raises(FloorPlanError, match=r"before must be metres, 0 or more and less than"):
+        seam(before=before)
+
+
 def test_gates_lie_halfway_to_the_ends_of_the_strip_on_both_sheets():
     found = {gate.name: sorted({gate.a, gate.b}) for gate in seam().gates}
     assert found == {

@@ -39,22 +39,25 @@ def near_walls(
 ) -> int:
     """Write walls within ``reach`` of (x, y): rows x1, y1, x2, y2, squared distance.
 
-    Returns their number; ``found`` must have room for all walls and exits.
-    An exit that does not lead out for this person counts as a wall.
+    Returns their number; ``found`` must have room for all of ``around.most_walls``.
+    An exit that does not lead out for this person counts as a wall, and so do the edges of stairs
+    for people who do not climb them.
     """
     cx = min(max(int((x - around.x0) / around.size), 0), around.nx - 1)
     cy = min(max(int((y - around.y0) / around.size), 0), around.ny - 1)
     cell = cy * around.nx + cx
     first, last = around.offsets[cell], around.offsets[cell + 1]
-    count = 0
-    for k in range(last - first + len(around.exits)):
-        if k < last - first:
+    count, walls, exits = 0, last - first, len(around.exits)
+    steps = 0 if around.climbs[destination] else len(around.steps)
+    for k in range(walls + exits + steps):
+        if k < walls:
             wall = around.segments[around.indices[first + k]]
-        else:
-            e = k - (last - first)
-            if around.leads_out[destination, e]:
+        elif k < walls + exits:
+            if around.leads_out[destination, k - walls]:
                 continue
-            wall = around.exits[e]
+            wall = around.exits[k - walls]
+        else:
+            wall = around.steps[k - walls - exits]
         d2 = segment_segment_distance2(x, y, x, y, wall[0], wall[1], wall[2], wall[3])
         if d2 <= reach * reach:
             for column in range(4):

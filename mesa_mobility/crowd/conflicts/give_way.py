@@ -35,6 +35,7 @@ from mesa_mobility.crowd.conflicts.places import (
     Body,
     Way,
     distances_to_way,
+    gets_straight,
     leaves_free,
     places_aside,
     places_to_set_out,
@@ -45,7 +46,6 @@ from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.wishes import NOBODY, Wishes
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
-from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.floorplan.floor.seams import to_own_sheets
 from mesa_mobility.schema import Kind, Records
 
@@ -212,8 +212,8 @@ class GiveWay(Tactic):
             (self._notes["first"][rows] == rows) & (_gains(wishes, aims) >= GETTING_NEARER)
         )
         for k in back.tolist():
-            room = deciding.inside.crowd.core[rows[k]] + CLEAR
-            if lines_of_sight(plan, deciding.positions[who[[k]]], aims[[k]], room)[0]:
+            me = _body(int(rows[k]), deciding)
+            if gets_straight(plan, me, me.place[None], aims[[k]], me.core + CLEAR)[0]:
                 self._notes["first"][rows[k]] = NOBODY
 
     def _make_way(self, who: NDArray[np.intp], deciding: Deciding, desired: Desired) -> None:
@@ -330,7 +330,9 @@ def _gains(wishes: Wishes, points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _body(row: int, deciding: Deciding) -> Body:
     crowd = deciding.inside.crowd
-    return Body(np.array([crowd.x[row], crowd.y[row]]), float(crowd.core[row]))
+    place = np.array([crowd.x[row], crowd.y[row]])
+    climbs = deciding.site.climbs(int(crowd.destination[row]))
+    return Body(place, float(crowd.core[row]), climbs)
 
 
 def _seen_by(row: int, other: int, way: Way, deciding: Deciding) -> Way:

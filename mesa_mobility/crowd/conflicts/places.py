@@ -47,10 +47,11 @@ _STEPS = np.concatenate(
 
 
 class Body(NamedTuple):
-    """Where somebody is, (2,) metres, and their core radius, metres."""
+    """Where somebody is, (2,) metres, their core radius, metres, and whether they use stairs."""
 
     place: NDArray[np.float64]
     core: float
+    climbs: bool = True
 
 
 class Way(NamedTuple):
@@ -139,7 +140,7 @@ def places_to_set_out(
     ends, far = ends[can], np.hypot(*_STEPS[can].T)
     targets = aims(ends)
     for share in ROOMS:
-        room = lines_of_sight(plan, ends, targets, share * (me.core + CLEAR))
+        room = gets_straight(plan, me, ends, targets, share * (me.core + CLEAR))
         if room.any():
             break
     ends, far = ends[room], far[room]
@@ -152,7 +153,24 @@ def _within_reach(plan: FloorPlan, me: Body) -> tuple[NDArray[np.float64], NDArr
     past the walls."""
     ends = me.place + _STEPS
     starts = np.broadcast_to(me.place, ends.shape)
-    return ends, lines_of_sight(plan, starts, ends, me.core) & plan.contains(ends)
+    return ends, gets_straight(plan, me, starts, ends, me.core) & plan.contains(ends)
+
+
+def gets_straight(
+    plan: FloorPlan,
+    me: Body,
+    starts: NDArray[np.float64],
+    ends: NDArray[np.float64],
+    clearance: float,
+) -> NDArray[np.bool_]:
+    """(n,) whether somebody gets straight from places (n, 2) to others (n, 2), metres.
+
+    They keep a clearance in metres from walls, and from stairs if they do not use them.
+    """
+    clear = lines_of_sight(plan, starts, ends, clearance)
+    if not me.climbs:
+        clear &= lines_of_sight(plan.steps, starts, ends, clearance)
+    return clear
 
 
 def _cost_of_others(

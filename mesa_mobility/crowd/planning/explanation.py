@@ -136,7 +136,7 @@ def judge(weighed: Explanation, outlook: Outlook) -> Explanation:
     options = weighed.candidates.options + rules.first_option[crowd.type_index[row]]
     near = rows_seen(crowd, weighed.candidates.neighbours, weighed.candidates.neighbour_positions)
     verdicts, blockers = weighed.verdicts.copy(), weighed.blockers.copy()
-    walls = np.empty((len(around.segments) + len(around.exits), 5))
+    walls = np.empty((around.most_walls, 5))
     given = Obstacles(walls, around, near, False, rules.hard_bodies)
     found = _Found(weighed.paths, weighed.knots, verdicts, blockers)
     _judge(row, options, weighed.frame, table, crowd.records, given, found)

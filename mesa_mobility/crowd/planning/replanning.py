@@ -44,7 +44,7 @@ def stop_where_blocked(
     newly = np.empty(len(rows), np.int64)
     count = 0
     path = np.empty((2, SAMPLES))
-    found = np.empty((len(around.segments) + len(around.exits), 5))
+    found = np.empty((around.most_walls, 5))
     for a in range(len(rows)):
         i = rows[a]
         if state.end[i] <= frame:

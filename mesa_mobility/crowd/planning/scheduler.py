@@ -214,7 +214,7 @@ class DecisionScheduler:
         self, threads: int, people: int, around: Surroundings, terms: int, compiled: Terms
     ) -> list[Workspace]:
         """A workspace for each thread."""
-        walls = len(around.segments) + len(around.exits)
+        walls = around.most_walls
         fields, of_others = compiled.fields.shape[1], compiled.of_others
         works = self._works
         if works and (

@@ -106,6 +106,10 @@ class Environment(Saved):
         """Core radius of the body with this index, metres."""
         return self._radii[body]
 
+    def climbs(self, destination: int) -> bool:
+        """Whether people of this destination use stairs; on a plan of one sheet all do."""
+        return self._climbing[destination % self.bodies]
+
     def destination(self, exits: tuple[str, ...] | None, type_index: int = 0) -> int:
         """Number of the destination "the nearest of these exits"; None stands for all.
 
@@ -247,11 +251,13 @@ class Environment(Saved):
 
     def without_way_out(self, points: NDArray[np.float64], destination: int) -> NDArray[np.bool_]:
         """(n,) whether there would be no route from (n, 2) places even if everything were open, and
-        everybody climbed stairs."""
+        everybody climbed stairs. On stairs nobody has one who does not climb them."""
         number, body = divmod(destination, self.bodies)
         lost = _without_way(self._router(body), points, number)
         if lost.any() and not (self._all_open() and self._climbing[body]):
             lost[lost] = _without_way(self._router_when_open(body), points[lost], number)
+        if not self._climbing[body]:
+            lost |= self.plan.on_steps(points)
         return lost
 
     def leads_over_stairs(
@@ -318,7 +324,7 @@ class Environment(Saved):
         """Walls and exits as they are now."""
         if self._version != self.plan.version:
             self._version = self.plan.version
-            self._now = survey(self.plan, self._destinations, self.bodies, self._reach)
+            self._now = survey(self.plan, self._destinations, self._climbing, self._reach)
         return self._now
 
 

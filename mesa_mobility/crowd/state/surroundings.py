@@ -29,6 +29,9 @@ class Surroundings(NamedTuple):
         indices: rows of ``segments``.
         exits: (e, 4) x1, y1, x2, y2 of the exits, metres.
         leads_out: (destinations, e) whether people of a destination may leave there.
+        steps: (s, 4) x1, y1, x2, y2 of the edges of stairs and escalators, metres.
+        climbs: (destinations,) whether people of a destination use them.
+        most_walls: how many walls there are for somebody who may neither leave nor climb.
     """
 
     segments: NDArray[np.float64]
@@ -41,17 +44,20 @@ class Surroundings(NamedTuple):
     indices: NDArray[np.int32]
     exits: NDArray[np.float64]
     leads_out: NDArray[np.bool_]
+    steps: NDArray[np.float64]
+    climbs: NDArray[np.bool_]
+    most_walls: int
 
 
 def survey(
-    plan: FloorPlan, destinations: Sequence[Destination], bodies: int, reach: float
+    plan: FloorPlan, destinations: Sequence[Destination], climbs: Sequence[bool], reach: float
 ) -> Surroundings:
     """Walls and exits of a floor plan as they are now.
 
     Args:
         plan: the floor plan.
         destinations: exits, gate or point of each number of a destination.
-        bodies: number of distinct core radii, each of which has numbers of its own.
+        climbs: whether each distinct body, which has numbers of its own, uses stairs.
         reach: how far from a person walls matter, metres.
     """
     walls = plan.walls
@@ -74,6 +80,9 @@ def survey(
         offsets=cells.offsets,
         indices=cells.indices,
         exits=np.array([[*e.a, *e.b] for e in exits], dtype=np.float64).reshape(-1, 4),
-        # A set of exits has one number for each core radius.
-        leads_out=leads_out.reshape(len(destinations), len(exits)).repeat(bodies, axis=0),
+        # A set of exits has one number for each body.
+        leads_out=leads_out.reshape(len(destinations), len(exits)).repeat(len(climbs), axis=0),
+        steps=plan.steps,
+        climbs=np.tile(np.array(climbs, dtype=np.bool_), len(destinations)),
+        most_walls=len(walls) + len(exits) + len(plan.steps),
     )

@@ -43,7 +43,7 @@ class Stage:
         self.scene = self.model._scene
         self._desired = DesiredMotion(self.scene.environment, self.scene.crowd)
         self._plan = plan
-        self._walls = np.empty((len(plan.walls) + len(plan.exits) + 1, 3 * SAMPLES))
+        self._walls = np.empty((self.scene.environment.surroundings.most_walls + 1, 3 * SAMPLES))
         self.model.bind()
 
     @property

@@ -53,6 +53,7 @@ class Layout:
         self._walkable = cast("Polygon", read(walkable, "walkable area"))
         extent.check_extent(self._walkable)
         check_seams(self._walkable, self._seams)
+        self._steps = np.concatenate([np.empty((0, 4)), *(each.steps for each in self._seams)])
         self._copied = shapely.union_all([part for each in self._seams for part in each.copies])
         self._exits = tuple(exits)
         self._gates = (
@@ -127,6 +128,22 @@ class Layout:
         Empty without seams.
         """
         return self._copied
+
+    @property
+    def steps(self) -> NDArray[np.float64]:
+        """(s, 4) x1, y1, x2, y2 in metres of the edges at which stairs and escalators begin.
+
+        They are walls for people who use no stairs.
+        """
+        return self._steps.copy()
+
+    def on_steps(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """(n,) whether (n, 2) points, metres, are on stairs or escalators."""
+        xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        found = np.zeros(len(xy), np.bool_)
+        for seam in self._seams:
+            found |= seam.on_steps(xy) | seam.on_steps(xy, second=True)
+        return found
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

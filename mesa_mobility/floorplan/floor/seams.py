@@ -70,10 +70,11 @@ class Seam:
             strip on which people walk more slowly.
         stepless: whether people who use no stairs walk over it, too.
         belt: what carries people over it, who then cross it in that direction alone.
+        before: metres at either end of the strip that are floor before and behind the steps.
 
     Raises:
         FloorPlanError: what `Gate` refuses, a shift of other than two numbers, a depth of less than
-            0.2 m, or an extra length below 0.
+            0.2 m, an extra length below 0, or steps that do not reach the line.
     """
 
     name: str
@@ -84,6 +85,7 @@ class Seam:
     extra: float = 0.0
     stepless: bool = False
     belt: Belt | None = None
+    before: float = 0.0
 
     def __post_init__(self) -> None:
         line = Gate(self.name, self.a, self.b)
@@ -102,6 +104,11 @@ class Seam:
         if not is_number(self.extra) or not 0.0 <= self.extra < math.inf:
             raise FloorPlanError(
                 f"seam {self.name!r}: extra must be metres, 0 or more, found {self.extra!r}"
+            )
+        if not is_number(self.before) or not 0.0 <= self.before < self.depth:
+            raise FloorPlanError(
+                f"seam {self.name!r}: before must be metres, 0 or more and less than the depth, "
+                f"found {self.before!r}"
             )
 
     @property
@@ -177,6 +184,21 @@ class Seam:
         """The gate before the line on the first sheet, and that after it on the second."""
         gates = self.gates
         return gates[0], gates[3]
+
+    @property
+    def steps(self) -> NDArray[np.float64]:
+        """(k, 4) x1, y1, x2, y2 in metres of the edges at which the steps begin, on the first sheet
+        and on the second; none without steps."""
+        if self.stepless:
+            return np.empty((0, 4))
+        far = self.depth - self.before
+        ends = (self.part(-far, -far), self.part(far, far, second=True))
+        return np.array([shapely.get_coordinates(end)[:2].ravel() for end in ends])
+
+    def on_steps(self, points: ArrayLike, second: bool = False) -> NDArray[np.bool_]:
+        """(n,) whether (n, 2) points are on steps, their edges excluded; see `past`."""
+        off = np.abs(self.past(points, second)) < self.depth - self.before
+        return self.on_strip(points, second) & off & (not self.stepless)
 
     @property
     def links(self) -> list[Link]:

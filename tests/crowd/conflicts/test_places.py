@@ -14,6 +14,7 @@ from mesa_mobility.crowd.conflicts.places import (
     places_aside,
     places_to_set_out,
 )
+from tests.fixtures.buildings import two_storeys
 
 NOBODY = np.empty((0, 2)), np.empty(0)
 
@@ -40,6 +41,21 @@ def test_where_there_is_no_room_aside_they_walk_ahead():
     places = aside(0.8)
     assert places[0, 0] == pytest.approx(5.0 + 2.4, abs=0.1)
     assert places[0, 1] == pytest.approx(0.4, abs=0.2)
+
+
+@pytest.mark.parametrize("climbs", [True, False])
+def test_who_does_not_climb_makes_no_way_onto_stairs(climbs):
+    """Somebody stands 0.6 m before the head of a stair, another comes along the wall."""
+    office = two_storeys()
+    [head, stands, comes] = office.places([(8.0, 0.6), (7.4, 0.6), (5.0, 0.6)], 1)
+    down = np.array(next(each for each in office.flights if each.name == "south").down)
+    if down[0] < 0:
+        stands, comes = 2 * head - stands, 2 * head - comes
+    way = Way(Body(comes, 0.2), np.array([comes, head]))
+    places = places_aside(office.floor_plan, Body(stands, 0.35, climbs), [way], *NOBODY)
+    on_stairs = (places - head) @ down > -0.35
+    beside = np.abs((places - head) @ (-down[1], down[0])) < 0.6
+    assert (on_stairs & beside).any() == climbs
 
 
 def test_which_places_leave_a_way_free():

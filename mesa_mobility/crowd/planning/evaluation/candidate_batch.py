@@ -183,7 +183,7 @@ def _all_walls(
     state: CrowdState,
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """(len(rows) + 1,) offsets, and (w, 4) walls within reach of each pedestrian."""
-    found = np.empty((len(around.segments) + len(around.exits), 5))
+    found = np.empty((around.most_walls, 5))
     offsets = np.zeros(len(rows) + 1, np.int64)
     walls = np.empty((max(len(found), 1), 4))
     for k in range(len(rows)):
