@@ -52,11 +52,12 @@ class Building:
         name: for titles and files.
 
     Raises:
-        FloorPlanError: levels, stairs, ramps, escalators or lifts of one number or name; stairs,
-            ramps or escalators that lead nowhere, do not fit their rise, have no floor before them,
-            or overlap an obstacle, an opening, a refuge, each other or a lift; refuges that overlap
-            each other or a lift; levels from which nothing
-            leads to an exit; floors less than 1.5 m above each other; or what `FloorPlan` refuses.
+        FloorPlanError: levels, stairs, ramps, escalators or lifts of one number or name; a gate or
+            an exit with the name of one of them; stairs, ramps or escalators that lead nowhere, do
+            not fit their rise, have no floor before them, or overlap an obstacle, an opening, a
+            refuge, each other or a lift; refuges that overlap each other or a lift; levels from
+            which nothing leads to an exit; floors less than 1.5 m above each other; or what
+            `FloorPlan` refuses.
 
     Attributes:
         levels: the levels, in the order given.
@@ -384,3 +385,12 @@ def _check_names(
         for one, other in pairwise(names):
             if one == other:
                 raise FloorPlanError(f"{what} {one!r} is there twice")
+    # Such a name stands for all gates of the stairs or the lift.
+    taken = {each.name for each in (*stairs, *lifts)}
+    for level in levels:
+        for opening in (*level.gates, *level.exits):
+            if opening.name in taken:
+                raise FloorPlanError(
+                    f"level {level.number}: {opening.kind} {opening.name!r} has the name of "
+                    "stairs, a ramp, an escalator or a lift, expected another name"
+                )

@@ -1,5 +1,7 @@
 """Buildings: sheets in the plane, places and their true coordinates."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -10,7 +12,7 @@ from shapely import box
 from mesa_mobility import Building, Exit, FloorPlan, Level, Stairs
 from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Router
+from mesa_mobility.floorplan import Gate, Router
 from tests.fixtures.buildings import HALL, RISE, two_storeys
 
 OFFICE = two_storeys()
@@ -197,6 +199,16 @@ def test_a_spike_of_the_outline_without_width_is_no_floor():
     [
         ([], [], "at least one level"),
         ([GROUND, GROUND], [], "level 0 is there twice"),
+        (
+            [replace(GROUND, gates=[Gate("main", (20, 0), (20, 8))]), FIRST],
+            [stairs()],
+            "level 0: gate 'main' has the name of stairs, a ramp, an escalator or a lift, expected",
+        ),
+        (
+            [GROUND, replace(FIRST, exits=[Exit("main", (24, 3), (24, 5))])],
+            [stairs()],
+            "level 1: exit 'main' has the name of stairs",
+        ),
         (
             [GROUND, FIRST],
             [stairs(), stairs()],

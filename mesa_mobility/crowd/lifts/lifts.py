@@ -125,6 +125,14 @@ class Lifts(Saved):
                 found[shaft.in_car(stop, points)] = number
         return found
 
+    def may_go(self, row: int, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """(n,) whether somebody may go to points (n, 2), metres: riders of a car that is under way
+        stay in it."""
+        lift = int(self._rides[row]) if row < len(self._rides) else NOBODY
+        if lift == NOBODY or self._from[lift] == NOBODY:
+            return np.ones(len(points), np.bool_)
+        return self.shafts[lift].in_car(int(self._from[lift]), points)
+
     def shut_in(
         self, rows: NDArray[np.int64], crowd: Crowd, is_open: Callable[[str], bool]
     ) -> list[int]:

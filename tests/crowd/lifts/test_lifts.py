@@ -7,6 +7,7 @@ import pytest
 
 from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.buildings import Building, Level, Lift, Stairs
+from mesa_mobility.crowd.conflicts import give_way
 from mesa_mobility.crowd.state.twins import shift_people
 from mesa_mobility.errors import ContentError, FloorPlanError
 from mesa_mobility.floorplan import Exit, Router
@@ -94,6 +95,25 @@ def test_who_goes_out_while_the_doors_close_stays_on_their_level_and_rides_later
     assert model.lifts.carried.tolist() == [1]
     assert tracks.y[first[changes[0]]] > 6.6
     assert tracks.y[later[changes[0]]] == pytest.approx(tracks.y[first[changes[0]]], abs=0.05)
+
+
+def test_a_rider_who_makes_way_stays_in_a_car_that_is_under_way(monkeypatch):
+    building = office(stairs=False)
+    model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
+    model.add_pedestrians(building.places([(20.45, 4.0), (12.0, 4.0)], level=1))
+    while not model.lifts.carried[0]:
+        model.step()
+    before = building.places([(20.45, 5.4)], level=1)
+    monkeypatch.setattr(give_way, "places_aside", lambda *_: before)
+    [tactic] = [each for each in model.tactics if each.name == "giving_way"]
+    # The other, to whom nobody is in the way, is to pass from the outside.
+    while model.lifts._from[0] >= 0:
+        notes = tactic._notes
+        notes["first"][0], notes["asked_by"][0], notes["until"][0] = 1, 1, 1e6
+        model.step()
+        assert 0 in np.concatenate(riders(model))
+    # With open doors they may.
+    assert model.lifts.may_go(0, before).all()
 
 
 def test_who_steps_back_into_the_doorway_while_a_car_leaves_still_rides():
