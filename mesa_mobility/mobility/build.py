@@ -11,10 +11,10 @@ from mesa_mobility.capture import Recording
 from mesa_mobility.capture.transforms import MIRRORED
 from mesa_mobility.errors import MapError
 from mesa_mobility.mobility import clusters as clustering
-from mesa_mobility.mobility import edits, paths, thinning
 from mesa_mobility.mobility import graph as graphs
+from mesa_mobility.mobility import paths, thinning
 from mesa_mobility.mobility.clusters import Clusters, cluster_poses
-from mesa_mobility.mobility.edits import EDITS, HORIZON
+from mesa_mobility.mobility.edits import EDITS, HORIZON, STRIDES, TURNS_DEG, Edit, grid
 from mesa_mobility.mobility.graph import MotionGraph, motion_graph
 from mesa_mobility.mobility.map import MobilityMap
 from mesa_mobility.mobility.map_data import CORE_RADIUS
@@ -80,6 +80,7 @@ def build_families(
     *,
     type_name: str = "able_bodied",
     clusters: int | None = None,
+    strides: Sequence[float] = STRIDES,
     metadata: dict[str, Any] | None = None,
     progress: Progress | None = None,
 ) -> OptionFamilies:
@@ -89,14 +90,20 @@ def build_families(
         recordings: as for ``build_map``.
         type_name: as for ``build_map``.
         clusters: as for ``build_map``.
+        strides: factors of the length of each step in edited options.
         metadata: as for ``build_map``.
         progress: as for ``build_map``.
 
     Raises:
         MapError: as for ``build_map``.
     """
-    graph, grouped, options = options_of_recordings(recordings, clusters, progress)
-    parameters = {"clusters_asked": clusters, **_build_parameters(graph, grouped, options)}
+    graph, grouped, options = options_of_recordings(
+        recordings, clusters, progress, grid(TURNS_DEG, strides)
+    )
+    parameters = {
+        "clusters_asked": clusters,
+        **_build_parameters(graph, grouped, options, strides),
+    }
     lacks = missing(options, grouped)
     lender = MobilityMap.load().pedestrian_type if lacks else ""
     standing = f"{' and '.join(lacks)} borrowed from the map {lender!r}" if lacks else "recorded"
@@ -122,6 +129,7 @@ def options_of_recordings(
     recordings: Sequence[Recording],
     clusters: int | None = None,
     progress: Progress | None = None,
+    edited: Sequence[Edit] = EDITS,
 ) -> tuple[MotionGraph, Clusters, ReachableOptions]:
     """The motion graph of recordings, its clusters and their options, edited ones included.
 
@@ -129,6 +137,7 @@ def options_of_recordings(
         recordings: as for ``build_map``.
         clusters: as for ``build_map``.
         progress: as for ``build_map``.
+        edited: the edits.
 
     Raises:
         MapError: too little is recorded, or nobody walks.
@@ -144,7 +153,8 @@ def options_of_recordings(
     if progress is not None:
         progress("motion graph", len(poses), len(poses))
     grouped = cluster_poses(graph, clusters, report("clusters"))
-    return graph, grouped, reachable_options(graph, grouped, EDITS, progress=report("options"))
+    options = reachable_options(graph, grouped, edited, progress=report("options"))
+    return graph, grouped, options
 
 
 def _check_length(recordings: Sequence[Recording]) -> None:
@@ -175,7 +185,7 @@ def _walking_speeds(poses: PoseTable) -> dict[str, float]:
 
 
 def _build_parameters(
-    graph: MotionGraph, grouped: Clusters, options: ReachableOptions
+    graph: MotionGraph, grouped: Clusters, options: ReachableOptions, strides: Sequence[float]
 ) -> dict[str, Any]:
     return {
         "poses": len(graph.poses),
@@ -193,8 +203,8 @@ def _build_parameters(
         "budget": paths.BUDGET,
         "cell": [round(float(size), 6) for size in paths.CELL],
         "edits": {
-            "turns_deg_in_45_frames": list(edits.TURNS_DEG),
-            "strides": list(edits.STRIDES),
+            "turns_deg_in_45_frames": list(TURNS_DEG),
+            "strides": list(strides),
             "cell": [round(float(size), 6) for size in thinning.EDIT_CELL],
             "options": int((options.edits > 0).sum()),
         },

@@ -29,11 +29,22 @@ if TYPE_CHECKING:
     from mesa_mobility.mobility import OptionFamilies, PreparedRecordings
 
 
+TREAD = 0.29
+"""Metres, of a stair with risers of 17 cm."""
+
+
 class Options(StrEnum):
     """What a map file keeps."""
 
     STORED = "stored"
     DISTRIBUTION = "distribution"
+
+
+class OnStairs(StrEnum):
+    """A way to walk on stairs."""
+
+    UP = "up"
+    DOWN = "down"
 
 
 ONE_AT_A_TIME, SOME_AT_ONCE = "clips_left_out_one_at_a_time", "clips_left_out"
@@ -87,6 +98,17 @@ class Wanted:
             "recordings: wheelchair_manual, wheelchair_powered or wheelchair_assisted.",
         ),
     ] = None
+    stairs: Annotated[
+        OnStairs | None,
+        typer.Option(
+            "--stairs",
+            help="A map of walking up or down stairs, from recordings of a few steps. Each cycle "
+            "of the gait is repeated at several cadences, with strides as long as a tread.",
+        ),
+    ] = None
+    tread: Annotated[
+        float, typer.Option(min=0.15, max=0.6, help="Depth of a tread with --stairs, metres.")
+    ] = TREAD
     name: Annotated[
         str | None,
         typer.Option(
@@ -115,6 +137,11 @@ class Wanted:
                 "--derive takes recordings of the type that it needs: no --type"
             )
 
+        if self.stairs is not None and (self.derived, self.mirrored) != (None, None):
+            raise typer.BadParameter("--stairs repeats recorded steps: no --derive, no --mirror")
+        if self.stairs is None and self.tread != TREAD:
+            raise typer.BadParameter("--tread: expected with --stairs only")
+
     @property
     def is_plain(self) -> bool:
         """Whether it is derived, and nothing else is said of it."""
@@ -129,6 +156,8 @@ class Wanted:
         words += [] if self.clusters is None else ["--clusters", str(self.clusters)]
         words += [] if self.mirrored is None else ["--mirror" if self.mirrored else "--no-mirror"]
         words += ["--other-side"] if self.other_side else []
+        words += [] if self.stairs is None else ["--stairs", self.stairs.value]
+        words += [] if self.tread == TREAD else ["--tread", f"{self.tread:g}"]
         words += [] if self.kept == Options.STORED else ["--options", self.kept.value]
         return shlex.join(words)
 
@@ -218,6 +247,8 @@ def _from_recordings(
         derived_type,
         prepare_recordings,
     )
+    from mesa_mobility.mobility.edits import STRIDES
+    from mesa_mobility.mobility.preparing.stairs import on_long_stairs
     from mesa_mobility.mobility.preparing.summary import summary_of
 
     plan = None if wanted.derived is None else derived_type(wanted.derived)
@@ -226,7 +257,7 @@ def _from_recordings(
         prepared = prepare_recordings(
             find_clips(source),
             recorded,
-            mirrored=wanted.mirrored,
+            mirrored=False if wanted.stairs else wanted.mirrored,
             other_side=wanted.other_side,
             progress=lambda done, total: report("reading recordings", done, total),
         )
@@ -240,12 +271,19 @@ def _from_recordings(
         metadata: dict[str, Any] = {}
         if plan is not None:
             recordings, metadata = plan.derive(recordings, plan.time_factor(recordings))
+        strides: Sequence[float] = STRIDES
+        if wanted.stairs is not None:
+            recordings, metadata = on_long_stairs(
+                recordings, up=wanted.stairs is OnStairs.UP, tread=wanted.tread
+            )
+            strides = (1.0,)
         name = wanted.name or wanted.derived or recorded
         command = wanted.command(source.name, recorded, name)
         families = build_families(
             recordings,
             type_name=name,
             clusters=wanted.clusters,
+            strides=strides,
             metadata={"command": command, "preparation": prepared.choices, **metadata},
             progress=report,
         )
@@ -255,7 +293,11 @@ def _from_recordings(
             "skipped": [list(each) for each in prepared.clips.skipped],
             "split": [list(each) for each in prepared.clips.split],
         }
-        left_out = _left_out(prepared, recordings, wanted.clusters, report)
+        if wanted.stairs is None:
+            left_out = _left_out(prepared, recordings, wanted.clusters, report)
+        else:
+            say("clips are not left out: the same steps are repeated in many recordings")
+            left_out = None
     if left_out is not None:
         info[ONE_AT_A_TIME if "clips" in left_out else SOME_AT_ONCE] = left_out
     return families, recordings, info

@@ -14,6 +14,7 @@ from mesa_mobility.mobility.preparing.clips import (
     prepare_recordings,
 )
 from mesa_mobility.mobility.preparing.derived import DERIVED_TYPES
+from mesa_mobility.mobility.preparing.stairs import on_long_stairs
 
 if TYPE_CHECKING:
     from mesa_mobility.mobility.map import MobilityMap
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 def recordings_behind(
     map_: MobilityMap, manifest: Manifest, progress: Callable[[int, int], None] | None = None
 ) -> PreparedRecordings:
-    """Load the recordings that a map was built from, mirrored and scaled as for it.
+    """Load the recordings that a map was built from, mirrored, scaled or repeated as for it.
 
     Args:
         map_: the map.
@@ -43,7 +44,11 @@ def recordings_behind(
         progress=progress,
     )
     derived = map_.metadata.get("derived")
-    if derived is not None:
+    if derived is not None and "tread_m" in derived:
+        prepared.recordings[:], _ = on_long_stairs(
+            prepared.recordings, up=derived["direction"] == "up", tread=derived["tread_m"]
+        )
+    elif derived is not None:
         length, time = _factors(derived, prepared.recordings)
         prepared.recordings[:] = [scale(one, length, time) for one in prepared.recordings]
     return prepared
