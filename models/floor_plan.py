@@ -28,6 +28,8 @@ class FloorPlanEgress(PedestrianModel):
         frames_per_step: frames that one step advances; 3 are 0.1 s.
         record: keep every frame.
         rng: seed or NumPy generator.
+        exits: of a plan whose file has none: "longest", lines "x1 y1, x2 y2" with semicolons
+            between them, or a file of such lines.
     """
 
     def __init__(
@@ -41,10 +43,11 @@ class FloorPlanEgress(PedestrianModel):
         frames_per_step: int = 3,
         record: bool | str = False,
         rng: int | np.random.Generator | None = None,
+        exits: str | None = None,
     ) -> None:
         if pedestrians < 1:
             raise ModelError(f"pedestrians: got {pedestrians}, expected 1 or more")
-        floor = read_plan(plan)
+        floor = read_plan(plan, exits)
         super().__init__(
             floor,
             preset=preset,
@@ -63,8 +66,12 @@ def patterns() -> list[str]:
     return [f"*{suffix}" for suffix in plan_suffixes()]
 
 
-def read_plan(path: Path | str | None) -> FloorPlan | Building:
+def read_plan(path: Path | str | None, exits: str | None = None) -> FloorPlan | Building:
     """The floor plan or the building of a file.
+
+    Args:
+        path: the file.
+        exits: of a plan whose file has none, as ``FloorPlan.from_file`` takes them.
 
     Raises:
         ModelError: no file, or a plan without an exit.
@@ -73,7 +80,7 @@ def read_plan(path: Path | str | None) -> FloorPlan | Building:
     if path is None:
         known = ", ".join(plan_suffixes())
         raise ModelError(f"plan: got none, expected a file of a floor plan ({known})")
-    plan = read_floor(path)
+    plan = read_floor(path, exits)
     if isinstance(plan, FloorPlan) and not plan.exits:
         raise ModelError(f"plan: {path} has no exit, expected one to leave by")
     return plan

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from mesa_mobility.commands.console import say
+from mesa_mobility.commands.exits import ExitOptions
+from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.models.making import MODEL_HELP
 from mesa_mobility.errors import MobilityError, ModelError
 
 OPENING, PLAN_MODEL = "doorway", "floor_plan"
 
 
+@grouped
 def dashboard(
     model: Annotated[
         str | None,
@@ -27,6 +30,8 @@ def dashboard(
             help="Floor plan to put people on; `mesa-mobility formats` lists formats.",
         ),
     ] = None,
+    *,
+    doors: ExitOptions,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8765,
 ) -> None:
@@ -43,12 +48,12 @@ def dashboard(
     from mesa_mobility.dashboard.serving.server import serve
     from mesa_mobility.live.access import is_loopback
 
-    given = {}
+    given: dict[str, Any] = {}
     if plan is not None:
         from mesa_mobility.models.floor_plan import read_plan
 
-        read_plan(plan)
-        given["plan"] = plan.resolve()
+        read_plan(plan, doors.text)
+        given = {"plan": plan.resolve(), **doors.keywords()}
     name = model or (OPENING if plan is None else PLAN_MODEL)
 
     def ready(url: str) -> None:

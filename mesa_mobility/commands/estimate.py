@@ -17,6 +17,7 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.reading import TracksOptions
 
@@ -75,6 +76,7 @@ def estimate(
     ],
     tried: Terms,
     reading: TracksOptions,
+    doors: ExitOptions,
     *,
     choices: Annotated[
         int, typer.Option(min=1, help="Use at most this many choices of each file.")
@@ -91,7 +93,7 @@ def estimate(
     from mesa_mobility.floorplan import FloorPlan
 
     terms, fixed = tried.made(), tried.fixed or []
-    floor, sampling = FloorPlan.from_file(plan), Sampling(most=choices, seed=seed)
+    floor, sampling = FloorPlan.from_file(plan, exits=doors.text), Sampling(most=choices, seed=seed)
     found = None
     with progress_bar(shown=not no_progress) as report:
         for done, file in enumerate(tracks):

@@ -14,12 +14,15 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.exits import ExitOptions
+from mesa_mobility.commands.grouping import grouped
 
 if TYPE_CHECKING:
     from mesa_mobility.buildings import Building
     from mesa_mobility.floorplan import FloorPlan
 
 
+@grouped
 def plan(
     file: Annotated[
         Path,
@@ -31,6 +34,16 @@ def plan(
             "-o",
             "--output",
             help="File to write, such as a .geojson.",
+            parser=some_path,
+            metavar="FILE",
+        ),
+    ] = None,
+    *,
+    doors: ExitOptions,
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            help="Picture to draw: .png, .svg or .pdf. By default NAME_plan.png in this folder.",
             parser=some_path,
             metavar="FILE",
         ),
@@ -52,13 +65,13 @@ def plan(
         bool, typer.Option("--json", help="Print one JSON object instead of a table.")
     ] = False,
 ) -> None:
-    """Check a floor plan or a building and say what it holds; -o writes it to another file.
+    """Check a floor plan or a building, say what it holds, and draw it; -o writes it to a file.
 
     DXF needs the extra `cad`. Buildings are read from GeoJSON and written to it.
     """
     from mesa_mobility.buildings import Building, read_floor
+    from mesa_mobility.commands.picture import check_picture, draw_plan
     from mesa_mobility.errors import FloorPlanError
-    from mesa_mobility.floorplan import FloorPlan
     from mesa_mobility.floorplan.formats.plan_format import PLANS
     from mesa_mobility.plugins.formats import READ, WRITE
 
@@ -66,7 +79,9 @@ def plan(
     options = PLANS.chosen_options(PLANS.of(file, READ), READ, given, settings or ())
     if output is not None:
         PLANS.of(output, WRITE)  # before anything is read
-    found = FloorPlan.from_file(file, **options) if options else read_floor(file)
+    picture = picture or Path(f"{file.stem}_plan.png")
+    check_picture(picture)
+    found = read_floor(file, doors.text, **options)
     if isinstance(found, Building):
         if output is not None:
             if output.suffix.lower() not in (".geojson", ".json"):
@@ -77,6 +92,8 @@ def plan(
         if output is not None:
             found.to_file(output)
         _say_plan(found, as_json)
+    draw_plan(found, picture)
+    say(f"drawn to {picture}")
     if output is not None:
         say(f"written to {output}")
 

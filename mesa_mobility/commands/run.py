@@ -21,6 +21,7 @@ from mesa_mobility.commands.console import (
     say,
     some_path,
 )
+from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model, origin_of
 from mesa_mobility.errors import ModelError
@@ -36,6 +37,7 @@ NAMED = 10
 def run(
     model: ModelName,
     options: ModelOptions,
+    doors: ExitOptions,
     *,
     seconds: Annotated[
         float | None,
@@ -89,7 +91,12 @@ def run(
         report("preparing" if is_compiled() else COMPILING)
         with compiling_ahead():
             simulation, given = create_model(
-                find_model(model), model, options, record=record or True, buildings=True
+                find_model(model),
+                model,
+                options,
+                record=record or True,
+                buildings=True,
+                **doors.keywords(),
             )
 
     from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run

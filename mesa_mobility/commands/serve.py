@@ -9,6 +9,7 @@ import typer
 
 from mesa_mobility._startup import nothing_collected
 from mesa_mobility.commands.console import say
+from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model
 from mesa_mobility.errors import MobilityError, ModelError
@@ -19,6 +20,7 @@ from mesa_mobility.interrupts import INTERRUPTED
 def serve(
     model: ModelName,
     options: ModelOptions,
+    doors: ExitOptions,
     *,
     rate: Annotated[int, typer.Option(help="Frames to send a second; a divisor of 30.")] = 30,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
@@ -61,7 +63,7 @@ def serve(
         if not is_compiled():
             say(COMPILING)
         with compiling_ahead():
-            simulation, _ = create_model(find_model(model), model, options)
+            simulation, _ = create_model(find_model(model), model, options, **doors.keywords())
             if not isinstance(simulation, PedestrianModel):
                 raise ModelError(f"model {model}: expected a subclass of PedestrianModel")
             run = Run(simulation, rate)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from copy import copy
 from pathlib import Path
@@ -23,6 +24,7 @@ from mesa_mobility.floorplan.floor.shafts import Shaft
 from mesa_mobility.floorplan.floor.wall_index import WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats import geojson
+from mesa_mobility.floorplan.formats.assembling.drawn import completed
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PLANS
 from mesa_mobility.floorplan.routing.router import Router
@@ -158,17 +160,22 @@ class FloorPlan(Floor):
         """
         from mesa_mobility.floorplan.formats import dxf
 
-        return cls._of(dxf.read(path, layers, unit), str(path))
+        return cls._of(completed(dxf.read(path, layers, unit), None), str(path))
 
     @classmethod
-    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> FloorPlan:
+    def from_file(
+        cls, path: str | os.PathLike[str], *, exits: str | None = None, **options: Any
+    ) -> FloorPlan:
         """Read a plan from a file, in the format that the end of its name says.
 
-        GeoJSON, WKT and DXF ship; other packages may add formats. `mesa-mobility formats` lists
-        them.
+        `mesa-mobility formats` lists the formats; other packages may add some. Warns of what the
+        reader has changed or left out.
 
         Args:
             path: the file.
+            exits: of a file that has none: "longest", a door of 1.2 m in the middle of the longest
+                straight outer edge; lines "x1 y1, x2 y2" with semicolons between them, within 1 m
+                of the edge; or a file of such lines.
             options: those of the format, such as ``unit="mm"`` of a DXF.
 
         Raises:
@@ -178,7 +185,8 @@ class FloorPlan(Floor):
         """
         chosen: Any = PLANS.of(path, READ)
         options = PLANS.chosen_options(chosen, READ, options)
-        return cls._of(chosen.read(Path(path), **options), str(path))
+        content = chosen.read(Path(path), **options)
+        return cls._of(completed(content, exits), str(path))
 
     def to_file(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the plan to a file, in the format that the end of its name says.
@@ -198,6 +206,13 @@ class FloorPlan(Floor):
     @classmethod
     def _of(cls, content: Content, where: str) -> FloorPlan:
         """The plan of a file's content; `where` names the file in errors."""
+        for note in content.notes:
+            warnings.warn(f"{where}: {note}", stacklevel=3)
+        if not content.exits and not content.gates:
+            raise FloorPlanError(
+                f"{where}: the floor plan has no exit, and no gate that people could go to: "
+                "--exits longest makes one, --exit 'x1 y1, x2 y2' another"
+            )
         try:
             plan = cls(
                 content.walkable,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
-    from mesa_mobility.buildings import Building, Refuge
+    from mesa_mobility.buildings import Building, Level, Refuge
 
 OUTSIDE, OBSTACLE, WALL, EXIT, DOOR = "#f2f2f0", "#b5b5b5", "#2b2b2b", "#00a03c", "#18a5d6"
 ZONE, STAIRS, REFUGE = "#fbe9c8", "#e3def2", "#d3ecdb"
@@ -50,24 +50,38 @@ class Storey:
 
 def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
     """The panels of a run: one for a floor plan, one for each level of a building, from the top."""
+    shown = storeys_alone(plan)
     if isinstance(plan, FloorPlan):
-        return [Storey(plan, (), (), np.ones(len(tracks), dtype=np.bool_))]
-    levels = sorted(plan.levels, key=lambda level: level.elevation, reverse=True)
+        return [replace(shown[0], rows=np.ones(len(tracks), dtype=np.bool_))]
+    levels = _from_the_top(plan)
     found, above = list[Storey](), np.inf
-    for level in levels:
+    for level, storey in zip(levels, shown, strict=True):
         on_stairs = ~np.isin(tracks.level, [each.number for each in levels])
         rows = on_stairs & (level.elevation <= tracks.z) & (tracks.z < above)
-        found.append(
-            Storey(
-                plan.floor_plan_of(level.number),
-                tuple(_stairs_of(plan, level.number)),
-                tuple(level.refuges),
-                rows | (tracks.level == level.number),
-                level.name or f"level {level.number}",
-            )
-        )
+        found.append(replace(storey, rows=rows | (tracks.level == level.number)))
         above = level.elevation
     return found
+
+
+def storeys_alone(plan: FloorPlan | Building) -> list[Storey]:
+    """The panels of a floor plan or a building without people."""
+    nobody = np.zeros(0, dtype=np.bool_)
+    if isinstance(plan, FloorPlan):
+        return [Storey(plan, (), (), nobody)]
+    return [
+        Storey(
+            plan.floor_plan_of(level.number),
+            tuple(_stairs_of(plan, level.number)),
+            tuple(level.refuges),
+            nobody,
+            level.name or f"level {level.number}",
+        )
+        for level in _from_the_top(plan)
+    ]
+
+
+def _from_the_top(building: Building) -> list[Level]:
+    return sorted(building.levels, key=lambda level: level.elevation, reverse=True)
 
 
 def panels_of(

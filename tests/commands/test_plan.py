@@ -13,6 +13,12 @@ exit street LINESTRING (6 1, 6 3)
 """
 
 
+@pytest.fixture(autouse=True)
+def drawn_elsewhere(tmp_path, monkeypatch):
+    """Pictures are drawn in the folder of the test."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def drawing(tmp_path):
     """A room of 6 by 4 m in millimetres, which does not say so, on layers of its own names."""
@@ -42,6 +48,26 @@ def test_what_a_plan_holds(command, tmp_path):
         "zones": [],
     }
     assert "street (2.00 m)" in command("plan", str(tmp_path / "room.wkt")).out
+    assert (tmp_path / "room_plan.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_exits_of_a_plan_that_has_none(command, tmp_path):
+    (tmp_path / "bare.wkt").write_text("POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))")
+    for arguments, exits in (
+        (["--exits", "longest"], {"door": 1.2}),
+        (["--exit", "6 1, 6 3", "--exit", "0 1, 0 2"], {"exit 1": 2.0, "exit 2": 1.0}),
+    ):
+        done = command("plan", "bare.wkt", *arguments, "--json", "--picture", "bare.svg")
+        found = json.loads(done.out)["exits"]
+        assert {name: round(length, 6) for name, length in found.items()} == exits
+    assert "<svg" in (tmp_path / "bare.svg").read_text()
+    refused = command("plan", "bare.wkt")
+    assert refused.status == 2
+    assert "the floor plan has no exit" in refused.err
+    both = command("plan", "bare.wkt", "--exits", "longest", "--exit", "6 1, 6 3")
+    assert "expected one of the two" in both.err
+    other = command("run", "doorway", "--exits", "longest", "--no-progress")
+    assert "its constructor does not take exits" in other.err
 
 
 def test_a_drawing_becomes_geojson(command, drawing, tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +11,7 @@ import typer
 from mesa_mobility.commands.checks.options import CheckOptions
 from mesa_mobility.commands.checks.validate import OutFolder, run_experiments
 from mesa_mobility.commands.console import say, some_path
+from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.reading import TracksOptions
 
@@ -94,6 +95,7 @@ def validate_tracks(
     ],
     reading: TracksOptions,
     windows: Windows,
+    doors: ExitOptions,
     speeds: Annotated[
         str | None,
         typer.Option(
@@ -119,7 +121,7 @@ def validate_tracks(
     from mesa_mobility.verification.runs import crowd_model
 
     free_speeds = None if speeds is None else parse(speeds)
-    floor = FloorPlan.from_file(plan)
+    floor = FloorPlan.from_file(plan, exits=doors.text)
     tracks = reading.read(file)
     setting = setting_of(
         tracks,
@@ -132,6 +134,7 @@ def validate_tracks(
         line=line,
         speeds=speeds,
     )
+    setting = replace(setting, exits=doors.text)
     say(f"{file}: {setting}")
     # Whatever cannot be replayed is found here, once, and not in every run.
     with rules.followed():

@@ -36,6 +36,9 @@ class Content:
         closed: names of the exits and gates that are closed.
         cut_off: whether obstacles may cut pieces off from every exit.
         simplify: metres by which walls may recede.
+        notes: what the reader has changed or left out, a line each.
+        foreign: whether another program drew it. Floor from which no exit is reached is then left
+            out, and named in a note.
     """
 
     walkable: Polygon
@@ -47,6 +50,8 @@ class Content:
     closed: list[str] = field(default_factory=list)
     cut_off: bool = False
     simplify: float = SIMPLIFY
+    notes: list[str] = field(default_factory=list)
+    foreign: bool = False
 
 
 def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:

@@ -11,6 +11,8 @@ import shapely
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.checks import read_wkt
+from mesa_mobility.floorplan.formats.assembling.texts import LARGEST_FILE, read_text
+from mesa_mobility.floorplan.formats.bare_wkt import is_bare, read_bare
 from mesa_mobility.floorplan.formats.content import KINDS, Content, content_of
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 
@@ -21,7 +23,7 @@ _PROPERTY = re.compile(r"(?P<name>\w+)=(?P<value>\S+)$")
 
 
 class Wkt(PlanFormat):
-    """Text: a line for each part, its geometry as WKT in metres."""
+    """Text: a line for each part, its geometry as WKT in metres; or geometries of floor alone."""
 
     name = "wkt"
     suffixes = (".wkt",)
@@ -35,18 +37,16 @@ def read(path: "str | os.PathLike[str]") -> Content:
     """Read a text with a line such as ``exit street LINESTRING (20 3, 20 5)`` for each part.
 
     Between the kind and the geometry stand the part's name and properties, as ``closed=true`` or
-    ``factor=0.5``.  Empty lines and those that begin with ``#`` count for nothing.
+    ``factor=0.5``.  Empty lines and those that begin with ``#`` count for nothing.  In a text that
+    begins with a geometry, all polygons are floor.
 
     Raises:
         FloorPlanError: the file cannot be read, or a line is no part of a floor plan; the message
             names file and line.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise FloorPlanError(f"{path}: cannot be read ({error.strerror})") from None
-    except UnicodeDecodeError:
-        raise FloorPlanError(f"{path}: is not text, expected lines of WKT") from None
+    text = read_text(path, LARGEST_FILE, "lines of WKT")
+    if is_bare(text):
+        return read_bare(text, str(path))
     return content_of(_features(text, str(path)), str(path))
 
 

@@ -61,6 +61,7 @@ def experiment(setting: Setting, plan: FloorPlan, tracks: Trajectories) -> Exper
         "start": setting.start,
         "seconds": setting.seconds,
         "speeds": setting.speeds,
+        "exits": setting.exits,
     }
     return Experiment(
         name=Path(setting.file).stem,
@@ -82,6 +83,7 @@ def replayed(
     start: int,
     seconds: float,
     speeds: str | None,
+    exits: str | None = None,
 ) -> Figures:
     """A replay of measured tracks.
 
@@ -94,6 +96,7 @@ def replayed(
         start: frame of the tracks at which the replay begins.
         seconds: of the replay.
         speeds: free speeds as a distribution's text; None for the type's.
+        exits: of a floor plan whose file has none.
 
     Returns:
         With what every run tells: ``tracks``, the columns of the trajectories by name,
@@ -104,7 +107,7 @@ def replayed(
         # The command has shown what is wrong with the tracks.
         warnings.simplefilter("ignore")
         tracks = Trajectories.read(file, unit=unit, frame_rate=frame_rate)
-        floor = FloorPlan.from_file(plan)
+        floor = FloorPlan.from_file(plan, exits=exits)
         model = crowd_model(floor, seed)
         replay = model.replay(
             tracks, start, preferred_speeds=None if speeds is None else parse(speeds)

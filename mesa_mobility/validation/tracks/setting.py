@@ -45,6 +45,7 @@ class Setting:
         line: both ends of the line that people cross, metres.
         direction: (x, y) of the crowd, of length 1.
         speeds: free speeds of the simulated people as a distribution's text; None for the type's.
+        exits: of a floor plan whose file has none, as ``FloorPlan.from_file`` takes them.
     """
 
     file: str
@@ -58,6 +59,7 @@ class Setting:
     line: Line
     direction: tuple[float, float]
     speeds: str | None = None
+    exits: str | None = None
 
     def view(self, floor: shapely.Geometry) -> View:
         """For the measured crowd."""

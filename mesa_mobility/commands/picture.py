@@ -1,0 +1,42 @@
+"""The picture of a floor plan or a building."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mesa_mobility.buildings import Building
+from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.files.atomic import replacing
+from mesa_mobility.floorplan import FloorPlan
+
+KINDS = ".png", ".svg", ".pdf"
+"""Ends of the names of pictures."""
+
+
+def check_picture(path: Path) -> None:
+    """Raise FloorPlanError unless a file's name ends as a picture's does."""
+    if path.suffix.lower() not in KINDS:
+        raise FloorPlanError(f"{path}: expected a name that ends in {', '.join(KINDS)}")
+
+
+def draw_plan(plan: FloorPlan | Building, path: Path) -> None:
+    """Draw each level to a file, complete or not at all: floor, walls, obstacles, exits by name.
+
+    Raises:
+        FloorPlanError: the file cannot be written.
+    """
+    from mesa_mobility.results.floor import EXIT, draw_floor, panels_of, storeys_alone
+
+    check_picture(path)
+    figure, panels = panels_of(storeys_alone(plan))
+    for axes, storey in panels:
+        handles = draw_floor(axes, storey.plan, storey.stairs, storey.refuges)
+        for each in storey.plan.open_exits():
+            x, y = each.midpoint
+            name = axes.text(x, y, each.name, ha="center", va="bottom", zorder=6)
+            name.set(color=EXIT, fontsize=7)
+        if storey.title:
+            axes.set_title(storey.title)
+        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    with replacing(path, FloorPlanError) as temporary:
+        figure.savefig(temporary, format=path.suffix.lower()[1:])

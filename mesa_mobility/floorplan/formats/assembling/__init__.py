@@ -1,0 +1,1 @@
+"""Floor plans from what other programs draw: areas joined, exits put on the edge."""
