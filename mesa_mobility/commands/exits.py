@@ -17,7 +17,7 @@ class ExitOptions:
         typer.Option(
             "--exit",
             metavar="'X Y, X Y'",
-            help="Both ends of an exit of a floor plan whose file has none, within 1 m of the "
+            help="Both ends of an exit of a floor plan whose file has none, within 1.2 m of the "
             "edge, metres; repeatable.",
         ),
     ] = None

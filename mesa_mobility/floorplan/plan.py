@@ -174,7 +174,7 @@ class FloorPlan(Floor):
         Args:
             path: the file.
             exits: of a file that has none: "longest", a door of 1.2 m in the middle of the longest
-                straight outer edge; lines "x1 y1, x2 y2" with semicolons between them, within 1 m
+                straight outer edge; lines "x1 y1, x2 y2" with semicolons between them, within 1.2 m
                 of the edge; or a file of such lines.
             options: those of the format, such as ``unit="mm"`` of a DXF.
 

@@ -26,13 +26,13 @@ def drawing(tmp_path):
     document = ezdxf.new(units=0)
     space = document.modelspace()
     corners = [(0, 0), (6000, 0), (6000, 4000), (0, 4000)]
-    space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "A-FLOR"})
+    space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "A-SLAB"})
     space.add_line((6000, 1000), (6000, 2200), dxfattribs={"layer": "A-DOOR"})
     document.saveas(tmp_path / "room.dxf")
     return tmp_path / "room.dxf"
 
 
-NAMED = ["--layer", "A-FLOR=walkable", "--layer", "A-DOOR=exit street", "--unit", "mm"]
+NAMED = ["--layer", "A-SLAB=walkable", "--layer", "A-DOOR=exit street", "--unit", "mm"]
 
 
 def test_what_a_plan_holds(command, tmp_path):
@@ -96,8 +96,8 @@ def test_options_that_a_format_does_not_take_are_refused(command, tmp_path):
     ("arguments", "message"),
     [
         ([], "does not say its unit ($INSUNITS), expected one of mm, cm"),
-        (["--unit", "mm"], "has no layer of kind walkable; it has drawings on A-DOOR, A-FLOR"),
-        (["--unit", "mm", "--layer", "A-FLOR"], "--layer: got 'A-FLOR', expected LAYER=KIND"),
+        (["--unit", "mm"], "has no layer of kind walkable; it has drawings on A-DOOR, A-SLAB"),
+        (["--unit", "mm", "--layer", "A-SLAB"], "--layer: got 'A-SLAB', expected LAYER=KIND"),
     ],
 )
 def test_what_a_drawing_lacks_is_said_in_one_line(command, drawing, arguments, message):

@@ -104,15 +104,24 @@ class Drawing:
             raise FloorPlanError(f"{path}: cannot be read ({_line(error)})") from None
         self.layers = sorted({layer for layer, _ in self._entities})
 
-    def curves(self, layers: Iterable[str]) -> list[Curve]:
+    def curves(self, layers: Iterable[str], *, lenient: bool = False) -> list[Curve]:
         """All curves on some layers, in the order of the file; arcs as chords.
+
+        Args:
+            layers: names.
+            lenient: whether edges of hatches count, and other entities are left out.
 
         Raises:
             FloorPlanError: something else is drawn there, or coordinates are out of range.
         """
         wanted, found, count = set(layers), [], 0
         for layer, entity in self._entities:
-            if layer not in wanted or entity.dxftype() in _NOTES:
+            if layer not in wanted:
+                continue
+            if lenient and entity.dxftype() == "HATCH":
+                found += self._hatch(layer, entity)
+                continue
+            if entity.dxftype() in _NOTES or (lenient and entity.dxftype() not in _CURVES):
                 continue
             handle = entity.dxf.handle or getattr(entity.source_of_copy, "dxf", entity.dxf).handle
             what = f"{entity.dxftype()} #{handle} on layer {layer}"
@@ -124,6 +133,24 @@ class Drawing:
                 )
             if len(points) > 1:
                 found.append(Curve(layer, what, points))
+        return found
+
+    def _hatch(self, layer: str, entity: Any) -> list[Curve]:
+        """The edges of a hatch, each closed."""
+        from ezdxf.path import from_hatch
+
+        what, scale = f"HATCH #{entity.dxf.handle} on layer {layer}", METRES[self.unit]
+        found = []
+        try:
+            for path in from_hatch(entity):
+                points = np.array([(v.x, v.y) for v in path.flattening(SAGITTA / scale)]) * scale
+                check_coordinates(points, "it")
+                if len(points) > 3:
+                    found.append(Curve(layer, what, np.concatenate([points, points[:1]])))
+        except FloorPlanError as error:
+            raise FloorPlanError(f"{self._path}: {what}: {error}") from None
+        except Exception as error:  # ezdxf raises whatever malformed entities led it into
+            raise FloorPlanError(f"{self._path}: {what}: cannot be read ({_line(error)})") from None
         return found
 
     def _points(self, entity: Any, at: str) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.floorplan.floor.openings import Exit
 from mesa_mobility.floorplan.formats.assembling.edges import Edge, all_edges
 
-NEAR = 1.0
+NEAR = 1.2
 """Metres from the edge within which what was drawn is put on it."""
 
 DEEPEST = 1.5
@@ -33,7 +33,7 @@ def placed(
 ) -> tuple[Polygon, list[Exit]]:
     """The exits of a floor, and the floor without the areas that people leave by.
 
-    A line, or an area of little depth, within 1 m of a straight edge becomes the stretch of the
+    A line, or an area of little depth, within 1.2 m of a straight edge becomes the stretch of the
     edge beside it. Any other area is cut out of the floor; people leave when they reach it.
 
     Args:

@@ -48,7 +48,7 @@ def exits_for(
         notes: takes what was moved to the edge.
 
     Raises:
-        FloorPlanError: another text, a file that cannot be read, or a line that is not within 1 m
+        FloorPlanError: another text, a file that cannot be read, or a line that is not within 1.2 m
             of the edge.
     """
     if text.strip() == LONGEST:
