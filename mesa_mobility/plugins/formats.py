@@ -109,6 +109,8 @@ class Formats(Generic[F]):
             MobilityError: none does, or several do.
         """
         name = Path(path).name.lower()
+        if Path(path).is_dir():
+            name += ".zip"  # a folder is read as an archive of it
         for attempt in range(2):
             ends = [each for each in self.suffixes(what) if name.endswith(each)]
             if ends or attempt:

@@ -39,6 +39,11 @@ def read_bare(text: str, where: str) -> Content:
     Raises:
         FloorPlanError: a geometry cannot be read, or there is no polygon.
     """
+    return assembled(drawn_of(text, where), where)
+
+
+def drawn_of(text: str, where: str) -> Drawn:
+    """What geometries show, before it is put together; see ``read_bare``."""
     drawn, others = Drawn(), dict[str, int]()
     geometries = [
         (number, srid, part)
@@ -56,7 +61,7 @@ def read_bare(text: str, where: str) -> Content:
             others[part.geom_type] = others.get(part.geom_type, 0) + 1
     for kind, count in others.items():
         drawn.notes.append(f"left out {count} {kind}: only polygons are floor")
-    return assembled(drawn, where)
+    return drawn
 
 
 def _geometries(text: str, where: str) -> Iterator[tuple[int, str]]:
