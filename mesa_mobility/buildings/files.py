@@ -39,4 +39,4 @@ def read_floor(
 def _of_a_building(feature: Any) -> bool:
     properties = feature.get("properties") if isinstance(feature, Mapping) else None
     given = properties if isinstance(properties, Mapping) else {}
-    return given.get("kind") in KINDS or given.get("level", 0) != 0
+    return given.get("kind") in KINDS or ("kind" in given and given.get("level", 0) != 0)

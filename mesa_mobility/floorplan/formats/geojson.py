@@ -16,17 +16,18 @@ from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
+from mesa_mobility.floorplan.formats.rooms import read_rooms
 
 
 class GeoJson(PlanFormat):
-    """GeoJSON: one FeatureCollection, coordinates in metres."""
+    """GeoJSON: one FeatureCollection, coordinates in metres; or rooms of other programs."""
 
     name = "geojson"
     suffixes = (".geojson", ".json")
 
-    def read(self, path: Path) -> Content:
-        """See ``read`` of this module."""
-        return read(path)
+    def read(self, path: Path, *, level: str | None = None) -> Content:
+        """See ``read`` of this module; ``level`` is for files of other programs."""
+        return read(path, level)
 
     def write(self, plan: Floor, path: Path) -> None:
         """Write a floor plan; see ``FloorPlan.write_geojson``."""
@@ -75,8 +76,10 @@ def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:
     return "GeoJSON" if isinstance(source, Mapping) else str(source)
 
 
-def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
+def read(source: "str | os.PathLike[str] | Mapping[str, Any]", level: str | None = None) -> Content:
     """Read a FeatureCollection from a file or a mapping.
+
+    Features without a property ``kind`` are rooms of other programs; see ``read_rooms``.
 
     Raises:
         FloorPlanError: the file cannot be read, is not JSON or not a FeatureCollection, or a
@@ -84,9 +87,21 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Content:
     """
     where = label(source)
     features = features_of(load(source), where)
+    if features and not any(map(_has_kind, features)):
+        return read_rooms(features, level, where)
+    if level is not None:
+        raise FloorPlanError(f"{where}: has no levels, expected no option level")
     return content_of(
         ((feature, f"{where}: feature {number}") for number, feature in enumerate(features)), where
     )
+
+
+def _has_kind(feature: Any) -> bool:
+    """Whether a feature says what it is as this package's files do, or is no feature at all."""
+    if not isinstance(feature, Mapping):
+        return True
+    properties = feature.get("properties")
+    return isinstance(properties, Mapping) and "kind" in properties
 
 
 def load(source: "str | os.PathLike[str] | Mapping[str, Any]") -> object:

@@ -120,7 +120,7 @@ def test_faulty_topographies(tmp_path, data, message):
 
 def test_faulty_archives(tmp_path):
     (tmp_path / "a.zip").write_bytes(b"PK no")
-    with pytest.raises(FloorPlanError, match="a.zip: is not a zip that can be read"):
+    with pytest.raises(FloorPlanError, match=r"a.zip: is not a zip that can be read"):
         FloorPlan.from_file(tmp_path / "a.zip")
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         archive.writestr("config.json", "{}")
