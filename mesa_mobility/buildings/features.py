@@ -125,7 +125,7 @@ def _lift(feature: Given, given: Given, at: str) -> Lift:
 
 
 def _refuge(feature: Given, given: Given, at: str) -> Refuge:
-    area = _geometry(feature, "Polygon", REFUGE, at)
+    area = geometry_of(feature, "Polygon", REFUGE, at)
     return Refuge(_name(given, at), cast("shapely.Polygon", area))
 
 
@@ -164,7 +164,12 @@ KINDS = tuple(_READERS)
 """The kinds of features that only buildings have."""
 
 
-def _geometry(feature: Given, what: str, kind: str, at: str) -> BaseGeometry:
+def geometry_of(feature: Given, what: str, kind: str, at: str) -> BaseGeometry:
+    """The geometry of a feature, of the type ``what``; its coordinates are not checked.
+
+    Raises:
+        FloorPlanError: no such geometry.
+    """
     try:
         with np.errstate(invalid="ignore"):  # coordinates that are no numbers are refused later
             geometry = shapely.geometry.shape(feature.get("geometry"))
@@ -177,7 +182,7 @@ def _geometry(feature: Given, what: str, kind: str, at: str) -> BaseGeometry:
 
 
 def _line(feature: Given, kind: str, at: str) -> Line:
-    geometry = _geometry(feature, "LineString", kind, at)
+    geometry = geometry_of(feature, "LineString", kind, at)
     return cast("Line", tuple(map(tuple, shapely.get_coordinates(geometry).tolist())))
 
 

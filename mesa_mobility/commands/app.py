@@ -24,6 +24,7 @@ from mesa_mobility.commands.plan import plan
 from mesa_mobility.commands.plugins import listing, new
 from mesa_mobility.commands.preset import preset
 from mesa_mobility.commands.replay import replay
+from mesa_mobility.commands.results import results
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
 from mesa_mobility.errors import MobilityError
@@ -61,6 +62,7 @@ app.command("export")(export)
 # Other names of the same.
 app.command("animate", hidden=True)(export)
 app.command("render", hidden=True)(export)
+app.command("results")(results)
 app.command("replay")(replay)
 app.command("explain")(explain)
 app.command("plan")(plan)

@@ -24,6 +24,7 @@ from mesa_mobility.commands.console import (
 from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model, origin_of
+from mesa_mobility.commands.results import RoomsFile, rooms_in
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
@@ -69,6 +70,7 @@ def run(
             "show bodies, and `explain` needs it, too.",
         ),
     ] = None,
+    rooms: RoomsFile = None,
     as_json: AsJson = False,
     no_progress: NoProgress = False,
 ) -> None:
@@ -81,6 +83,7 @@ def run(
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
     options = options.with_seed()
+    areas = rooms_in(rooms)
     if population is not None:
         options = replace(options, settings=[*(options.settings or []), f"population={population}"])
     with progress_bar(shown=not no_progress) as report, nothing_collected():
@@ -100,18 +103,21 @@ def run(
             )
 
     from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run
+    from mesa_mobility.results.engineering.rooms import check_rooms, rooms_of
+    from mesa_mobility.results.engineering.summary import figures_of_places
     from mesa_mobility.results.measures.by_type import rows_by_type
     from mesa_mobility.results.run import RUN_FILES
 
     if out is not None:
         check_writable(out, RUN_FILES)
+    plan, building = simulation.floor_plan, getattr(simulation, "building", None)
+    every_room = check_rooms([*rooms_of(building or plan), *areas], building or plan)
     # From here on there is something to lose: Ctrl-C stops the simulation, not the writing.
     with gentle_interrupt() as stop_here:
         wall, cpu, interrupted = _simulate(simulation, seconds, stop_here, shown=not no_progress)
         with progress_bar(shown=not no_progress) as report:
             report("checking distances and walls", 0, 1)
             trajectories = Trajectories.of(simulation)
-            plan, building = simulation.floor_plan, getattr(simulation, "building", None)
             safety = check_safety(trajectories, plan.walls, plan.free, building=building)
             summary = {
                 **simulation.summary(),
@@ -120,6 +126,7 @@ def run(
                 "seed": options.seed,
                 "by_type": rows_by_type(trajectories) if "type" in trajectories.person_data else [],
                 **_by_storey(trajectories, building),
+                **figures_of_places(trajectories, building or plan, every_room),
                 **origin_of(given, simulation),
                 "behaviors": options.behaviors or [],
                 "wall_s": round(wall, 3),

@@ -10,6 +10,21 @@ from typing import TYPE_CHECKING
 from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
+    from mesa_mobility.results.engineering.clearing import clearing as clearing
+    from mesa_mobility.results.engineering.clearing import time_to_share as time_to_share
+    from mesa_mobility.results.engineering.doors import clogging as clogging
+    from mesa_mobility.results.engineering.doors import crossings_of_doors as crossings_of_doors
+    from mesa_mobility.results.engineering.doors import doors as doors
+    from mesa_mobility.results.engineering.doors import n_t as n_t
+    from mesa_mobility.results.engineering.queues import queue_lengths as queue_lengths
+    from mesa_mobility.results.engineering.queues import queues as queues
+    from mesa_mobility.results.engineering.queues import waiting_times as waiting_times
+    from mesa_mobility.results.engineering.rooms import Room as Room
+    from mesa_mobility.results.engineering.rooms import read_rooms as read_rooms
+    from mesa_mobility.results.engineering.rooms import room_figures as room_figures
+    from mesa_mobility.results.engineering.rooms import room_times as room_times
+    from mesa_mobility.results.engineering.rooms import rooms_of as rooms_of
+    from mesa_mobility.results.engineering.tables import write_tables as write_tables
     from mesa_mobility.results.excerpts import Excerpt as Excerpt
     from mesa_mobility.results.excerpts import Selection as Selection
     from mesa_mobility.results.files import check_writable as check_writable
@@ -22,6 +37,7 @@ if TYPE_CHECKING:
     from mesa_mobility.results.formats.parquet import write_parquet as write_parquet
     from mesa_mobility.results.measures.by_type import by_type as by_type
     from mesa_mobility.results.measures.by_type import occupancy_by_type as occupancy_by_type
+    from mesa_mobility.results.measures.by_type import tables_by_type as tables_by_type
     from mesa_mobility.results.measures.climbs import Climbs as Climbs
     from mesa_mobility.results.measures.climbs import by_stairs as by_stairs
     from mesa_mobility.results.measures.climbs import climbs as climbs

@@ -14,7 +14,11 @@ from mesa_mobility.results.measures.times import quantile_of_times
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import pandas as pd
+
+EVERYBODY = "all"
 
 COLUMNS = ("people", "left", "mean_egress_s", "p95_egress_s", "mean_speed_mps")
 
@@ -79,6 +83,30 @@ def occupancy_by_type(
         name: occupancy(trajectories.of_people(own), every)
         for name, own in people_by(trajectories, key).items()
     }
+
+
+def tables_by_type(
+    measure: Callable[[Tracks], pd.DataFrame], trajectories: Tracks, key: str = "type"
+) -> pd.DataFrame:
+    """A table of everybody, and the same of the people of each type alone.
+
+    Args:
+        measure: makes the table of some tracks.
+        trajectories: the run.
+        key: which of ``person_data`` distinguishes people.
+
+    Returns:
+        The tables below one another. Their index has one more level, the first one, called by the
+        name of ``key``: "all" for everybody, then each type by its name. Tracks without such data
+        have "all" alone.
+    """
+    import pandas as pd
+
+    tables = {EVERYBODY: measure(trajectories)}
+    if key in trajectories.person_data:
+        for name, own in people_by(trajectories, key).items():
+            tables[name] = measure(trajectories.of_people(own))
+    return pd.concat(list(tables.values()), keys=list(tables), names=[key])
 
 
 def people_by(trajectories: Tracks, key: str) -> dict[str, NDArray[np.int64]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,9 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.tracks import Tracks
 
 FloatArray = NDArray[np.float64]
+
+_NEAR = 0.01
+"""Metres beyond the bounds of a line, more than rounding, within which steps may cross it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +46,33 @@ def crossings(trajectories: Tracks, a: ArrayLike, b: ArrayLike) -> Crossings:
     Raises:
         ResultsError: the two ends coincide.
     """
+    return crossings_of_lines(trajectories, [(a, b)])[0]
+
+
+def crossings_of_lines(
+    trajectories: Tracks, lines: Iterable[tuple[ArrayLike, ArrayLike]]
+) -> list[Crossings]:
+    """`crossings` of several lines, each given by its two ends.
+
+    Raises:
+        ResultsError: the two ends of a line coincide.
+    """
     start, end = trajectories.steps()
-    places = np.column_stack([trajectories.x, trajectories.y])
-    share, change = passages(places[start], places[end], a, b)
-    on = change != 0
-    time = (trajectories.frame[start[on]] + share[on]) / trajectories.frame_rate
-    order = np.argsort(time, kind="stable")
-    return Crossings(time[order], trajectories.person[start[on]][order], change[on][order])
+    x, y = trajectories.x, trajectories.y
+    begins, ends = np.column_stack([x[start], y[start]]), np.column_stack([x[end], y[end]])
+    low, high = np.minimum(begins, ends).T.copy(), np.maximum(begins, ends).T.copy()
+    found = []
+    for a, b in lines:
+        x0, y0 = np.minimum(a, b) - _NEAR
+        x1, y1 = np.maximum(a, b) + _NEAR
+        near = np.flatnonzero((high[0] >= x0) & (low[0] <= x1) & (high[1] >= y0) & (low[1] <= y1))
+        share, change = passages(begins[near], ends[near], a, b)
+        on = change != 0
+        rows = start[near[on]]
+        time = (trajectories.frame[rows] + share[on]) / trajectories.frame_rate
+        order = np.argsort(time, kind="stable")
+        found.append(Crossings(time[order], trajectories.person[rows][order], change[on][order]))
+    return found
 
 
 def passages(

@@ -65,7 +65,7 @@ def leaving_times(trajectories: Tracks, building: Building) -> dict[int, FloatAr
         ResultsError: the tracks have no elevations.
     """
     return {
-        number: _leaving(trajectories, rows)
+        number: last_there(trajectories, rows)
         for number, rows in _rows_by_level(trajectories, building).items()
     }
 
@@ -93,7 +93,7 @@ def by_level(trajectories: Tracks, building: Building) -> pd.DataFrame:
     found = _rows_by_level(trajectories, building)
     table = []
     for number in sorted(found, key=lambda each: -elevation[each]):
-        times = _leaving(trajectories, found[number])
+        times = last_there(trajectories, found[number])
         were = times[~np.isnan(times)]
         counts = people_at_a_time(trajectories, found[number])
         table.append(
@@ -156,8 +156,11 @@ def people_at_a_time(trajectories: Tracks, rows: NDArray[np.bool_]) -> NDArray[n
     return np.bincount(trajectories.frame[rows], minlength=trajectories.frames)
 
 
-def _leaving(trajectories: Tracks, rows: NDArray[np.bool_]) -> FloatArray:
-    """(m,) seconds after which no row of a person is in a mask (n,); see `leaving_times`."""
+def last_there(trajectories: Tracks, rows: NDArray[np.bool_]) -> FloatArray:
+    """When each person was last somewhere, in rows of a mask (n,): (m,) seconds.
+
+    See `leaving_times` for people who are there at the end, or never were.
+    """
     last = np.full(len(trajectories.radii), np.nan)
     # Rows come in order of frames: each person's last row is the one that stays.
     last[trajectories.person[rows]] = trajectories.frame[rows]

@@ -1,0 +1,66 @@
+"""`mesa-mobility results`: the engineering figures of a saved run as tables and pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mesa_mobility.commands.console import NoProgress, progress_bar, say, some_path
+from mesa_mobility.commands.export import RunDir
+from mesa_mobility.commands.grouping import grouped
+
+if TYPE_CHECKING:
+    from mesa_mobility.results import Room
+
+RoomsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--rooms",
+        help="Named areas in GeoJSON, of which to say when they are empty.",
+        parser=some_path,
+        metavar="FILE",
+    ),
+]
+
+
+@grouped
+def results(
+    run: RunDir,
+    *,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--out",
+            help="Folder to write to, by default `results` in the run's folder.",
+            parser=some_path,
+            metavar="PATH",
+        ),
+    ] = None,
+    rooms: RoomsFile = None,
+    no_progress: NoProgress = False,
+) -> None:
+    """Write the figures of a run for a report: doors, queues and clearing times."""
+    from mesa_mobility.results import write_tables
+    from mesa_mobility.results.run import read_run
+
+    folder = out or run / "results"
+    given = rooms_in(rooms)
+    found = read_run(run)
+    with progress_bar(shown=not no_progress) as report:
+        report("measuring")
+        write_tables(found.trajectories, found.plan, folder, given)
+    say(f"written to {folder}")
+
+
+def rooms_in(file: Path | None) -> list[Room]:
+    """The rooms of a file; none without a file.
+
+    Raises:
+        FloorPlanError: no file of rooms.
+    """
+    from mesa_mobility.results import read_rooms
+
+    return [] if file is None else read_rooms(file)
