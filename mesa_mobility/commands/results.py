@@ -40,18 +40,31 @@ def results(
         ),
     ] = None,
     rooms: RoomsFile = None,
+    cell: Annotated[float, typer.Option(help="Side of the cells of maps in metres.")] = 0.5,
+    every: Annotated[
+        float, typer.Option(help="Seconds between the measurements of densities and speeds.")
+    ] = 1.0,
     no_progress: NoProgress = False,
 ) -> None:
-    """Write the figures of a run for a report: doors, queues and clearing times."""
-    from mesa_mobility.results import write_tables
+    """Write the figures of a run for a report: doors, queues, clearing times and maps."""
+    from mesa_mobility.results import write_results
+    from mesa_mobility.results.excerpts import title_of
     from mesa_mobility.results.run import read_run
 
     folder = out or run / "results"
     given = rooms_in(rooms)
     found = read_run(run)
     with progress_bar(shown=not no_progress) as report:
-        report("measuring")
-        write_tables(found.trajectories, found.plan, folder, given)
+        write_results(
+            found.trajectories,
+            found.plan,
+            folder,
+            given,
+            cell=cell,
+            every=every,
+            title=title_of(found.summary, found.trajectories),
+            progress=report,
+        )
     say(f"written to {folder}")
 
 

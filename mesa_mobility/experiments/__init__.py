@@ -9,6 +9,8 @@ from mesa_mobility._lazy import names_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mesa_mobility.experiments.comparing import Comparison as Comparison
+    from mesa_mobility.experiments.comparing import compare as compare
     from mesa_mobility.experiments.convergence import Assessment as Assessment
     from mesa_mobility.experiments.convergence import OccupancyConvergence as OccupancyConvergence
     from mesa_mobility.experiments.convergence import Precision as Precision

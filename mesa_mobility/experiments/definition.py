@@ -23,7 +23,16 @@ from mesa_mobility.experiments.design.sensitivity import MorrisTrajectories, Sal
 from mesa_mobility.experiments.experiment import Experiment, model_name
 from mesa_mobility.plugins.registry import did_you_mean
 
-_SCALARS = ("name", "model", "seed", "replications", "max_seconds", "time_limit", "keep")
+_SCALARS = (
+    "name",
+    "model",
+    "seed",
+    "seeds",
+    "replications",
+    "max_seconds",
+    "time_limit",
+    "keep",
+)
 _TABLES = ("fixed", "precision")
 _SESSION = {"began": str, "executor": str, "machine": str, "versions": dict, "inputs": dict}
 _DESIGNS: dict[str, Callable[[Any], Design]] = {

@@ -17,7 +17,7 @@ import numpy as np
 from mesa_mobility.crowd.model_files import is_model_file
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.experiments.design.points import point_key, run_name
-from mesa_mobility.experiments.experiment import Experiment, check_parameters
+from mesa_mobility.experiments.experiment import COMMON, Experiment, check_parameters
 from mesa_mobility.experiments.missing import Runs, missing_runs
 from mesa_mobility.experiments.session import session_of
 from mesa_mobility.experiments.store import Store
@@ -258,6 +258,7 @@ class _Driver:
         return Setup(
             model=_found_anywhere(experiment.model),
             seed=experiment.seed,
+            common_seeds=experiment.seeds == COMMON,
             max_seconds=experiment.max_seconds,
             time_limit=experiment.time_limit,
             occupancy=experiment.keeps_occupancy,

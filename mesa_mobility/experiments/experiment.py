@@ -27,6 +27,9 @@ from mesa_mobility.plugins.registry import did_you_mean
 Kept = Literal["occupancy", "trajectories"]
 KEPT = ("occupancy", "trajectories")
 
+Seeds = Literal["independent", "common"]
+INDEPENDENT, COMMON = "independent", "common"
+
 MOST_RUNS = 10_000_000
 
 _LONGEST = 1e9
@@ -38,8 +41,9 @@ class Experiment:
     """Runs of a model over points of its parameter space, each with several seeds.
 
     The seed of a run is derived from the experiment's seed, the point's values and the number of
-    the replication, and from nothing else. Executors, the order of runs, interruptions, and points
-    or replications added later change no result.
+    the replication, and from nothing else. With common seeds the point's values do not count: runs
+    of one number have the same seed at all points (common random numbers). Executors, the order of
+    runs, interruptions, and points or replications added later change no result.
 
     Args:
         model: a class, the name of an installed model, ``FILE.py``, ``FILE.py:NAME`` or
@@ -47,6 +51,7 @@ class Experiment:
         parameters: a design, or values by name, which are a ``Grid``.
         replications: runs of each point, or "auto": as many as ``precision`` takes.
         seed: of the experiment, from 0 on.
+        seeds: "independent", or "common" to compare points run by run; see ``compare``.
         fixed: values of parameters that are the same in all runs.
         max_seconds: simulated seconds at most; runs that take longer end with people inside.
         time_limit: seconds of real time that a run may take; then it counts as timed out.
@@ -63,6 +68,7 @@ class Experiment:
     parameters: Design | Mapping[str, Any] = field(default_factory=dict)
     replications: int | Literal["auto"] = 1
     seed: int = 0
+    seeds: Seeds = "independent"
     fixed: Mapping[str, Value] = field(default_factory=dict)
     max_seconds: float | None = None
     time_limit: float | None = None
@@ -85,6 +91,10 @@ class Experiment:
                 "experiment: replications", self.replications, 1, math.inf, '1 or more, or "auto"'
             )
         check_whole("experiment: seed", self.seed, 0, math.inf, "0 or more")
+        if self.seeds not in (INDEPENDENT, COMMON):
+            raise ModelError(
+                f"experiment: seeds is {self.seeds!r}, expected {INDEPENDENT} or {COMMON}"
+            )
         most = self.precision.most if self.replications == "auto" else self.replications
         if len(self.design) * most > MOST_RUNS:
             raise ModelError(

@@ -13,7 +13,12 @@ from typing import Any
 
 from mesa_mobility.crowd.model_files import is_model_file, path_and_name
 from mesa_mobility.errors import MapError, ModelError
-from mesa_mobility.experiments.experiment import Experiment, model_class, model_name
+from mesa_mobility.experiments.experiment import (
+    INDEPENDENT,
+    Experiment,
+    model_class,
+    model_name,
+)
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.populations import Population
 from mesa_mobility.reports.inputs import digest_of, given_files, given_population
@@ -39,7 +44,9 @@ def check_goes_on(store: str, before: Mapping[str, Any], said: Mapping[str, Any]
         before: definition of the experiment whose runs are there.
         said: definition of the one to be run.
     """
-    for key in ("model", "seed", "max_seconds"):
+    # Stores that were made without a word on seeds hold independent ones.
+    before = {"seeds": INDEPENDENT, **before}
+    for key in ("model", "seed", "seeds", "max_seconds"):
         if before.get(key) != said.get(key) and not (
             key == "model" and _is_same_file(str(before["model"]), str(said["model"]))
         ):

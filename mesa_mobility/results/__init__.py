@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from mesa_mobility.results.engineering.doors import crossings_of_doors as crossings_of_doors
     from mesa_mobility.results.engineering.doors import doors as doors
     from mesa_mobility.results.engineering.doors import n_t as n_t
+    from mesa_mobility.results.engineering.files import write_results as write_results
+    from mesa_mobility.results.engineering.grids import Grid as Grid
+    from mesa_mobility.results.engineering.maps import FloorMaps as FloorMaps
+    from mesa_mobility.results.engineering.maps import maps as maps
+    from mesa_mobility.results.engineering.maps import maps_by_type as maps_by_type
+    from mesa_mobility.results.engineering.pictures import plot_map as plot_map
     from mesa_mobility.results.engineering.queues import queue_lengths as queue_lengths
     from mesa_mobility.results.engineering.queues import queues as queues
     from mesa_mobility.results.engineering.queues import waiting_times as waiting_times
@@ -24,7 +30,8 @@ if TYPE_CHECKING:
     from mesa_mobility.results.engineering.rooms import room_figures as room_figures
     from mesa_mobility.results.engineering.rooms import room_times as room_times
     from mesa_mobility.results.engineering.rooms import rooms_of as rooms_of
-    from mesa_mobility.results.engineering.tables import write_tables as write_tables
+    from mesa_mobility.results.engineering.service import level_of_service as level_of_service
+    from mesa_mobility.results.engineering.service import service_limits as service_limits
     from mesa_mobility.results.excerpts import Excerpt as Excerpt
     from mesa_mobility.results.excerpts import Selection as Selection
     from mesa_mobility.results.files import check_writable as check_writable

@@ -159,23 +159,27 @@ def draw_floor(
     # Holes of the walkable area are pillars and the like: obstacles to the eye.
     outlines = [shapely.Polygon(part.exterior) for part in shapely.get_parts(plan.walkable)]
     solid = shapely.difference(shapely.union_all(outlines), plan.free)
-    axes.add_patch(PathPatch(_path(plan.free), facecolor="white", linewidth=0, zorder=1))
+    axes.add_patch(PathPatch(floor_path(plan.free), facecolor="white", linewidth=0, zorder=1))
     if not solid.is_empty:
-        axes.add_patch(PathPatch(_path(solid), facecolor=OBSTACLE, linewidth=0, zorder=1))
+        axes.add_patch(PathPatch(floor_path(solid), facecolor=OBSTACLE, linewidth=0, zorder=1))
         handles.append(Patch(color=OBSTACLE, label="obstacle"))
     for part in stairs:
-        axes.add_patch(PathPatch(_path(part), facecolor=STAIRS, edgecolor=WALL, lw=0.5, zorder=2))
+        axes.add_patch(
+            PathPatch(floor_path(part), facecolor=STAIRS, edgecolor=WALL, lw=0.5, zorder=2)
+        )
     if stairs:
         handles.append(Patch(color=STAIRS, label="stairs or lift"))
     for zone in plan.zones:
         inside = shapely.intersection(zone.area, plan.free)
         if inside.is_empty:
             continue
-        axes.add_patch(PathPatch(_path(inside), facecolor=ZONE, linewidth=0, zorder=2))
+        axes.add_patch(PathPatch(floor_path(inside), facecolor=ZONE, linewidth=0, zorder=2))
     if plan.zones:
         handles.append(Patch(color=ZONE, label="slow zone"))
     for refuge in refuges:
-        axes.add_patch(PathPatch(_path(refuge.shape), facecolor=REFUGE, edgecolor=EXIT, zorder=2))
+        axes.add_patch(
+            PathPatch(floor_path(refuge.shape), facecolor=REFUGE, edgecolor=EXIT, zorder=2)
+        )
         spot = refuge.shape.representative_point()
         name = axes.text(spot.x, spot.y, refuge.name, ha="center", va="center", zorder=2)
         name.set(color=EXIT, fontsize=7)
@@ -212,7 +216,8 @@ def _polygons(area: shapely.Geometry) -> list[shapely.Polygon]:
     return [part for part in shapely.get_parts(area) if isinstance(part, shapely.Polygon)]
 
 
-def _path(area: shapely.Geometry) -> Path:
+def floor_path(area: shapely.Geometry) -> Path:
+    """The outlines and holes of an area as one path."""
     rings = [
         Path(np.asarray(ring.coords)[:, :2], closed=True)
         # Normalised, holes run against their outline and stay empty when filled.

@@ -103,9 +103,7 @@ def plot_trajectories(
     # Drawn faint so that crossing tracks show; the scale itself is not faint.
     if bar.solids is not None:
         bar.solids.set_alpha(1.0)
-    _finish(
-        figure, list(handles.values()), title or f"Tracks of {trajectories.people} people", path
-    )
+    finish(figure, list(handles.values()), title or f"Tracks of {trajectories.people} people", path)
 
 
 def plot_snapshots(
@@ -156,7 +154,7 @@ def plot_snapshots(
         Line2D([], [], linestyle="none", marker="o", color=colour, label=name)
         for name, colour in said
     ]
-    _finish(figure, handles, title, path)
+    finish(figure, handles, title, path)
 
 
 def plot_occupancy(
@@ -308,9 +306,14 @@ def _draw_bodies(
     )
 
 
-def _finish(
+def finish(
     figure: Figure, handles: list[Line2D | Patch], title: str, path: str | os.PathLike[str]
 ) -> None:
+    """Write a figure with its legend and its title.
+
+    Raises:
+        ResultsError: the file cannot be written.
+    """
     figure.legend(
         handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=9
     )

@@ -79,13 +79,14 @@ def run_name(key: str, replication: int) -> str:
     return f"{key}-{replication}"
 
 
-def seed_of_run(seed: int, key: str, replication: int) -> int:
+def seed_of_run(seed: int, key: str | None, replication: int) -> int:
     """The seed of a run, from 0 to 2**63 - 1.
 
     Args:
         seed: of the experiment.
-        key: of the point.
+        key: of the point; None where runs of one number have the same seed at all points.
         replication: number of the replication, from 0 on.
     """
-    sequence = np.random.SeedSequence([seed, int(key, 16), replication])
+    entropy = [seed, replication] if key is None else [seed, int(key, 16), replication]
+    sequence = np.random.SeedSequence(entropy)
     return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))

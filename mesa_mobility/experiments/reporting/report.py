@@ -113,6 +113,7 @@ def _design(page: Page, store: Store, frame: pd.DataFrame) -> None:
         ["points", len(experiment.design)],
         ["replications", experiment.replications],
         ["seed", experiment.seed],
+        ["seeds of points", experiment.seeds],
     ]
     for name, value in experiment.fixed.items():
         rows.append([name, value])

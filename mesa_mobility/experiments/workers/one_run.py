@@ -44,6 +44,7 @@ class Setup:
     Attributes:
         model: class, or name of a model.
         seed: of the experiment.
+        common_seeds: whether runs of one number have the same seed at all points.
         max_seconds: simulated seconds at most, or None.
         time_limit: seconds of real time at most, or None.
         occupancy: whether rows keep the occupancy.
@@ -55,6 +56,7 @@ class Setup:
 
     model: type | str
     seed: int
+    common_seeds: bool
     max_seconds: float | None
     time_limit: float | None
     occupancy: bool
@@ -108,7 +110,7 @@ def first_columns(setup: Setup, point: Point, replication: int) -> Row:
         "run": run_name(key, replication),
         "point": key,
         "replication": replication,
-        "seed": seed_of_run(setup.seed, key, replication),
+        "seed": seed_of_run(setup.seed, None if setup.common_seeds else key, replication),
         "status": FAILED,
         "error": None,
         "began": time.time(),

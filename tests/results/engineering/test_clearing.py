@@ -17,7 +17,7 @@ from mesa_mobility.results import (
     room_figures,
     rooms_of,
     time_to_share,
-    write_tables,
+    write_results,
 )
 from tests.fixtures.buildings import two_storeys, with_refuge_and_lift
 from tests.results.measures.test_storeys import PEOPLE, tracks_of
@@ -168,12 +168,17 @@ def test_rooms_must_be_on_the_plan(two_leave_one_stays, room, rooms, said):
 
 
 def test_the_tables_of_a_run(two_leave_one_stays, room, tmp_path):
-    write_tables(two_leave_one_stays, room, tmp_path, [Room("west", WEST)])
-    tables = {each.stem: pd.read_csv(each) for each in tmp_path.iterdir()}
-    assert sorted(tables) == ["clearing", "doors", "n_t", "queues", "waiting"]
+    write_results(two_leave_one_stays, room, tmp_path, [Room("west", WEST)])
+    tables = {each.stem: pd.read_csv(each) for each in tmp_path.glob("*.csv")}
+    assert sorted(tables) == ["clearing", "doors", "maps", "n_t", "queues", "waiting"]
+    pictures = sorted(each.stem for each in tmp_path.glob("*.png"))
+    assert pictures == ["dense", "level_of_service", "speed", "usage"]
     doors = tables["doors"].set_index("door")
     assert doors.people.to_dict() == {"middle": 0, "east": 2}
     assert doors.loc["east", ["type", "first_s", "clogs"]].tolist() == ["all", 0.954545, 0]
     assert tables["clearing"].place.tolist() == ["all", "west"]
     assert tables["n_t"].people.tolist() == [1, 2]
     assert tables["waiting"].longest_wait_s.tolist() == [2.0]
+    cells = tables["maps"].set_index(["x", "y"])
+    assert cells.people.sum() == 1 + 2 + 3
+    assert cells.floor_m2.sum() == pytest.approx(39.0)
