@@ -161,24 +161,30 @@ def _maps(
     """Maps of each group of people, given as (m,) weights, 0 or 1, by level."""
     start, end = between
     duration = trajectories.duration
-    if not 0.0 <= start <= (duration if end is None else end) <= duration + 1e-9:
+    end = duration if end is None else end
+    if not 0.0 <= start <= end <= duration + 1e-9:
         raise ResultsError(
-            f"map from {start:g} to {end} s: expected rising times within the run's {duration:g} s"
+            f"map from {start:g} to {end:g} s: expected rising times within the run's "
+            f"{duration:g} s"
         )
-    frames = _sampled(trajectories, every, start, duration if end is None else end)
+    frames = _sampled(trajectories, every, start, end)
+    first, last = round(start * trajectories.frame_rate), round(end * trajectories.frame_rate)
+    shown = (trajectories.frame >= first) & (trajectories.frame <= last)
+    moved = _speeds(trajectories, frames)
     found: dict[str, dict[int, FloorMaps]] = {name: {} for name in groups}
     weights = np.array(list(groups.values()))
-    for level, tracks, own in _floors(trajectories, plan):
+    for level, there, own in _floors(trajectories, plan):
         grid = Grid(own.free, cell)
         most, total, above = (np.zeros((len(groups), *grid.shape)) for _ in range(3))
         for frame in frames:
-            rows = slice(*tracks.frame_offsets[frame : frame + 2])
-            points = np.column_stack([tracks.x[rows], tracks.y[rows]])
-            now = grid.densities(points, weights[:, tracks.person[rows]])
+            rows = np.arange(*trajectories.frame_offsets[frame : frame + 2])
+            rows = rows[there[rows]]
+            points = np.column_stack([trajectories.x[rows], trajectories.y[rows]])
+            now = grid.densities(points, weights[:, trajectories.person[rows]])
             most, total = np.maximum(most, now), total + now
             above += now > dense
-        used = _usage(tracks, grid, (int(frames[0]), int(frames[-1])), weights)
-        speeds = _speeds(tracks, grid, frames, weights)
+        used = _usage(trajectories, grid, there & shown, weights)
+        speeds = _mean_speeds(trajectories, grid, there, moved, weights)
         for number, name in enumerate(groups):
             found[name][level] = FloorMaps(
                 grid,
@@ -202,23 +208,21 @@ def _sampled(tracks: Tracks, every: float, start: float, end: float) -> NDArray[
 
 def _floors(
     trajectories: Tracks, plan: FloorPlan | Building
-) -> Iterator[tuple[int, Tracks, FloorPlan]]:
-    """Number, people and plan of each level, from the top."""
+) -> Iterator[tuple[int, NDArray[np.bool_], FloorPlan]]:
+    """Number, (n,) rows of people inside and plan of each level, from the top."""
     if isinstance(plan, FloorPlan):
-        yield 0, trajectories, plan
+        yield 0, trajectories.exit_frames[trajectories.person] != trajectories.frame, plan
         return
     found = where(trajectories, plan)
     for level in sorted(plan.levels, key=lambda each: each.elevation, reverse=True):
         rows = found.inside & (found.level == level.number)
-        yield level.number, trajectories.only(rows), plan.floor_plan_of(level.number)
+        yield level.number, rows, plan.floor_plan_of(level.number)
 
 
 def _usage(
-    tracks: Tracks, grid: Grid, between: tuple[int, int], weights: FloatArray
+    tracks: Tracks, grid: Grid, rows: NDArray[np.bool_], weights: FloatArray
 ) -> tuple[list[NDArray[np.int64]], list[FloatArray]]:
     """How many people of each group were in each cell, and for how many seconds all together."""
-    rows = (tracks.frame >= between[0]) & (tracks.frame <= between[1])
-    rows &= tracks.exit_frames[tracks.person] != tracks.frame
     person = tracks.person[rows].astype(np.int64)
     cells = grid.cells_at(tracks.x[rows], tracks.y[rows])
     person, cells = person[cells >= 0], cells[cells >= 0]
@@ -234,22 +238,35 @@ def _usage(
     return people, seconds
 
 
-def _speeds(
-    tracks: Tracks, grid: Grid, frames: NDArray[np.int64], weights: FloatArray
-) -> list[FloatArray]:
-    """Mean speed of the people of each group in each cell, nan where nobody was."""
+def _speeds(tracks: Tracks, frames: NDArray[np.int64]) -> tuple[NDArray[np.int64], FloatArray]:
+    """(k,) rows in these frames that are in the middle of a window, and the (k,) speeds, m/s."""
     half = max(round(tracks.frame_rate * WINDOW_S / 2), 1)
-    start, end = tracks.steps(2 * half)
+    order = tracks.by_person
+    start, middle, end = order[: -2 * half], order[half:-half], order[2 * half :]
     sampled = np.zeros(tracks.frames, dtype=np.bool_)
     sampled[frames] = True
-    kept = sampled[tracks.frame[start] + half]
-    start, end = start[kept], end[kept]
+    kept = sampled[tracks.frame[middle]]
+    start, middle, end = start[kept], middle[kept], end[kept]
+    # Rows of a person without gaps: then the row between two frames is the one in the middle.
+    kept = (tracks.person[start] == tracks.person[end]) & (
+        tracks.frame[end] - tracks.frame[start] == 2 * half
+    )
+    start, middle, end = start[kept], middle[kept], end[kept]
     way = np.hypot(tracks.x[end] - tracks.x[start], tracks.y[end] - tracks.y[start])
-    speed = way * tracks.frame_rate / (2 * half)
-    middle, there = _rows_at(tracks, start, half)
-    cells = grid.cells_at(tracks.x[middle], tracks.y[middle])
-    there &= cells >= 0
-    speed, cells, person = speed[there], cells[there], tracks.person[start[there]]
+    return middle, way * tracks.frame_rate / (2 * half)
+
+
+def _mean_speeds(
+    tracks: Tracks,
+    grid: Grid,
+    there: NDArray[np.bool_],
+    moved: tuple[NDArray[np.int64], FloatArray],
+    weights: FloatArray,
+) -> list[FloatArray]:
+    """Mean speed of the people of each group in each cell, nan where nobody was."""
+    rows, speed = moved
+    cells = np.where(there[rows], grid.cells_at(tracks.x[rows], tracks.y[rows]), -1)
+    speed, person, cells = speed[cells >= 0], tracks.person[rows[cells >= 0]], cells[cells >= 0]
     found = []
     for weight in weights:
         sums, counts = (
@@ -259,15 +276,3 @@ def _speeds(
         mean = np.divide(sums, counts, out=np.full(len(sums), np.nan), where=counts > 0)
         found.append(mean.reshape(grid.shape))
     return found
-
-
-def _rows_at(
-    tracks: Tracks, start: NDArray[np.int64], later: int
-) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """(k,) rows of the same people so many frames later, and whether there are such rows."""
-    place = np.empty(len(tracks), dtype=np.int64)
-    place[tracks.by_person] = np.arange(len(tracks))
-    at = np.minimum(place[start] + later, max(len(tracks) - 1, 0))
-    rows = tracks.by_person[at]
-    same = tracks.person[rows] == tracks.person[start]
-    return rows, same & (tracks.frame[rows] == tracks.frame[start] + later)
