@@ -92,7 +92,7 @@ class Precision:
         check_whole("least", self.least, 2, math.inf, "2 or more")
         check_whole("most", self.most, self.least, math.inf, f"{self.least} (least) or more")
         for figure in self.figures:
-            how = figure.split(" ")[0]
+            how = figure.split(" ", 1)[0]
             if (
                 how != "mean"
                 and (needed := runs_for_quantile(int(how[1:]) / 100, self.confidence)) > self.most
@@ -105,7 +105,7 @@ class Precision:
     @property
     def columns(self) -> list[str]:
         """Columns of the store that the figures are of."""
-        return list(dict.fromkeys(figure.split(" ")[1] for figure in self.figures))
+        return list(dict.fromkeys(figure.split(" ", 1)[1] for figure in self.figures))
 
     def next_count(self, count: int) -> int:
         """Replications to have after ``count``."""
@@ -218,7 +218,7 @@ def assess(
     estimates, met = {}, {}
     before = precision.look_before(runs)
     for figure in precision.figures:
-        column = values.get(figure.split(" ")[1], np.empty(0))
+        column = values.get(figure.split(" ", 1)[1], np.empty(0))
         found = estimate(figure, column, precision.confidence)
         met[figure] = _is_known(precision, found)
         if met[figure] and before and figure.startswith("mean "):

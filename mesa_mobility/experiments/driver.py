@@ -263,6 +263,7 @@ class _Driver:
             time_limit=experiment.time_limit,
             occupancy=experiment.keeps_occupancy,
             trajectories="trajectories" in experiment.keep,
+            doors="doors" in experiment.keep,
             column_types=experiment.column_types(),
             # Workers may have been started in another folder.
             store=os.path.abspath(folder.root) if folder.local else folder.url,

@@ -24,8 +24,8 @@ from mesa_mobility.experiments.storing.rows import SERIES
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.plugins.registry import did_you_mean
 
-Kept = Literal["occupancy", "trajectories"]
-KEPT = ("occupancy", "trajectories")
+Kept = Literal["occupancy", "trajectories", "doors"]
+KEPT = ("occupancy", "trajectories", "doors")
 
 Seeds = Literal["independent", "common"]
 INDEPENDENT, COMMON = "independent", "common"
@@ -51,14 +51,14 @@ class Experiment:
         parameters: a design, or values by name, which are a ``Grid``.
         replications: runs of each point, or "auto": as many as ``precision`` takes.
         seed: of the experiment, from 0 on.
-        seeds: "independent", or "common" to compare points run by run; see ``compare``.
         fixed: values of parameters that are the same in all runs.
         max_seconds: simulated seconds at most; runs that take longer end with people inside.
         time_limit: seconds of real time that a run may take; then it counts as timed out.
-        keep: beside the figures of each run, its "occupancy" (people inside each second) and its
-            "trajectories".
+        keep: beside the figures of each run, its "occupancy" (people inside each second), its
+            "trajectories", and figures of its "doors", rooms and clearing times.
         precision: with ``replications="auto"``, what is to be known how well.
         name: title of the report.
+        seeds: "independent", or "common" to compare points run by run; see ``compare``.
 
     Raises:
         ModelError: a value out of range, an unknown parameter, or one that is fixed and varies.
@@ -68,13 +68,13 @@ class Experiment:
     parameters: Design | Mapping[str, Any] = field(default_factory=dict)
     replications: int | Literal["auto"] = 1
     seed: int = 0
-    seeds: Seeds = "independent"
     fixed: Mapping[str, Value] = field(default_factory=dict)
     max_seconds: float | None = None
     time_limit: float | None = None
     keep: tuple[Kept, ...] = ()
     precision: Precision = field(default_factory=Precision)
     name: str = ""
+    seeds: Seeds = "independent"
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -105,7 +105,9 @@ class Experiment:
             _check_seconds(name, getattr(self, name))
         for each in self.keep:
             if each not in KEPT:
-                raise ModelError(f"experiment: keep has {each!r}, expected {' or '.join(KEPT)}")
+                raise ModelError(
+                    f"experiment: keep has {each!r}, expected {', '.join(KEPT[:-1])} or {KEPT[-1]}"
+                )
         if both := set(self.fixed) & set(self.design.column_types()):
             raise ModelError(f"experiment: {sorted(both)[0]} is both fixed and varied")
 
@@ -159,7 +161,8 @@ def check_parameters(experiment: Experiment) -> None:
             )
     if any(each.kind is each.VAR_KEYWORD for each in inspect.signature(kind).parameters.values()):
         return
-    needed = ["rng", *(["record"] if "trajectories" in experiment.keep else [])]
+    records = {"trajectories", "doors"} & {*experiment.keep}
+    needed = ["rng", *(["record"] if records else [])]
     for name in needed:
         if name not in taken:
             raise ModelError(f"model {called}: its constructor does not take {name}")

@@ -15,7 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.experiments.intervals import Estimate, mean_interval, quantile_interval
-from mesa_mobility.experiments.storing.rows import COMPUTING, FAILED, STALLED, TIMED_OUT
+from mesa_mobility.experiments.storing.rows import (
+    COMPUTING,
+    FAILED,
+    REACHED,
+    STALLED,
+    TIMED_OUT,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,14 +41,16 @@ def observed(runs: pd.DataFrame, column: str) -> NDArray[np.float64]:
 
     Returns:
         The values; nan where the run has failed, infinite where it has none for another reason, or
-        where the column is a time of a crowd that stalled.
+        where the column is a time of a crowd that stalled. Times to a share of the people, and of
+        the first one, count as they are.
     """
     status = runs["status"].to_numpy()
     values = np.full(len(runs), np.nan)
     if column in runs:
         values = runs[column].to_numpy(dtype=np.float64, copy=True)
     lacking = np.isnan(values) | (status == TIMED_OUT)
-    if is_time(column) and column not in COMPUTING:
+    known = column in COMPUTING or column.rpartition(".")[2] in REACHED
+    if is_time(column) and not known:
         lacking |= status == STALLED
     values[lacking] = np.inf
     values[status == FAILED] = np.nan
@@ -65,7 +73,7 @@ def estimate(figure: str, values: NDArray[np.float64], confidence: float = 0.95)
             one not reached is late; of other columns no percentile is given where one is lacking.
         confidence: of the interval.
     """
-    how, column = figure.split(" ")
+    how, column = figure.split(" ", 1)
     if how == "mean" or (np.isinf(values).any() and not is_time(column)):
         return mean_interval(values, confidence)
     return quantile_interval(values, int(how[1:]) / 100, confidence)

@@ -188,7 +188,7 @@ class Store:
             ResultsError: no such column.
         """
         check_figure(figure)
-        column = figure.split(" ")[1]
+        column = figure.split(" ", 1)[1]
         frame = self.table(["point", column]).to_pandas()
         if column not in frame:
             raise ResultsError(f"{self}: has no column {column}")

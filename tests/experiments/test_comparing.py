@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy import stats
 
@@ -10,6 +11,8 @@ from mesa_mobility.errors import ModelError, ResultsError
 from mesa_mobility.experiments import Experiment, compare, run_experiment
 from mesa_mobility.experiments.comparing import compare_pairs, smallest_difference
 from mesa_mobility.experiments.definition import from_definition, to_definition
+from mesa_mobility.experiments.observed import observed
+from mesa_mobility.results import read_parquet
 
 LEAVING = "tests.fixtures.experiments.models:Leaving"
 
@@ -165,3 +168,50 @@ def test_what_cannot_be_compared(tmp_path, given, said):
 def test_one_pair_is_too_few(tmp_path):
     with pytest.raises(ResultsError, match="1 pairs of runs at width"):
         compare(store_of(tmp_path, replications=1), "width", "egress_s")
+
+
+def test_doors_of_runs_are_columns_to_compare(tmp_path):
+    experiment = Experiment(
+        "doorway",
+        {"door_width": [0.9, 1.4]},
+        fixed={"pedestrians": 12},
+        replications=2,
+        max_seconds=60,
+        seeds="common",
+        keep=["doors", "trajectories"],
+    )
+    store = run_experiment(experiment, tmp_path, executor="serial")
+    frame = store.frame().set_index("run")
+    for run, row in frame.iterrows():
+        tracks = read_parquet(tmp_path / "trajectories" / f"{run}.parquet")
+        left = np.sort(tracks.exit_frames) / 30
+        assert (row.t50_s, row.t100_s) == (left[5], left[11])
+        assert row.t100_s == pytest.approx(row.egress_s, abs=1e-5)
+        assert row["door.first door.people"] == 12
+    [found] = compare(store, "door_width", "door.first door.flow_per_s")
+    assert found.difference.runs == 2
+    known = store.estimates("mean door.first door.flow_per_s")
+    flows = frame.groupby("point")["door.first door.flow_per_s"].mean()
+    assert {key: each.value for key, each in known.items()} == pytest.approx(flows.to_dict())
+
+
+def test_people_inside_at_the_end_are_censored(tmp_path):
+    experiment = Experiment("doorway", fixed={"pedestrians": 12}, max_seconds=4, keep=["doors"])
+    store = run_experiment(experiment, tmp_path, executor="serial")
+    assert store.frame().t100_s.isna().all()
+    [known] = store.estimates("p50 t100_s").values()
+    assert (known.value, known.not_reached, known.runs) == (None, 1, 1)
+
+
+def test_times_that_were_reached_before_a_stall_count():
+    runs = pd.DataFrame(
+        {
+            "status": ["done", "stalled", "stalled", "failed"],
+            "t50_s": [10.0, 12.0, np.nan, np.nan],
+            "door.east.last_s": [20.0, 15.0, np.nan, np.nan],
+        }
+    )
+    np.testing.assert_array_equal(observed(runs, "t50_s"), [10.0, 12.0, np.inf, np.nan])
+    np.testing.assert_array_equal(
+        observed(runs, "door.east.last_s"), [20.0, np.inf, np.inf, np.nan]
+    )

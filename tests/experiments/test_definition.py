@@ -43,6 +43,7 @@ EXPERIMENTS = st.builds(
     st.sampled_from([(), ("occupancy",)]),
     PRECISIONS,
     st.text(),
+    st.sampled_from(["independent", "common"]),
 )
 
 

@@ -157,7 +157,7 @@ def test_models_of_a_function_are_refused_with_processes(tmp_path):
         ({"seed": -1}, "seed is -1, expected a whole number, 0 or more"),
         ({"time_limit": 0}, "time_limit is 0, expected seconds above 0"),
         ({"max_seconds": float("nan")}, "max_seconds is nan"),
-        ({"keep": ["all"]}, "keep has 'all', expected occupancy or trajectories"),
+        ({"keep": ["all"]}, "keep has 'all', expected occupancy, trajectories or doors"),
         ({"fixed": {"x": 1}}, "x is both fixed and varied"),
     ],
 )

@@ -18,6 +18,9 @@ SERIES = {"types", "occupancy"}
 COMPUTING = {"wall_s", "cpu_s"}
 """Columns of seconds that a run took to compute, which one that stalls has as well."""
 
+REACHED = {"t50_s", "t95_s", "t100_s", "first_s"}
+"""Ends of the names of times that a run which stalls later may have come to."""
+
 Row: TypeAlias = dict[str, Any]
 
 RUNS = "runs"

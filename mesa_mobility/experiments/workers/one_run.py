@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import socket
 import time
 import warnings
@@ -49,6 +50,7 @@ class Setup:
         time_limit: seconds of real time at most, or None.
         occupancy: whether rows keep the occupancy.
         trajectories: whether trajectories are written.
+        doors: whether rows have figures of doors, rooms and clearing times.
         column_types: name of the Arrow type of each parameter.
         store: path or URL.
         may_end: whether the process may be ended where a run does not return to Python in time.
@@ -61,6 +63,7 @@ class Setup:
     time_limit: float | None
     occupancy: bool
     trajectories: bool
+    doors: bool
     column_types: dict[str, str]
     store: str
     may_end: bool
@@ -84,6 +87,8 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
             _advance(model, setup, wall)
         row["status"] = _status(model)
         row |= _figures(model, set(row), occupancy=setup.occupancy)
+        if setup.doors and _has_pedestrians(model):
+            row |= _of_places(model)
     except TimedOut as error:
         row |= {"status": TIMED_OUT, "error": str(error)}
     except KeyboardInterrupt:
@@ -151,7 +156,7 @@ def _made(setup: Setup, point: Point, seed: int) -> Any:
         known = taken.get(name)
         if isinstance(value, str) and known is not None and known.kinds and str not in known.kinds:
             keywords[name] = known.convert(value)
-    if setup.trajectories:
+    if setup.trajectories or setup.doors:
         keywords["record"] = True
     model = kind(**keywords, rng=seed)
     if _has_pedestrians(model):
@@ -225,6 +230,26 @@ def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
     row |= {f"summary_{n}" if n in taken else n: v for n, v in more.items()}
     if occupancy:
         row["occupancy"] = [people for _, people in summary["occupancy"]]
+    return row
+
+
+def _of_places(model: Any) -> Row:
+    """Clearing times, and figures of doors and rooms, by names such as ``door.east.flow_per_s``."""
+    from mesa_mobility.results import Trajectories, clearing, rooms_of
+    from mesa_mobility.results.engineering.summary import figures_of_places
+
+    plan = getattr(model, "building", None) or model.floor_plan
+    tracks, rooms = Trajectories.of(model), rooms_of(plan)
+    row: Row = {}
+    for times in clearing(tracks, plan, rooms).reset_index().to_dict("records"):
+        where = "" if times["kind"] == "floor" else f"{times['kind']}.{times['place']}."
+        for name in ("t50_s", "t95_s", "t100_s"):
+            row[where + name] = None if math.isnan(times[name]) else float(times[name])
+    found = figures_of_places(tracks, plan, rooms)
+    for kind, places in (("door", found["doors"]), ("room", found["rooms"])):
+        for place, figures in places.items():
+            for name, value in figures.items():
+                row[f"{kind}.{place}.{name}"] = None if value is None else float(value)
     return row
 
 
