@@ -21,7 +21,7 @@ from mesa_mobility.results.distances.functional import (
     secant_cosine,
 )
 
-_FIGURE = re.compile(r"(?P<how>mean|p[1-9]\d?) (?P<column>\w+)")
+_FIGURE = re.compile(r"(?P<how>mean|p[1-9]\d?) (?P<column>\w+(\..+\.\w+)?)")
 _GROWTH = 1.25
 """Factor by which replications grow: few looks at the data keep the intervals honest."""
 
@@ -182,7 +182,7 @@ class Assessment:
 
 
 def check_figure(figure: Any) -> None:
-    """Raise ModelError unless ``figure`` reads like "mean egress_s" or "p95 egress_s".
+    """Raise ModelError unless ``figure`` reads like "mean egress_s" or "p95 door.east.last_s".
 
     Percentiles are p1 to p99. Whether the column exists is not checked.
     """

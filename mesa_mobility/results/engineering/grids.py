@@ -29,11 +29,6 @@ class Grid:
         floor: the free floor.
         cell: side of a cell, metres.
 
-    Attributes:
-        x: (columns + 1,) edges, metres.
-        y: (rows + 1,) edges, metres.
-        share: (rows, columns) share of each cell that is floor.
-
     Raises:
         ResultsError: a side that is not positive, or more than a million cells.
     """
@@ -53,12 +48,12 @@ class Grid:
 
     @cached_property
     def x(self) -> FloatArray:
-        """See the class."""
+        """(columns + 1,) edges, metres."""
         return _edges(self.floor.bounds[0], self.floor.bounds[2], self.cell)
 
     @cached_property
     def y(self) -> FloatArray:
-        """See the class."""
+        """(rows + 1,) edges, metres."""
         return _edges(self.floor.bounds[1], self.floor.bounds[3], self.cell)
 
     @property
@@ -68,7 +63,7 @@ class Grid:
 
     @cached_property
     def share(self) -> FloatArray:
-        """See the class."""
+        """(rows, columns) share of each cell that is floor."""
         shapely.prepare(self.floor)
         areas = np.full(len(self._squares), self.cell**2)
         cut = ~shapely.contains_properly(self.floor, self._squares)
