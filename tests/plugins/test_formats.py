@@ -59,7 +59,7 @@ def squares(install, tmp_path):
 
 
 def test_what_ships_is_registered_like_any_plug_in():
-    assert list(PLANS.usable()) == ["dxf", "geojson", "wkt"]
+    assert list(PLANS.usable()) == ["dxf", "geojson", "jupedsim_scenario", "osm", "vadere", "wkt"]
     assert set(OUTPUTS.usable()) == {
         "bvh",
         "film",
@@ -72,7 +72,7 @@ def test_what_ships_is_registered_like_any_plug_in():
         "usd",
     }
     assert PLANS.suffixes(WRITE) == [".geojson", ".json"]
-    assert PLANS.usual(READ) == [".dxf", ".geojson", ".wkt"]
+    assert PLANS.usual(READ) == [".dxf", ".geojson", ".zip", ".osm", ".scenario", ".wkt"]
     assert PLANS.broken() == OUTPUTS.broken() == []
 
 
