@@ -116,7 +116,8 @@ def test_a_broken_format_is_named_and_breaks_no_other(squares, command, tmp_path
     (tmp_path / "room.wkt").write_text(
         "walkable POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))\nexit a LINESTRING (0 0, 0 1)\n"
     )
-    assert command("plan", tmp_path / "room.wkt").status == 0
+    picture = tmp_path / "room.png"
+    assert command("plan", tmp_path / "room.wkt", "--picture", picture).status == 0
     # Where its suffix is asked for, the reason stands behind those that are known.
     with pytest.raises(FloorPlanError, match=rf"ends in \.dxf, .*\.wkt; broken: {whole}"):
         FloorPlan.from_file(tmp_path / "room.sq")

@@ -78,7 +78,8 @@ def test_its_own_tests_pass():
 
 
 @pytest.mark.usefixtures("extras")
-def test_its_formats_are_used_from_the_command_line(command, tmp_path):
+def test_its_formats_are_used_from_the_command_line(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     from mesa_mobility import Exit, FloorPlan, PedestrianModel, Trajectories
     from mesa_mobility.results import write_run
 
