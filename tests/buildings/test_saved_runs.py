@@ -175,7 +175,10 @@ def test_a_file_holds_a_plan_or_a_building(tmp_path):
     ("text", "says"),
     [
         ("[]", "expected a GeoJSON FeatureCollection"),
-        ('{"type": "FeatureCollection", "features": [{"properties": {"level": 3}}]}', "feature 0"),
+        (
+            '{"type": "FeatureCollection", "features": [{"properties": {"level": 3}}]}',
+            "has no area to walk on",
+        ),
     ],
 )
 def test_what_is_neither_is_refused_in_one_line(tmp_path, text, says):

@@ -220,5 +220,6 @@ def test_people_leave_any_floor_plan(tmp_path, command):
     arguments = ("--set", setting, "--set", "pedestrians=3", "--seconds", "1")
     assert command("run", "floor_plan", *arguments).status == 0
     assert command("run", "floor_plan").err == (
-        "error: plan: got none, expected a file of a floor plan (.dxf, .geojson, .wkt)\n"
+        "error: plan: got none, expected a file of a floor plan (.dxf, .geojson, "
+        ".zip, .osm, .scenario, .wkt)\n"
     )
