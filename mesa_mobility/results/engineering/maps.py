@@ -91,8 +91,9 @@ def maps(
     The density of a cell is the mean over its floor of the Voronoi densities 1 / A_i of the parts
     of the floor that are nearest to each person (Steffen and Seyfried 2010, Physica A 389: 1902).
     Where a cell is floor all over, PedPy's Voronoi profile is the same. The speed of a person is
-    |x(t + 0.5 s) - x(t - 0.5 s)| / 1 s, and counts in the cell in which the person is at t. Both
-    are measured every so often. People in a cell are counted in all frames.
+    the distance between where they are half a second before and half a second after, over 1 s. It
+    counts in the cell in which they are at that time. Both are measured every so often. People in a
+    cell are counted in all frames.
 
     Args:
         trajectories: the run.
