@@ -88,11 +88,15 @@ def test_densities_of_a_run_are_pedpys(leaving):
     once = pedpy.TrajectoryData(data=rows[["id", "frame", "x", "y"]], frame_rate=30.0)
     area = pedpy.WalkableArea(plan.free)
     cells = pedpy.compute_individual_voronoi_polygons(traj_data=once, walkable_area=area)
+    # The lowest version of PedPy wants the cells' parts, and data in the order that they have.
+    grid, _, _ = pedpy.get_grid_cells(walkable_area=area, grid_size=cell)
+    parts, ordered = pedpy.compute_grid_cell_polygon_intersection_area(data=cells, grid_cells=grid)
     [theirs] = pedpy.compute_density_profile(
-        data=cells,
+        data=ordered,
         walkable_area=area,
         grid_size=cell,
         density_method=pedpy.DensityMethod.VORONOI,
+        grid_intersections_area=parts,
     )
     # PedPy's rows begin with the greatest y, and it divides by the whole cell.
     ours = found.density_max * found.grid.share
