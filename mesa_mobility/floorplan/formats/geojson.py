@@ -14,6 +14,7 @@ from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.zones import SpeedZone
+from mesa_mobility.floorplan.formats.assembling.texts import parsed
 from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 from mesa_mobility.floorplan.formats.rooms import read_rooms
@@ -118,15 +119,7 @@ def load(source: "str | os.PathLike[str] | Mapping[str, Any]") -> object:
         raise FloorPlanError(f"{source}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
         raise FloorPlanError(f"{source}: is not text, expected GeoJSON") from None
-    try:
-        data: object = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise FloorPlanError(f"{source}: is not JSON (line {error.lineno}: {error.msg})") from None
-    except RecursionError:
-        raise FloorPlanError(f"{source}: is not a floor plan (nested too deeply)") from None
-    except ValueError:  # Python refuses integers of thousands of digits
-        raise FloorPlanError(f"{source}: has a number of thousands of digits") from None
-    return data
+    return parsed(text, str(source))
 
 
 def features_of(data: object, where: str) -> list[Any]:
