@@ -1,8 +1,8 @@
 """Cost of a simulated person-second against people, density, options and processors.
 
-python benchmarks/scaling.py [--most 100000] [--out FOLDER]
+python benchmarks/scaling.py [--most 100000] [--largest 1000000] [--out FOLDER]
 
-Open walk, 10 s, compilation not counted; the last three parts are in processes of their own. A
+Open walk, 10 s, compilation not counted; the last four parts are in processes of their own. A
 person-second costs more or less as its decisions do, so their number is printed as well. Memory is
 what is resident after people have been added and have walked for a second, less what was before.
 """
@@ -14,6 +14,7 @@ import gc
 import json
 import multiprocessing
 import os
+import resource
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -31,6 +32,8 @@ PEOPLE = (1_000, 3_000, 10_000, 30_000, 100_000)
 DENSITIES = (0.1, 0.25, 0.5, 1.0, 1.5)
 KEEP_EVERY = (8, 4, 2, 1)
 SECONDS = 10.0
+SETTLED = 1.0
+"""Seconds after which the largest crowd is timed: all decide in the first frame."""
 CORES = (1, os.cpu_count() or 1)
 
 
@@ -124,10 +127,35 @@ def memory(people: int) -> dict[str, Any]:
     }
 
 
+def largest(people: int) -> dict[str, Any]:
+    """Time and memory of one run of 3 s, of which the last two are timed."""
+    timed(open_walk(3_000, seconds=1.0))
+    begun = time.perf_counter()
+    model = our_model(open_walk(people))
+    set_up = time.perf_counter() - begun
+    model.run(max_seconds=SETTLED)
+    known = float(model.crowd.active_frames.sum())
+    cpu, wall = time.process_time(), time.perf_counter()
+    model.run(max_seconds=SETTLED + 2.0)
+    cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
+    person_s = (float(model.crowd.active_frames.sum()) - known) / 30.0
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    found = {
+        "people": people,
+        "set_up_s": set_up,
+        "us_per_person_s": 1e6 * cpu / person_s,
+        "wall_s_per_s": wall / 2.0,
+        "peak_bytes": peak,
+    }
+    print(f"largest    {json.dumps(found)}", flush=True)
+    return found
+
+
 def main() -> None:
     """Run all parts, print tables and one JSON line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--most", type=int, default=100_000)
+    parser.add_argument("--largest", type=int, default=1_000_000)
     parser.add_argument("--out", type=Path, help="folder for blocks and picture")
     given = parser.parse_args()
     timed(open_walk(20, seconds=1.0))
@@ -159,6 +187,8 @@ def main() -> None:
     ]
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         held = pool.map(memory, [given.most])
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        most = pool.map(largest, [given.largest])
     parts = {
         "people": people,
         "density": densities,
@@ -166,11 +196,13 @@ def main() -> None:
         "threads": threads,
         "processes": processes,
         "memory": held,
+        "largest": most,
     }
     print(json.dumps(parts))
     if given.out is not None:
         give(given.out, "scaling", tables(parts))
         give(given.out, "memory", memory_table(held[0]))
+        give(given.out, "largest", largest_table(most[0]))
         draw(parts, given.out / "scaling.png")
 
 
@@ -198,6 +230,18 @@ def memory_table(held: dict[str, Any]) -> str:
     ]
     people = f"{held['people']:,}"
     return f"With {people} people who have walked for a second.\n\n{table(('what', 'size'), rows)}"
+
+
+def largest_table(run: dict[str, Any]) -> str:
+    """Time and memory of the largest crowd."""
+    rows = [
+        ("set up, s", f"{run['set_up_s']:.0f}"),
+        ("microseconds of CPU per person-second", f"{run['us_per_person_s']:.1f}"),
+        ("seconds by the clock per simulated second", f"{run['wall_s_per_s']:.0f}"),
+        ("peak memory, GB", f"{run['peak_bytes'] / 1e9:.1f}"),
+    ]
+    told = f"{run['people']:,} people"
+    return f"{machine()}\n\n{table((told, ''), rows)}"
 
 
 def draw(parts: dict[str, list[dict[str, Any]]], picture: Path) -> None:

@@ -24,7 +24,6 @@ REPEATS = 3
 IMPORTS = """
 import time
 start = time.perf_counter()
-import mesa, numba, pandas, scipy, shapely
 from mesa_mobility import MobilityMap, PedestrianModel
 from mesa_mobility.models import Doorway
 imported = time.perf_counter()
@@ -86,7 +85,7 @@ def main() -> None:
             f"{first:.0f} ({cpu:.0f} of CPU)",
         ),
         ("later runs of the doorway, with pictures", f"{statistics.median(later):.1f}"),
-        ("- Mesa with pandas and SciPy, Numba and shapely imported", imported),
+        ("- the package and its libraries imported", imported),
         ("- the map mapped into memory", read),
         ("- its options as well, and the model made", made),
         ("- the run itself", simulated),

@@ -28,6 +28,8 @@ from llvmlite import binding
 from numba import config
 from numba.core.caching import IndexDataCacheFile
 
+from mesa_mobility.compiled.processor import is_chosen
+
 FOLDER = Path(__file__).parents[1] / "kernels"
 INDEX = "index.json"
 
@@ -102,7 +104,7 @@ def code_for(version: str) -> Code | None:
     Args:
         version: of the package, its source and its compiler.
     """
-    if config.CPU_NAME is not None or config.CPU_FEATURES is not None:
+    if is_chosen():
         return None  # somebody wants code of another kind
     try:
         index = json.loads((FOLDER / INDEX).read_bytes())

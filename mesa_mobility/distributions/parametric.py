@@ -121,13 +121,14 @@ class TruncatedNormal(Distribution):
         """The one with this mean whose deviation is ``sd``, or as much of it as the bounds allow.
 
         Few people who were measured may have a greater deviation than any normal distribution
-        has between the slowest and the fastest of them.
+        has between the slowest and the fastest of them. The greatest is rounded down to six
+        decimals: versions of SciPy differ in the last bits, and runs must not.
 
         Raises:
             ModelError: as the class, but for the deviation.
         """
         if _finite(mean, low, high) and low < mean < high:
-            sd = min(sd, _WIDEST * widest(mean, low, high))
+            sd = min(sd, math.floor(1e6 * _WIDEST * widest(mean, low, high)) / 1e6)
         return cls(mean, sd, low, high)
 
     @property

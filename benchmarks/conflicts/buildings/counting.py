@@ -156,7 +156,8 @@ def surfaces_at(xyz: FloatArray, surfaces: Sequence[Surface]) -> IntArray:
         for number, each in enumerate(surfaces):
             area = each.area.buffer(beside) if beside else each.area
             shapely.prepare(area)
-            near = (where == NOWHERE) & (np.abs(each.heights(xyz[:, :2]) - xyz[:, 2]) <= OFF)
+            above = xyz[:, 2] - each.heights(xyz[:, :2])
+            near = (where == NOWHERE) & (above >= -OFF) & (above <= each.rise + OFF)
             rows = np.flatnonzero(near)
             where[rows[shapely.intersects_xy(area, *xyz[rows, :2].T)]] = number
     return where
@@ -215,15 +216,15 @@ def _count_steps(
     here, there = where[steps], where[steps + 1]
     known = (here != NOWHERE) & (there != NOWHERE)
     lifts = np.array([each.lift for each in surfaces] + [""])
-    rides = known & (here != there) & (lifts[here] != "") & (lifts[here] == lifts[there])
+    rides = known & (lifts[here] != "") & (lifts[here] == lifts[there])
     most = crowd.fastest[crowd.person[steps]] / FRAMES
-    steepest = max(each.slope for each in surfaces)
-    far = (across > most + TOUCH) | (~rides & (moved[:, 2] > steepest * most + 2 * OFF))
-    for k in np.flatnonzero(rides).tolist():
-        needs = FRAMES * moved[k, 2] / speeds[lifts[here[k]]]
-        far[k] |= _frames_on(where, crowd.person, int(steps[k])) < needs - 1.0
+    higher = max(each.slope for each in surfaces) * most + 2 * OFF
+    higher[rides] = [speeds[lift] / FRAMES + TOUCH for lift in lifts[here[rides]]]
+    far = (across > most + TOUCH) | (moved[:, 2] > higher)
     found.jumps = found.note("jump", steps[far], crowd)
-    found.rides, found.changes = int(rides.sum()), int((known & (here != there)).sum())
+    moving = np.array([each.rise > 0.0 for each in surfaces] + [False])
+    found.rides = int((known & ~moving[here] & moving[there]).sum())
+    found.changes = int((known & (here != there)).sum())
     joined = np.array(
         [[a.name in b.joined or b.name in a.joined or a is b for a in surfaces] for b in surfaces]
     )
@@ -244,14 +245,6 @@ def _count_steps(
         lines = shapely.linestrings(np.stack([crowd.xyz[rows, :2], crowd.xyz[rows + 1, :2]], 1))
         hits += rows[~shapely.covers(outer, lines)].tolist()
     found.wall_crossings = found.note("through a wall", np.array(hits, dtype=np.int64), crowd)
-
-
-def _frames_on(where: IntArray, person: IntArray, row: int) -> int:
-    """Frames up to a row for which its person has been on the same surface."""
-    first = row
-    while first and where[first - 1] == where[row] and person[first - 1] == person[row]:
-        first -= 1
-    return row - first + 1
 
 
 def _count_overlaps(crowd: Crowd, found: Found) -> int:

@@ -36,6 +36,7 @@ class Surface:
         plane: (a, b, c) with the height a + b x + c y, metres.
         joined: names of the surfaces onto which people step from it.
         lift: name of the lift whose car it is, if any.
+        rise: metres by which a car under way may be higher.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Surface:
     plane: tuple[float, float, float]
     joined: frozenset[str] = frozenset()
     lift: str = ""
+    rise: float = 0.0
 
     def heights(self, xy: FloatArray) -> FloatArray:
         """(n,) heights at (n, 2) places, metres."""
@@ -140,7 +142,7 @@ def landing_name(stairs: str) -> str:
 
 
 def surfaces_of(building: Building) -> list[Surface]:
-    """All floors, landings, slopes, and cars at their levels."""
+    """All floors, landings, slopes, cars at their levels, and cars under way."""
     heights = {level.number: level.elevation for level in building.levels}
     slopes, found = list[Flight](), list[Surface]()
     for way in building.stairs:
@@ -153,6 +155,12 @@ def surfaces_of(building: Building) -> list[Surface]:
     for level in building.levels:
         found.append(_floor(level, slopes, building.lifts))
         found += [_car(lift, level) for lift in building.lifts if level.number in lift.numbers]
+    for lift in building.lifts:
+        served = [heights[number] for number in lift.numbers]
+        stops = frozenset(each.name for each in found if each.lift == lift.name)
+        plane = min(served), 0.0, 0.0
+        found.append(Surface(f"{lift.name} under way", _inside(lift), plane, stops, lift.name,
+                             max(served) - min(served)))  # fmt: skip
     return found
 
 
@@ -181,13 +189,14 @@ def _floor(level: Level, slopes: Sequence[Flight], lifts: Sequence[Lift]) -> Sur
 def _car(lift: Lift, level: Level) -> Surface:
     """The car of a lift and its doorway, at a level."""
     name, door = level_name(level.number), LineString(lift.door).length / 2.0
-    area = shapely.union(
-        _behind(lift, 0.0, DOORWAY, door),
-        _behind(lift, DOORWAY, DOORWAY + lift.depth, lift.width / 2.0),
-        grid_size=1e-9,
-    )
+    area = shapely.union(_behind(lift, 0.0, DOORWAY, door), _inside(lift), grid_size=1e-9)
     plane = level.elevation, 0.0, 0.0
     return Surface(f"{lift.name} at {name}", area, plane, frozenset([name]), lift.name)
+
+
+def _inside(lift: Lift) -> Polygon:
+    """The car of a lift without its doorway."""
+    return _behind(lift, DOORWAY, DOORWAY + lift.depth, lift.width / 2.0)
 
 
 def _behind(lift: Lift, first: float, last: float, half: float) -> Polygon:
