@@ -33,7 +33,7 @@ def {name}(n, ends, width, groups, row, own, at, numbers, weight, out):
 PAIR_LOOP = """
 def {name}(n, ends, width, others, row, own, at, numbers, out):
     k = 0
-    me, p, option = {me}, {p}, {option}
+    me, p, option, rows = {me}, {p}, {option}, {rows}
     for a in range(n):
         other = {other}
         out[a] = each({arguments})
@@ -41,7 +41,7 @@ def {name}(n, ends, width, others, row, own, at, numbers, out):
 
 PAIRS_LOOP = """
 def {name}(m, which, n, ends, width, others, row, own, at, numbers, weight, out):
-    me, p = {me}, {p}
+    me, p, rows = {me}, {p}, {rows}
     for b in range(m):
         a = which[b]
         other = {other}
@@ -89,10 +89,16 @@ def other_of(fields: Sequence[str], declared: Sequence[str], of_others: Sequence
     """
     known = [f"others[{row} * row + a]" for row in range(7)]
     more = [
-        _laid(name, fields if name in of_others else (), "others[at[{}] * row + a]")
+        _laid(name, fields if name in of_others else (), "others[rows[{}] * row + a]")
         for name in (*KERNEL_FIELDS, *declared)
     ]
     return f"Other({', '.join([*known, *more])})"
+
+
+def rows_of(fields: Sequence[str]) -> str:
+    """Python source of the expression for the rows of ``others`` that hold these fields."""
+    given = "".join(f"at[{k}], " for k in range(len(fields)))
+    return f"({given})"
 
 
 def numbers_of(names: Sequence[str]) -> str:

@@ -38,6 +38,7 @@ from mesa_mobility.crowd.costs.kernel_loops import (
     me_of,
     numbers_of,
     other_of,
+    rows_of,
 )
 from mesa_mobility.crowd.costs.layout import KERNEL_FIELDS
 from mesa_mobility.crowd.costs.records import RECORDS
@@ -148,6 +149,7 @@ class CostKernel:
             option=OPTION,
             me=me_of(self.fields, self.declared),
             other=other_of(self.fields, self.declared, self.of_others),
+            rows=rows_of(self.fields),
             p=numbers_of(self.numbers),
         )
         source = "\n" * (code.co_firstlineno - 1) + text.lstrip("\n")
