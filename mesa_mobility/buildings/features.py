@@ -13,7 +13,7 @@ from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.lines import Line
 from mesa_mobility.buildings.ramp import Ramp
 from mesa_mobility.buildings.refuge import Refuge
-from mesa_mobility.buildings.stairs import DOG_LEG, Stairs
+from mesa_mobility.buildings.stairs import DOG_LEG, FLIGHTS, Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats import geojson
 
@@ -32,12 +32,17 @@ _OF_FLIGHTS = ("from", "to", "closed")
 
 _OF_DOG_LEGS = ("turn", "well", "landing")
 
+_OF_SEVERAL_FLIGHTS = ("flights", "turns", "landing")
+
 _OF_ESCALATORS = ("length", "direction", "speed", "capacity")
 
 _OF_LIFTS = ("capacity", "speed", "door_s", "width", "depth", "everybody")
 
 _KNOWN = {
-    STAIRS: (*_OF_FLIGHTS, "risers", "tread", "type", *_OF_DOG_LEGS),
+    STAIRS: (
+        *(*_OF_FLIGHTS, "risers", "tread", "type"),
+        *dict.fromkeys((*_OF_DOG_LEGS, *_OF_SEVERAL_FLIGHTS)),
+    ),
     RAMP: (*_OF_FLIGHTS, "length", "factor"),
     ESCALATOR: (*_OF_FLIGHTS, *_OF_ESCALATORS),
     LIFT: ("levels", "closed", *_OF_LIFTS),
@@ -62,9 +67,9 @@ def feature_of_stairs(stairs: Stairs | Ramp | Escalator) -> dict[str, Any]:
         "tread": stairs.tread,
         "type": stairs.shape,
     }
-    if stairs.shape == DOG_LEG:
-        given = {name: getattr(stairs, name) for name in _OF_DOG_LEGS}
-        feature["properties"] |= {name: each for name, each in given.items() if each is not None}
+    names = {DOG_LEG: _OF_DOG_LEGS, FLIGHTS: _OF_SEVERAL_FLIGHTS}.get(stairs.shape, ())
+    given = {name: getattr(stairs, name) for name in names}
+    feature["properties"] |= {name: each for name, each in given.items() if each is not None}
     return feature
 
 
@@ -133,6 +138,11 @@ def _stairs(feature: Given, given: Given, at: str) -> Stairs:
     head, ends = _line(feature, STAIRS, at), _ends(given, at)
     risers, tread = whole(given, "risers", at), _number(given, "tread", at)
     more = {name: given[name] for name in _OF_DOG_LEGS if name in given}
+    for name in ("flights", "turns"):
+        if name in given:
+            if not isinstance(given[name], list | tuple):
+                raise FloorPlanError(f"{at}: {name} must be a list, found {given[name]!r:.60}")
+            more[name] = tuple(given[name])
     shape = given.get("type", "straight")
     return Stairs(_name(given, at), *ends, head, risers, tread, shape, **more)
 

@@ -14,7 +14,21 @@ from mesa_mobility.buildings.level import Level, number_of, sheet_of
 from mesa_mobility.buildings.lines import Line, line_of, pair, width_of
 from mesa_mobility.errors import FloorPlanError
 
-STRAIGHT, DOG_LEG = "straight", "dog_leg"
+STRAIGHT, DOG_LEG, FLIGHTS = SHAPES = "straight", "dog_leg", "flights"
+
+ON, LEFT, RIGHT = TURNS = "on", "left", "right"
+"""Ways on from a landing, as seen by somebody who walks down."""
+
+_BACK = {LEFT: "back left", RIGHT: "back right"}
+
+MOST_FLIGHTS = 20
+
+LEAST_RISERS = 3
+"""Least risers of one of several flights."""
+
+NEWEL = 0.1
+"""Metres from the foot of a flight to the head of the next, round the corner of a landing: the post
+of the handrail."""
 
 LEAST_WIDTH = 0.6
 """Least clear width of stairs, metres."""
@@ -54,7 +68,7 @@ def speed_factor(riser: float, tread: float) -> float:
 
 @dataclass(frozen=True)
 class Stairs:
-    """Stairs from one level down to another; `straight` and `dog_leg` make them.
+    """Stairs from one level down to another; `straight`, `dog_leg` and `of_flights` make them.
 
     Args:
         name: unique in the building.
@@ -64,10 +78,14 @@ class Stairs:
             left of somebody who walks down. Its length is the clear width.
         risers: number of all risers.
         tread: depth of a tread, metres.
-        shape: "straight" for one flight, "dog_leg" for two, side by side, with a landing between.
+        shape: "straight" for one flight, "dog_leg" for two, side by side, with a landing between,
+            "flights" for several with landings on which the way turns by a right angle or not.
         turn: "left" or "right", where a dog-leg turns on the way down.
         well: metres between the flights of a dog-leg.
-        landing: depth of its landing, metres; by default the clear width.
+        landing: depth of its landing, or of landings straight on, metres; by default the clear
+            width.
+        flights: risers of each flight of the shape "flights", from the top.
+        turns: "on", "left" or "right": the way on from each of its landings, from the top.
 
     Raises:
         FloorPlanError: numbers out of range, or another shape or turn.
@@ -83,6 +101,8 @@ class Stairs:
     turn: str = "left"
     well: float = 0.2
     landing: float | None = None
+    flights: tuple[int, ...] = ()
+    turns: tuple[str, ...] = ()
 
     @classmethod
     def straight(
@@ -136,6 +156,44 @@ class Stairs:
             landing,
         )
 
+    @classmethod
+    def of_flights(
+        cls,
+        name: str,
+        upper: Level | int,
+        lower: Level | int,
+        head: Sequence[Sequence[float]],
+        *,
+        risers: Sequence[int],
+        turns: Sequence[str],
+        tread: float = 0.29,
+        landing: float | None = None,
+    ) -> Self:
+        """Stairs of several flights with landings between: straight on, quarter turns, or both.
+
+        Four flights that all turn the same way lead once round a square well, as spiral stairs do.
+
+        Args:
+            risers: those of each flight, from the top.
+            turns: "on", "left" or "right" for each landing, from the top.
+
+        See the class for the other arguments.
+        """
+        flights = tuple(risers)
+        known = all(isinstance(each, int) for each in flights)
+        return cls(
+            name,
+            number_of(upper),
+            number_of(lower),
+            line_of("stairs", name, "head", head),
+            sum(flights) if known else 0,
+            tread,
+            FLIGHTS,
+            landing=landing,
+            flights=flights,
+            turns=tuple(turns),
+        )
+
     kind = "stairs"
     """How messages and files call it."""
 
@@ -152,15 +210,33 @@ class Stairs:
             self._refuse(f"treads of {TREADS[0]} to {TREADS[1]} m", self.tread)
         if self.width < LEAST_WIDTH:
             self._refuse(f"a clear width of {LEAST_WIDTH} m or more", round(self.width, 3))
-        if self.shape not in (STRAIGHT, DOG_LEG):
-            self._refuse(f"the shape {STRAIGHT!r} or {DOG_LEG!r}", self.shape)
-        if self.turn not in ("left", "right"):
+        if self.shape not in SHAPES:
+            self._refuse(f"one of the shapes {', '.join(SHAPES)}", self.shape)
+        self._check_flights()
+        if self.turn not in (LEFT, RIGHT):
             self._refuse("a turn to the 'left' or 'right'", self.turn)
         if not is_number(self.well) or not 0.1 <= self.well <= 10.0:
             self._refuse("0.1 to 10 m between its flights", self.well)
         deep = self.landing
         if deep is not None and not (is_number(deep) and LEAST_WIDTH <= deep <= 10.0):
             self._refuse(f"a landing {LEAST_WIDTH} to 10 m deep", deep)
+
+    def _check_flights(self) -> None:
+        """Raise FloorPlanError unless flights and turns are those of the shape."""
+        flights, turns = self.flights, self.turns
+        if self.shape != FLIGHTS:
+            if flights or turns:
+                self._refuse(f"flights and turns of the shape {FLIGHTS!r} alone", flights or turns)
+            return
+        if not 2 <= len(flights) <= MOST_FLIGHTS or not all(
+            isinstance(each, int) and not isinstance(each, bool) and each >= LEAST_RISERS
+            for each in flights
+        ):
+            self._refuse(f"2 to {MOST_FLIGHTS} flights of {LEAST_RISERS} risers or more", flights)
+        if sum(flights) != self.risers:
+            self._refuse(f"flights with {self.risers} risers in all", flights)
+        if len(turns) != len(flights) - 1 or not all(each in TURNS for each in turns):
+            self._refuse(f"a turn {', '.join(TURNS)} between each two flights", turns)
 
     @property
     def width(self) -> float:
@@ -183,53 +259,51 @@ class Stairs:
                 f"stairs {self.name!r}: {self.risers} risers for a rise of {top - bottom:g} m are "
                 f"{riser:.3f} m each, expected {RISERS[0]:.2f} to {RISERS[1]:.2f} m"
             )
-        upper, lower = sheet_of(self.upper), sheet_of(self.lower)
+        factor, counts, turns = speed_factor(riser, self.tread), self.flights, self.turns
         if self.shape == STRAIGHT:
-            return [
-                Flight(
-                    self.name,
-                    self.head,
-                    (self.risers - 1) * self.tread,
-                    top,
-                    bottom,
-                    upper,
-                    lower,
-                    speed_factor(riser, self.tread),
-                    self.risers,
-                    self.tread,
-                )
-            ], []
-        count = self.risers // 2
-        going, middle = (count - 1) * self.tread, bottom + (self.risers - count) * riser
-        half = f"landing of {self.name}"
-        factor = speed_factor(riser, self.tread)
-        first = Flight(
-            f"{self.name} 2", self.head, going, top, middle, upper, half, factor, count, self.tread
-        )
-        left, right = (np.array(each) for each in first.foot)
-        across, deep = (left - right) / self.width, self.landing or self.width
-        if self.turn == "left":
-            head = left + self.well * across, left + (self.well + self.width) * across
+            counts = (self.risers,)
+        elif self.shape == DOG_LEG:
+            counts, turns = (self.risers // 2, (self.risers + 1) // 2), (_BACK[self.turn],)
+        flights, landings = list[Flight](), list[Landing]()
+        head, above, sheet = self.head, top, sheet_of(self.upper)
+        for k, count in enumerate(counts):
+            left = len(counts) - k
+            name = f"{self.name} {left}" if len(counts) > 1 else self.name
+            below = top - riser * sum(counts[: k + 1]) if left > 1 else bottom
+            beyond = sheet_of(self.lower)
+            if left > 1:
+                number = f" {left - 1}" if len(counts) > 2 else ""
+                beyond = f"landing{number} of {self.name}"
+            going = (count - 1) * self.tread
+            flights.append(
+                Flight(name, head, going, above, below, sheet, beyond, factor, count, self.tread)
+            )
+            if left > 1:
+                head, area = self._landing_behind(flights[-1], turns[k])
+                landings.append(Landing(beyond, area, below))
+            above, sheet = below, beyond
+        return flights, landings
+
+    def _landing_behind(self, flight: Flight, turn: str) -> tuple[Line, Polygon]:
+        """The head of the flight that follows a landing, and the landing."""
+        left, right = (np.array(each) for each in flight.foot)
+        across, width = (left - right) / self.width, self.width
+        deep, ends = self.landing or width, (right, left)
+        if turn == ON:
+            head = left + deep * flight.down, right + deep * flight.down
+        elif turn in (LEFT, RIGHT):
+            deep = NEWEL + width
+            near, far = NEWEL * flight.down, deep * flight.down
+            head = (left + near, left + far) if turn == LEFT else (right + far, right + near)
+        elif turn == _BACK[LEFT]:
+            head = left + self.well * across, left + (self.well + width) * across
             ends = right, head[1]
         else:
-            head = right - (self.well + self.width) * across, right - self.well * across
+            head = right - (self.well + width) * across, right - self.well * across
             ends = head[0], left
-        count = self.risers - count
-        second = Flight(
-            f"{self.name} 1",
-            (pair(head[0]), pair(head[1])),
-            (count - 1) * self.tread,
-            middle,
-            bottom,
-            half,
-            lower,
-            factor,
-            count,
-            self.tread,
-        )
-        away = deep * first.down
+        away = deep * flight.down
         area = Polygon([*ends, ends[1] + away, ends[0] + away])
-        return [first, second], [Landing(half, area, middle)]
+        return (pair(head[0]), pair(head[1])), area
 
     def _refuse(self, expected: str, found: object) -> None:
         raise FloorPlanError(f"stairs {self.name!r}: expected {expected}, found {found!r:.60}")

@@ -13,6 +13,7 @@ from mesa_mobility import (
     FloorPlan,
     Level,
     Lift,
+    PedestrianModel,
     Refuge,
     SpeedZone,
     Stairs,
@@ -141,7 +142,7 @@ def test_closed_exits_stay_closed():
         (4, "risers", "many", "GeoJSON: feature 4: risers must be a whole number, found 'many'"),
         (4, "risers", 12, "GeoJSON: stairs 'south': 12 risers for a rise of 3.06 m"),
         (4, "tread", None, "GeoJSON: feature 4: tread must be a number, found None"),
-        (4, "type", "spiral", "GeoJSON: feature 4: stairs 'south': expected the shape"),
+        (4, "type", "spiral", "GeoJSON: feature 4: stairs 'south': expected one of the shapes"),
         (4, "to", 7, "GeoJSON: stairs 'south': there is no level 7"),
         (5, "turn", 3, "GeoJSON: feature 5: stairs 'north': expected a turn"),
         (1, "level", "zero", "GeoJSON: feature 1: level must be a whole number, found 'zero'"),
@@ -235,3 +236,32 @@ def test_a_coordinate_that_is_no_number_gives_no_further_warning(kind, recwarn):
     with pytest.raises(FloorPlanError):
         Building.from_geojson(collection)
     assert not recwarn
+
+
+HOLLOW = "POLYGON ((-30 -30, 30 -30, 30 30, -30 30, -30 -30), (0 -5, 9 -5, 9 9, 0 9, 0 -5))"
+"""A floor with a hole for stairs that lead down from x = 0."""
+
+
+def test_people_leave_by_stairs_of_several_flights_that_are_read_again():
+    ground = Level(
+        0, "POLYGON ((-30 3, 0.1 3, 0.1 9, -30 9, -30 3))", exits=[Exit("out", (-30, 5), (-30, 9))]
+    )
+    first, head = Level(1, HOLLOW, 3.06), ((0, 1.2), (0, 0))
+    # The last foot is at x = 0.87 + 0.1 - 0.87 m, from y = 3.91 to 5.11 m.
+    stairs = Stairs.of_flights("s", first, ground, head, risers=[4, 10, 4], turns=["left", "left"])
+    building = Building([ground, first], [stairs])
+    again = Building.from_geojson(json.loads(json.dumps(building.to_geojson())))
+    assert again.stairs == (stairs,)
+    model = PedestrianModel(again, rng=1)
+    model.add_pedestrians(again.places([[-1.0, y] for y in (-1.0, 0.0, 1.0, 2.0)], level=1))
+    model.run(max_seconds=60)
+    assert model.inside == 0
+
+
+@pytest.mark.parametrize("name", ["flights", "turns"])
+def test_flights_that_are_no_list_are_named(name):
+    given = two_storeys().to_geojson()
+    feature = next(each for each in given["features"] if each["properties"]["kind"] == "stairs")
+    feature["properties"][name] = 3
+    with pytest.raises(FloorPlanError, match=f"{name} must be a list, found 3"):
+        Building.from_geojson(given)

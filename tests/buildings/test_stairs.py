@@ -1,6 +1,7 @@
 """Stairs: flights and landings, worked out by hand."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -23,6 +24,12 @@ def straight(**changes):
 def dog_leg(**changes):
     values = {"head": ((2, 1.2), (2, 0)), "risers": 18, "tread": 0.25, "well": 0.4} | changes
     return Stairs.dog_leg("main", 1, 0, **values)
+
+
+def of_flights(turns, risers=(7, 4, 7), **changes):
+    return Stairs.of_flights(
+        "main", 1, 0, ((2, 1.2), (2, 0)), risers=risers, turns=turns, tread=0.25, **changes
+    )
 
 
 def corners(line):
@@ -58,6 +65,62 @@ def test_a_dog_leg_turns_right_on_the_way_down():
     assert corners(lower.head) == [[4.0, -1.6], [4.0, -0.4]]
     assert lower.down.tolist() == [-1.0, 0.0]
     assert landing.area.symmetric_difference(box(4.0, -1.6, 6.0, 1.2)).area < 1e-9
+
+
+def test_a_landing_straight_on():
+    (upper, lower), [landing] = of_flights(["on"], (9, 9), landing=1.5).parts(3.6, 0.0)
+    # Eight treads of 0.25 m.
+    assert corners(upper.foot) == [[4.0, 1.2], [4.0, 0.0]]
+    assert landing.area.symmetric_difference(box(4.0, 0.0, 5.5, 1.2)).area < 1e-9
+    assert corners(lower.head) == [[5.5, 1.2], [5.5, 0.0]]
+    assert corners(lower.foot) == [[7.5, 1.2], [7.5, 0.0]]
+    assert (upper.bottom, landing.elevation, lower.top) == pytest.approx((1.8, 1.8, 1.8))
+    assert (upper.name, lower.name, landing.name) == ("main 2", "main 1", "landing of main")
+
+
+@pytest.mark.parametrize(("turn", "sign"), [("left", 1), ("right", -1)])
+def test_quarter_turns_lead_round_the_corner(turn, sign):
+    """Flights of 1.5, 0.75 and 1.5 m, and posts of 0.1 m; the right turn is the mirror image."""
+    flights, landings = of_flights([turn, turn]).parts(3.6, 0.0)
+
+    def seen(line):
+        ends = [[x, y if sign == 1 else 1.2 - y] for x, y in line]
+        return corners(ends if sign == 1 else ends[::-1])
+
+    assert seen(flights[0].foot) == [[3.5, 1.2], [3.5, 0.0]]
+    assert seen(flights[1].head) == [[3.6, 1.2], [4.8, 1.2]]
+    assert seen(flights[1].foot) == [[3.6, 1.95], [4.8, 1.95]]
+    # The second landing lies beyond; the way back runs beside the first flight.
+    assert seen(flights[2].head) == [[3.6, 2.05], [3.6, 3.25]]
+    assert seen(flights[2].foot) == [[2.1, 2.05], [2.1, 3.25]]
+    areas = [box(3.5, 0.0, 4.8, 1.2), box(3.6, 1.95, 4.8, 3.25)]
+    for landing, area in zip(landings, areas, strict=True):
+        if sign == -1:
+            area = shapely.transform(area, lambda xy: xy * [1, -1] + [0, 1.2])
+        assert landing.area.symmetric_difference(area).area < 1e-9
+    assert [each.elevation for each in landings] == pytest.approx([2.2, 1.4])
+    assert [each.name for each in landings] == ["landing 2 of main", "landing 1 of main"]
+    sheets = ["level 1", "landing 2 of main", "landing 1 of main", "level 0"]
+    assert [(each.upper, each.lower) for each in flights] == list(pairwise(sheets))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"risers": (18,), "turns": []}, "expected 2 to 20 flights of 3 risers or more"),
+        ({"risers": (9, 2), "turns": ["on"]}, "expected 2 to 20 flights of 3 risers or more"),
+        ({"risers": (9, 9), "turns": []}, "expected a turn on, left, right between each two"),
+        ({"risers": (9, 9), "turns": ["back"]}, "expected a turn on, left, right between each"),
+    ],
+)
+def test_flights_and_turns_must_fit(changes, message):
+    with pytest.raises(FloorPlanError, match=message):
+        of_flights(**changes)
+
+
+def test_other_shapes_have_no_flights_of_their_own():
+    with pytest.raises(FloorPlanError, match="flights and turns of the shape 'flights' alone"):
+        Stairs("main", 1, 0, ((2, 1.2), (2, 0)), 18, flights=(9, 9))
 
 
 def test_of_an_odd_number_of_risers_the_lower_flight_has_one_more():
