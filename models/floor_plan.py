@@ -30,6 +30,7 @@ class FloorPlanEgress(PedestrianModel):
         rng: seed or NumPy generator.
         exits: of a plan whose file has none: "longest", lines "x1 y1, x2 y2" with semicolons
             between them, or a file of such lines.
+        fill: who is in which room instead, as "hall=120; office*=office after uniform(0, 30)".
     """
 
     def __init__(
@@ -44,6 +45,7 @@ class FloorPlanEgress(PedestrianModel):
         record: bool | str = False,
         rng: int | np.random.Generator | None = None,
         exits: str | None = None,
+        fill: str | None = None,
     ) -> None:
         if pedestrians < 1:
             raise ModelError(f"pedestrians: got {pedestrians}, expected 1 or more")
@@ -57,6 +59,9 @@ class FloorPlanEgress(PedestrianModel):
             record=record,
             rng=rng,
         )
+        if fill is not None:
+            self.fill_as(fill, pre_movement)
+            return
         places = floor.random_points(pedestrians, self.rng, spacing=0.5, clearance=0.3)
         self.add_pedestrians(places, pre_movement=pre_movement)
 

@@ -134,6 +134,7 @@ def _level(number: int, content: Content, elevation: Any, refuges: Sequence[Refu
         zones=content.zones,
         name=content.name,
         refuges=refuges,
+        rooms=content.rooms,
     )
 
 
@@ -149,6 +150,7 @@ def _features(level: Level) -> list[dict[str, Any]]:
     ]
     for zone in level.zones:
         features.append(geojson.zone_feature(zone))
+    features += [geojson.room_feature(each) for each in level.rooms]
     features += [geojson.feature_of(REFUGE, each.name, each.shape) for each in level.refuges]
     for feature in features:
         feature["properties"]["level"] = level.number

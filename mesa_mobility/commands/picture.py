@@ -20,7 +20,7 @@ def check_picture(path: Path) -> None:
 
 
 def draw_plan(plan: FloorPlan | Building, path: Path) -> None:
-    """Draw each level to a file, complete or not at all: floor, walls, obstacles, exits by name.
+    """Draw each level to a file, complete or not at all: floor, walls, obstacles, exits and rooms.
 
     Raises:
         FloorPlanError: the file cannot be written.
@@ -35,6 +35,9 @@ def draw_plan(plan: FloorPlan | Building, path: Path) -> None:
             x, y = each.midpoint
             name = axes.text(x, y, each.name, ha="center", va="bottom", zorder=6)
             name.set(color=EXIT, fontsize=7)
+        for room in storey.plan.rooms:
+            spot = room.shape.point_on_surface()
+            axes.text(spot.x, spot.y, room.name, ha="center", va="center", fontsize=6, zorder=6)
         if storey.title:
             axes.set_title(storey.title)
         axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,7 +20,7 @@ from mesa_mobility.commands.grouping import grouped
 
 if TYPE_CHECKING:
     from mesa_mobility.buildings import Building
-    from mesa_mobility.floorplan import FloorPlan
+    from mesa_mobility.floorplan import FloorPlan, Room
 
 
 @grouped
@@ -113,6 +114,7 @@ def _say_building(building: Building, as_json: bool) -> None:
                 "lifts": lifts,
                 "refuges": refuges,
                 "exits": exits,
+                "rooms": [_room(each) for each in building.rooms],
             }
         )
         return
@@ -123,6 +125,7 @@ def _say_building(building: Building, as_json: bool) -> None:
             "lifts": ", ".join(lifts) or "none",
             "refuges": ", ".join(refuges) or "none",
             "exits": _listed(exits),
+            "rooms": _rooms(building.rooms),
         }
     )
 
@@ -140,6 +143,7 @@ def _say_plan(found: FloorPlan, as_json: bool) -> None:
         "gates": gates,
         "obstacles": len(found.obstacles),
         "zones": [each.name for each in found.zones],
+        "rooms": [_room(each) for each in found.rooms],
     }
     if as_json:
         answer_json(values)
@@ -152,8 +156,23 @@ def _say_plan(found: FloorPlan, as_json: bool) -> None:
                 "gates": _listed(gates),
                 "obstacles": str(len(found.obstacles)),
                 "zones": ", ".join(each.name for each in found.zones) or "none",
+                "rooms": _rooms(found.rooms),
             }
         )
+
+
+def _room(room: Room) -> dict[str, Any]:
+    return {
+        "name": room.name,
+        "level": room.level,
+        "use": room.use,
+        "area_m2": room.area,
+        "doors": list(room.doors),
+    }
+
+
+def _rooms(rooms: Sequence[Room]) -> str:
+    return ", ".join(str(each) for each in rooms) or "none"
 
 
 def _kinds(texts: list[str] | None) -> dict[str, str] | None:

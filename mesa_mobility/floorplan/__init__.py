@@ -2,6 +2,7 @@
 
 from mesa_mobility.floorplan.floor.belts import Belt
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.room import Room
 from mesa_mobility.floorplan.floor.seams import Seam
 from mesa_mobility.floorplan.floor.shafts import WALKS, Shaft, Stop
 from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
@@ -9,6 +10,7 @@ from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat, plan_suffixes
 from mesa_mobility.floorplan.plan import FloorPlan
+from mesa_mobility.floorplan.rooms.loads import LoadTable, load_tables, occupant_numbers
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.routing.targets import Targets
 from mesa_mobility.floorplan.walls.line_of_sight import line_of_sight, lines_of_sight
@@ -21,7 +23,9 @@ __all__ = [
     "Exit",
     "FloorPlan",
     "Gate",
+    "LoadTable",
     "PlanFormat",
+    "Room",
     "Router",
     "Seam",
     "Shaft",
@@ -31,5 +35,7 @@ __all__ = [
     "WallIndex",
     "line_of_sight",
     "lines_of_sight",
+    "load_tables",
+    "occupant_numbers",
     "plan_suffixes",
 ]

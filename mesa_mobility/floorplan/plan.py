@@ -19,6 +19,7 @@ from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.free_area import FreeArea
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.room import Room
 from mesa_mobility.floorplan.floor.seams import Seam
 from mesa_mobility.floorplan.floor.shafts import Shaft
 from mesa_mobility.floorplan.floor.wall_index import WallIndex
@@ -27,6 +28,7 @@ from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.assembling.drawn import completed
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PLANS
+from mesa_mobility.floorplan.rooms.finding import rooms_of
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.plugins.formats import READ, WRITE
 from mesa_mobility.schema import Flag, Kind, Object, Several, Text, Whole, check
@@ -55,11 +57,13 @@ class FloorPlan(Floor):
         seams: where people change from one sheet of the plan to another. With them the walkable
             area may be several polygons, and pieces may be without an exit.
         shafts: lifts between sheets, with the same consequences.
+        rooms: named areas of the floor, of level 0; by default they are found between the gates.
 
     Raises:
         FloorPlanError: geometry that is empty, not valid, not finite or in several pieces; a
             walkable area of more than 20 km or less than 0.2 m; an exit off the edge; a gate or a
-            zone outside; a name used twice; free area without an exit that may not be cut off.
+            zone outside; a name used twice; a room without floor; free area without an exit that
+            may not be cut off.
 
     Attributes:
         version: grows by one with every change of obstacles, gates or exits.
@@ -93,9 +97,11 @@ class FloorPlan(Floor):
         simplify: float = SIMPLIFY,
         seams: Iterable[Seam] = (),
         shafts: Iterable[Shaft] = (),
+        rooms: Iterable[Room] = (),
     ) -> None:
-        super().__init__(walkable, exits, gates, zones, name, simplify, seams, shafts)
+        super().__init__(walkable, exits, gates, zones, name, simplify, seams, shafts, rooms)
         self.version = 0
+        self._rooms: tuple[FreeArea, tuple[Room, ...]] | None = None
         polygons = {
             i: read_polygon(obstacle, f"obstacle {i}") for i, obstacle in enumerate(obstacles)
         }
@@ -223,6 +229,7 @@ class FloorPlan(Floor):
                 name=content.name,
                 cut_off=content.cut_off,
                 simplify=content.simplify,
+                rooms=content.rooms,
             )
         except FloorPlanError as error:
             raise FloorPlanError(f"{where}: {error}") from None
@@ -234,6 +241,25 @@ class FloorPlan(Floor):
     # Functions of a plan are methods as they are.
     to_geojson = geojson.feature_collection
     write_geojson = geojson.write
+
+    @property
+    def rooms(self) -> tuple[Room, ...]:
+        """The rooms, each with its name, use, area and doors.
+
+        They are those with which the plan was made, or else are found between its gates, open or
+        closed, and named ``room 1``, ``room 2`` and so on, the largest first. Rooms that are found
+        follow obstacles that separate them.
+
+        Raises:
+            FloorPlanError: the plan has several sheets; rooms are those of its building.
+        """
+        if self.in_sheets:
+            raise FloorPlanError(
+                "a plan of several sheets has no rooms of its own, expected those of its building"
+            )
+        if self._rooms is None or self._rooms[0] is not self._area:
+            self._rooms = self._area, rooms_of(self)
+        return self._rooms[1]
 
     @property
     def route_graph(self) -> nx.DiGraph:

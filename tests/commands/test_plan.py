@@ -46,6 +46,7 @@ def test_what_a_plan_holds(command, tmp_path):
         "gates": {},
         "obstacles": 1,
         "zones": [],
+        "rooms": [{"name": "room 1", "level": 0, "use": "", "area_m2": 24.0, "doors": ["street"]}],
     }
     assert "street (2.00 m)" in command("plan", str(tmp_path / "room.wkt")).out
     assert (tmp_path / "room_plan.png").read_bytes().startswith(b"\x89PNG")
@@ -113,7 +114,13 @@ def test_what_a_building_holds(command, tmp_path):
     belt = Escalator.straight("belt", 1, 0, ((16, 3), (16, 4)), length=5.3)
     Building([ground, Level(1, HALL, 3.06, refuges=[lobby])], [belt]).write_geojson(first)
     done = command("plan", str(first), "--json", "-o", str(second))
-    assert json.loads(done.out) == {
+    said = json.loads(done.out)
+    rooms = said.pop("rooms")
+    # A hall of 24 m by 8 m on each level, less what the escalator takes of the lower one.
+    assert [each["name"] for each in rooms] == ["level 0 room 1", "level 1 room 1"]
+    assert [each["doors"] for each in rooms] == [["street", "belt"], ["belt"]]
+    assert rooms[0]["area_m2"] < rooms[1]["area_m2"] <= 192.0
+    assert said == {
         "name": "",
         "levels": {"0": 0.0, "1": 3.06},
         "stairs": {"belt": "escalator"},

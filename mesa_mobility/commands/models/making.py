@@ -19,6 +19,9 @@ MODEL_HELP = (
     "Name of an installed model (`mesa-mobility models` lists them), FILE.py, FILE.py:NAME, or "
     "module:NAME."
 )
+PLAN_MODEL = "floor_plan"
+"""The model whose people leave a floor plan of a file."""
+
 ModelName = Annotated[str, typer.Argument(metavar="MODEL", help=MODEL_HELP)]
 PresetName = Annotated[
     str | None,
@@ -81,6 +84,20 @@ class ModelOptions:
     def with_seed(self) -> ModelOptions:
         """These options with a seed, which is drawn if none was given."""
         return replace(self, seed=secrets.randbelow(2**31)) if self.seed is None else self
+
+
+def of_plan(name: str, options: ModelOptions) -> tuple[str, ModelOptions]:
+    """The model that a command names, with its options; for a file of a plan, the model of plans.
+
+    Args:
+        name: of a model, or the file of a floor plan or a building.
+        options: of the command.
+    """
+    from mesa_mobility.floorplan import plan_suffixes
+
+    if Path(name).suffix.lower() not in plan_suffixes() or not Path(name).exists():
+        return name, options
+    return PLAN_MODEL, replace(options, settings=[f"plan={name}", *(options.settings or [])])
 
 
 def create_model(

@@ -13,6 +13,7 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.room import ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.assembling.texts import parsed
 from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
@@ -38,8 +39,9 @@ class GeoJson(PlanFormat):
 def feature_collection(plan: Floor) -> dict[str, Any]:
     """The plan as a GeoJSON FeatureCollection, coordinates in metres.
 
-    Every feature has the properties `kind` (walkable, obstacle, gate, exit or zone)
-    and `name`; a closed gate or exit has `closed` true, a zone its `factor`.
+    Every feature has the properties `kind` (walkable, obstacle, gate, exit, zone or room)
+    and `name`; a closed gate or exit has `closed` true, a zone its `factor`, a room its `use`.
+    Rooms that were found are not written: they are found again.
     Reading it back gives the same coordinates to the last bit; obstacle ids count from 0 again.
     """
     if plan.in_sheets:
@@ -61,6 +63,7 @@ def feature_collection(plan: Floor) -> dict[str, Any]:
         features.append(feature)
     for zone in plan.zones:
         features.append(zone_feature(zone))
+    features += [room_feature(room) for room in plan.given_rooms]
     return {"type": "FeatureCollection", "features": features}
 
 
@@ -140,6 +143,13 @@ def zone_feature(zone: SpeedZone) -> dict[str, Any]:
         for each in OF_ZONES
         if getattr(zone, each.name) != each.default
     }
+    return feature
+
+
+def room_feature(room: Room) -> dict[str, Any]:
+    """The feature of a room, with its use if it has one."""
+    feature = feature_of(ROOM, room.name, room.shape)
+    feature["properties"] |= {"use": room.use} if room.use else {}
     return feature
 
 
