@@ -116,10 +116,10 @@ def test_what_a_building_holds(command, tmp_path):
     done = command("plan", str(first), "--json", "-o", str(second))
     said = json.loads(done.out)
     rooms = said.pop("rooms")
-    # A hall of 24 m by 8 m on each level, less what the escalator takes of the lower one.
+    # A hall of 24 m by 8 m on each level, less what the escalator takes.
     assert [each["name"] for each in rooms] == ["level 0 room 1", "level 1 room 1"]
     assert [each["doors"] for each in rooms] == [["street", "belt"], ["belt"]]
-    assert rooms[0]["area_m2"] < rooms[1]["area_m2"] <= 192.0
+    assert all(180.0 < each["area_m2"] < 192.0 for each in rooms)
     assert said == {
         "name": "",
         "levels": {"0": 0.0, "1": 3.06},

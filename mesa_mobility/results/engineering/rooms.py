@@ -123,11 +123,14 @@ def room_times(
     level = np.zeros(len(trajectories), dtype=np.int16)
     if not isinstance(plan, FloorPlan):
         level = where(trajectories, plan).level
-    times = {}
+    times, x, y = {}, trajectories.x, trajectories.y
     for each in checked:
         shapely.prepare(each.shape)
+        x0, y0, x1, y1 = each.shape.bounds
         rows = inside & (level == each.level)
-        rows[rows] = shapely.intersects_xy(each.shape, trajectories.x[rows], trajectories.y[rows])
+        # Most rows are in other rooms, and these comparisons take a tenth of the time.
+        rows &= (x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)
+        rows[rows] = shapely.intersects_xy(each.shape, x[rows], y[rows])
         times[each.name] = last_there(trajectories, rows)
     return times
 
