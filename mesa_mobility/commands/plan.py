@@ -81,7 +81,7 @@ def plan(
         PLANS.of(output, WRITE)  # before anything is read
     picture = picture or Path(f"{file.stem}_plan.png")
     check_picture(picture)
-    found = read_floor(file, doors.text, **options)
+    found = read_floor(file, doors.text, level=doors.level, **options)
     if isinstance(found, Building):
         if output is not None:
             if output.suffix.lower() not in (".geojson", ".json"):
