@@ -8,6 +8,7 @@ from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat, plan_suffixes
+from mesa_mobility.floorplan.formats.storeys import Link, Storey, Storeys
 from mesa_mobility.floorplan.plan import FloorPlan
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.routing.targets import Targets
@@ -21,12 +22,15 @@ __all__ = [
     "Exit",
     "FloorPlan",
     "Gate",
+    "Link",
     "PlanFormat",
     "Router",
     "Seam",
     "Shaft",
     "SpeedZone",
     "Stop",
+    "Storey",
+    "Storeys",
     "Targets",
     "WallIndex",
     "line_of_sight",

@@ -17,6 +17,7 @@ from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.indoor.joining import links_of
 from mesa_mobility.floorplan.formats.indoor.shapes import (
     DOORWAY,
+    LIFT,
     OBSTACLE,
     PASSAGE,
     ROOM,
@@ -121,7 +122,7 @@ def _floor(
     drawn = Drawn()
     by_kind = {
         kind: [each for each in shapes if each.kind == kind]
-        for kind in (ROOM, PASSAGE, STAIRS, DOORWAY, OBSTACLE)
+        for kind in (ROOM, PASSAGE, STAIRS, DOORWAY, OBSTACLE, LIFT)
     }
     for number, shape in enumerate(by_kind[OBSTACLE]):
         areas = polygons_of(shape.geometry, f"obstacle {number}", drawn.notes)
@@ -145,7 +146,13 @@ def _floor(
         Area(LineString(each.line).buffer(HALF_WALL + 0.02, cap_style="flat"), each.name)
         for each in lifts
     ]
-    _add_doors(drawn, by_kind[DOORWAY], own, is_exit)
+    shafts = shapely.union_all([each.geometry for each in by_kind[LIFT]])
+    doors = [
+        each
+        for each in by_kind[DOORWAY]
+        if shafts.is_empty or shafts.distance(each.geometry) > REACH
+    ]
+    _add_doors(drawn, doors, own, is_exit)
     return assembled(drawn, where)
 
 
