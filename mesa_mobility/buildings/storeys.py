@@ -73,12 +73,15 @@ def building_of(found: Storeys, exits: str | None, where: str, notes: list[str])
         notes += left_out
         return None
     notes += [*said, *left_out]
-    return Building(
-        [each for each in levels if each.number in kept],
-        [each for each in joining if not isinstance(each, Lift) and each.upper in kept],
-        lifts=[each for each in joining if isinstance(each, Lift) and each.numbers[0] in kept],
-        name=found.name,
-    )
+    try:
+        return Building(
+            [each for each in levels if each.number in kept],
+            [each for each in joining if not isinstance(each, Lift) and each.upper in kept],
+            lifts=[each for each in joining if isinstance(each, Lift) and each.numbers[0] in kept],
+            name=found.name,
+        )
+    except FloorPlanError as error:
+        raise FloorPlanError(f"{where}: {error}") from None
 
 
 def _add_exits(found: Storeys, exits: str | None, notes: list[str]) -> None:

@@ -9,6 +9,7 @@ from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat, plan_suffixes
 from mesa_mobility.floorplan.formats.storeys import Link, Storey, Storeys
+from mesa_mobility.floorplan.oddities import Oddity, oddities_of
 from mesa_mobility.floorplan.plan import FloorPlan
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.floorplan.routing.targets import Targets
@@ -23,6 +24,7 @@ __all__ = [
     "FloorPlan",
     "Gate",
     "Link",
+    "Oddity",
     "PlanFormat",
     "Router",
     "Seam",
@@ -35,5 +37,6 @@ __all__ = [
     "WallIndex",
     "line_of_sight",
     "lines_of_sight",
+    "oddities_of",
     "plan_suffixes",
 ]
