@@ -112,7 +112,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     }
     try:
         levels = [
-            _level(level, each, elevations[level], refuges.get(level, ()))
+            level_of(level, each, elevations[level], refuges.get(level, ()))
             for level, each in contents.items()
         ]
     except FloorPlanError as error:
@@ -121,7 +121,12 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     return Parts(levels, stairs, lifts, name, closed)
 
 
-def _level(number: int, content: Content, elevation: Any, refuges: Sequence[Refuge]) -> Level:
+def level_of(number: int, content: Content, elevation: Any, refuges: Sequence[Refuge]) -> Level:
+    """The level of what a file holds of it.
+
+    Raises:
+        FloorPlanError: it is no level.
+    """
     if content.cut_off:
         raise FloorPlanError(f"level {number}: cut_off is for floor plans, found it in a building")
     return Level(

@@ -9,6 +9,8 @@ from mesa_mobility.floorplan.floor.wall_index import CellTable, WallIndex
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat, plan_suffixes
+from mesa_mobility.floorplan.formats.storeys import Link, Storey, Storeys
+from mesa_mobility.floorplan.oddities import Oddity, oddities_of
 from mesa_mobility.floorplan.plan import FloorPlan
 from mesa_mobility.floorplan.rooms.loads import LoadTable, load_tables, occupant_numbers
 from mesa_mobility.floorplan.routing.router import Router
@@ -23,7 +25,9 @@ __all__ = [
     "Exit",
     "FloorPlan",
     "Gate",
+    "Link",
     "LoadTable",
+    "Oddity",
     "PlanFormat",
     "Room",
     "Router",
@@ -31,11 +35,14 @@ __all__ = [
     "Shaft",
     "SpeedZone",
     "Stop",
+    "Storey",
+    "Storeys",
     "Targets",
     "WallIndex",
     "line_of_sight",
     "lines_of_sight",
     "load_tables",
     "occupant_numbers",
+    "oddities_of",
     "plan_suffixes",
 ]

@@ -28,6 +28,7 @@ from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.assembling.drawn import completed
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PLANS
+from mesa_mobility.floorplan.formats.storeys import Storeys
 from mesa_mobility.floorplan.rooms.finding import rooms_of
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.plugins.formats import READ, WRITE
@@ -137,7 +138,8 @@ class FloorPlan(Floor):
         See `to_geojson` for what it holds. Raises FloorPlanError naming the file
         and the feature.
         """
-        return cls._of(geojson.read(source), geojson.label(source))
+        where = geojson.label(source)
+        return cls.of_content(geojson.read(source), where, None, None)
 
     @classmethod
     def from_dxf(
@@ -170,7 +172,12 @@ class FloorPlan(Floor):
 
     @classmethod
     def from_file(
-        cls, path: str | os.PathLike[str], *, exits: str | None = None, **options: Any
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        exits: str | None = None,
+        level: str | None = None,
+        **options: Any,
     ) -> FloorPlan:
         """Read a plan from a file, in the format that the end of its name says.
 
@@ -182,6 +189,8 @@ class FloorPlan(Floor):
             exits: of a file that has none: "longest", a door of 1.2 m in the middle of the longest
                 straight outer edge; lines "x1 y1, x2 y2" with semicolons between them, within 1.2 m
                 of the edge; or a file of such lines.
+            level: number or name of the level, of a file that has several; by default 0, or the
+                lowest.
             options: those of the format, such as ``unit="mm"`` of a DXF.
 
         Raises:
@@ -191,8 +200,18 @@ class FloorPlan(Floor):
         """
         chosen: Any = PLANS.of(path, READ)
         options = PLANS.chosen_options(chosen, READ, options)
-        content = chosen.read(Path(path), **options)
-        return cls._of(completed(content, exits), str(path))
+        return cls.of_content(chosen.read(Path(path), **options), str(path), exits, level)
+
+    @classmethod
+    def of_content(
+        cls, found: Content | Storeys, where: str, exits: str | None, level: str | None
+    ) -> FloorPlan:
+        """The plan of what a format has read; see `from_file`. `where` names the file in errors."""
+        if isinstance(found, Storeys):
+            found = found.content(level, where)
+        elif level is not None:
+            raise FloorPlanError(f"{where}: has no levels, expected no level")
+        return cls._of(completed(found, exits), where)
 
     def to_file(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the plan to a file, in the format that the end of its name says.

@@ -70,6 +70,18 @@ class Room:
         return f"{self.name} ({self.area:.2f} m\u00b2{', ' * bool(self.use)}{self.use})"
 
 
+def rooms_named_apart(named: Iterable[tuple[str, Polygon]]) -> list[Room]:
+    """Rooms of names that may be there several times; these are numbered from 2 on."""
+    rooms: dict[str, Room] = {}
+    for name, area in named:
+        number, found = 1, name[:LONGEST]
+        while found in rooms:
+            number += 1
+            found = f"{name[: LONGEST - 10]} {number}"
+        rooms[found] = Room(found, area)
+    return list(rooms.values())
+
+
 def check_rooms(rooms: Iterable[Room], walkable: Polygon) -> tuple[Room, ...]:
     """The rooms, if they are ``Room`` objects of different names that cover some of the floor.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.storeys import Storeys
 from mesa_mobility.plugins.formats import READ, Format, Formats
 from mesa_mobility.plugins.registry import PLAN_FORMATS
 
@@ -20,8 +21,8 @@ class PlanFormat(Format):
     Keyword-only parameters of these methods are the options of the format.
     """
 
-    def read(self, path: Path) -> Content:
-        """What a file holds.
+    def read(self, path: Path) -> Content | Storeys:
+        """What a file holds: one floor, or several storeys and what joins them.
 
         Args:
             path: the file.

@@ -126,7 +126,7 @@ def test_faulty_archives(tmp_path):
         archive.writestr("config.json", "{}")
     with pytest.raises(FloorPlanError, match=r"b.zip: has 0 files geometry.wkt, expected one"):
         FloorPlan.from_file(tmp_path / "b.zip")
-    with pytest.raises(FloorPlanError, match="cannot be read"):
+    with pytest.raises(FloorPlanError, match="one of the formats imdf or jupedsim"):
         FloorPlan.from_file(tmp_path)
     zipped(tmp_path / "c.zip", config={"exits": {"a": {"coordinates": [[0, 0], [1]]}}})
     with pytest.raises(FloorPlanError, match="exits: a: expected corners of two numbers"):
