@@ -23,7 +23,13 @@ from mesa_mobility.commands.console import (
 )
 from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
-from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model, origin_of
+from mesa_mobility.commands.models.making import (
+    ModelName,
+    ModelOptions,
+    create_model,
+    model_of_file,
+    origin_of,
+)
 from mesa_mobility.commands.results import RoomsFile, rooms_in
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
@@ -82,7 +88,7 @@ def run(
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
-    options = options.with_seed()
+    model, options = model_of_file(model, options.with_seed())
     areas = rooms_in(rooms)
     if population is not None:
         options = replace(options, settings=[*(options.settings or []), f"population={population}"])
