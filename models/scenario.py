@@ -12,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility import Files, FloorPlan, MobilityMap, PedestrianModel, Source, Visit
 from mesa_mobility.errors import FloorPlanError, MobilityError, ModelError
-from mesa_mobility.floorplan.formats.scenarios.people import People
+from mesa_mobility.floorplan.formats.people import People
 from mesa_mobility.floorplan.scenario import read_scenario
 from mesa_mobility.populations import Population
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.formats.people import People
 from mesa_mobility.floorplan.formats.plan_format import PLANS
-from mesa_mobility.floorplan.formats.scenarios.people import People
 from mesa_mobility.floorplan.formats.storeys import Storeys
 from mesa_mobility.floorplan.plan import FloorPlan
 from mesa_mobility.plugins.formats import READ

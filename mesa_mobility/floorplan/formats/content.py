@@ -14,7 +14,7 @@ from mesa_mobility.floorplan.floor.extent import check_coordinates
 from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.zones import SpeedZone
-from mesa_mobility.floorplan.formats.scenarios.people import People
+from mesa_mobility.floorplan.formats.people import People
 
 OF_ZONES = [each for each in fields(SpeedZone) if each.name not in ("polygon", "name")]
 """Fields of ``SpeedZone`` that a file gives as properties, besides its name."""

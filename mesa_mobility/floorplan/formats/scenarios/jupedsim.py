@@ -14,9 +14,9 @@ from mesa_mobility.floorplan.formats.assembling.texts import parsed
 from mesa_mobility.floorplan.formats.assembling.values import mapping_of, number_of, ring_of
 from mesa_mobility.floorplan.formats.bare_wkt import drawn_of
 from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.people import left_out
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 from mesa_mobility.floorplan.formats.scenarios.jupedsim_people import people_of
-from mesa_mobility.floorplan.formats.scenarios.people import left_out
 
 CONFIG, GEOMETRY = "config.json", "geometry.wkt"
 """Files of a scenario."""

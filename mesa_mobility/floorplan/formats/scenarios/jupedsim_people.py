@@ -15,7 +15,7 @@ from mesa_mobility.floorplan.formats.assembling.values import (
     number_of,
     ring_of,
 )
-from mesa_mobility.floorplan.formats.scenarios.people import People, Stop, checked, count_of
+from mesa_mobility.floorplan.formats.people import People, Stop, checked, count_of
 
 LEAST_SPEED, MOST_SPEED = 0.05, 5.0
 """Bounds of speeds, m/s."""

@@ -21,8 +21,8 @@ from mesa_mobility.floorplan.formats.assembling.values import (
     ring_of,
 )
 from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.people import left_out
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
-from mesa_mobility.floorplan.formats.scenarios.people import left_out
 from mesa_mobility.floorplan.formats.scenarios.vadere_people import people_of
 
 ON_STAIRS = 0.5

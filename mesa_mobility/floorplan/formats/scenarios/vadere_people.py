@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from mesa_mobility.distributions import Constant, Distribution, Normal
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.assembling.values import list_of, mapping_of, number_of
-from mesa_mobility.floorplan.formats.scenarios.people import (
+from mesa_mobility.floorplan.formats.people import (
     MOST,
     People,
     Stop,
