@@ -24,10 +24,10 @@ from mesa_mobility.commands.console import (
 from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
 from mesa_mobility.commands.models.making import (
-    MODEL_HELP,
+    ModelName,
     ModelOptions,
     create_model,
-    of_plan,
+    model_of_file,
     origin_of,
 )
 from mesa_mobility.commands.results import RoomsFile, rooms_in
@@ -42,13 +42,7 @@ NAMED = 10
 
 @grouped
 def run(
-    model: Annotated[
-        str,
-        typer.Argument(
-            metavar="MODEL|PLAN",
-            help=f"{MODEL_HELP[:-1]}; or a file of a floor plan or a building, whose people leave.",
-        ),
-    ],
+    model: ModelName,
     options: ModelOptions,
     doors: ExitOptions,
     *,
@@ -104,7 +98,7 @@ def run(
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
-    model, options = of_plan(model, options.with_seed())
+    model, options = model_of_file(model, options.with_seed())
     areas = rooms_in(rooms)
     if population is not None:
         options = replace(options, settings=[*(options.settings or []), f"population={population}"])

@@ -233,6 +233,12 @@ class FloorPlan(Floor):
         """The plan of a file's content; `where` names the file in errors."""
         for note in content.notes:
             warnings.warn(f"{where}: {note}", stacklevel=3)
+        if content.people:
+            warnings.warn(
+                f"{where}: left out people of {len(content.people)} sources: this is the floor "
+                f"plan alone; `mesa-mobility run {where}` has them walk",
+                stacklevel=3,
+            )
         if not content.exits and not content.gates:
             raise FloorPlanError(
                 f"{where}: the floor plan has no exit, and no gate that people could go to: "

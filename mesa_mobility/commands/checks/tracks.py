@@ -133,7 +133,7 @@ def validate_tracks(
         line=line,
         speeds=speeds,
     )
-    setting = replace(setting, exits=doors.text)
+    setting = replace(setting, exits=doors.text, level=doors.level)
     say(f"{file}: {setting}")
     # Whatever cannot be replayed is found here, once, and not in every run.
     with rules.followed():

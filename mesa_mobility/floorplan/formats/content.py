@@ -15,6 +15,7 @@ from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
 from mesa_mobility.floorplan.floor.room import ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
+from mesa_mobility.floorplan.formats.people import People
 
 OF_ZONES = [each for each in fields(SpeedZone) if each.name not in ("polygon", "name")]
 """Fields of ``SpeedZone`` that a file gives as properties, besides its name."""
@@ -41,6 +42,7 @@ class Content:
         notes: what the reader has changed or left out, a line each.
         foreign: whether another program drew it. Floor from which no exit is reached is then left
             out, and named in a note.
+        people: those of a scenario, whom the model `scenario` puts on the floor.
     """
 
     walkable: Polygon
@@ -55,6 +57,7 @@ class Content:
     simplify: float = SIMPLIFY
     notes: list[str] = field(default_factory=list)
     foreign: bool = False
+    people: list[People] = field(default_factory=list)
 
 
 def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:

@@ -119,3 +119,15 @@ def test_faulty_files_and_a_missing_library(tmp_path, path, monkeypatch):
 )
 def test_damaged_files_are_plans_or_refused(tmp_path, path, count):
     assert read_all(Path(path).read_bytes(), tmp_path / "house.ifc", count) > 0
+
+
+def test_rooms_have_the_names_and_areas_of_the_file(found):
+    building, _ = found
+    rooms = {each.name: each for each in building.rooms}
+    # 8 m x 5 m, 3.8 m x 5 m with a column, and 12 m x 5 m above the stairs.
+    assert {name: each.area for name, each in rooms.items()} == pytest.approx(
+        {"101 Hall": 40.0, "102 Office": 19.0, "201 Loft": 60.0}
+    )
+    assert [each.level for each in building.rooms] == [0, 0, 1]
+    assert rooms["102 Office"].doors == ("door 17",)
+    assert {"Street", "door 17"} <= set(rooms["101 Hall"].doors)

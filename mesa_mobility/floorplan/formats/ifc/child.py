@@ -14,7 +14,7 @@ from mesa_mobility.floorplan.formats.assembling.texts import parsed
 LARGEST_FILE = 512_000_000
 """Bytes of a file."""
 
-LEAST_S, S_PER_MB, MOST_S = 9.0, 30.0, 110.0
+LEAST_S, S_PER_MB, MOST_S = 8.0, 30.0, 110.0
 """Seconds that reading may take, by the size of the file."""
 
 LEAST_BYTES, FACTOR = 1_000_000_000, 200
