@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd import CostTerm as CostTerm
     from mesa_mobility.crowd import Deciding as Deciding
     from mesa_mobility.crowd import Desired as Desired
+    from mesa_mobility.crowd import Door as Door
     from mesa_mobility.crowd import Me as Me
     from mesa_mobility.crowd import Option as Option
     from mesa_mobility.crowd import Options as Options
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan import Exit as Exit
     from mesa_mobility.floorplan import FloorPlan as FloorPlan
     from mesa_mobility.floorplan import Gate as Gate
+    from mesa_mobility.floorplan import Room as Room
     from mesa_mobility.floorplan import SpeedZone as SpeedZone
     from mesa_mobility.floorplan import Targets as Targets
     from mesa_mobility.mobility import MobilityMap as MobilityMap

@@ -6,6 +6,7 @@ from mesa_mobility.models.floor_plan import FloorPlanEgress
 from mesa_mobility.models.mixed_evacuation import MixedEvacuation
 from mesa_mobility.models.office_tower import OfficeTower
 from mesa_mobility.models.open_space import OpenSpace
+from mesa_mobility.models.scenario import Scenario
 from mesa_mobility.models.straight_walk import StraightWalk
 
 __all__ = [
@@ -15,5 +16,6 @@ __all__ = [
     "MixedEvacuation",
     "OfficeTower",
     "OpenSpace",
+    "Scenario",
     "StraightWalk",
 ]

@@ -17,6 +17,7 @@ from mesa_mobility import (
     PedestrianModel,
     PedestrianType,
     Range,
+    Room,
 )
 from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
@@ -184,6 +185,7 @@ def auditorium_plan(exit_door: float = EXIT_DOOR) -> FloorPlan:
     foyer_low, foyer_high = HALL + WALL, HALL + WALL + FOYER
     hall_doors = [((a[1] + b[0]) / 2, HALL) for a, b in pairwise(BLOCKS)]
     parts = [box(0, 0, WIDTH, HALL), box(0, foyer_low, WIDTH + WING, foyer_high)]
+    rooms = [Room("hall", parts[0], use="chairs"), Room("foyer", parts[1], use="standing")]
     gates = []
     for k, (x, y) in enumerate(hall_doors):
         a, b = x - HALL_DOOR / 2, x + HALL_DOOR / 2
@@ -196,6 +198,7 @@ def auditorium_plan(exit_door: float = EXIT_DOOR) -> FloorPlan:
         parts += [floor, box(a, foyer_high, b, foyer_high + WALL)]
         y = foyer_high + WALL / 2
         gates.append(Gate(f"office door {office + 1}", (a, y), (b, y)))
+        rooms.append(Room(f"office {office + 1}", floor, use="office"))
     seats = [
         box(left, FIRST_ROW + ROW_PITCH * row, right, FIRST_ROW + ROW_PITCH * row + SEAT_DEPTH)
         for row in range(ROWS)
@@ -211,6 +214,7 @@ def auditorium_plan(exit_door: float = EXIT_DOOR) -> FloorPlan:
         parts.append(
             box(min(outside, end), middle - width / 2, max(outside, end), middle + width / 2)
         )
+        rooms.append(Room(f"{side} forecourt", parts[-1]))
         x = wall + out * OUTER_WALL / 2
         gates.append(Gate(f"{side} exit door", (x, low), (x, high)))
         exits.append(Exit(f"{side} exit", (end, middle - width / 2), (end, middle + width / 2)))
@@ -220,4 +224,5 @@ def auditorium_plan(exit_door: float = EXIT_DOOR) -> FloorPlan:
         exits=exits,
         gates=gates,
         name="auditorium",
+        rooms=rooms,
     )

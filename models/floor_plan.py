@@ -19,7 +19,7 @@ class FloorPlanEgress(PedestrianModel):
     """People all over a floor plan, or all levels of a building, leave by the nearest exit.
 
     Args:
-        plan: file of the floor plan, such as GeoJSON, which may have levels, lines of WKT, or DXF.
+        plan: file of the floor plan or the building, such as GeoJSON, WKT, DXF or IFC.
         pedestrians: people, at random places all over the free floor.
         pre_movement: seconds before people set off, or their distribution.
         preset: "default" or "paper".
@@ -30,6 +30,8 @@ class FloorPlanEgress(PedestrianModel):
         rng: seed or NumPy generator.
         exits: of a plan whose file has none: "longest", lines "x1 y1, x2 y2" with semicolons
             between them, or a file of such lines.
+        level: number or name of one level of a file that has several, which is then the plan.
+        fill: who is in which room instead, as "hall=120; office*=office after uniform(0, 30)".
     """
 
     def __init__(
@@ -44,10 +46,12 @@ class FloorPlanEgress(PedestrianModel):
         record: bool | str = False,
         rng: int | np.random.Generator | None = None,
         exits: str | None = None,
+        level: str | None = None,
+        fill: str | None = None,
     ) -> None:
         if pedestrians < 1:
             raise ModelError(f"pedestrians: got {pedestrians}, expected 1 or more")
-        floor = read_plan(plan, exits)
+        floor = read_plan(plan, exits, level)
         super().__init__(
             floor,
             preset=preset,
@@ -57,6 +61,9 @@ class FloorPlanEgress(PedestrianModel):
             record=record,
             rng=rng,
         )
+        if fill is not None:
+            self.fill_as(fill, pre_movement)
+            return
         places = floor.random_points(pedestrians, self.rng, spacing=0.5, clearance=0.3)
         self.add_pedestrians(places, pre_movement=pre_movement)
 
@@ -66,12 +73,15 @@ def patterns() -> list[str]:
     return [f"*{suffix}" for suffix in plan_suffixes()]
 
 
-def read_plan(path: Path | str | None, exits: str | None = None) -> FloorPlan | Building:
+def read_plan(
+    path: Path | str | None, exits: str | None = None, level: str | None = None
+) -> FloorPlan | Building:
     """The floor plan or the building of a file.
 
     Args:
         path: the file.
         exits: of a plan whose file has none, as ``FloorPlan.from_file`` takes them.
+        level: number or name of one level of a file that has several.
 
     Raises:
         ModelError: no file, or a plan without an exit.
@@ -80,7 +90,7 @@ def read_plan(path: Path | str | None, exits: str | None = None) -> FloorPlan | 
     if path is None:
         known = ", ".join(plan_suffixes())
         raise ModelError(f"plan: got none, expected a file of a floor plan ({known})")
-    plan = read_floor(path, exits)
+    plan = read_floor(path, exits, level=level)
     if isinstance(plan, FloorPlan) and not plan.exits:
         raise ModelError(f"plan: {path} has no exit, expected one to leave by")
     return plan

@@ -1,8 +1,10 @@
 """A building: levels joined by stairs, ramps, escalators and lifts, laid out in one plane."""
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, cast
 
@@ -24,7 +26,8 @@ from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet, seam_of, shaft_of, sheets_of, zones_of
 from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Exit, FloorPlan, Gate
+from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Room
+from mesa_mobility.floorplan.floor.checks import read_polygon
 from mesa_mobility.floorplan.formats.geojson import label
 
 
@@ -194,6 +197,27 @@ class Building:
             found[name] = (*found.get(name, ()), *seam.gates)
         return found | {shaft.name: shaft.gates for shaft in self.floor_plan.shafts}
 
+    @cached_property
+    def rooms(self) -> tuple[Room, ...]:
+        """The rooms of all levels, each with its level, name, use, area and doors.
+
+        They are those of the levels, or else are found between the gates of a level, as
+        `FloorPlan.rooms` are. Rooms of one name on several levels are called ``level 1 hall``.
+        Their doors include flights, lifts, ramps and escalators that begin there.
+        """
+        found: list[Room] = []
+        for level in self.levels:
+            known = {each.name: each for each in self.floor_plan_of(level.number).rooms}
+            # What stairs take of a room may be all of it.
+            for each in level.rooms or known.values():
+                doors = known[each.name].doors if each.name in known else ()
+                found.append(replace(each, level=level.number, doors=doors))
+        names = Counter(each.name for each in found)
+        return tuple(
+            replace(each, name=f"level {each.level} {each.name}") if names[each.name] > 1 else each
+            for each in found
+        )
+
     @property
     def refuges(self) -> tuple[Refuge, ...]:
         """The refuges of all levels, as drawn in the plane."""
@@ -260,6 +284,7 @@ class Building:
         rng: np.random.Generator,
         *,
         level: int | None = None,
+        within: Polygon | str | None = None,
         spacing: float,
         clearance: float,
         avoid: ArrayLike = (),
@@ -272,6 +297,8 @@ class Building:
             n: how many.
             rng: where they come from.
             level: number of the level on which they are; by default on all.
+            within: the area of these levels in which they lie (shapely or WKT), in the building's
+                coordinates; by default all.
             spacing: least distance of the points to each other, metres.
             clearance: least distance to walls and exits, metres.
             avoid: (k, 2) further points in the plane from which they keep the spacing, metres.
@@ -281,7 +308,15 @@ class Building:
         """
         chosen = self.levels if level is None else [self.level(level)]
         floors = [self._sheet(each.number) for each in chosen]
-        parts = [part for each in floors for part in shapely.get_parts(each.in_plane(each.floor))]
+        area = None if within is None else read_polygon(within, "within")
+        parts = [
+            part
+            for each in floors
+            for part in shapely.get_parts(
+                each.in_plane(each.floor if area is None else each.floor.intersection(area))
+            )
+            if part.geom_type == "Polygon"
+        ]
         return self.floor_plan.random_points(
             n,
             rng,
@@ -301,14 +336,16 @@ class Building:
         ends = [Exit(each.name, *each.head) for each in self.flights if each.upper == sheet.name]
         ends += [Exit(each.name, *each.foot) for each in self.flights if each.lower == sheet.name]
         ends += [Exit(each.name, *each.door) for each in self.lifts if level in each.numbers]
+        floor = max(shapely.get_parts(sheet.floor), key=lambda part: part.area)
         return FloorPlan(
-            max(shapely.get_parts(sheet.floor), key=lambda part: part.area),
+            floor,
             exits=[*own.exits, *ends],
             gates=own.gates,
             obstacles=own.obstacles,
             zones=own.zones,
             name=own.name or self.name,
             cut_off=True,
+            rooms=[each for each in own.rooms if each.shape.intersection(floor).area > 0.0],
         )
 
     def _sheet(self, level: int) -> Sheet:
@@ -358,7 +395,12 @@ class Building:
             name=self.name or (self.levels[0].name if len(self.levels) == 1 else ""),
             seams=[seam_of(flight, self._sheets) for flight in self.flights],
             shafts=[shaft_of(lift, self._sheets) for lift in self.lifts],
+            rooms=[replace(each, level=0) for each in self._rooms_in_plane()],
         )
+
+    def _rooms_in_plane(self) -> Sequence[Room]:
+        """The rooms of the plane: those of the level if it is the only sheet, otherwise none."""
+        return self.levels[0].rooms if len(self._sheets) == 1 else ()
 
 
 def _check_names(

@@ -112,7 +112,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     }
     try:
         levels = [
-            _level(level, each, elevations[level], refuges.get(level, ()))
+            level_of(level, each, elevations[level], refuges.get(level, ()))
             for level, each in contents.items()
         ]
     except FloorPlanError as error:
@@ -121,7 +121,12 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]") -> Parts:
     return Parts(levels, stairs, lifts, name, closed)
 
 
-def _level(number: int, content: Content, elevation: Any, refuges: Sequence[Refuge]) -> Level:
+def level_of(number: int, content: Content, elevation: Any, refuges: Sequence[Refuge]) -> Level:
+    """The level of what a file holds of it.
+
+    Raises:
+        FloorPlanError: it is no level.
+    """
     if content.cut_off:
         raise FloorPlanError(f"level {number}: cut_off is for floor plans, found it in a building")
     return Level(
@@ -134,6 +139,7 @@ def _level(number: int, content: Content, elevation: Any, refuges: Sequence[Refu
         zones=content.zones,
         name=content.name,
         refuges=refuges,
+        rooms=content.rooms,
     )
 
 
@@ -149,6 +155,7 @@ def _features(level: Level) -> list[dict[str, Any]]:
     ]
     for zone in level.zones:
         features.append(geojson.zone_feature(zone))
+    features += [geojson.room_feature(each) for each in level.rooms]
     features += [geojson.feature_of(REFUGE, each.name, each.shape) for each in level.refuges]
     for feature in features:
         feature["properties"]["level"] = level.number

@@ -41,7 +41,7 @@ def check_headroom(sheets: Mapping[str, Sheet], flights: Iterable[Flight]) -> No
                 raise _refusal(one.name, other.name, between, spot)
     for flight in flights:
         for sheet in floors:
-            first, last = _close(flight, sheet.elevation)
+            first, last = close_to(flight, sheet.elevation)
             spot = None
             if last - first > _ROUNDING:
                 spot = _shared(flight.part(first, last), sheet.floor)
@@ -78,9 +78,9 @@ def _nearest(one: Flight, other: Flight) -> tuple[Point | None, float]:
     return Point(corners[nearest]), float(abs(between[nearest]))
 
 
-def _close(flight: Flight, elevation: float) -> tuple[float, float]:
+def close_to(flight: Flight, elevation: float) -> tuple[float, float]:
     """Metres below the head of a flight from and up to where it has too little between it and a
-    floor."""
+    floor at an elevation; the second is not greater where nothing is too close."""
     fall = (flight.top - flight.bottom) / flight.going
     ends = [(flight.top - elevation + sign * HEADROOM_M) / fall for sign in (-1.0, 1.0)]
     return max(ends[0] + _ROUNDING, 0.0), min(ends[1] - _ROUNDING, flight.going)

@@ -1,15 +1,17 @@
 """A level of a building: its floor in true coordinates."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Exit, Gate, SpeedZone
+from mesa_mobility.floorplan import Exit, Gate, Room, SpeedZone
 from mesa_mobility.floorplan.floor.checks import read_polygon
+from mesa_mobility.floorplan.floor.room import check_rooms
 
 MOST_LEVEL = 1_000
 """Greatest number of a level, above ground or below."""
@@ -33,12 +35,13 @@ class Level:
         obstacles: polygons (shapely or WKT) to subtract.
         zones: parts of the floor where people walk more slowly.
         refuges: parts of the floor where people wait who cannot leave.
+        rooms: named areas of the floor; by default they are found between the gates.
         name: for titles and files.
 
     Raises:
         FloorPlanError: a number that is not whole, an elevation that is not finite, a refuge that
-            is not on the walkable area, or what `FloorPlan` refuses of the walkable area and the
-            obstacles.
+            is not on the walkable area, or what `FloorPlan` refuses of the walkable area, the
+            obstacles and the rooms.
     """
 
     number: int
@@ -50,6 +53,7 @@ class Level:
     zones: Sequence[SpeedZone] = ()
     name: str = ""
     refuges: Sequence[Refuge] = ()
+    rooms: Sequence[Room] = ()
 
     def __post_init__(self) -> None:
         number = self.number
@@ -73,6 +77,11 @@ class Level:
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
+        try:
+            rooms = check_rooms(self._listed("rooms"), self.area)
+        except FloorPlanError as error:
+            raise FloorPlanError(f"{where}{error}") from None
+        object.__setattr__(self, "rooms", tuple(replace(each, level=number) for each in rooms))
         for refuge in self.refuges:
             if not isinstance(refuge, Refuge):
                 raise FloorPlanError(
@@ -85,7 +94,7 @@ class Level:
                     f"({spot.x:.2f}, {spot.y:.2f})"
                 )
 
-    def _listed(self, name: str) -> tuple[object, ...]:
+    def _listed(self, name: str) -> tuple[Any, ...]:
         given = getattr(self, name)
         if not isinstance(given, Iterable):
             raise FloorPlanError(

@@ -52,7 +52,7 @@ def dashboard(
     if plan is not None:
         from mesa_mobility.models.floor_plan import read_plan
 
-        read_plan(plan, doors.text)
+        read_plan(plan, doors.text, doors.level)
         given = {"plan": plan.resolve(), **doors.keywords()}
     name = model or (OPENING if plan is None else PLAN_MODEL)
 

@@ -90,10 +90,9 @@ def estimate(
     With several files, each is also tested with the weights estimated from the others.
     """
     from mesa_mobility.estimation import Sampling, estimate, leave_out, observe
-    from mesa_mobility.floorplan import FloorPlan
 
     terms, fixed = tried.made(), tried.fixed or []
-    floor, sampling = FloorPlan.from_file(plan, exits=doors.text), Sampling(most=choices, seed=seed)
+    floor, sampling = doors.floor_plan(plan), Sampling(most=choices, seed=seed)
     found = None
     with progress_bar(shown=not no_progress) as report:
         for done, file in enumerate(tracks):

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from mesa_mobility.floorplan import FloorPlan
 
 
 @dataclass(frozen=True)
 class ExitOptions:
-    """Exits of a floor plan whose file has none."""
+    """Exits of a floor plan whose file has none, and the level of a file that has several."""
 
     exit_lines: Annotated[
         list[str] | None,
@@ -30,6 +34,12 @@ class ExitOptions:
             "file with a line NAME X Y, X Y for each exit. Ignored if the plan has exits.",
         ),
     ] = None
+    level: Annotated[
+        str | None,
+        typer.Option(
+            help="Number or name of one level of a file that has several, which is then the plan."
+        ),
+    ] = None
 
     @property
     def text(self) -> str | None:
@@ -39,5 +49,21 @@ class ExitOptions:
         return "; ".join(self.exit_lines) if self.exit_lines else self.exits
 
     def keywords(self) -> dict[str, Any]:
-        """Arguments of a model of a floor plan: ``exits``, if something is asked for."""
-        return {} if self.text is None else {"exits": self.text}
+        """Arguments of a model of a floor plan: ``exits`` and ``level``, if they are given."""
+        given = {"exits": self.text, "level": self.level}
+        return {name: value for name, value in given.items() if value is not None}
+
+    def floor_plan(self, path: Path) -> FloorPlan:
+        """The floor plan of a file.
+
+        Raises:
+            FloorPlanError: the file cannot be read, or has several levels and none is named.
+        """
+        from mesa_mobility.buildings import Building, read_floor
+        from mesa_mobility.errors import FloorPlanError
+
+        found = read_floor(path, self.text, level=self.level)
+        if isinstance(found, Building):
+            numbers = ", ".join(str(each.number) for each in found.levels)
+            raise FloorPlanError(f"{path}: has the levels {numbers}, expected --level with one")
+        return found

@@ -23,7 +23,13 @@ from mesa_mobility.commands.console import (
 )
 from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
-from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model, origin_of
+from mesa_mobility.commands.models.making import (
+    ModelName,
+    ModelOptions,
+    create_model,
+    model_of_file,
+    origin_of,
+)
 from mesa_mobility.commands.results import RoomsFile, rooms_in
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
@@ -70,6 +76,16 @@ def run(
             "show bodies, and `explain` needs it, too.",
         ),
     ] = None,
+    fill: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[ROOM=]LOAD",
+            help="People in rooms of the plan: a number, a density (0.5/m2), a use (office, "
+            "nfpa101:office) or a table (ibc) for the rooms' own uses, for a room or a pattern "
+            "(office*=office); ' after uniform(0, 30)' adds the time before they set off; "
+            "repeatable.",
+        ),
+    ] = None,
     rooms: RoomsFile = None,
     as_json: AsJson = False,
     no_progress: NoProgress = False,
@@ -82,10 +98,12 @@ def run(
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
-    options = options.with_seed()
+    model, options = model_of_file(model, options.with_seed())
     areas = rooms_in(rooms)
     if population is not None:
         options = replace(options, settings=[*(options.settings or []), f"population={population}"])
+    if fill:
+        options = replace(options, settings=[*(options.settings or []), f"fill={'; '.join(fill)}"])
     with progress_bar(shown=not no_progress) as report, nothing_collected():
         report("loading")
         from mesa_mobility.crowd.model_files import find_model

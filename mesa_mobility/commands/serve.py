@@ -11,7 +11,12 @@ from mesa_mobility._startup import nothing_collected
 from mesa_mobility.commands.console import say
 from mesa_mobility.commands.exits import ExitOptions
 from mesa_mobility.commands.grouping import grouped
-from mesa_mobility.commands.models.making import ModelName, ModelOptions, create_model
+from mesa_mobility.commands.models.making import (
+    ModelName,
+    ModelOptions,
+    create_model,
+    model_of_file,
+)
 from mesa_mobility.errors import MobilityError, ModelError
 from mesa_mobility.interrupts import INTERRUPTED
 
@@ -54,7 +59,7 @@ def serve(
     token = own_token()
     access = Access(host, token, origins_of(origins or []))
     listening = listen(host, port)
-    options = options.with_seed()
+    model, options = model_of_file(model, options.with_seed())
     with nothing_collected():
         from mesa_mobility.crowd import PedestrianModel
         from mesa_mobility.crowd.model_files import find_model

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mesa_mobility.crowd.costs.records import Other as Other
     from mesa_mobility.crowd.costs.records import Wall as Wall
     from mesa_mobility.crowd.costs.terms import CostTerm as CostTerm
+    from mesa_mobility.crowd.doors.door import Door as Door
     from mesa_mobility.crowd.hooks import World as World
     from mesa_mobility.crowd.insertion.inflow import Inflow as Inflow
     from mesa_mobility.crowd.insertion.source import Source as Source

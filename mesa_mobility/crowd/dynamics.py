@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from mesa_mobility.crowd.bindings import Behaving, Bindings
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
 from mesa_mobility.crowd.costs.terms import without_weight
+from mesa_mobility.crowd.doors.doors import Doors
 from mesa_mobility.crowd.insertion.inflow import PLACES_TRIED, Sources
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.journeys.waiting import Waits
@@ -44,6 +45,7 @@ class Run(Behaving, Protocol):
 
     population: Population
     sources: Sources
+    doors: Doors
     statistics: Statistics
     waits: Waits
     recorder: Recorder | None
@@ -133,6 +135,7 @@ class Dynamics(Saved):
         crowd, now = self._scene.crowd, self._model.frame
         people.see_off(now)
         known = people.count
+        shut = model.doors.advance(now)
         self._let_in()
         lifts, escalators = self._scene.lifts, self._scene.escalators
         lifts.advance(now, people.present, crowd, self._scene.environment)
@@ -145,7 +148,7 @@ class Dynamics(Saved):
             self._record(people.present)
         elif people.count > known:
             self._record(np.arange(known, people.count, dtype=np.int64))
-        if self._plan_has_changed:
+        if self._plan_has_changed or shut:
             self._replan()
         if self._next <= now:
             self._take_decisions()
@@ -156,16 +159,20 @@ class Dynamics(Saved):
         if len(escalators):
             end = min(end, escalators.next_look(now))
         expecting = len(model.sources) > 0 or model.sources.expecting
-        if model.recorder is not None or expecting or self._plan_has_changed:
+        every_frame = model.recorder is not None or expecting or len(model.doors) > 0
+        if every_frame or self._plan_has_changed:
             end = now + 1
         model.frame = end
         people.departed.move(end, crowd)
         walking = people.present
+        before = np.column_stack([crowd.x[walking], crowd.y[walking]]) if len(model.doors) else None
         moved = move(walking, end, end - now, self._scene.repertoire.table, crowd.records)
         if self._next > now:  # otherwise newcomers decide in this frame
             self._next = moved.next
         self._record(walking)
         people.part(moved)
+        if before is not None:
+            model.doors.look(walking, before, crowd)
         statistics.add(moved, end - now, model.elapsed)
         if end == full_second:
             statistics.count_people(model.elapsed)
@@ -264,7 +271,7 @@ class Dynamics(Saved):
 
     @property
     def _plan_has_changed(self) -> bool:
-        """Whether obstacles or doors have changed since the last decisions."""
+        """Whether obstacles or open doors have changed since the last decisions."""
         return self._plan_version != self._scene.plan.version
 
     def _replan(self) -> None:

@@ -14,7 +14,7 @@ from mesa_mobility import _mesa  # noqa: F401 - early, as in precompile.py
 from mesa_mobility.crowd.checkpoint.snapshot import load_model, save_model
 from mesa_mobility.crowd.hooks import Plugin, check_behaviours
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
-from mesa_mobility.crowd.model import adding
+from mesa_mobility.crowd.model import adding, filling
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
 from mesa_mobility.crowd.model.parameters import parameters, rules_used, set_parameters
 from mesa_mobility.crowd.model.questions import blocked_by, decided, explain, under_way
@@ -67,6 +67,7 @@ class PedestrianModel(CrowdModel):
         statistics: the figures of the run so far; see ``Statistics``.
         dynamics: what happens in each frame; see ``Dynamics``.
         sources: an ``Inflow`` for each ``add_source``.
+        doors: a ``DoorControl`` for each ``add_door``.
         journeys: the routes of people who cross gates and visit places in order.
         speed_rules: behaviours that change preferred speeds; the preset's rule for groups is added
             with the first group. May be changed at run time.
@@ -110,6 +111,9 @@ class PedestrianModel(CrowdModel):
     # Functions of a model are methods as they are.
     add_pedestrians = adding.add_pedestrians
     add_source = adding.add_source
+    add_door = adding.add_door
+    fill = filling.fill
+    fill_as = filling.fill_as
     replay = replay
     add_reporter = add_reporter
     add_agent_reporter = add_agent_reporter

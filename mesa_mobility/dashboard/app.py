@@ -10,6 +10,7 @@ import solara
 
 from mesa_mobility import MobilityError, PedestrianModel
 from mesa_mobility.dashboard.address import Address, Start, read, write
+from mesa_mobility.dashboard.board.board import Board
 from mesa_mobility.dashboard.controls import BehaviourControls, TimeControls, standing_in_words
 from mesa_mobility.dashboard.forms import ParameterForm
 from mesa_mobility.dashboard.model_files import load_offered, offered_models
@@ -47,6 +48,7 @@ MODELS_AND_FILES = "floor_plan takes a plan of your own, .py files are models"
 TABS = {
     "Simulation": "The model that runs",
     "Mobility map": "The recorded movements that people are made of",
+    "Drawing board": "Draw a floor plan, and save it as GeoJSON",
     "Saved run": "Watch a run that was saved before",
 }
 """The page's tabs, and what they are for."""
@@ -128,6 +130,7 @@ def Dashboard(
     panels = {
         "Simulation": lambda: _Simulation(session),
         "Mobility map": lambda: _Map(session),
+        "Drawing board": Board,
         "Saved run": SavedRuns,
     }
     Tabs("views of the model", TABS, panels)

@@ -19,6 +19,7 @@ from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.free_area import FreeArea
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.room import Room
 from mesa_mobility.floorplan.floor.seams import Seam
 from mesa_mobility.floorplan.floor.shafts import Shaft
 from mesa_mobility.floorplan.floor.wall_index import WallIndex
@@ -27,6 +28,8 @@ from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.assembling.drawn import completed
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.plan_format import PLANS
+from mesa_mobility.floorplan.formats.storeys import Storeys
+from mesa_mobility.floorplan.rooms.finding import rooms_of
 from mesa_mobility.floorplan.routing.router import Router
 from mesa_mobility.plugins.formats import READ, WRITE
 from mesa_mobility.schema import Flag, Kind, Object, Several, Text, Whole, check
@@ -55,11 +58,13 @@ class FloorPlan(Floor):
         seams: where people change from one sheet of the plan to another. With them the walkable
             area may be several polygons, and pieces may be without an exit.
         shafts: lifts between sheets, with the same consequences.
+        rooms: named areas of the floor, of level 0; by default they are found between the gates.
 
     Raises:
         FloorPlanError: geometry that is empty, not valid, not finite or in several pieces; a
             walkable area of more than 20 km or less than 0.2 m; an exit off the edge; a gate or a
-            zone outside; a name used twice; free area without an exit that may not be cut off.
+            zone outside; a name used twice; a room without floor; free area without an exit that
+            may not be cut off.
 
     Attributes:
         version: grows by one with every change of obstacles, gates or exits.
@@ -93,9 +98,11 @@ class FloorPlan(Floor):
         simplify: float = SIMPLIFY,
         seams: Iterable[Seam] = (),
         shafts: Iterable[Shaft] = (),
+        rooms: Iterable[Room] = (),
     ) -> None:
-        super().__init__(walkable, exits, gates, zones, name, simplify, seams, shafts)
+        super().__init__(walkable, exits, gates, zones, name, simplify, seams, shafts, rooms)
         self.version = 0
+        self._rooms: tuple[FreeArea, tuple[Room, ...]] | None = None
         polygons = {
             i: read_polygon(obstacle, f"obstacle {i}") for i, obstacle in enumerate(obstacles)
         }
@@ -131,7 +138,8 @@ class FloorPlan(Floor):
         See `to_geojson` for what it holds. Raises FloorPlanError naming the file
         and the feature.
         """
-        return cls._of(geojson.read(source), geojson.label(source))
+        where = geojson.label(source)
+        return cls.of_content(geojson.read(source), where, None, None)
 
     @classmethod
     def from_dxf(
@@ -164,7 +172,12 @@ class FloorPlan(Floor):
 
     @classmethod
     def from_file(
-        cls, path: str | os.PathLike[str], *, exits: str | None = None, **options: Any
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        exits: str | None = None,
+        level: str | None = None,
+        **options: Any,
     ) -> FloorPlan:
         """Read a plan from a file, in the format that the end of its name says.
 
@@ -176,6 +189,8 @@ class FloorPlan(Floor):
             exits: of a file that has none: "longest", a door of 1.2 m in the middle of the longest
                 straight outer edge; lines "x1 y1, x2 y2" with semicolons between them, within 1.2 m
                 of the edge; or a file of such lines.
+            level: number or name of the level, of a file that has several; by default 0, or the
+                lowest.
             options: those of the format, such as ``unit="mm"`` of a DXF.
 
         Raises:
@@ -185,8 +200,18 @@ class FloorPlan(Floor):
         """
         chosen: Any = PLANS.of(path, READ)
         options = PLANS.chosen_options(chosen, READ, options)
-        content = chosen.read(Path(path), **options)
-        return cls._of(completed(content, exits), str(path))
+        return cls.of_content(chosen.read(Path(path), **options), str(path), exits, level)
+
+    @classmethod
+    def of_content(
+        cls, found: Content | Storeys, where: str, exits: str | None, level: str | None
+    ) -> FloorPlan:
+        """The plan of what a format has read; see `from_file`. `where` names the file in errors."""
+        if isinstance(found, Storeys):
+            found = found.content(level, where)
+        elif level is not None:
+            raise FloorPlanError(f"{where}: has no levels, expected no level")
+        return cls._of(completed(found, exits), where)
 
     def to_file(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the plan to a file, in the format that the end of its name says.
@@ -208,6 +233,12 @@ class FloorPlan(Floor):
         """The plan of a file's content; `where` names the file in errors."""
         for note in content.notes:
             warnings.warn(f"{where}: {note}", stacklevel=3)
+        if content.people:
+            warnings.warn(
+                f"{where}: left out people of {len(content.people)} sources: this is the floor "
+                f"plan alone; `mesa-mobility run {where}` has them walk",
+                stacklevel=3,
+            )
         if not content.exits and not content.gates:
             raise FloorPlanError(
                 f"{where}: the floor plan has no exit, and no gate that people could go to: "
@@ -223,6 +254,7 @@ class FloorPlan(Floor):
                 name=content.name,
                 cut_off=content.cut_off,
                 simplify=content.simplify,
+                rooms=content.rooms,
             )
         except FloorPlanError as error:
             raise FloorPlanError(f"{where}: {error}") from None
@@ -234,6 +266,25 @@ class FloorPlan(Floor):
     # Functions of a plan are methods as they are.
     to_geojson = geojson.feature_collection
     write_geojson = geojson.write
+
+    @property
+    def rooms(self) -> tuple[Room, ...]:
+        """The rooms, each with its name, use, area and doors.
+
+        They are those with which the plan was made, or else are found between its gates, open or
+        closed, and named ``room 1``, ``room 2`` and so on, the largest first. Rooms that are found
+        follow obstacles that separate them.
+
+        Raises:
+            FloorPlanError: the plan has several sheets; rooms are those of its building.
+        """
+        if self.in_sheets:
+            raise FloorPlanError(
+                "a plan of several sheets has no rooms of its own, expected those of its building"
+            )
+        if self._rooms is None or self._rooms[0] is not self._area:
+            self._rooms = self._area, rooms_of(self)
+        return self._rooms[1]
 
     @property
     def route_graph(self) -> nx.DiGraph:

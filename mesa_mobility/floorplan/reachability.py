@@ -25,7 +25,7 @@ def check_reachable(plan: Floor, points: ArrayLike, clearance: float) -> None:
     closed = shapely.union_all([gate.line for gate in plan.closed_gates()]).buffer(clearance)
     # A body nearer to a wall than the clearance counts as at the nearest place that keeps it.
     # That place is never behind the wall, where such places are farther away.
-    leads_out, _ = _pieces(plan, plan.free, clearance, plan.open_exits(), closed)
+    leads_out, _ = pieces_of(plan, plan.free, clearance, plan.open_exits(), closed)
     away = shapely.distance(leads_out, shapely.points(xy))
     lost = ~(plan.contains(xy) & (away <= clearance + 1e-6))
     if lost.any():
@@ -51,7 +51,7 @@ def with_way_out(plan: Floor, region: BaseGeometry, radius: float) -> BaseGeomet
     smooth = smooth_floor(plan)
     # A smooth wall may lie a little before the real one, and close no gap by that.
     passing = radius if smooth.is_exact else max(radius - CLOSER, 0.0)
-    _, cut_off = _pieces(plan, smooth.floor, passing, plan.exits, shapely.Polygon())
+    _, cut_off = pieces_of(plan, smooth.floor, passing, plan.exits, shapely.Polygon())
     if cut_off.is_empty:
         return region
     # Nearer to a wall than the radius a body counts as at the nearest place that keeps it.
@@ -59,7 +59,7 @@ def with_way_out(plan: Floor, region: BaseGeometry, radius: float) -> BaseGeomet
     return region if kept.is_empty else kept
 
 
-def _pieces(
+def pieces_of(
     plan: Floor,
     floor: BaseGeometry,
     clearance: float,

@@ -35,6 +35,19 @@ class Format:
     name: ClassVar[str] = ""
     suffixes: ClassVar[tuple[str, ...]] = ()
 
+    def takes(self, path: Path) -> bool:
+        """Whether a file is of this format, of those whose suffix other formats have, too.
+
+        Formats that share a suffix each have a method of their own, which looks into the file.
+
+        Args:
+            path: the file, or a folder.
+
+        Raises:
+            MobilityError: the file cannot be read.
+        """
+        return True
+
 
 F = TypeVar("F", bound=Format)
 
@@ -123,6 +136,11 @@ class Formats(Generic[F]):
         found = self._for_suffix(max(ends, key=len), what)
         if clash := _clash(max(ends, key=len), found):
             raise self.error(f"{path}: {clash}")
+        if len(found) > 1 and what == READ:
+            names = " or ".join(each.format.name for each in found)
+            found = [each for each in found if each.format.takes(Path(path))]
+            if len(found) != 1:
+                raise self.error(f"{path}: expected a file of one of the formats {names}")
         return found[0].format
 
     def options(self, chosen: F, what: str) -> dict[str, Parameter]:
@@ -216,6 +234,7 @@ def _is_suffix(text: object) -> bool:
 
 def _clash(suffix: str, found: list[Known[F]]) -> str:
     """What is wrong where several formats are for a suffix, or nothing."""
-    if len(found) < 2:
+    own = [type(each.format).takes is not Format.takes for each in found]
+    if len(found) < 2 or all(own):
         return ""
     return f"suffix {suffix} is offered both by {found[0]} and by {found[1]}: remove one of them"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from mesa_mobility._lazy import names_of
 
 if TYPE_CHECKING:
+    from mesa_mobility.floorplan import Room as Room
     from mesa_mobility.results.engineering.clearing import clearing as clearing
     from mesa_mobility.results.engineering.clearing import time_to_share as time_to_share
     from mesa_mobility.results.engineering.doors import clogging as clogging
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from mesa_mobility.results.engineering.queues import queue_lengths as queue_lengths
     from mesa_mobility.results.engineering.queues import queues as queues
     from mesa_mobility.results.engineering.queues import waiting_times as waiting_times
-    from mesa_mobility.results.engineering.rooms import Room as Room
     from mesa_mobility.results.engineering.rooms import read_rooms as read_rooms
     from mesa_mobility.results.engineering.rooms import room_figures as room_figures
     from mesa_mobility.results.engineering.rooms import room_times as room_times

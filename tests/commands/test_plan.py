@@ -46,6 +46,7 @@ def test_what_a_plan_holds(command, tmp_path):
         "gates": {},
         "obstacles": 1,
         "zones": [],
+        "rooms": [{"name": "room 1", "level": 0, "use": "", "area_m2": 24.0, "doors": ["street"]}],
     }
     assert "street (2.00 m)" in command("plan", str(tmp_path / "room.wkt")).out
     assert (tmp_path / "room_plan.png").read_bytes().startswith(b"\x89PNG")
@@ -113,7 +114,13 @@ def test_what_a_building_holds(command, tmp_path):
     belt = Escalator.straight("belt", 1, 0, ((16, 3), (16, 4)), length=5.3)
     Building([ground, Level(1, HALL, 3.06, refuges=[lobby])], [belt]).write_geojson(first)
     done = command("plan", str(first), "--json", "-o", str(second))
-    assert json.loads(done.out) == {
+    said = json.loads(done.out)
+    rooms = said.pop("rooms")
+    # A hall of 24 m by 8 m on each level, less what the escalator takes.
+    assert [each["name"] for each in rooms] == ["level 0 room 1", "level 1 room 1"]
+    assert [each["doors"] for each in rooms] == [["street", "belt"], ["belt"]]
+    assert all(180.0 < each["area_m2"] < 192.0 for each in rooms)
+    assert said == {
         "name": "",
         "levels": {"0": 0.0, "1": 3.06},
         "stairs": {"belt": "escalator"},
@@ -126,3 +133,65 @@ def test_what_a_building_holds(command, tmp_path):
     refused = command("plan", str(first), "-o", str(tmp_path / "office.svg"))
     assert refused.status != 0
     assert refused.err.count("\n") == 1
+
+
+CORNERS = [[7, 51], [7.0003, 51], [7.0003, 51.0001], [7, 51.0001], [7, 51]]
+TWO_LEVELS = {
+    "type": "FeatureCollection",
+    "features": [
+        {
+            "type": "Feature",
+            "properties": {"indoor": "area", "level": level},
+            "geometry": {"type": "Polygon", "coordinates": [CORNERS]},
+        }
+        for level in ("0", "1")
+    ],
+}
+"""Two levels 21 m by 11 m, which nothing joins."""
+
+
+def test_one_level_of_several(command, tmp_path):
+    (tmp_path / "two.geojson").write_text(json.dumps(TWO_LEVELS))
+    done = command("plan", "two.geojson", "--exits", "longest", "--json")
+    assert json.loads(done.out)["exits"]["door"] == pytest.approx(1.2)
+    assert "level 0 of 0, 1; --level names another" in done.err
+    done = command("plan", "two.geojson", "--exits", "longest", "--level", "1", "--json")
+    assert "--level names another" not in done.err
+    done = command("plan", "two.geojson", "--level", "2")
+    assert done.status == 2
+    assert "two.geojson: has no level '2', expected one of 0, 1" in done.err
+
+
+def test_a_building_needs_a_level_where_a_floor_plan_is_expected(command, tmp_path):
+    ground = Level(0, HALL, exits=[Exit("street", (0, 2), (0, 4))])
+    upper = Level(1, HALL, elevation=4.0)
+    join = Escalator.straight("up", 1, 0, ((12, 3), (12, 4)), length=6.93)
+    Building([ground, upper], [join]).write_geojson(tmp_path / "hall.geojson")
+    done = command("estimate", "none.txt", "--plan", "hall.geojson")
+    assert "hall.geojson: has the levels 0, 1, expected --level with one" in done.err
+    done = command("plan", "hall.geojson", "--level", "1", "--json")
+    assert list(json.loads(done.out)["exits"]) == ["up"]
+
+
+def test_what_is_odd_is_listed_and_marked(command, tmp_path):
+    (tmp_path / "room.wkt").write_text(WKT.replace("6 1, 6 3", "6 1, 6 1.6"))
+    done = command("plan", "room.wkt", "--check", "--json")
+    (odd, *others) = json.loads(done.out)["odd"]
+    assert (odd["number"], odd["kind"], odd["place"]) == (1, "narrow door", [6.0, 1.3])
+    assert {each["kind"] for each in others} == {"no way out for wheelchairs"}
+    before = (tmp_path / "room_plan.png").stat().st_size
+    said = " ".join(command("plan", "room.wkt", "--check").out.split())
+    assert "exit street is 0.60 m wide: wheelchairs need 0.80 m" in said
+    command("plan", "room.wkt")
+    assert (tmp_path / "room_plan.png").stat().st_size < before
+    (tmp_path / "room.wkt").write_text(
+        "walkable POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))\nexit street LINESTRING (6 1, 6 3)\n"
+    )
+    assert "nothing odd was found" in command("plan", "room.wkt", "--check").out
+
+
+@pytest.mark.thorough
+def test_a_file_runs_in_place_of_a_model(command, tmp_path):
+    (tmp_path / "room.wkt").write_text(WKT)
+    done = command("run", "room.wkt", "--set", "pedestrians=2", "--seed", "1", "--json")
+    assert json.loads(done.out.splitlines()[-1])["model"] == "floor_plan"

@@ -59,7 +59,8 @@ def squares(install, tmp_path):
 
 
 def test_what_ships_is_registered_like_any_plug_in():
-    assert list(PLANS.usable()) == ["dxf", "geojson", "jupedsim_scenario", "osm", "vadere", "wkt"]
+    shipped = ["dxf", "geojson", "ifc", "imdf", "jupedsim_scenario", "osm", "vadere", "wkt"]
+    assert list(PLANS.usable()) == shipped
     assert set(OUTPUTS.usable()) == {
         "bvh",
         "film",

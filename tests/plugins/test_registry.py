@@ -13,6 +13,7 @@ SHIPPED_MODELS = {
     "auditorium",
     "mixed_evacuation",
     "office_tower",
+    "scenario",
 }
 SHIPPED_BEHAVIORS = {
     "target_distance",

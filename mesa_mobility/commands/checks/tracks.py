@@ -115,13 +115,12 @@ def validate_tracks(
     rules = options.rules()
     area = None if windows.area is None else _area(windows.area)
     line = None if windows.line is None else _line(windows.line)
-    from mesa_mobility import FloorPlan
     from mesa_mobility.distributions import parse
     from mesa_mobility.validation.tracks import experiment, setting_of
     from mesa_mobility.verification.runs import crowd_model
 
     free_speeds = None if speeds is None else parse(speeds)
-    floor = FloorPlan.from_file(plan, exits=doors.text)
+    floor = doors.floor_plan(plan)
     tracks = reading.read(file)
     setting = setting_of(
         tracks,
@@ -134,7 +133,7 @@ def validate_tracks(
         line=line,
         speeds=speeds,
     )
-    setting = replace(setting, exits=doors.text)
+    setting = replace(setting, exits=doors.text, level=doors.level)
     say(f"{file}: {setting}")
     # Whatever cannot be replayed is found here, once, and not in every run.
     with rules.followed():

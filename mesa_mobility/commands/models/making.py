@@ -19,7 +19,15 @@ MODEL_HELP = (
     "Name of an installed model (`mesa-mobility models` lists them), FILE.py, FILE.py:NAME, or "
     "module:NAME."
 )
-ModelName = Annotated[str, typer.Argument(metavar="MODEL", help=MODEL_HELP)]
+PLAN_MODEL, SCENARIO_MODEL = "floor_plan", "scenario"
+"""Models of a file of a floor plan, and of one with people."""
+ModelName = Annotated[
+    str,
+    typer.Argument(
+        metavar="MODEL|FILE",
+        help=MODEL_HELP + " Or the file of a floor plan, a building or a scenario.",
+    ),
+]
 PresetName = Annotated[
     str | None,
     typer.Option(
@@ -81,6 +89,32 @@ class ModelOptions:
     def with_seed(self) -> ModelOptions:
         """These options with a seed, which is drawn if none was given."""
         return replace(self, seed=secrets.randbelow(2**31)) if self.seed is None else self
+
+
+def model_of_file(text: str, options: ModelOptions) -> tuple[str, ModelOptions]:
+    """The name of a model and its options; of a file of a plan those of the model that runs it.
+
+    Args:
+        text: what the user calls the model, or the file.
+        options: of the command.
+
+    Raises:
+        FloorPlanError: a folder or a zip that is neither a plan nor a scenario.
+    """
+    from mesa_mobility.crowd.model_files import is_model_file
+
+    path = Path(text)
+    # Formats are looked for only where there is a file that is no model.
+    if not path.exists() or not (path.is_dir() or path.suffix) or is_model_file(text):
+        return text, options
+    from mesa_mobility.floorplan.formats.plan_format import PLANS
+    from mesa_mobility.floorplan.scenario import has_people
+    from mesa_mobility.plugins.formats import READ
+
+    if path.is_file() and path.suffix.lower() not in PLANS.suffixes(READ):
+        return text, options
+    name = SCENARIO_MODEL if has_people(path) else PLAN_MODEL
+    return name, replace(options, settings=[f"plan={text}", *(options.settings or [])])
 
 
 def create_model(

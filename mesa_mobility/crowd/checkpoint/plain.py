@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility import distributions
+from mesa_mobility.crowd.doors.door import Door
 from mesa_mobility.crowd.insertion.source import Source
 from mesa_mobility.crowd.journeys.visit import Visit
 from mesa_mobility.crowd.presets.preset import Preset
@@ -24,7 +25,7 @@ from mesa_mobility.crowd.presets.provenance import Provenance
 from mesa_mobility.crowd.state.fields import KINDS
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
 from mesa_mobility.errors import ModelError
-from mesa_mobility.floorplan import Exit, FloorPlan, Gate, SpeedZone
+from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Room, SpeedZone
 from mesa_mobility.schema import Members, Whole, check
 
 TAG = "$"
@@ -36,7 +37,9 @@ _DATACLASSES: dict[str, Any] = {
         Exit,
         Gate,
         SpeedZone,
+        Room,
         Source,
+        Door,
         Preset,
         Provenance,
         PedestrianType,

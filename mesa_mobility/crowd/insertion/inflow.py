@@ -72,6 +72,7 @@ class Inflow(Saved):
         self._rng = rng
         times = source.times
         self._times: NDArray[np.float64] | None = None if times is None else np.asarray(times)
+        self._arriving = source.arriving
         self._next = max(source.start, frame * FRAME_SECONDS)
         self._draw_next()
 
@@ -129,8 +130,8 @@ class Inflow(Saved):
     def _draw_next(self) -> None:
         source = self.source
         if self._times is None:
-            assert source.rate is not None
-            self._next += self._rng.exponential(1.0 / source.rate)
+            assert self._arriving is not None
+            self._next = self._arriving.after(self._next, self._rng.standard_exponential())
         else:
             self._next = self._times[self.arrived] if self.arrived < len(self._times) else np.inf
         full = source.number is not None and self.arrived >= source.number
@@ -143,13 +144,15 @@ class Sources(Sequence[Inflow], Saved):
 
     Args:
         scene: the floor and what people can do on it.
+        rng: the model's generator.
 
     Attributes:
         arrivals: measured people who come at recorded times.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, rng: np.random.Generator) -> None:
         self._scene = scene
+        self._rng = rng
         self._inflows: list[Inflow] = []
         self.arrivals = Arrivals()
 
@@ -185,7 +188,7 @@ class Sources(Sequence[Inflow], Saved):
         del self._inflows[len(state["inflows"]) :]
         for number, (source, inflow) in enumerate(state["inflows"]):
             if number == len(self._inflows):
-                self.add(source, 0, np.random.default_rng(0))
+                self.add(source, 0)
             self._inflows[number].restore(inflow)
 
     @property
@@ -199,7 +202,7 @@ class Sources(Sequence[Inflow], Saved):
         """Whether people are to come who go round for ever, or people come for ever."""
         return any(each.source.endless and not each.finished for each in self._inflows)
 
-    def add(self, source: Source, frame: int, rng: np.random.Generator) -> Inflow:
+    def add(self, source: Source, frame: int) -> Inflow:
         """Let people in from ``frame`` on; ``PedestrianModel.add_source`` says what is refused."""
         scene, area = self._scene, read_entrance(source.area)
         if source.type_index is not None and source.population is not None:
@@ -223,6 +226,6 @@ class Sources(Sequence[Inflow], Saved):
             destination, _ = scene.journeys.start(source.exits, source.route, source.loop, kind)
             somewhere = entrances[kind].room.representative_point()
             scene.environment.check_way_out(np.array([[somewhere.x, somewhere.y]]), destination)
-        inflow = Inflow(source, newcomers, entrances, population, frame, rng)
+        inflow = Inflow(source, newcomers, entrances, population, frame, self._rng)
         self._inflows.append(inflow)
         return inflow

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
+from mesa_mobility.crowd.insertion.rates import Arriving, Rate, read_rate
 from mesa_mobility.crowd.journeys.visit import Route
 from mesa_mobility.crowd.journeys.waiting import LONGEST_WAIT
 from mesa_mobility.crowd.tactics.speed_rules import FASTEST
@@ -19,9 +20,6 @@ from mesa_mobility.distributions import Distribution
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.output import numbers_in
 from mesa_mobility.populations import Population
-
-HIGHEST_RATE = 1000.0
-"""Most people a second from one source: the flow through some 800 m of doors."""
 
 LATEST = LONGEST_WAIT
 """Latest time in seconds of an arrival, ``start`` or ``until``."""
@@ -36,8 +34,10 @@ class Source:
 
     Attributes:
         area: where they appear: a polygon or a line on the floor, shapely or WKT, metres.
-        rate: people a second, as a Poisson process from ``start`` on. It ends only with ``until``
-            or ``number``.
+        rate: people a second, as a Poisson process from ``start`` on: a number; steps such as
+            ``[(0, 0.5), (600, 2)]``, each from its second on, before the first of which nobody
+            comes; or a function of seconds, which is looked up once for the middle of each second
+            and needs ``until``. It ends only with ``until``, ``number`` or a last step of 0.
         times: (k,) seconds at which they come, instead of a rate.
         start: seconds at which a rate begins.
         until: seconds from which on nobody comes any more.
@@ -53,7 +53,7 @@ class Source:
     """
 
     area: BaseGeometry | str
-    rate: float | None = None
+    rate: Rate | NDArray[np.float64] | None = None
     times: ArrayLike | None = None
     start: float = 0.0
     until: float = np.inf
@@ -71,11 +71,6 @@ class Source:
     def __post_init__(self) -> None:
         if (self.rate is None) == (self.times is None):
             raise ModelError("source: expected either a rate or times")
-        if self.rate is not None and not (is_number(self.rate) and 0.0 < self.rate <= HIGHEST_RATE):
-            raise ModelError(
-                f"source: rate {self.rate!r}, expected more than 0 and at most {HIGHEST_RATE:g} "
-                "people a second"
-            )
         if not (
             is_number(self.start)
             and is_number(self.until)
@@ -86,6 +81,8 @@ class Source:
                 f"source: start {self.start!r} and until {self.until!r}, expected "
                 f"0 <= start <= until and a start of at most {LATEST:g} s"
             )
+        if self.rate is not None:
+            object.__setattr__(self, "rate", read_rate(self.rate, self.start, self.until))
         if self.number is not None and not (
             is_number(self.number)
             and isinstance(self.number, int)
@@ -122,8 +119,14 @@ class Source:
     @property
     def endless(self) -> bool:
         """Whether people come for ever, or go round for ever."""
-        unlimited = self.rate is not None and self.until > LATEST and self.number is None
-        return self.loop or unlimited
+        rate = self.arriving
+        unlimited = rate is not None and not rate.ends
+        return self.loop or (unlimited and self.until > LATEST and self.number is None)
+
+    @property
+    def arriving(self) -> Arriving | None:
+        """When people come by the rate, if there is one."""
+        return None if self.rate is None else Arriving(self.rate)  # type: ignore[arg-type]
 
     def newcomers(self, type_index: int | None) -> Newcomers:
         """The newcomers of one type."""

@@ -91,6 +91,8 @@ class Journeys(Saved):
         self._site = site
         self._known: list[Journey] = []
         self._places: list[tuple[Visit, int, Place]] = []
+        # Numbers of the same place for people of other core radii, after its own.
+        self._alike: list[list[int]] = []
         self.stays = Stays()
         self._take_stock()
         self._numbers: dict[tuple[object, ...], int] = {}
@@ -124,6 +126,7 @@ class Journeys(Saved):
             legs = (len(each.stops) + (not each.loop),)
             check_shape(each.legs.shape, legs, "known, legs", {})
         self._places.clear()
+        self._alike.clear()
         self._take_stock()
         check(self.stays.places, Array("i8", low=-1, high=len(self._places) - 1), "stays, _place")
 
@@ -241,12 +244,18 @@ class Journeys(Saved):
 
     def _place(self, visit: Visit, body: int) -> int:
         """Index of a place for people of one core radius."""
+        alike = []
         for number, (known, whose, _) in enumerate(self._places):
-            if known == visit and whose == body:
-                return number
-        place = Place(self._plan, visit, self._site.core_radius(body))
+            if known == visit:
+                if whose == body:
+                    return number
+                alike.append(number)
+        place, own = Place(self._plan, visit, self._site.core_radius(body)), len(self._places)
+        for number in alike:
+            self._alike[number].append(own)
         self._places.append((visit, body, place))
-        return len(self._places) - 1
+        self._alike.append([own, *alike])
+        return own
 
     def _leg(self, stop: str | Visit, kind: int) -> int:
         """Number of the destination of a stop."""
@@ -309,6 +318,6 @@ class Journeys(Saved):
         for row, number in zip(on.tolist(), numbers.tolist(), strict=True):
             if number >= 0:
                 place = self._places[number][2]
-                if self.stays.over(row, number, place, frame, crowd, rng):
+                if self.stays.over(row, self._alike[number], place, frame, crowd, rng):
                     over.append(row)
         return np.array(over, dtype=np.int64)

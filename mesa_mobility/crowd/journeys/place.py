@@ -20,6 +20,9 @@ APART = 0.6
 NEAR = 0.5
 """Metres from a point at which somebody has arrived, if nobody stands there."""
 
+BESIDE = 1.0
+"""Metres from a place at which somebody waits until there is room for them."""
+
 # Those around a point stand on a sunflower's spiral, APART from each other, and the next one has
 # arrived where it meets them.
 _SPIRAL, _AROUND = 0.34, 0.4
@@ -92,6 +95,23 @@ class Place:
         if away > NEAR + _AROUND * math.sqrt(staying):
             return False
         return away == 0.0 or line_of_sight(self._plan, (x, y), (px, py))
+
+    def beside(self, x: float, y: float, others: int) -> bool:
+        """Whether somebody at (x, y), metres, is so near that they wait for room at the place.
+
+        Args:
+            x: their position, metres.
+            y: their position, metres.
+            others: number of people who stay or wait there.
+        """
+        here = shapely.Point(x, y)
+        place = shapely.Point(self.visit.place) if self.visit.area is None else self._room
+        if place.is_empty:
+            return False
+        way = shapely.shortest_line(here, place)
+        if way.length > BESIDE + _AROUND * math.sqrt(others):
+            return False
+        return way.length == 0.0 or line_of_sight(self._plan, (x, y), way.coords[-1])
 
     def spot(
         self,

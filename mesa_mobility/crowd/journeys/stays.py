@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -30,8 +30,9 @@ _WALKING = -1
 class Stays(Saved):
     """The people who stay at a place of their route. Rows are those of the crowd.
 
-    People who arrive get a spot to stand at, walk there, and stand from then on. Nothing is
-    computed before the first has arrived.
+    People who arrive get a spot to stand at, walk there, and stand from then on. Where as many are
+    as a place holds, those who come are in line before it. Nothing is computed before the first has
+    arrived.
     """
 
     saved: ClassVar[Mapping[str, Kind]] = {
@@ -40,6 +41,8 @@ class Stays(Saved):
         "_came": Array("i8", ("known",), -1, LAST_FRAME),
         "_stay": Array("i8", ("known",), -1, LAST_FRAME),
         "_until": Array("i8", ("known",), -1, LAST_FRAME),
+        "_line": Array("i8", ("known",), -1),
+        "_since": Array("i8", ("known",), -1, LAST_FRAME),
     }
 
     def __init__(self) -> None:
@@ -48,11 +51,23 @@ class Stays(Saved):
         self._came = np.empty(0, dtype=np.int64)
         self._stay = np.empty(0, dtype=np.int64)
         self._until = np.empty(0, dtype=np.int64)
+        # Number of the place before which each is in line, and since which frame.
+        self._line = np.empty(0, dtype=np.int64)
+        self._since = np.empty(0, dtype=np.int64)
 
     @property
     def places(self) -> NDArray[np.int64]:
-        """Number of the place of each row, -1 for none; there may be more rows than people."""
-        return self._place
+        """Numbers of the places of the rows, then of those before which they are in line, -1 for
+        none; there may be more rows than people."""
+        return np.concatenate([self._place, self._line])
+
+    def in_line(self, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """(n,) whether each in ``rows`` waits before a place that is full."""
+        if not len(self._line):
+            return np.zeros(len(rows), dtype=np.bool_)
+        known = rows < len(self._line)
+        found: NDArray[np.bool_] = known & (self._line[np.where(known, rows, 0)] >= 0)
+        return found
 
     def spots(self, rows: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Indices among ``rows`` of those on the way to a spot, and their (k, 2) spots, metres."""
@@ -73,12 +88,12 @@ class Stays(Saved):
         if self.stands(row):
             end_wait(row, frame, crowd)
         if row < len(self._place):
-            self._place[row] = -1
+            self._place[row] = self._line[row] = -1
 
     def over(
         self,
         row: int,
-        number: int,
+        alike: Sequence[int],
         place: Place,
         frame: int,
         crowd: Crowd,
@@ -88,7 +103,7 @@ class Stays(Saved):
 
         Args:
             row: the person, who decides now.
-            number: of the place.
+            alike: numbers of the place, that of the person's body first.
             place: the place to which they go, or at which they are.
             frame: now.
             crowd: the crowd.
@@ -99,15 +114,18 @@ class Stays(Saved):
             # There may be more rows here than in the crowd, none of them in use.
             known = self._place[: len(crowd.active)]
             others = np.flatnonzero((known >= 0) & crowd.active[: len(known)])
-            staying = int((self._place[others] == number).sum())
-            if not place.reached(x, y, staying):
+            if place.visit.capacity is not None:
+                if not self._admitted(row, alike, place, frame, crowd):
+                    return False
+            elif not place.reached(x, y, int((self._place[others] == alike[0]).sum())):
                 return False
+            staying = int((self._place[others] == alike[0]).sum())
             stay = _frames(place.visit, rng)
             if stay == 0:
                 return True
             spot = place.spot(x, y, staying, self._spot[others], rng)
             self._make_room(row + 1)
-            self._place[row], self._spot[row], self._until[row] = number, spot, _WALKING
+            self._place[row], self._spot[row], self._until[row] = alike[0], spot, _WALKING
             self._came[row], self._stay[row] = frame, stay
         if self._until[row] == _WALKING:
             sx, sy = self._spot[row]
@@ -121,6 +139,30 @@ class Stays(Saved):
         self._place[row] = -1
         return True
 
+    def _admitted(
+        self, row: int, alike: Sequence[int], place: Place, frame: int, crowd: Crowd
+    ) -> bool:
+        """Whether somebody who comes to a place of a capacity goes in; otherwise they are in line
+        if they are near it."""
+        self._make_room(row + 1)
+        known = len(self._place[: len(crowd.active)])
+        active = crowd.active[:known]
+        staying = int((np.isin(self._place[:known], alike) & active).sum())
+        waiting = np.isin(self._line[:known], alike) & active
+        if not place.beside(float(crowd.x[row]), float(crowd.y[row]), staying + int(waiting.sum())):
+            self._line[row] = -1
+            return False
+        if self._line[row] not in alike:
+            self._line[row], self._since[row] = alike[0], frame
+        since, own = self._since[:known], self._since[row]
+        rows = np.arange(known)
+        ahead = waiting & ((since < own) | ((since == own) & (rows < row)))
+        assert place.visit.capacity is not None
+        if int(ahead.sum()) >= place.visit.capacity - staying:
+            return False
+        self._line[row] = -1
+        return True
+
     def _make_room(self, count: int) -> None:
         more = max(count, 2 * len(self._place)) - len(self._place)
         if count > len(self._place):
@@ -129,6 +171,7 @@ class Stays(Saved):
             self._spot = np.append(self._spot, np.zeros((more, 2)), axis=0)
             self._came, self._stay = np.append(self._came, none), np.append(self._stay, none)
             self._until = np.append(self._until, none)
+            self._line, self._since = np.append(self._line, none), np.append(self._since, none)
 
 
 def _frames(visit: Visit, rng: np.random.Generator) -> int:

@@ -16,6 +16,9 @@ from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan.floor.checks import read_wkt
 from mesa_mobility.plugins.output import numbers_in
 
+MOST_PEOPLE = 10_000_000
+"""Most people at one place."""
+
 
 @dataclass(frozen=True)
 class Visit:
@@ -27,16 +30,27 @@ class Visit:
     Attributes:
         place: a point (x, y) in metres, or an area, a polygon (shapely or WKT).
         stay: seconds for which people stand there, or a distribution of them.
+        capacity: people who may stay there at once; the others wait before it, and go in as they
+            came. By default as many as come.
 
     Raises:
-        ModelError: a stay that is no time.
+        ModelError: a stay that is no time, or a capacity that is no number of people.
         FloorPlanError: a place that is neither a point nor a polygon.
     """
 
     place: Any
     stay: float | Distribution = 0.0
+    capacity: int | None = None
 
     def __post_init__(self) -> None:
+        if self.capacity is not None and not (
+            isinstance(self.capacity, int)
+            and not isinstance(self.capacity, bool)
+            and 1 <= self.capacity <= MOST_PEOPLE
+        ):
+            raise ModelError(
+                f"visit: capacity {self.capacity!r:.60}, expected 1 to {MOST_PEOPLE:,} people"
+            )
         if not isinstance(self.stay, Distribution) and not (
             is_number(self.stay) and 0.0 <= self.stay <= LONGEST_WAIT
         ):

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from numpy.typing import ArrayLike
 
+from mesa_mobility.crowd.doors.door import Door
+from mesa_mobility.crowd.doors.doors import DoorControl
 from mesa_mobility.crowd.insertion.inflow import Inflow
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.insertion.source import Source
@@ -77,6 +79,19 @@ def add_pedestrians(
     return people
 
 
+def add_door(model: CrowdModel, door: Door) -> DoorControl:
+    """Let a gate or an exit let people by at a rate, close at times, or close when full.
+
+    Returns:
+        The door's control, which counts those who have passed.
+
+    Raises:
+        ModelError: the gate or exit has one already.
+        FloorPlanError: there is no such gate or exit.
+    """
+    return model.doors.add(door)
+
+
 def add_source(model: CrowdModel, source: Source) -> Inflow:
     """Let people in over time.
 
@@ -91,6 +106,6 @@ def add_source(model: CrowdModel, source: Source) -> Inflow:
         FloorPlanError: an area without room for a body, an unknown exit or gate, or no route
             from there.
     """
-    inflow = model.sources.add(source, model.frame, model.rng)
+    inflow = model.sources.add(source, model.frame)
     model.go_on()
     return inflow

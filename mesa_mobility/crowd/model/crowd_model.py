@@ -22,6 +22,7 @@ from mesa_mobility.crowd.arguments import (
 )
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
+from mesa_mobility.crowd.doors.doors import Doors
 from mesa_mobility.crowd.dynamics import Dynamics
 from mesa_mobility.crowd.insertion.inflow import Sources
 from mesa_mobility.crowd.journeys.waiting import Waits
@@ -145,7 +146,8 @@ class CrowdModel(RefugeFigures, mesa.Model):
         self.watch: Watch | None = None
         self.space = space_of(plan, float(scene.repertoire.reach.max()), self.random)
         self.population = People(scene, self.space, pedestrian_class)
-        self.sources = Sources(scene)
+        self.sources = Sources(scene, self.rng)
+        self.doors = Doors(plan, scene.environment)
         self.statistics = Statistics(self.population, self.crowd)
         self.waits = Waits()
         self.dynamics = Dynamics(self, scene)
@@ -184,6 +186,7 @@ class CrowdModel(RefugeFigures, mesa.Model):
             "refuges": self.refuges,
             "population": self.population,
             "sources": self.sources,
+            "doors": self.doors,
             "statistics": self.statistics,
             "standing": self._standing_watch,
             "stall_watch": self._stall_watch,

@@ -40,6 +40,7 @@ class Environment(Saved):
     Attributes:
         plan: the floor plan.
         corners: the corners of all routes.
+        shut: names of gates and exits that are walls for now, though routes lead through them.
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Environment(Saved):
         climbs: Sequence[bool] | None = None,
     ) -> None:
         self.plan = plan
+        self.shut: frozenset[str] = frozenset()
         self._reach = reach
         self._of_types = tuple(core_radii)
         self._climbs = (True,) * len(core_radii) if climbs is None else tuple(climbs)
@@ -324,8 +326,12 @@ class Environment(Saved):
         """Walls and exits as they are now."""
         if self._version != self.plan.version:
             self._version = self.plan.version
-            self._now = survey(self.plan, self._destinations, self._climbing, self._reach)
-        return self._now
+            self._surveys: dict[frozenset[str], Surroundings] = {}
+        if self.shut not in self._surveys:
+            self._surveys[self.shut] = survey(
+                self.plan, self._destinations, self._climbing, self._reach, self.shut
+            )
+        return self._surveys[self.shut]
 
 
 def _without_way(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.floor.boundaries import opening_segments
 from mesa_mobility.floorplan.floor.wall_index import cell_table
 from mesa_mobility.floorplan.routing.targets import Destination
 
@@ -50,7 +51,11 @@ class Surroundings(NamedTuple):
 
 
 def survey(
-    plan: FloorPlan, destinations: Sequence[Destination], climbs: Sequence[bool], reach: float
+    plan: FloorPlan,
+    destinations: Sequence[Destination],
+    climbs: Sequence[bool],
+    reach: float,
+    shut: frozenset[str] = frozenset(),
 ) -> Surroundings:
     """Walls and exits of a floor plan as they are now.
 
@@ -59,13 +64,16 @@ def survey(
         destinations: exits, gate or point of each number of a destination.
         climbs: whether each distinct body, which has numbers of its own, uses stairs.
         reach: how far from a person walls matter, metres.
+        shut: names of gates and exits that are walls, though they are open.
     """
-    walls = plan.walls
+    gates = [each for each in plan.open_gates() if each.name in shut]
+    walls = np.concatenate([plan.walls, opening_segments(gates)]) if gates else plan.walls
     cells = cell_table(walls, CELL_SIZE, reach)
     exits = plan.exits
+    passable = {each.name for each in plan.open_exits()} - shut
     leads_out = np.array(
         [
-            [plan.is_open(exit_.name) and (names is None or exit_.name in names) for exit_ in exits]
+            [exit_.name in passable and (names is None or exit_.name in names) for exit_ in exits]
             for names in destinations
         ],
         dtype=np.bool_,

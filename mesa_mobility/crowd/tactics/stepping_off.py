@@ -79,7 +79,8 @@ class StepOff(Tactic):
 
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Send those away from the line who are across it."""
-        closed = self._plan.closed_openings()
+        shut = (self._plan.gate(name) for name in sorted(deciding.site.shut))
+        closed = (*self._plan.closed_openings(), *shut)
         if desired.newcomers or not closed:
             return
         lines, points = opening_segments(closed), desired.points.copy()

@@ -42,7 +42,7 @@ def slow_down(speeds: NDArray[np.float64], remaining: NDArray[np.float64]) -> ND
 
 class StayAtPlaces(Tactic):
     """People slow down before a place of their route at which they stay, and walk to where they
-    stand there."""
+    stand there. Before a place that is full they wait."""
 
     name = "visits"
     saved: ClassVar[Mapping[str, Kind]] = {}  # the journeys are the model's
@@ -67,3 +67,6 @@ class StayAtPlaces(Tactic):
             remaining[who] = np.hypot(*(spots - deciding.positions[who]).T)
         desired.speeds = desired.speeds.copy()
         desired.speeds[bound] = slow_down(desired.speeds[bound], remaining[bound])
+        in_line = self._journeys.stays.in_line(rows)
+        if in_line.any():
+            deciding.hold(desired, in_line)

@@ -1,4 +1,4 @@
-"""The parts of a floor plan that never change: walkable area, exits, gates and zones."""
+"""The parts of a floor plan that never change: walkable area, exits, gates, zones and rooms."""
 
 from collections.abc import Iterable
 from typing import cast
@@ -13,13 +13,14 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor import checks, extent
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.floor.outline import check_tolerance
+from mesa_mobility.floorplan.floor.room import Room, check_rooms
 from mesa_mobility.floorplan.floor.seams import Seam, check_seams
 from mesa_mobility.floorplan.floor.shafts import Shaft, joints_of
 from mesa_mobility.floorplan.floor.zones import SpeedZone, check_zones, speed_factors
 
 
 class Layout:
-    """A walkable area with exits, gates and zones, checked together.
+    """A walkable area with exits, gates, zones and rooms, checked together.
 
     Args:
         walkable: one connected polygon, holes allowed; shapely or WKT, metres.
@@ -30,6 +31,7 @@ class Layout:
         simplify: metres by which walls may recede to have fewer vertices.
         seams: where people change from one piece of the walkable area to another.
         shafts: lifts between pieces of the walkable area.
+        rooms: named areas of the floor.
 
     Raises:
         FloorPlanError: parts that ``FloorPlan`` refuses.
@@ -45,6 +47,7 @@ class Layout:
         simplify: float,
         seams: Iterable[Seam] = (),
         shafts: Iterable[Shaft] = (),
+        rooms: Iterable[Room] = (),
     ) -> None:
         self.name = name
         self._simplify = check_tolerance(simplify)
@@ -65,6 +68,7 @@ class Layout:
         checks.check_gates(self._walkable, self._gates)
         self._zones = tuple(zones)
         check_zones(self._walkable, self._zones)
+        self._given_rooms = check_rooms(rooms, self._walkable)
         checks.check_names([*self._exits, *self._gates])
 
     @property
@@ -92,6 +96,11 @@ class Layout:
     def zones(self) -> tuple[SpeedZone, ...]:
         """The zones of reduced speed."""
         return self._zones
+
+    @property
+    def given_rooms(self) -> tuple[Room, ...]:
+        """The rooms with which the plan was made; none if they are to be found."""
+        return self._given_rooms
 
     @property
     def seams(self) -> tuple[Seam, ...]:

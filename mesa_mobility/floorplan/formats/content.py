@@ -13,12 +13,14 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.extent import check_coordinates
 from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.room import ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
+from mesa_mobility.floorplan.formats.people import People
 
 OF_ZONES = [each for each in fields(SpeedZone) if each.name not in ("polygon", "name")]
 """Fields of ``SpeedZone`` that a file gives as properties, besides its name."""
 
-KINDS = ("walkable", "obstacle", "gate", "exit", "zone")
+KINDS = ("walkable", "obstacle", "gate", "exit", "zone", ROOM)
 """Values of the property `kind` of a feature."""
 
 
@@ -33,12 +35,14 @@ class Content:
         gates: lines within it.
         obstacles: areas to subtract.
         zones: areas where people walk more slowly.
+        rooms: named areas; none if they are to be found between the gates.
         closed: names of the exits and gates that are closed.
         cut_off: whether obstacles may cut pieces off from every exit.
         simplify: metres by which walls may recede.
         notes: what the reader has changed or left out, a line each.
         foreign: whether another program drew it. Floor from which no exit is reached is then left
             out, and named in a note.
+        people: those of a scenario, whom the model `scenario` puts on the floor.
     """
 
     walkable: Polygon
@@ -47,11 +51,13 @@ class Content:
     gates: list[Gate] = field(default_factory=list)
     obstacles: list[Polygon] = field(default_factory=list)
     zones: list[SpeedZone] = field(default_factory=list)
+    rooms: list[Room] = field(default_factory=list)
     closed: list[str] = field(default_factory=list)
     cut_off: bool = False
     simplify: float = SIMPLIFY
     notes: list[str] = field(default_factory=list)
     foreign: bool = False
+    people: list[People] = field(default_factory=list)
 
 
 def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
@@ -91,6 +97,11 @@ def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
                 content.zones.append(SpeedZone(geometry, name=name, **{"factor": 0.0, **given}))
             except FloorPlanError as error:
                 raise FloorPlanError(f"{at}: {error}") from None
+        else:
+            try:
+                content.rooms.append(Room(name, geometry, use=properties.get("use", "")))
+            except FloorPlanError as error:
+                raise FloorPlanError(f"{at}: {error}") from None
     return content
 
 
@@ -120,7 +131,7 @@ def _parse(feature: object, at: str) -> tuple[str, str, BaseGeometry, Mapping[st
         check_coordinates(shapely.get_coordinates(geometry), kind)
     except FloorPlanError as error:
         raise FloorPlanError(f"{at}: {error}") from None
-    expected = "Polygon" if kind in ("walkable", "obstacle", "zone") else "LineString"
+    expected = "LineString" if kind in ("gate", "exit") else "Polygon"
     if geometry.geom_type != expected:
         raise FloorPlanError(f"{at}: {kind} must be a {expected}, found {geometry.geom_type}")
     return kind, str(properties.get("name") or ""), geometry, properties

@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import shapely
 from shapely.geometry.base import BaseGeometry
@@ -13,11 +13,14 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
+from mesa_mobility.floorplan.floor.room import ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.assembling.texts import parsed
 from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
+from mesa_mobility.floorplan.formats.indoor.rooms import HEIGHT, read_rooms
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
-from mesa_mobility.floorplan.formats.rooms import read_rooms
+from mesa_mobility.floorplan.formats.storeys import Storeys
+from mesa_mobility.plugins.annotations import Range
 
 
 class GeoJson(PlanFormat):
@@ -26,9 +29,11 @@ class GeoJson(PlanFormat):
     name = "geojson"
     suffixes = (".geojson", ".json")
 
-    def read(self, path: Path, *, level: str | None = None) -> Content:
-        """See ``read`` of this module; ``level`` is for files of other programs."""
-        return read(path, level)
+    def read(
+        self, path: Path, *, height: Annotated[float, Range(1.5, 20)] = HEIGHT
+    ) -> Content | Storeys:
+        """See ``read`` of this module; ``height`` is for files of other programs."""
+        return read(path, height)
 
     def write(self, plan: Floor, path: Path) -> None:
         """Write a floor plan; see ``FloorPlan.write_geojson``."""
@@ -38,8 +43,9 @@ class GeoJson(PlanFormat):
 def feature_collection(plan: Floor) -> dict[str, Any]:
     """The plan as a GeoJSON FeatureCollection, coordinates in metres.
 
-    Every feature has the properties `kind` (walkable, obstacle, gate, exit or zone)
-    and `name`; a closed gate or exit has `closed` true, a zone its `factor`.
+    Every feature has the properties `kind` (walkable, obstacle, gate, exit, zone or room)
+    and `name`; a closed gate or exit has `closed` true, a zone its `factor`, a room its `use`.
+    Rooms that were found are not written: they are found again.
     Reading it back gives the same coordinates to the last bit; obstacle ids count from 0 again.
     """
     if plan.in_sheets:
@@ -61,6 +67,7 @@ def feature_collection(plan: Floor) -> dict[str, Any]:
         features.append(feature)
     for zone in plan.zones:
         features.append(zone_feature(zone))
+    features += [room_feature(room) for room in plan.given_rooms]
     return {"type": "FeatureCollection", "features": features}
 
 
@@ -77,10 +84,13 @@ def label(source: "str | os.PathLike[str] | Mapping[str, Any]") -> str:
     return "GeoJSON" if isinstance(source, Mapping) else str(source)
 
 
-def read(source: "str | os.PathLike[str] | Mapping[str, Any]", level: str | None = None) -> Content:
+def read(
+    source: "str | os.PathLike[str] | Mapping[str, Any]", height: float = HEIGHT
+) -> Content | Storeys:
     """Read a FeatureCollection from a file or a mapping.
 
-    Features without a property ``kind`` are rooms of other programs; see ``read_rooms``.
+    Features without a property ``kind`` are rooms of other programs, with ``height`` metres from
+    one level to the next; see ``read_rooms``.
 
     Raises:
         FloorPlanError: the file cannot be read, is not JSON or not a FeatureCollection, or a
@@ -89,9 +99,7 @@ def read(source: "str | os.PathLike[str] | Mapping[str, Any]", level: str | None
     where = label(source)
     features = features_of(load(source), where)
     if features and not any(map(_has_kind, features)):
-        return read_rooms(features, level, where)
-    if level is not None:
-        raise FloorPlanError(f"{where}: has no levels, expected no option level")
+        return read_rooms(features, where, height)
     return content_of(
         ((feature, f"{where}: feature {number}") for number, feature in enumerate(features)), where
     )
@@ -140,6 +148,13 @@ def zone_feature(zone: SpeedZone) -> dict[str, Any]:
         for each in OF_ZONES
         if getattr(zone, each.name) != each.default
     }
+    return feature
+
+
+def room_feature(room: Room) -> dict[str, Any]:
+    """The feature of a room, with its use if it has one."""
+    feature = feature_of(ROOM, room.name, room.shape)
+    feature["properties"] |= {"use": room.use} if room.use else {}
     return feature
 
 

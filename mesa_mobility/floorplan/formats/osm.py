@@ -3,23 +3,27 @@
 import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.assembling.texts import LARGEST_FILE, read_text
 from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.indoor.rooms import HEIGHT, read_rooms
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
-from mesa_mobility.floorplan.formats.rooms import read_rooms
+from mesa_mobility.floorplan.formats.storeys import Storeys
+from mesa_mobility.plugins.annotations import Range
 
 
 class OpenStreetMap(PlanFormat):
-    """OpenStreetMap XML: what is tagged indoor, door and level."""
+    """OpenStreetMap XML: what is tagged indoor, door, level, and steps and lifts between levels."""
 
     name = "osm"
     suffixes = (".osm",)
 
-    def read(self, path: Path, *, level: str | None = None) -> Content:
-        """Read one level; see ``read_rooms``.
+    def read(
+        self, path: Path, *, height: Annotated[float, Range(1.5, 20)] = HEIGHT
+    ) -> Content | Storeys:
+        """Read all levels, ``height`` metres apart; see ``read_rooms``.
 
         Raises:
             FloorPlanError: the file cannot be read, or has no rooms.
@@ -31,7 +35,7 @@ class OpenStreetMap(PlanFormat):
             root = ElementTree.fromstring(text)
         except (ElementTree.ParseError, ValueError) as error:
             raise FloorPlanError(f"{path}: is not XML that can be read ({error})") from None
-        return read_rooms(_features(root, str(path)), level, str(path))
+        return read_rooms(_features(root, str(path)), str(path), height)
 
 
 def _features(root: ElementTree.Element, where: str) -> list[dict[str, Any]]:
@@ -50,8 +54,11 @@ def _features(root: ElementTree.Element, where: str) -> list[dict[str, Any]]:
     for way in root.iter("way"):
         tags = _tags(way)
         points = [places[ref] for each in way.iter("nd") if (ref := each.get("ref")) in places]
-        if "indoor" in tags and len(points) > 3 and points[0] == points[-1]:
+        closed = len(points) > 3 and points[0] == points[-1]
+        if closed and ("indoor" in tags or tags.get("highway") == "elevator"):
             features.append(_feature(tags, "Polygon", [points]))
+        elif tags.get("highway") == "steps" and len(points) > 1:
+            features.append(_feature(tags, "LineString", points))
     return features
 
 

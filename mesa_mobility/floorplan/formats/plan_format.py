@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.storeys import Storeys
 from mesa_mobility.plugins.formats import READ, Format, Formats
 from mesa_mobility.plugins.registry import PLAN_FORMATS
 
@@ -18,10 +19,15 @@ class PlanFormat(Format):
     """A kind of file that holds a floor plan: a class with ``read``, ``write`` or both.
 
     Keyword-only parameters of these methods are the options of the format.
+
+    Attributes:
+        has_people: whether files are scenarios with people.
     """
 
-    def read(self, path: Path) -> Content:
-        """What a file holds.
+    has_people: ClassVar[bool] = False
+
+    def read(self, path: Path) -> Content | Storeys:
+        """What a file holds: one floor, or several storeys and what joins them.
 
         Args:
             path: the file.
@@ -51,4 +57,4 @@ PLANS = Formats(PLAN_FORMATS, PlanFormat, FloorPlanError)
 
 def plan_suffixes() -> list[str]:
     """The usual suffix of each format that a floor plan can be read from, such as ".wkt"."""
-    return PLANS.usual(READ)
+    return list(dict.fromkeys(PLANS.usual(READ)))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mesa_mobility import FloorPlan, Trajectories
+from mesa_mobility.buildings import read_floor
 from mesa_mobility.distributions import parse
 from mesa_mobility.results.columns import COLUMNS
 from mesa_mobility.results.distances import Comparison, Distance, compare
@@ -62,6 +63,7 @@ def experiment(setting: Setting, plan: FloorPlan, tracks: Trajectories) -> Exper
         "seconds": setting.seconds,
         "speeds": setting.speeds,
         "exits": setting.exits,
+        "level": setting.level,
     }
     return Experiment(
         name=Path(setting.file).stem,
@@ -84,6 +86,7 @@ def replayed(
     seconds: float,
     speeds: str | None,
     exits: str | None = None,
+    level: str | None = None,
 ) -> Figures:
     """A replay of measured tracks.
 
@@ -97,6 +100,7 @@ def replayed(
         seconds: of the replay.
         speeds: free speeds as a distribution's text; None for the type's.
         exits: of a floor plan whose file has none.
+        level: of a file that has several.
 
     Returns:
         With what every run tells: ``tracks``, the columns of the trajectories by name,
@@ -107,7 +111,7 @@ def replayed(
         # The command has shown what is wrong with the tracks.
         warnings.simplefilter("ignore")
         tracks = Trajectories.read(file, unit=unit, frame_rate=frame_rate)
-        floor = FloorPlan.from_file(plan, exits=exits)
+        floor = read_floor(plan, exits, level=level)
         model = crowd_model(floor, seed)
         replay = model.replay(
             tracks, start, preferred_speeds=None if speeds is None else parse(speeds)

@@ -46,6 +46,7 @@ class Setting:
         direction: (x, y) of the crowd, of length 1.
         speeds: free speeds of the simulated people as a distribution's text; None for the type's.
         exits: of a floor plan whose file has none, as ``FloorPlan.from_file`` takes them.
+        level: number or name of the level, of a file that has several.
     """
 
     file: str
@@ -60,6 +61,7 @@ class Setting:
     direction: tuple[float, float]
     speeds: str | None = None
     exits: str | None = None
+    level: str | None = None
 
     def view(self, floor: shapely.Geometry) -> View:
         """For the measured crowd."""

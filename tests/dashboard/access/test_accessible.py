@@ -107,7 +107,7 @@ def test_only_errors_are_alerts_and_the_status_is_told_politely(tab):
 def looked_at(tab):
     """In each tab what is wrong for people who do not see it."""
     found = []
-    for name in ("Simulation", "Mobility map", "Saved run"):
+    for name in ("Simulation", "Mobility map", "Drawing board", "Saved run"):
         tab.turn_to(name)
         tab.page.wait_for_timeout(300)
         tab.wait("() => document.getAnimations().every((each) => each.playState !== 'running')")

@@ -162,3 +162,19 @@ def test_damaged_files_are_plans_or_refused(tmp_path, count):
         '<tag k="indoor" v="room"/><tag k="level" v="0"/></way></osm>'
     )
     assert read_all(whole.encode(), tmp_path / "hall.osm", count) > 0
+
+
+def test_named_rooms_are_those_of_the_plan(read):
+    rooms = [area(0, 0, 4, 5, name="hall"), area(4, 0, 8, 5, name="hall"), area(0, 5, 4, 9)]
+    plan, _ = read(rooms, exits="longest")
+    names = {each.name: each.area for each in plan.rooms}
+    assert names == {"hall": 20.0, "hall 2": 20.0, "room": 16.0}
+    nameless, _ = read([area(0, 0, 4, 5), area(4, 0, 8, 5)], exits="longest")
+    assert [(each.name, each.area) for each in nameless.rooms] == [("room 1", 40.0)]
+
+
+def test_areas_of_rooms_are_those_of_the_file_where_walls_take_some_floor(read):
+    door = feature("LineString", [[8, 1], [8, 2]], properties={"name": "exit"})
+    plan, _ = read([area(0, 0, 8, 5, name="hall"), door])
+    assert [(each.name, each.area) for each in plan.rooms] == [("hall", 40.0)]
+    assert plan.area == pytest.approx(7.9 * 4.9, abs=0.1)

@@ -36,7 +36,14 @@ VADERE = {
                 element(4, rectangle(2, 2, 1, 1), absorber={"enabled": False}),
             ],
             "stairs": [element(5, rectangle(12, 2, 2, 3), upwardDirection={"x": 0, "y": 2.0})],
-            "sources": [element(6, rectangle(2, 8, 2, 2))],
+            "sources": [
+                element(
+                    6,
+                    rectangle(2, 8, 2, 2),
+                    targetIds=[4, 3],
+                    spawner={"constraintsTimeEnd": 4.0, "eventElementCount": 2},
+                )
+            ],
         }
     },
 }
@@ -44,7 +51,15 @@ CONFIG = {
     "exits": {
         "jps-exits_0": {"type": "polygon", "coordinates": [[9.2, 2], [9.8, 2], [9.8, 4], [9.2, 4]]}
     },
-    "distributions": {"a": {}, "b": {}},
+    "distributions": {
+        "a": {
+            "coordinates": [[1, 1], [3, 1], [3, 3], [1, 3]],
+            "parameters": {"number": 2, "v0": 1.2, "v0_distribution": "gaussian", "v0_std": 0.1},
+            "journey_weights": [{"journey_id": "b", "weight": 100}],
+        }
+    },
+    "checkpoints": {"c": {"coordinates": [[6, 6], [7, 6], [7, 7]], "waiting_time": 2}},
+    "journeys_v2": [{"id": "b", "sequence": ["c", "jps-exits_0"]}],
 }
 GEOMETRY = "POLYGON ((0 0, 10 0, 10 8, 0 8, 0 0), (4 4, 5 4, 5 5, 4 5, 4 4))"
 
@@ -72,7 +87,8 @@ def test_a_topography_of_vadere(tmp_path):
     assert sorted([way_out.a, way_out.b]) == [(21, 4), (21, 6)]
     (stairs,) = plan.zones
     assert (stairs.factor, stairs.downhill, stairs.area.area) == (0.5, (0, -1), 6)
-    assert "left out 1 sources, 1 targets at which nobody leaves" in said
+    # Two at the start, and those who come later.
+    assert "left out people of 2 sources: this is the floor plan alone" in said
 
 
 @pytest.mark.parametrize("folder", [False, True])
@@ -89,7 +105,7 @@ def test_a_scenario_of_jupedsim(tmp_path, folder):
     assert plan.area == 79
     assert [(each.name, each.length) for each in plan.exits] == [("jps-exits_0", 2)]
     assert plan.exits[0].midpoint == (10, 3)
-    for part in ("left out 2 distributions", "by 0.20 m", "--exits is ignored"):
+    for part in ("left out people of 1 sources", "by 0.20 m", "--exits is ignored"):
         assert part in said
 
 
@@ -126,7 +142,7 @@ def test_faulty_archives(tmp_path):
         archive.writestr("config.json", "{}")
     with pytest.raises(FloorPlanError, match=r"b.zip: has 0 files geometry.wkt, expected one"):
         FloorPlan.from_file(tmp_path / "b.zip")
-    with pytest.raises(FloorPlanError, match="cannot be read"):
+    with pytest.raises(FloorPlanError, match="one of the formats imdf or jupedsim"):
         FloorPlan.from_file(tmp_path)
     zipped(tmp_path / "c.zip", config={"exits": {"a": {"coordinates": [[0, 0], [1]]}}})
     with pytest.raises(FloorPlanError, match="exits: a: expected corners of two numbers"):

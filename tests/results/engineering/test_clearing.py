@@ -103,10 +103,14 @@ def test_zones_and_refuges_with_names_are_rooms():
     second = SpeedZone(soft.area, 0.5, name="soft 2")
     zones = [soft, second, soft, SpeedZone(soft.area, 0.5)]
     plan = FloorPlan(WEST, exits=[Exit("out", (5, 1), (5, 2))], zones=zones)
-    assert [each.name for each in rooms_of(plan)] == ["soft", "soft 2", "soft 3"]
+    assert [each.name for each in rooms_of(plan)] == ["room 1", "soft", "soft 2", "soft 3"]
     assert {each.level for each in rooms_of(plan)} == {0}
     found = rooms_of(with_refuge_and_lift())
-    assert [(each.name, each.level) for each in found] == [("north lobby", 1)]
+    assert [(each.name, each.level) for each in found] == [
+        ("level 0 room 1", 0),
+        ("level 1 room 1", 1),
+        ("north lobby", 1),
+    ]
 
 
 def collection(**properties):
@@ -176,7 +180,7 @@ def test_the_tables_of_a_run(two_leave_one_stays, room, tmp_path):
     doors = tables["doors"].set_index("door")
     assert doors.people.to_dict() == {"middle": 0, "east": 2}
     assert doors.loc["east", ["type", "first_s", "clogs"]].tolist() == ["all", 0.954545, 0]
-    assert tables["clearing"].place.tolist() == ["all", "west"]
+    assert tables["clearing"].place.tolist() == ["all", "room 1", "room 2", "west"]
     assert tables["n_t"].people.tolist() == [1, 2]
     assert tables["waiting"].longest_wait_s.tolist() == [2.0]
     cells = tables["maps"].set_index(["x", "y"])

@@ -7,6 +7,7 @@ import shapely
 from shapely import Polygon
 
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.floor.room import rooms_named_apart
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.assembling.exit_areas import WayOut, placed
 from mesa_mobility.floorplan.formats.assembling.given_exits import exits_for
@@ -24,6 +25,7 @@ class Drawn:
         ways_out: areas and lines by which people leave.
         gates: lines that people cross.
         zones: areas where people walk more slowly.
+        rooms: areas with their names; none if rooms are to be found between gates.
         name: of the plan.
         notes: what was found and left out, a line each.
     """
@@ -33,6 +35,7 @@ class Drawn:
     ways_out: list[WayOut] = field(default_factory=list)
     gates: list[Gate] = field(default_factory=list)
     zones: list[SpeedZone] = field(default_factory=list)
+    rooms: list[Area] = field(default_factory=list)
     name: str = ""
     notes: list[str] = field(default_factory=list)
 
@@ -60,6 +63,9 @@ def assembled(drawn: Drawn, where: str) -> Content:
         gates=gates,
         obstacles=obstacles,
         zones=[each for each in drawn.zones if room.covers(each.area)],
+        rooms=rooms_named_apart(
+            (name, area) for area, name in drawn.rooms if area.intersection(floor).area > 0.0
+        ),
         notes=notes,
         foreign=True,
     )

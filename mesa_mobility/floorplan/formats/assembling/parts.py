@@ -17,6 +17,9 @@ GAP = 0.05
 NARROWEST = 0.3
 """Metres along which parts must touch: nobody passes where it is less."""
 
+TIE = 0.005
+"""Metres to either side of a line that makes one polygon of two pieces."""
+
 MOST_NOTES = 5
 """Parts that are named one by one; of more, only their number is said."""
 
@@ -102,6 +105,31 @@ def bridged(union: BaseGeometry) -> BaseGeometry:
         if len(touched) > 1 and gap.length / 2 >= NARROWEST:
             links.append(wider)
     return shapely.union_all([union, *links]) if links else union
+
+
+def tied(pieces: Sequence[Polygon], avoid: Sequence[BaseGeometry]) -> tuple[Polygon, list[Polygon]]:
+    """One polygon of several pieces, and obstacles where nobody passes from one to the other.
+
+    Args:
+        pieces: at least one.
+        avoid: areas in which pieces are not tied, if they have edges elsewhere.
+    """
+    around = shapely.union_all(list(avoid))
+    largest, *rest = sorted(pieces, key=lambda each: -each.area)
+    whole: BaseGeometry = largest
+    obstacles: list[Polygon] = []
+    while rest:
+        away = [whole.distance(each) for each in rest]
+        piece = rest.pop(int(np.argmin(away)))
+        edges = [each.boundary.difference(around) for each in (whole, piece)]
+        if any(each.is_empty for each in edges):
+            edges = [whole.boundary, piece.boundary]
+        a, b = shapely.get_coordinates(shapely.shortest_line(*edges))
+        along = (b - a) / max(float(np.hypot(*(b - a))), 1e-9)
+        tie = shapely.LineString([a - TIE * along, b + TIE * along])
+        obstacles.append(tie.buffer(TIE, cap_style="square"))
+        whole = shapely.union_all([whole, piece, tie.buffer(TIE / 2, cap_style="flat")])
+    return max(_polygons(whole), key=lambda each: each.area), obstacles
 
 
 def reachable(

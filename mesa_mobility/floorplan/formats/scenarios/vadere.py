@@ -21,14 +21,14 @@ from mesa_mobility.floorplan.formats.assembling.values import (
     ring_of,
 )
 from mesa_mobility.floorplan.formats.content import Content
+from mesa_mobility.floorplan.formats.people import left_out
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
+from mesa_mobility.floorplan.formats.scenarios.vadere_people import people_of
 
 ON_STAIRS = 0.5
 """Share of people's speed on stairs that are drawn flat."""
 
 _LEFT_OUT = (
-    "sources",
-    "dynamicElements",
     "targetChangers",
     "measurementAreas",
     "aerosolClouds",
@@ -41,13 +41,14 @@ MOST = 20_000
 
 
 class Vadere(PlanFormat):
-    """Scenario of Vadere: obstacles, and targets by which people leave. People are left out."""
+    """Scenario of Vadere: obstacles, targets by which people leave, sources and people."""
 
     name = "vadere"
     suffixes = (".scenario",)
+    has_people = True
 
     def read(self, path: Path) -> Content:
-        """Read the topography of a scenario.
+        """Read the topography of a scenario, with its people.
 
         Raises:
             FloorPlanError: the file cannot be read, or is no such scenario.
@@ -78,23 +79,39 @@ def content_of_scenario(data: Any, where: str) -> Content:
     for number, each in _each(topography, "obstacles", at):
         name = f"{at}: obstacle {number}"
         drawn.obstacles += [p.polygon for p in polygons_of(_shape(each, name), name, drawn.notes)]
-    passed = 0
+    targets: dict[int, tuple[BaseGeometry, str, float]] = {}
     for number, each in _each(topography, "targets", at):
+        name, way = "", _way_out("target", number, each, at)
         if _absorbs(each, f"{at}: target {number}"):
-            drawn.ways_out.append(_way_out("target", number, each, at))
-        else:
-            passed += 1
+            drawn.ways_out.append(way)
+            name = way.name
+        if isinstance(each.get("id"), int):
+            targets[each["id"]] = (way.shape, name, _wait(each, f"{at}: target {number}"))
     for number, each in _each(topography, "absorbingAreas", at):
         drawn.ways_out.append(_way_out("absorbing area", number, each, at))
     for number, each in _each(topography, "stairs", at):
         _add_stairs(drawn, each, f"{at}: stairs {number}")
     counts = {kind: len(list_of(topography.get(kind), f"{at}: {kind}")) for kind in _LEFT_OUT}
-    said = [f"{count} {kind}" for kind, count in counts.items() if count]
-    if passed:
-        said.append(f"{passed} targets at which nobody leaves")
-    if said:
-        drawn.notes.append(f"left out {', '.join(said)}: this is the floor plan alone")
-    return assembled(drawn, where)
+    drawn.notes += left_out(counts)
+    sources = [
+        _shape(each, f"{at}: source {number}") for number, each in _each(topography, "sources", at)
+    ]
+    people = people_of(topography, {"sources": sources}, targets, at, drawn.notes)
+    content = assembled(drawn, where)
+    content.people = people
+    return content
+
+
+def _wait(target: Mapping[str, Any], at: str) -> float:
+    """Seconds for which people wait at a target, on average."""
+    waiter = mapping_of(target.get("waiter"), f"{at}: waiter")
+    if waiter.get("enabled") is not True:
+        return max(number_of(target.get("waitingTime"), f"{at}: waitingTime", 0.0), 0.0)
+    own = mapping_of(waiter.get("distribution"), f"{at}: waiter")
+    wait = number_of(own.get("waitingTime", own.get("mean")), f"{at}: waiter", 0.0)
+    if not wait <= 86_400:
+        raise FloorPlanError(f"{at}: waits {wait:g} s, expected 0 to 86,400 s")
+    return max(wait, 0.0)
 
 
 def _floor(attributes: Mapping[str, Any], at: str) -> shapely.Polygon:

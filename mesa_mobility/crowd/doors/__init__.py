@@ -1,0 +1,1 @@
+"""Doors with a rate, closing times or a capacity."""

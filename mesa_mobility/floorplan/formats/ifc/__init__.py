@@ -1,0 +1,1 @@
+"""Buildings of IFC: storeys, rooms, doors, stairs and ramps of a building model."""

@@ -1,0 +1,194 @@
+"""What joins the storeys of a building model: stairs and ramps, with floor before their ends."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mesa_mobility.floorplan.formats.ifc.drafts import Draft
+from mesa_mobility.floorplan.formats.ifc.flights import Way, way_of
+from mesa_mobility.floorplan.formats.ifc.records import Element, Model
+from mesa_mobility.floorplan.formats.storeys import Link
+
+NEAR = 0.6
+"""Metres by which stairs may end above or below a floor to which they lead."""
+
+BEFORE = 0.55
+"""Metres of floor that are needed before either end of stairs."""
+
+INTO = 0.01
+"""Metres by which that floor reaches below the stairs."""
+
+MORE = 0.002
+"""Metres by which that floor is larger than needed, so that nothing is missing by rounding."""
+
+LEAST_WIDTH = 0.6
+"""Metres; narrower stairs are left out."""
+
+AROUND = 0.4
+"""Metres beside and beyond stairs that are taken from the floor."""
+
+
+@dataclass(frozen=True)
+class Join:
+    """What joins two storeys: the link, the floor before its ends by the number of the level, and
+    what it takes of both floors."""
+
+    link: Link
+    before: dict[int, Polygon]
+    taken: BaseGeometry
+    guessed: str = ""
+
+
+def joins_of(model: Model, drafts: Sequence[Draft], notes: list[str]) -> list[Join]:
+    """The stairs and ramps between storeys, each with a name of its own.
+
+    Args:
+        model: the building.
+        drafts: its storeys from the lowest. Floor is put before ends of stairs where none is.
+        notes: takes what was guessed and left out.
+    """
+    joins: list[Join] = []
+    for element in model.of("stairs", "ramp"):
+        what = f"{element.kind} {_name_of(element)}"
+        found = False
+        for lower, upper in pairwise(drafts):
+            if not _between(element, lower, upper):
+                continue
+            name = _free(_name_of(element), joins, upper)
+            found = True
+            join = (
+                _stairs(element, lower, upper, name)
+                if element.kind == "stairs"
+                else _ramp(element, lower, upper, name)
+            )
+            if isinstance(join, Join):
+                joins.append(join)
+                if join.guessed:
+                    notes.append(f"{element.kind} {name} are taken as {join.guessed}")
+            else:
+                notes.append(f"left out {what}: {join}")
+        if not found:
+            notes.append(
+                f"left out {what}: it leads from {element.bottom:.2f} to {element.top:.2f} m, and "
+                "no two floors are there"
+            )
+    return joins
+
+
+def _between(element: Element, lower: Draft, upper: Draft) -> bool:
+    bottom, top = element.bottom, element.top
+    if element.steps:
+        bottom = min(each.height for each in element.steps)
+        top = max(each.height for each in element.steps)
+    return bottom < lower.elevation + NEAR and top > upper.elevation - NEAR
+
+
+def _name_of(element: Element) -> str:
+    parts = element.name.split(":")
+    return parts[-1] if len(parts) > 1 else element.name or str(element.key)
+
+
+def _free(name: str, joins: Sequence[Join], upper: Draft) -> str:
+    """A name that no other stairs have."""
+    taken = [each.link.name for each in joins]
+    if name in taken:
+        name = f"{name} to {upper.number}"
+    number, found = 1, name
+    while found in taken:
+        number += 1
+        found = f"{name} ({number})"
+    return found
+
+
+def _stairs(element: Element, lower: Draft, upper: Draft, name: str) -> Join | str:
+    """The stairs between two storeys, or what is wrong with them."""
+    way = way_of(element.steps, lower.elevation, upper.elevation, element.risers)
+    if way is None:
+        return "its steps cannot be made out"
+    narrower = _with_floor(way, lower, upper)
+    if isinstance(narrower, str):
+        return narrower
+    way = narrower
+    before = {
+        draft.number: _strip(spot, way.along, away, way.width)
+        for draft, (spot, away) in zip((upper, lower), way.ends(), strict=True)
+    }
+    corners = [*way.head, *(shapely.get_coordinates(each) for each in before.values())]
+    taken = shapely.union_all([shapely.MultiPoint(np.vstack(corners)), element.area])
+    given = {"risers": way.risers, "tread": round(way.tread, 4), **way.given}
+    link = Link("stairs", name, _line(way.head), (upper.number, lower.number), given)
+    return Join(link, before, taken.convex_hull.buffer(AROUND), way.guessed)
+
+
+def _with_floor(way: Way, lower: Draft, upper: Draft) -> Way | str:
+    """The stairs, as wide as the floor before both their ends, or what is wrong with them.
+
+    Floor is put where holes of slabs, or missing rooms, leave none.
+    """
+    low, high = -way.width / 2, way.width / 2
+    for draft, (spot, away) in zip((upper, lower), way.ends(), strict=True):
+        before = _strip(spot, way.along, away, way.width)
+        draft.passages.append(before.buffer(MORE, join_style="mitre").difference(draft.walls))
+        blocked = before.difference(draft.floor())
+        for part in shapely.get_parts(blocked):
+            if part.area > 1e-6:
+                at = (shapely.get_coordinates(part) - spot) @ way.along
+                # What is blocked is at one side, as a rule.
+                if at.mean() > 0:
+                    high = min(high, float(at.min()) - 1e-3)
+                else:
+                    low = max(low, float(at.max()) + 1e-3)
+    if high - low < LEAST_WIDTH:
+        return f"only {max(high - low, 0.0):.2f} m of floor are before both its ends"
+    return way if high - low > way.width - 1e-6 else way.between(low, high)
+
+
+def _strip(
+    spot: NDArray[np.float64],
+    along: NDArray[np.float64],
+    away: NDArray[np.float64],
+    width: float,
+) -> Polygon:
+    """The floor before an end of stairs."""
+    half, near, far = width / 2 * along, -INTO * away, BEFORE * away
+    return Polygon([spot - half + near, spot + half + near, spot + half + far, spot - half + far])
+
+
+def _ramp(element: Element, lower: Draft, upper: Draft, name: str) -> Join | str:
+    """A straight ramp along the longer side of its area; it is highest where the upper floor is
+    nearer."""
+    if element.area.is_empty:
+        return "it has no body"
+    corners = shapely.get_coordinates(shapely.oriented_envelope(element.area))[:4]
+    sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+    if sides[0] > sides[1]:
+        corners = np.roll(corners, -1, axis=0)
+    ends = [corners[:2], corners[2:]]
+    away = [shapely.LineString(each).distance(upper.open) for each in ends]
+    head = ends[int(np.argmin(away))]
+    (bx, by), (ix, iy) = head[1] - head[0], corners.mean(axis=0) - head.mean(axis=0)
+    if bx * iy - by * ix < 0:
+        head = head[::-1]
+    ramp = Way(head, 2, float(max(sides)), {}, "straight")
+    narrower = _with_floor(ramp, lower, upper)
+    if isinstance(narrower, str):
+        return narrower
+    ramp = replace(narrower, guessed="straight")
+    before = {
+        draft.number: _strip(spot, ramp.along, outwards, ramp.width)
+        for draft, (spot, outwards) in zip((upper, lower), ramp.ends(), strict=True)
+    }
+    given: dict[str, object] = {"length": ramp.tread}
+    link = Link("ramp", name, _line(ramp.head), (upper.number, lower.number), given)
+    return Join(link, before, element.area.buffer(AROUND), ramp.guessed)
+
+
+def _line(head: NDArray[np.float64]) -> tuple[tuple[float, float], tuple[float, float]]:
+    (ax, ay), (bx, by) = np.round(head, 4).tolist()
+    return (ax, ay), (bx, by)

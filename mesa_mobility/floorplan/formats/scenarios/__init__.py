@@ -1,0 +1,1 @@
+"""Scenarios of other simulations of pedestrians: their floors and their people."""

@@ -1,0 +1,1 @@
+"""Rooms of a floor plan, and how many people they hold."""
