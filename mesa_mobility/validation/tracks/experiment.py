@@ -116,7 +116,7 @@ def replayed(
         replay = model.replay(
             tracks, start, preferred_speeds=None if speeds is None else parse(speeds)
         )
-    walls = floor.walls
+    walls = model.floor_plan.walls
     while model.elapsed < seconds:
         model.step()
     run = Run(model, walls)
