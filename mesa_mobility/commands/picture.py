@@ -20,23 +20,14 @@ def check_picture(path: Path) -> None:
 
 
 def draw_plan(plan: FloorPlan | Building, path: Path) -> None:
-    """Draw each level to a file, complete or not at all: floor, walls, obstacles, exits by name.
+    """Draw each level to a file, complete or not at all, with the names of doors and exits.
 
     Raises:
         FloorPlanError: the file cannot be written.
     """
-    from mesa_mobility.results.floor import EXIT, draw_floor, panels_of, storeys_alone
+    from mesa_mobility.results.floor import plan_figure
 
     check_picture(path)
-    figure, panels = panels_of(storeys_alone(plan))
-    for axes, storey in panels:
-        handles = draw_floor(axes, storey.plan, storey.stairs, storey.refuges)
-        for each in storey.plan.open_exits():
-            x, y = each.midpoint
-            name = axes.text(x, y, each.name, ha="center", va="bottom", zorder=6)
-            name.set(color=EXIT, fontsize=7)
-        if storey.title:
-            axes.set_title(storey.title)
-        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    figure = plan_figure(plan)
     with replacing(path, FloorPlanError) as temporary:
         figure.savefig(temporary, format=path.suffix.lower()[1:])
