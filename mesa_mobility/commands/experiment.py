@@ -175,7 +175,7 @@ def compare(
     """
     from mesa_mobility.experiments import compare as compare_designs
     from mesa_mobility.experiments import open_store
-    from mesa_mobility.experiments.reporting.estimates import COMPARED, compared
+    from mesa_mobility.experiments.reporting.pictures import value_text
     from mesa_mobility.reports.words import words_of
 
     opened = open_store(store)
@@ -186,7 +186,19 @@ def compare(
         answer_json({"by": by, "figure": figure, "comparisons": [asdict(each) for each in found]})
         return
     say(f"{words_of(figure, opened.experiment().report.labels)}, by {by}")
-    answer_rows(COMPARED, [compared(each) for each in found])
+    answer_rows(
+        ["designs", "difference (interval)", "p", "detectable", "verdict"],
+        [
+            [
+                f"{value_text(each.first)}, {value_text(each.second)}",
+                str(each.difference),
+                f"{each.p:.2g}",
+                "-" if each.detectable is None else f"{each.detectable:.3g}",
+                each.verdict,
+            ]
+            for each in found
+        ],
+    )
 
 
 def _with_settings(experiment: Experiment, settings: list[str], preset: str | None) -> Experiment:

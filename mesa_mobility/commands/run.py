@@ -91,6 +91,7 @@ def run(
     record, out = written.record, written.out
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
+    written.check_report()
     options = options.with_seed()
     areas = rooms_in(written.rooms)
     if population is not None:
@@ -119,7 +120,6 @@ def run(
 
     if out is not None:
         check_writable(out, RUN_FILES)
-    written.check_report()
     plan, building = simulation.floor_plan, getattr(simulation, "building", None)
     every_room = check_rooms([*rooms_of(building or plan), *areas], building or plan)
     # From here on there is something to lose: Ctrl-C stops the simulation, not the writing.

@@ -18,6 +18,7 @@ caption b, figcaption b { color: var(--blue); }
 th, td { text-align: left; vertical-align: top; padding: 0.25rem 0.8rem 0.25rem 0;
   border-bottom: 1px solid var(--line); overflow-wrap: anywhere; }
 th { border-bottom: 2px solid var(--line); } th, td:first-child { overflow-wrap: break-word; }
+td:first-child:not(.number) { min-width: 6.5rem; }
 td a { white-space: nowrap; }
 td.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 th.number { text-align: right; }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -107,12 +107,17 @@ def panels_of(
     return figure, list(zip(axes, list(storeys) * times, strict=False))
 
 
-def plan_figure(plan: FloorPlan | Building, largest: tuple[float, float] = LARGEST) -> Figure:
+def plan_figure(
+    plan: FloorPlan | Building,
+    largest: tuple[float, float] = LARGEST,
+    labels: Mapping[str, str] | None = None,
+) -> Figure:
     """A floor plan, or a panel for each level of a building, with the names of doors and exits.
 
     Args:
         plan: the floor plan or the building.
         largest: width and height of the figure, inches.
+        labels: what stands beside openings instead of their names, by name.
     """
     figure, panels = panels_of(storeys_alone(plan), largest=largest)
     handles: dict[str, Line2D | Patch] = {}
@@ -124,7 +129,7 @@ def plan_figure(plan: FloorPlan | Building, largest: tuple[float, float] = LARGE
             (storey.plan.open_gates(), DOOR),
         ):
             for opening in openings:
-                _name(axes, storey.plan, opening, colour)
+                _name(axes, storey.plan, opening, colour, labels or {})
         axes.set_title(storey.title, fontsize=10)
     figure.legend(
         handles=list(handles.values()),
@@ -136,7 +141,9 @@ def plan_figure(plan: FloorPlan | Building, largest: tuple[float, float] = LARGE
     return figure
 
 
-def _name(axes: Axes, plan: FloorPlan, opening: Opening, colour: str) -> None:
+def _name(
+    axes: Axes, plan: FloorPlan, opening: Opening, colour: str, labels: Mapping[str, str]
+) -> None:
     """Write an opening's name beside it, on the side of the middle of the plan."""
     x_min, y_min, x_max, y_max = plan.bounds
     x, y = opening.midpoint
@@ -145,7 +152,7 @@ def _name(axes: Axes, plan: FloorPlan, opening: Opening, colour: str) -> None:
     # Beside an upright line, above or below one that lies.
     offset = (np.sign(dx) * 6.0 or 6.0, 0.0) if level else (0.0, np.sign(dy) * 6.0 or 6.0)
     axes.annotate(
-        opening.name,
+        labels.get(opening.name, opening.name),
         (x, y),
         offset,
         textcoords="offset points",

@@ -121,7 +121,7 @@ def test_plan_people_doors_and_maps_of_a_crowd(tmp_path):
         keep=["doors", "trajectories"],
     )
     store, text = page_of(tmp_path, experiment)
-    assert "Floor plan with the names of doors and exits" in text
+    assert "Floor plan with the numbers of doors and exits" in text
     assert "1 further sets of inputs differ" in text
     assert 'able bodied</td><td class="number">3</td>' in text
     frame = store.frame()

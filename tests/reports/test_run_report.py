@@ -119,8 +119,8 @@ def test_doors_and_their_flows(text):
         ("east", "2.00", "2", "5.9", "7.9", "0.50", "0.25"),
     ]
     assert rows_of(text, "Doors and exits</caption>") == [
-        ("middle", "door", "4.00"),
-        ("east", "exit", "2.00"),
+        ("1", "middle", "door", "0", "4.00"),
+        ("2", "east", "exit", "0", "2.00"),
     ]
 
 

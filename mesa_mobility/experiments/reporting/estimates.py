@@ -195,7 +195,7 @@ def compared(each: Any) -> list[str]:
         "-" if each.detectable is None else f"{each.detectable:.3g}",
         f"{each.greater} / {each.less}",
         f"{each.p:.2g}",
-        "different" if each.different else "none found",
+        each.verdict,
     ]
 
 

@@ -54,15 +54,7 @@ def add_plan(page: Page, measured: Measured) -> None:
     page.section("Plan", "plan")
     page.text(_said_of_plan(plan))
     add_plan_picture(page, plan)
-    rows = [
-        [each.name, _KINDS[each.kind], level, number(each.length, 2)]
-        for each, level in doors_of(plan)
-    ]
-    if isinstance(plan, FloorPlan):
-        rows = [[name, kind, width] for name, kind, _, width in rows]
-        page.table("Doors and exits", ["name", "kind", "width (m)"], rows)
-    else:
-        page.table("Doors and exits", ["name", "kind", "level", "width (m)"], rows)
+    if not isinstance(plan, FloorPlan):
         stairs = [[each.name, each.upper, each.lower] for each in plan.stairs]
         if stairs:
             page.table("Stairs", ["name", "from level", "to level"], stairs)
@@ -72,11 +64,19 @@ def add_plan(page: Page, measured: Measured) -> None:
 
 
 def add_plan_picture(page: Page, plan: FloorPlan | Building) -> None:
-    """Add the drawing of a plan."""
+    """Add the drawing of a plan, and its doors and exits with their numbers in it."""
     levels = "" if isinstance(plan, FloorPlan) else ", level by level from the top"
+    numbers = {each.name: f"{k}" for k, (each, _) in enumerate(doors_of(plan), 1)}
     page.picture(
-        f"Floor plan with the names of doors and exits{levels}", picture(plan_figure(plan, PAGE))
+        f"Floor plan with the numbers of doors and exits{levels}",
+        picture(plan_figure(plan, PAGE, numbers)),
     )
+    rows = [
+        [numbers[each.name], each.name, _KINDS[each.kind], level, number(each.length, 2)]
+        for each, level in doors_of(plan)
+    ]
+    columns = ["number", "name", "kind", "level", "width (m)"]
+    page.table("Doors and exits", columns, rows)
 
 
 def add_people(page: Page, run: Run, measured: Measured) -> None:

@@ -44,7 +44,7 @@ def add_summary(page: Page, run: Run, measured: Measured) -> None:
     ]
     if used:
         busiest = max(used, key=lambda each: each["people"])
-        longest = max(used, key=lambda each: each["most_queue"])
+        latest = max(used, key=lambda each: each["last_s"])
         rows += [
             [
                 "door with most people",
@@ -52,9 +52,8 @@ def add_summary(page: Page, run: Run, measured: Measured) -> None:
                 f"{number(busiest['flow_per_m_s'], 2)} persons/(m s)",
             ],
             [
-                "longest queue",
-                f"{longest['door']}: {count(int(longest['most_queue']), 'person', 'people')} "
-                "at a time",
+                "door that people passed last",
+                f"{latest['door']}: after {number(latest['last_s'], 1, 's')}",
             ],
         ]
     dense = list(measured.maps[EVERYBODY].values())
@@ -181,6 +180,7 @@ def add_doors(page: Page, measured: Measured) -> None:
             ]
             for each in found
         ],
+        "People who have not set off yet are in the queue of their next door.",
     )
     if len(measured.n_t):
         more = left_out(measured)

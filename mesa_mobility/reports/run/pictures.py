@@ -18,10 +18,10 @@ from mesa_mobility.results.plots import TYPE_COLOURS
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-PAGE = 7.6, 8.6
+PAGE = 7.6, 5.4
 """Largest width and height of pictures of the plan, inches: as a page of A4 shows them."""
 
-_MOST_DOORS = 12
+_MOST_DOORS = 8
 """Doors with a curve; more cannot be told apart."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from itertools import pairwise
 
@@ -36,7 +37,8 @@ def add_service(page: Page, measured: Measured, of: str = "") -> None:
     page.text(
         "Levels of service say what a density means for people who walk (J. J. Fruin, Pedestrian "
         "Planning and Design, 1971): from A, free to walk, to F, a standstill. Densities are those "
-        f"of Voronoi areas in cells of {cell:g} m, measured every {measured.every:g} s."
+        f"of Voronoi areas in cells of {cell:g} m, measured every {measured.every:g} s. They begin "
+        "with the run, so that people who sit or stand before they set off count as well."
     )
     page.table(
         "Fruin's levels of service for walkways, and the floor on which the greatest density "
@@ -64,12 +66,10 @@ def add_service(page: Page, measured: Measured, of: str = "") -> None:
 
 
 def _moment(measured: Measured) -> tuple[float, str]:
-    """A time to show, and why: when most people wait before doors, or else half-way."""
-    waiting = measured.queues.groupby("time_s")["people"].sum()
-    if len(waiting) and waiting.max() > 0:
-        most = int(waiting.to_numpy().argmax())
-        said = f"when most people wait before doors ({waiting.max()})"
-        return float(waiting.index.to_numpy()[most]), said
+    """A time to show, and why: when half of the people are out, or else half-way."""
+    half = float(measured.clearing.loc[EVERYBODY]["t50_s"].iloc[0])
+    if math.isfinite(half):
+        return half, "when half of the people are out"
     return measured.trajectories.duration / 2, "half-way through the run"
 
 
