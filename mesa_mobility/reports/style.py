@@ -35,6 +35,6 @@ pre { background: #f4f6f8; padding: 0.8rem; white-space: pre-wrap; overflow-wrap
   h2, h3 { break-after: avoid; }
   tr, figure, .notice, .sign, .short, caption { break-inside: avoid; }
   thead { display: table-header-group; } caption { break-after: avoid; }
-  img { max-height: 225mm; width: auto; } nav, pre { background: none; border: 1px solid #ccc; }
+  img { max-height: 110mm; width: auto; } nav, pre { background: none; border: 1px solid #ccc; }
   a { color: inherit; } }
 """

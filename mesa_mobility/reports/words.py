@@ -56,7 +56,8 @@ def words_of(name: str, labels: Mapping[str, str] | None = None) -> str:
     if dot and kind in _PLACES and "." in rest:
         place, _, figure = rest.rpartition(".")
         known = _IN_ROOMS if kind == "room" else {}
-        return f"{kind} {place}: {known.get(figure) or words_of(figure)}"
+        named = place if kind == "level" else f"“{place}”"
+        return f"{kind} {named}: {known.get(figure) or words_of(figure)}"
     if name in WORDS:
         return WORDS[name]
     for end, unit in _UNITS.items():

@@ -68,10 +68,10 @@ def test_numbers_are_set_to_the_right_and_verdicts_are_marked(page, tmp_path):
     ("name", "words"),
     [
         ("egress_s", "time until everybody is out (s)"),
-        ("door.first door.flow_per_s", "door first door: mean flow (persons/s)"),
-        ("room.hall.last_s", "room hall: time when the last person has left (s)"),
+        ("door.first door.flow_per_s", "door “first door”: mean flow (persons/s)"),
+        ("room.hall.last_s", "room “hall”: time when the last person has left (s)"),
         ("level.1.t95_s", "level 1: time until 95 % of the people are out (s)"),
-        ("stairs.b.north.t50_s", "stairs b.north: time until 50 % of the people are out (s)"),
+        ("stairs.b.north.t50_s", "stairs “b.north”: time until 50 % of the people are out (s)"),
         ("walked_m", "walked (m)"),
         ("top_speed_mps", "top speed (m/s)"),
         ("rate_per_s", "rate (1/s)"),
