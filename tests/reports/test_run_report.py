@@ -169,3 +169,24 @@ def test_versions_digests_and_the_command(text):
 )
 def test_the_command_that_repeats_a_run(changes, command):
     assert command_of({**SUMMARY, **changes}) == command
+
+
+def test_a_run_in_a_building_has_levels_and_stairs(tmp_path):
+    from tests.fixtures.buildings import two_storeys
+    from tests.results.measures.test_storeys import PEOPLE, tracks_of
+
+    building = two_storeys()
+    run = Run(tracks_of(PEOPLE), building, {"model": "floor_plan"})
+    page = tmp_path / "page.html"
+    write_run_report(run, measure(run.trajectories, building), page)
+    text = page.read_text(encoding="utf-8")
+    assert f"A building of {len(building.levels)} levels" in text
+    assert [row[0] for row in rows_of(text, "Stairs</caption>")] == [
+        each.name for each in building.stairs
+    ]
+    places = [row[0] for row in rows_of(text, "Clearing times")]
+    assert places[0] == "the whole floor"
+    assert {f"level {each.number}" for each in building.levels} <= set(places)
+    assert "level by level from the top" in text
+    # Nothing was counted, so nothing has passed.
+    assert rows_of(text, "Checks of the run")[0] == ("overlaps of bodies", "-", "0", "not counted")
