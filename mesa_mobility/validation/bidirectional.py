@@ -185,9 +185,9 @@ EXPERIMENT = Experiment(
     what="speed and lanes of people walking both ways in a corridor 4 m wide",
     source="corridors 3.6 m and 4 m wide of HERMES 2009 and BaSiGo 2013 with people walking "
     "both ways (data archive of Forschungszentrum Jülich)",
-    criterion="Nobody is stuck (the mean speed of each run is above 0.1 m/s), and from 0.75 persons/m² on "
-    "people keep to lanes as measured (lane order 0.76 or more); speeds are reported beside the "
-    "measured range",
+    criterion="Nobody is stuck (the mean speed of each run is above 0.1 m/s), and from 0.75 "
+    "persons/m² on people keep to lanes as measured (lane order 0.76 or more); speeds are reported "
+    "beside the measured range",
     cases=tuple(case(both_ways, effort=1.0 + 3.0 * each, density=each) for each in DENSITIES),
     judge=judge,
     draw=draw,

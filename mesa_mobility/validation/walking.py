@@ -111,8 +111,8 @@ EXPERIMENT = Experiment(
     what="lone walkers: speed, change of direction, side-to-side motion",
     source="head tracks of 50 people who walked alone in a corridor 3 m wide (HERMES 2009, data "
     "archive of Forschungszentrum Jülich)",
-    criterion="People who walk alone go straight on, at the speeds that they were given; how they sway from "
-    "side to side is reported",
+    criterion="People who walk alone go straight on, at the speeds that they were given; how they "
+    "sway from side to side is reported",
     cases=(case(free_walk, effort=2.0),),
     judge=judge,
     draw=draw,
