@@ -30,13 +30,15 @@ def write_report(found: Calibrated, task: Task, path: str | os.PathLike[str]) ->
     page = Page(f"Calibration of the preset {task.preset.name}")
     tried = sum(len(each.numbers) for each in found.history)
     failed = sum(each.failed for each in found.history)
+    page.section("Summary", "summary")
     page.text(
         f"{tried} sets of numbers in {len(found.history)} generations, {failed} of them with a run "
         f"that failed; {task.seeds.each} new seeds a generation, {task.seeds.held_out} seeds held "
         f"out. Began on {found.began}."
     )
+    page.section("Numbers", "numbers")
     page.table(
-        "Numbers",
+        "Numbers at the start and found",
         ["number", "from", "to", "at the start", "found"],
         [
             [
@@ -52,6 +54,7 @@ def write_report(found: Calibrated, task: Task, path: str | os.PathLike[str]) ->
     for part, heading in _SAYS.items():
         rows = [each for each in found.figures if each.part == part]
         if rows:
+            page.section(part.capitalize(), part.replace(" ", "-"))
             page.table(
                 heading,
                 ["scenario", "distance", "at the start", "found", "change", "verdict", "failed"],
@@ -69,9 +72,11 @@ def write_report(found: Calibrated, task: Task, path: str | os.PathLike[str]) ->
                 ],
                 "Means over the seeds, with intervals of 95 %. The change is taken seed by seed.",
             )
-    page.picture("Search", _drawn(found), "The best and the middle cost in each generation.")
+    page.section("Search", "search")
+    page.picture("The best and the middle cost in each generation", _drawn(found))
+    page.section("Scenarios", "scenarios")
     page.table(
-        "Scenarios",
+        "Scenarios and their data",
         ["scenario", "simulates", "measured", "distances", "held out"],
         [
             [
@@ -84,6 +89,7 @@ def write_report(found: Calibrated, task: Task, path: str | os.PathLike[str]) ->
             for name, each in task.scenarios.items()
         ],
     )
+    page.section("Versions and inputs", "repeat")
     add_versions(
         page,
         {**versions(), "preset at the start": task.preset.inputs_text},

@@ -24,7 +24,7 @@ from mesa_mobility.commands.plan import plan
 from mesa_mobility.commands.plugins import listing, new
 from mesa_mobility.commands.preset import preset
 from mesa_mobility.commands.replay import replay
-from mesa_mobility.commands.results import results
+from mesa_mobility.commands.reports.results import results
 from mesa_mobility.commands.run import run
 from mesa_mobility.commands.serve import serve
 from mesa_mobility.errors import MobilityError

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,12 +12,14 @@ from mesa_mobility.commands.console import (
     AsJson,
     NoProgress,
     answer_json,
+    answer_rows,
     answer_table,
     counting_bar,
     say,
     some_path,
 )
 from mesa_mobility.commands.models.making import PresetName, Settings, split_settings
+from mesa_mobility.commands.reports.options import AsPdf, finish_page
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
@@ -138,11 +140,65 @@ def report(
             help="The page; by default report.html in the store.", parser=some_path, metavar="PATH"
         ),
     ] = None,
+    as_pdf: AsPdf = False,
 ) -> None:
-    """Write an experiment's design, results, failures and versions as one HTML page."""
+    """Write plan, people, design, results, failures and versions as one HTML page."""
     from mesa_mobility.experiments import open_store, write_report
+    from mesa_mobility.reports.pdf import browser_program
 
-    say(f"written to {write_report(open_store(store), out)}")
+    if as_pdf:
+        browser_program()
+    finish_page(write_report(open_store(store), out), as_pdf=as_pdf)
+
+
+@app.command("compare")
+def compare(
+    store: StoreAt,
+    by: Annotated[
+        str, typer.Option(metavar="PARAMETER", help="The parameter whose values are compared.")
+    ],
+    figure: Annotated[
+        str,
+        typer.Option(metavar="COLUMN", help="Figure of the runs, such as door.east.flow_per_s."),
+    ] = "egress_s",
+    confidence: Annotated[
+        float, typer.Option(help="That no equal designs are called different.")
+    ] = 0.95,
+    power: Annotated[
+        float, typer.Option(help="Probability with which the detectable difference is found.")
+    ] = 0.9,
+    as_json: AsJson = False,
+) -> None:
+    """Compare designs in pairs of runs: difference, interval, effect, detectable difference.
+
+    Runs should have common seeds (`seeds = "common"` in the experiment's file).
+    """
+    from mesa_mobility.experiments import compare as compare_designs
+    from mesa_mobility.experiments import open_store
+    from mesa_mobility.experiments.reporting.pictures import value_text
+    from mesa_mobility.reports.words import words_of
+
+    opened = open_store(store)
+    found = compare_designs(opened, by, figure, confidence=confidence, power=power)
+    if opened.experiment().seeds != "common":
+        say("seeds are independent: common seeds would show smaller differences")
+    if as_json:
+        answer_json({"by": by, "figure": figure, "comparisons": [asdict(each) for each in found]})
+        return
+    say(f"{words_of(figure, opened.experiment().report.labels)}, by {by}")
+    answer_rows(
+        ["designs", "difference (interval)", "p", "detectable", "verdict"],
+        [
+            [
+                f"{value_text(each.first)}, {value_text(each.second)}",
+                str(each.difference),
+                f"{each.p:.2g}",
+                "-" if each.detectable is None else f"{each.detectable:.3g}",
+                each.verdict,
+            ]
+            for each in found
+        ],
+    )
 
 
 def _with_settings(experiment: Experiment, settings: list[str], preset: str | None) -> Experiment:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -30,7 +30,8 @@ from mesa_mobility.commands.models.making import (
     model_of_file,
     origin_of,
 )
-from mesa_mobility.commands.results import RoomsFile, rooms_in
+from mesa_mobility.commands.reports.options import ReportOptions
+from mesa_mobility.commands.reports.results import RoomsFile, rooms_in
 from mesa_mobility.errors import ModelError
 from mesa_mobility.interrupts import INTERRUPTED, Stopped, gentle_interrupt
 
@@ -38,6 +39,31 @@ STALLED = 1
 
 NAMED = 10
 """People named in the last line at most."""
+
+
+@dataclass(frozen=True)
+class Written(ReportOptions):
+    """What is written of a run."""
+
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for summary, trajectories, floor plan and pictures.",
+            parser=some_path,
+            metavar="PATH",
+        ),
+    ] = None
+    record: Annotated[
+        str | None,
+        typer.Option(
+            metavar="decisions",
+            help="Also write which option each person took. `export` and `replay` need this to "
+            "show bodies, and `explain` needs it, too.",
+        ),
+    ] = None
+    rooms: RoomsFile = None
+    as_json: AsJson = False
+    no_progress: NoProgress = False
 
 
 @grouped
@@ -60,22 +86,6 @@ def run(
             "'able_bodied: 0.9, child: 0.1'."
         ),
     ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Folder for summary, trajectories, floor plan and pictures.",
-            parser=some_path,
-            metavar="PATH",
-        ),
-    ] = None,
-    record: Annotated[
-        str | None,
-        typer.Option(
-            metavar="decisions",
-            help="Also write which option each person took. `export` and `replay` need this to "
-            "show bodies, and `explain` needs it, too.",
-        ),
-    ] = None,
     fill: Annotated[
         list[str] | None,
         typer.Option(
@@ -86,9 +96,7 @@ def run(
             "repeatable.",
         ),
     ] = None,
-    rooms: RoomsFile = None,
-    as_json: AsJson = False,
-    no_progress: NoProgress = False,
+    written: Written,
 ) -> None:
     """Run a model and report its figures.
 
@@ -96,15 +104,17 @@ def run(
     """
     if seconds is not None and not (math.isfinite(seconds) and seconds > 0):
         raise ModelError(f"--seconds {seconds:g}: expected a positive number")
+    record, out = written.record, written.out
     if record not in (None, "decisions"):
         raise ModelError(f"--record {record}: expected decisions")
+    written.check_report()
     model, options = model_of_file(model, options.with_seed())
-    areas = rooms_in(rooms)
+    areas = rooms_in(written.rooms)
     if population is not None:
         options = replace(options, settings=[*(options.settings or []), f"population={population}"])
     if fill:
         options = replace(options, settings=[*(options.settings or []), f"fill={'; '.join(fill)}"])
-    with progress_bar(shown=not no_progress) as report, nothing_collected():
+    with progress_bar(shown=not written.no_progress) as report, nothing_collected():
         report("loading")
         from mesa_mobility.crowd.model_files import find_model
         from mesa_mobility.crowd.precompile import COMPILING, compiling_ahead, is_compiled
@@ -124,7 +134,7 @@ def run(
     from mesa_mobility.results.engineering.rooms import check_rooms, rooms_of
     from mesa_mobility.results.engineering.summary import figures_of_places
     from mesa_mobility.results.measures.by_type import rows_by_type
-    from mesa_mobility.results.run import RUN_FILES
+    from mesa_mobility.results.run import RUN_FILES, Run
 
     if out is not None:
         check_writable(out, RUN_FILES)
@@ -132,8 +142,10 @@ def run(
     every_room = check_rooms([*rooms_of(building or plan), *areas], building or plan)
     # From here on there is something to lose: Ctrl-C stops the simulation, not the writing.
     with gentle_interrupt() as stop_here:
-        wall, cpu, interrupted = _simulate(simulation, seconds, stop_here, shown=not no_progress)
-        with progress_bar(shown=not no_progress) as report:
+        wall, cpu, interrupted = _simulate(
+            simulation, seconds, stop_here, shown=not written.no_progress
+        )
+        with progress_bar(shown=not written.no_progress) as report:
             report("checking distances and walls", 0, 1)
             trajectories = Trajectories.of(simulation)
             safety = check_safety(trajectories, plan.walls, plan.free, building=building)
@@ -165,9 +177,13 @@ def run(
                     plan=building or plan,
                     reference_occupancy=simulation.reference_occupancy,
                 )
+            if written.report_file is not None:
+                found = Run(trajectories, building or plan, summary, out)
+                _write_report(found, areas, written.report_file, report)
     if out is not None:
         say(f"written to {out}")
-    if as_json:
+    written.finish_report()
+    if written.as_json:
         answer_json(summary)
     else:
         answer_table(_figures(summary))
@@ -198,6 +214,15 @@ def _by_storey(trajectories: Any, building: Any) -> dict[str, Any]:
         name: measure(trajectories, building).reset_index().to_dict("records")
         for name, measure in tables.items()
     }
+
+
+def _write_report(found: Any, rooms: list[Any], path: Path, report: Callable[..., None]) -> None:
+    """Measure a run, and write its report."""
+    from mesa_mobility.reports.run.report import write_run_report
+    from mesa_mobility.results import measure
+
+    measured = measure(found.trajectories, found.plan, rooms, progress=report)
+    write_run_report(found, measured, path, progress=report)
 
 
 def _said_of_blocked(summary: dict[str, Any]) -> str:

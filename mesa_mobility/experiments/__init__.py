@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from mesa_mobility.experiments.intervals import Estimate as Estimate
     from mesa_mobility.experiments.intervals import mean_interval as mean_interval
     from mesa_mobility.experiments.intervals import quantile_interval as quantile_interval
+    from mesa_mobility.experiments.report_options import ReportOptions as ReportOptions
     from mesa_mobility.experiments.reporting.report import write_report as write_report
     from mesa_mobility.experiments.sensitivity import morris_screening as morris_screening
     from mesa_mobility.experiments.sensitivity import sobol_indices as sobol_indices

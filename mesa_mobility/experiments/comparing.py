@@ -66,10 +66,14 @@ class Comparison:
     p: float
     different: bool
 
+    @property
+    def verdict(self) -> str:
+        """Whether they are different, in words."""
+        return "different" if self.different else "no difference found"
+
     def __str__(self) -> str:
         """What was found, on one line."""
-        verdict = "different" if self.different else "no difference found"
-        return f"{self.second} - {self.first}: {self.difference}, {verdict} (p = {self.p:.2g})"
+        return f"{self.second} - {self.first}: {self.difference}, {self.verdict} (p = {self.p:.2g})"
 
 
 def compare(

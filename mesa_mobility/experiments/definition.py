@@ -21,6 +21,7 @@ from mesa_mobility.experiments.design.designs import (
 )
 from mesa_mobility.experiments.design.sensitivity import MorrisTrajectories, SaltelliSamples
 from mesa_mobility.experiments.experiment import Experiment, model_name
+from mesa_mobility.experiments.report_options import ReportOptions
 from mesa_mobility.plugins.registry import did_you_mean
 
 _SCALARS = (
@@ -33,7 +34,7 @@ _SCALARS = (
     "time_limit",
     "keep",
 )
-_TABLES = ("fixed", "precision")
+_TABLES = ("fixed", "precision", "report")
 _SESSION = {"began": str, "executor": str, "machine": str, "versions": dict, "inputs": dict}
 _DESIGNS: dict[str, Callable[[Any], Design]] = {
     Grid.kind: Grid,
@@ -101,6 +102,8 @@ def from_definition(values: Mapping[str, Any]) -> Experiment:
     keywords: dict[str, Any] = {key: values[key] for key in _SCALARS if key in values}
     keywords["fixed"] = values.get("fixed", {})
     keywords["precision"] = _made("precision", _precision, values.get("precision", {}))
+    report = values.get("report", {})
+    keywords["report"] = _made("report", lambda each: ReportOptions(**each), report)
     if given:
         keywords["parameters"] = _made(given[0], _DESIGNS[given[0]], values[given[0]])
     return Experiment(**keywords)
@@ -123,6 +126,7 @@ def to_definition(experiment: Experiment) -> dict[str, Any]:
     said["keep"] = list(experiment.keep)
     said["fixed"] = dict(experiment.fixed)
     said["precision"] = experiment.precision.definition()
+    said["report"] = experiment.report.definition()
     said[experiment.design.kind] = experiment.design.definition()
     return said
 

@@ -20,6 +20,7 @@ from mesa_mobility.experiments.design.points import (
     check_whole,
     plain_value,
 )
+from mesa_mobility.experiments.report_options import ReportOptions
 from mesa_mobility.experiments.storing.rows import SERIES
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.plugins.registry import did_you_mean
@@ -59,6 +60,7 @@ class Experiment:
         precision: with ``replications="auto"``, what is to be known how well.
         name: title of the report.
         seeds: "independent", or "common" to compare points run by run; see ``compare``.
+        report: figures that the report shows.
 
     Raises:
         ModelError: a value out of range, an unknown parameter, or one that is fixed and varies.
@@ -75,6 +77,7 @@ class Experiment:
     precision: Precision = field(default_factory=Precision)
     name: str = ""
     seeds: Seeds = "independent"
+    report: ReportOptions = field(default_factory=ReportOptions)
 
     def __post_init__(self) -> None:
         put = object.__setattr__

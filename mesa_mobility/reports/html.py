@@ -1,4 +1,4 @@
-"""Pages of HTML that need no other file: headings, tables and pictures."""
+"""Report pages in HTML that need no other file: numbered sections, tables and pictures."""
 
 from __future__ import annotations
 
@@ -6,91 +6,152 @@ import base64
 import io
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
+from mesa_mobility.reports.style import STYLE
 from mesa_mobility.results.files import json_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto;
-  padding: 0 1rem; }
-h1 { font-size: 1.7rem; } h2 { font-size: 1.2rem; margin-top: 2rem; }
-table { border-collapse: collapse; font-size: 0.9rem; }
-th, td { text-align: left; vertical-align: top; padding: 0.25rem 0.8rem 0.25rem 0;
-  border-bottom: 1px solid #ddd; overflow-wrap: anywhere; }
-th, td:first-child { overflow-wrap: break-word; }
-img { max-width: 100%; } pre { background: #f5f5f5; padding: 0.8rem; white-space: pre-wrap; }
-.pass { color: #1a7f37; } .fail { color: #b42318; font-weight: 600; }
-@media print { body { margin: 0; max-width: none; font-size: 10pt; }
-  h2, img, tr { break-inside: avoid; } h2 { break-after: avoid; } }
-"""
+_MARKS = {"pass": "pass", "FAIL": "fail"}
+
+_SHORT = 15
+"""Rows of a table that is not broken over two sheets of paper."""
+
+_TO_SIGN = ("Prepared by", "Checked by", "Approved by")
+
+
+@dataclass(frozen=True)
+class Link:
+    """Text in a table that leads to a section of the page.
+
+    Attributes:
+        text: what is read.
+        to: name of the section.
+    """
+
+    text: str
+    to: str
 
 
 class Page:
-    """A page, part by part.
+    """A report page, part by part. Sections, tables and pictures are numbered.
 
     Args:
         title: of the page.
+        lead: one line below it, such as what was examined and when.
     """
 
-    def __init__(self, title: str) -> None:
+    def __init__(self, title: str, lead: str = "") -> None:
         self._title = title
+        self._lead = lead
         self._parts: list[str] = []
+        self._contents: list[tuple[str, str, list[tuple[str, str]]]] = []
+        self._tables = 0
+        self._pictures = 0
 
-    def heading(self, text: str) -> None:
-        """A heading."""
-        self._parts.append(f"<h2>{escape(text)}</h2>")
+    def section(self, heading: str, name: str = "") -> None:
+        """Begin a section.
+
+        Args:
+            heading: text.
+            name: by which links find it.
+        """
+        number = f"{len(self._contents) + 1}"
+        place = name or f"section-{number}"
+        self._contents.append((f"{number} {heading}", place, []))
+        self._parts.append(f'<h2 id="{escape(place)}">{number} {escape(heading)}</h2>')
+
+    def subsection(self, heading: str, name: str = "") -> None:
+        """Begin a part of the section; arguments as for ``section``."""
+        _, _, parts = self._contents[-1]
+        number = f"{len(self._contents)}.{len(parts) + 1}"
+        place = name or f"section-{number}"
+        parts.append((f"{number} {heading}", place))
+        self._parts.append(f'<h3 id="{escape(place)}">{number} {escape(heading)}</h3>')
 
     def text(self, text: str) -> None:
         """A paragraph."""
         self._parts.append(f"<p>{escape(text)}</p>")
 
+    def notice(self, text: str) -> None:
+        """A paragraph that the reader must not miss."""
+        self._parts.append(f'<p class="notice">{escape(text)}</p>')
+
     def table(
-        self, heading: str, columns: Sequence[str], rows: Sequence[Sequence[Any]], note: str = ""
+        self,
+        caption: str,
+        columns: Sequence[str],
+        rows: Sequence[Sequence[Any]],
+        note: str = "",
     ) -> None:
-        """A table below a heading.
+        """A table. Columns of numbers, and of texts that begin with one, are set to the right.
 
         Args:
-            heading: text, or nothing for none.
-            columns: names of the columns.
-            rows: their values.
+            caption: what it shows.
+            columns: names of the columns, with units.
+            rows: their values; a `Link` leads to a section.
             note: a paragraph below.
         """
-        if heading:
-            self.heading(heading)
-        head = "".join(f"<th>{escape(name)}</th>" for name in columns)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{_cell(value)}</td>" for value in row) + "</tr>" for row in rows
+        self._tables += 1
+        right = [_is_number([row[k] for row in rows]) for k in range(len(columns))]
+        head = "".join(
+            f"<th{_class(is_right)}>{escape(name)}</th>"
+            for name, is_right in zip(columns, right, strict=True)
         )
-        self._parts.append(f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>")
+        body = "".join(
+            "<tr>"
+            + "".join(
+                f"<td{_class(is_right)}>{_cell(value)}</td>"
+                for value, is_right in zip(row, right, strict=True)
+            )
+            + "</tr>"
+            for row in rows
+        )
+        short = ' class="short"' if len(rows) <= _SHORT else ""
+        above = f"<b>Table {self._tables}.</b> {escape(_begun(caption))}"
+        self._parts.append(
+            f"<table{short}><caption>{above}</caption>"
+            f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        )
         if note:
-            self.text(note)
+            self._parts.append(f'<p class="note">{escape(note)}</p>')
 
-    def picture(self, heading: str, png: bytes, caption: str = "") -> None:
-        """A picture below a heading.
+    def picture(self, caption: str, png: bytes) -> None:
+        """A picture.
 
         Args:
-            heading: text, or nothing for none.
+            caption: what it shows, also for those who cannot see it.
             png: the picture.
-            caption: a paragraph above; without one the heading describes the picture to those who
-                cannot see it.
         """
-        if heading:
-            self.heading(heading)
-        if caption:
-            self.text(caption)
-        content, said = base64.b64encode(png).decode(), escape(caption or heading or self._title)
-        self._parts.append(f'<img alt="{said}" src="data:image/png;base64,{content}">')
+        self._pictures += 1
+        content, said = base64.b64encode(png).decode(), escape(_begun(caption))
+        self._parts.append(
+            f'<figure><img alt="{said}" src="data:image/png;base64,{content}">'
+            f"<figcaption><b>Figure {self._pictures}.</b> {said}</figcaption></figure>"
+        )
 
-    def json(self, heading: str, values: Mapping[str, Any]) -> None:
-        """Values as JSON below a heading."""
-        self.heading(heading)
-        self._parts.append(f"<pre>{escape(json_text(values, indent=1))}</pre>")
+    def code(self, text: str) -> None:
+        """Text as a computer reads it, such as a command."""
+        self._parts.append(f"<pre>{escape(text)}</pre>")
+
+    def json(self, values: Mapping[str, Any]) -> None:
+        """Values as JSON."""
+        self.code(json_text(values, indent=1))
+
+    def signatures(self) -> None:
+        """A section with space for signatures."""
+        self.section("Signatures", "signatures")
+        rows = "".join(
+            f"<tr><td>{who}</td><td>Name</td><td>Date</td><td>Signature</td></tr>"
+            for who in _TO_SIGN
+        )
+        self._parts.append(f'<table class="sign"><tbody>{rows}</tbody></table>')
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the page, whole or not at all.
@@ -99,14 +160,24 @@ class Page:
             ResultsError: the page cannot be written.
         """
         title = escape(self._title)
+        lead = f'<p class="lead">{escape(self._lead)}</p>' if self._lead else ""
         text = (
             f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-            f"<style>{_STYLE}</style></head>\n<body><h1>{title}</h1>\n"
-            + "\n".join(self._parts)
-            + "\n</body></html>\n"
+            f"<style>{STYLE}</style></head>\n<body><h1>{title}</h1>{lead}\n"
+            f"{self._list()}\n" + "\n".join(self._parts) + "\n</body></html>\n"
         )
         with replacing(path, ResultsError) as temporary:
             temporary.write_text(text, encoding="utf-8")
+
+    def _list(self) -> str:
+        """The list of contents."""
+        if not self._contents:
+            return ""
+        items = ""
+        for heading, name, parts in self._contents:
+            below = "".join(f"<li>{_anchor(text, to)}</li>" for text, to in parts)
+            items += f"<li>{_anchor(heading, name)}{f'<ol>{below}</ol>' if below else ''}</li>"
+        return f"<nav><b>Contents</b><ol>{items}</ol></nav>"
 
 
 def picture(figure: Figure) -> bytes:
@@ -116,7 +187,37 @@ def picture(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
+def _begun(caption: str) -> str:
+    """A caption with a capital at its beginning."""
+    return caption[:1].upper() + caption[1:]
+
+
+def _anchor(text: str, to: str) -> str:
+    return f'<a href="#{escape(to)}">{escape(text)}</a>'
+
+
+def _class(is_right: bool) -> str:
+    return ' class="number"' if is_right else ""
+
+
 def _cell(value: Any) -> str:
+    if isinstance(value, Link):
+        return _anchor(value.text, value.to)
     text = "-" if value is None else escape(str(value))
-    marks = {"pass": "pass", "FAIL": "fail"}
-    return f'<span class="{marks[text]}">{text}</span>' if text in marks else text
+    return f'<span class="{_MARKS[text]}">{text}</span>' if text in _MARKS else text
+
+
+def _is_number(values: Sequence[Any]) -> bool:
+    """Whether all that a column has are numbers, and it has some."""
+    known = [each for each in values if each not in (None, "-", "")]
+    return bool(known) and all(_reads_as_number(each) for each in known)
+
+
+def _reads_as_number(value: Any) -> bool:
+    if isinstance(value, Link):
+        return False
+    try:
+        float(str(value).rstrip(" %").replace(",", ""))
+    except ValueError:
+        return False
+    return True

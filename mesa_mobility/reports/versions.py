@@ -46,7 +46,7 @@ def sha256_of(path: Path) -> str:
 def add_versions(
     page: Page, found: Mapping[str, str], inputs: Mapping[str, str], on: str, note: str = ""
 ) -> None:
-    """Add a table of what results were computed with.
+    """Add a table of what results were computed with, to a section that has begun.
 
     Args:
         page: to add it to.

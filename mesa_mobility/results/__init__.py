@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from mesa_mobility.results.engineering.maps import FloorMaps as FloorMaps
     from mesa_mobility.results.engineering.maps import maps as maps
     from mesa_mobility.results.engineering.maps import maps_by_type as maps_by_type
+    from mesa_mobility.results.engineering.measured import Measured as Measured
+    from mesa_mobility.results.engineering.measured import measure as measure
     from mesa_mobility.results.engineering.pictures import plot_map as plot_map
     from mesa_mobility.results.engineering.queues import queue_lengths as queue_lengths
     from mesa_mobility.results.engineering.queues import queues as queues

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
     from mesa_mobility.buildings import Building, Level, Refuge
+    from mesa_mobility.floorplan.floor.openings import Opening
 
 OUTSIDE, OBSTACLE, WALL, EXIT, DOOR = "#f2f2f0", "#b5b5b5", "#2b2b2b", "#00a03c", "#18a5d6"
 ZONE, STAIRS, REFUGE = "#fbe9c8", "#e3def2", "#d3ecdb"
@@ -85,7 +86,7 @@ def _from_the_top(building: Building) -> list[Level]:
 
 
 def panels_of(
-    storeys: Sequence[Storey], times: int = 1
+    storeys: Sequence[Storey], times: int = 1, largest: tuple[float, float] = LARGEST
 ) -> tuple[Figure, list[tuple[Axes, Storey]]]:
     """A figure with a panel for each storey, at each of some times, and what each panel shows.
 
@@ -94,14 +95,78 @@ def panels_of(
     Args:
         storeys: what to show.
         times: how many.
+        largest: width and height of the figure, inches.
     """
     count = len(storeys) * times
     columns = min(2, count) if len(storeys) == 1 or times == 1 else len(storeys)
     bounds = shapely.total_bounds([each.plan.walkable for each in storeys])
-    figure, axes = floor_figure(tuple(bounds), rows=-(-count // columns), columns=columns)
+    rows = -(-count // columns)
+    figure, axes = floor_figure(tuple(bounds), rows=rows, columns=columns, largest=largest)
     for panel in axes[count:]:
         panel.set_axis_off()
     return figure, list(zip(axes, list(storeys) * times, strict=False))
+
+
+def plan_figure(
+    plan: FloorPlan | Building,
+    largest: tuple[float, float] = LARGEST,
+    labels: Mapping[str, str] | None = None,
+) -> Figure:
+    """A floor plan, or a panel for each level, with the names of doors, exits and rooms.
+
+    Args:
+        plan: the floor plan or the building.
+        largest: width and height of the figure, inches.
+        labels: what stands beside openings instead of their names, by name.
+    """
+    figure, panels = panels_of(storeys_alone(plan), largest=largest)
+    handles: dict[str, Line2D | Patch] = {}
+    for axes, storey in panels:
+        for each in draw_floor(axes, storey.plan, storey.stairs, storey.refuges):
+            handles.setdefault(str(each.get_label()), each)
+        for openings, colour in (
+            (storey.plan.open_exits(), EXIT),
+            (storey.plan.open_gates(), DOOR),
+        ):
+            for opening in openings:
+                _name(axes, storey.plan, opening, colour, labels or {})
+        for room in storey.plan.rooms:
+            spot = room.shape.point_on_surface()
+            axes.text(spot.x, spot.y, room.name, ha="center", va="center", fontsize=6, zorder=6)
+        axes.set_title(storey.title, fontsize=10)
+    figure.legend(
+        handles=list(handles.values()),
+        loc="outside lower center",
+        ncols=len(handles),
+        frameon=False,
+        fontsize=9,
+    )
+    return figure
+
+
+def _name(
+    axes: Axes, plan: FloorPlan, opening: Opening, colour: str, labels: Mapping[str, str]
+) -> None:
+    """Write an opening's name beside it, on the side of the middle of the plan."""
+    x_min, y_min, x_max, y_max = plan.bounds
+    x, y = opening.midpoint
+    dx, dy = (x_min + x_max) / 2 - x, (y_min + y_max) / 2 - y
+    level = abs(opening.b[0] - opening.a[0]) < abs(opening.b[1] - opening.a[1])
+    # Beside an upright line, above or below one that lies.
+    offset = (np.sign(dx) * 6.0 or 6.0, 0.0) if level else (0.0, np.sign(dy) * 6.0 or 6.0)
+    axes.annotate(
+        labels.get(opening.name, opening.name),
+        (x, y),
+        offset,
+        textcoords="offset points",
+        ha={1.0: "left", -1.0: "right"}.get(float(np.sign(offset[0])), "center"),
+        va={1.0: "bottom", -1.0: "top"}.get(float(np.sign(offset[1])), "center"),
+        color=colour,
+        fontsize=9,
+        fontweight="bold",
+        zorder=7,
+        bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
+    )
 
 
 def _stairs_of(building: Building, level: int) -> Iterator[shapely.Polygon]:
@@ -115,7 +180,11 @@ def _stairs_of(building: Building, level: int) -> Iterator[shapely.Polygon]:
 
 
 def floor_figure(
-    bounds: tuple[float, float, float, float], *, rows: int, columns: int
+    bounds: tuple[float, float, float, float],
+    *,
+    rows: int,
+    columns: int,
+    largest: tuple[float, float] = LARGEST,
 ) -> tuple[Figure, list[Axes]]:
     """A figure of panels as large as the plan's shape allows, and its axes in reading order.
 
@@ -123,10 +192,11 @@ def floor_figure(
         bounds: of the plan: least x and y, greatest x and y, metres.
         rows: of panels.
         columns: of panels.
+        largest: width and height of the figure, inches.
     """
     x_min, y_min, x_max, y_max = bounds
     width, height = columns * (x_max - x_min), rows * (y_max - y_min)
-    scale = min((LARGEST[0] - FRAME[0]) / width, (LARGEST[1] - FRAME[1]) / height)
+    scale = min((largest[0] - FRAME[0]) / width, (largest[1] - FRAME[1]) / height)
     size = (
         max(width * scale + FRAME[0], 6.5),
         max(height * scale + FRAME[1] + 0.25 * (rows - 1), 2.6),

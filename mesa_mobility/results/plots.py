@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
-from mesa_mobility.results.floor import draw_floor, panels_of, storeys_of
+from mesa_mobility.results.floor import LARGEST, draw_floor, panels_of, storeys_of
 from mesa_mobility.results.measures.by_type import people_by
 from mesa_mobility.results.tracks import Tracks
 
@@ -68,6 +68,7 @@ def plot_trajectories(
     path: str | os.PathLike[str],
     *,
     title: str = "",
+    largest: tuple[float, float] = LARGEST,
 ) -> None:
     """Draw everybody's track on the floor plan, coloured by time.
 
@@ -79,12 +80,13 @@ def plot_trajectories(
             coloured.
         path: picture to write; its suffix chooses the format (.png, .svg, .pdf).
         title: first line of the picture.
+        largest: width and height of the picture, inches.
 
     Raises:
         ResultsError: the file cannot be written.
     """
     storeys = storeys_of(trajectories, plan)
-    figure, panels = panels_of(storeys)
+    figure, panels = panels_of(storeys, largest=largest)
     handles: dict[str, Line2D | Patch] = {}
     for panel, storey in panels:
         drawn = draw_floor(panel, storey.plan, storey.stairs, storey.refuges)

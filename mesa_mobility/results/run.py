@@ -14,6 +14,7 @@ from mesa_mobility.results.excerpts import title_of
 from mesa_mobility.results.files import all_or_none, json_text
 from mesa_mobility.results.measures.by_type import occupancy_by_type
 from mesa_mobility.results.measures.occupancy import egress_time, occupancy
+from mesa_mobility.results.tracks import Tracks
 from mesa_mobility.results.trajectories import Trajectories, read_parquet
 
 if TYPE_CHECKING:
@@ -21,10 +22,11 @@ if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
 
 SUMMARY, TRAJECTORIES = "summary.json", "trajectories.parquet"
+DECISIONS = "decisions.parquet"
 
 RUN_FILES = (
     TRAJECTORIES,
-    "decisions.parquet",
+    DECISIONS,
     "floorplan.geojson",
     "occupancy.png",
     "trajectories.png",
@@ -66,12 +68,12 @@ def write_run(
         (temporary / SUMMARY).write_text(text, encoding="utf-8")
         trajectories.to_parquet(temporary / TRAJECTORIES)
         if trajectories.decisions is not None:
-            trajectories.decisions.to_parquet(temporary / "decisions.parquet")
+            trajectories.decisions.to_parquet(temporary / DECISIONS)
         plan.write_geojson(temporary / "floorplan.geojson")
         plot_occupancy(
-            _curve(trajectories),
+            occupancy_curve(trajectories),
             temporary / "occupancy.png",
-            by_type=_curves_by_type(trajectories),
+            by_type=occupancy_curves_by_type(trajectories),
             reference=reference_occupancy,
             title=title,
         )
@@ -86,13 +88,13 @@ class Run:
         trajectories: with the decisions, if they were recorded.
         plan: its floor plan, or its building.
         summary: its figures.
-        folder: where it is.
+        folder: where it is; None for a run that has not been saved.
     """
 
     trajectories: Trajectories
     plan: FloorPlan | Building
     summary: Mapping[str, Any]
-    folder: Path
+    folder: Path | None = None
 
     @property
     def floor_plan(self) -> FloorPlan:
@@ -148,20 +150,21 @@ def read_run(directory: str | os.PathLike[str]) -> Run:
     if not isinstance(summary, dict):
         raise ResultsError(f"{folder / SUMMARY}: not a JSON object")
     trajectories = read_parquet(folder / TRAJECTORIES)
-    decided = folder / "decisions.parquet"
+    decided = folder / DECISIONS
     if decided.exists():
         trajectories = replace(trajectories, decisions=read_decisions(decided))
     return Run(trajectories, read_floor(folder / "floorplan.geojson"), summary, folder)
 
 
-def _curve(trajectories: Trajectories) -> list[list[float]]:
+def occupancy_curve(trajectories: Tracks) -> list[list[float]]:
+    """``occupancy``, with the time at which the last person left."""
     curve, egress = occupancy(trajectories), egress_time(trajectories)
     # The last person rarely leaves on a full second.
     return curve if egress is None or egress <= curve[-1][0] else [*curve, [egress, 0]]
 
 
-def _curves_by_type(trajectories: Trajectories) -> dict[str, list[list[float]]] | None:
-    """Occupancy by type, where there are several."""
+def occupancy_curves_by_type(trajectories: Tracks) -> dict[str, list[list[float]]] | None:
+    """``occupancy_by_type``, or None where there is one type, or none is known."""
     if "type" not in trajectories.person_data:
         return None
     curves = occupancy_by_type(trajectories)

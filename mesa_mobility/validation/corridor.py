@@ -15,9 +15,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mesa_mobility.crowd.types.free_speeds import ADULTS
-from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
-from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification import Verdict, case, charts
 from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.checks import Check, falling, within
 from mesa_mobility.verification.references import corridor_band
@@ -86,31 +85,35 @@ def _judged(runs: Runs, crowd: str) -> tuple[list[Check], dict[str, Any]]:
 
 def draw(figures: dict[str, Any]) -> Figure:
     """Speed against individual density, measured and of either crowd, and specific flow."""
-    figure, axes = drawing.panels(3)
+    figure, axes = charts.panels(3)
     flow = axes[2]
     for panel, crowd, title, colour in (
-        (axes[0], "", "speeds of the preset", drawing.OURS.colour),
-        (axes[1], f"{AS_RECORDED}: ", AS_RECORDED, drawing.OTHER.colour),
+        (axes[0], "", "speeds of the preset", charts.OURS.colour),
+        (axes[1], f"{AS_RECORDED}: ", AS_RECORDED, charts.OTHER.colour),
     ):
-        look = drawing.Look(colour, f"mesa-mobility, {title}", "o")
+        look = charts.Look(colour, f"mesa-mobility, {title}", "o")
         bins = {name: np.array(values) for name, values in figures[f"{crowd}bins"].items()}
         low, middle, high = corridor_band(bins["density"])
-        drawing.band(panel, bins["density"], low, middle, high, drawing.MEASURED)
-        drawing.band(panel, bins["density"], bins["p10"], bins["p50"], bins["p90"], look)
+        charts.band(panel, bins["density"], low, middle, high, charts.MEASURED)
+        charts.band(panel, bins["density"], bins["p10"], bins["p50"], bins["p90"], look)
         panel.set_ylabel("speed along the corridor over 1.5 s (m/s)")
         flow.plot(bins["density"], bins["density"] * bins["p50"], **look.line)
-    flow.plot(bins["density"], bins["density"] * middle, **drawing.MEASURED.line)
+    flow.plot(bins["density"], bins["density"] * middle, **charts.MEASURED.line)
     flow.set_ylabel("median speed x density (1/(m s))")
     for panel in axes:
         panel.set_xlabel("individual density (1/m²)")
-    drawing.finish(axes)
+    charts.finish(axes)
     return figure
 
 
 EXPERIMENT = Experiment(
     name="corridor",
     what="speed against density in an endless corridor 1.8 m wide",
-    source="individual bins of HERMES and BaSiGo corridors (fd_corridor_individual_bins.csv)",
+    source="corridors of HERMES 2009 and BaSiGo 2013 (data archive of Forschungszentrum Jülich), "
+    "evaluated by individual Voronoi density with PedPy",
+    criterion="At five densities the median speed lies between the 10th and the 90th percentile of "
+    "the measured people. The corridor is simulated with the free speeds of the preset, "
+    "and with those of the measured people",
     cases=tuple(
         case(track, effort=1.0 + 2.0 * each, density=each, width=WIDTH, speed=speed)
         for speed in (None, RECORDED)

@@ -22,7 +22,8 @@ class Experiment:
     Attributes:
         name: its name on the command line.
         what: its subject, in one line.
-        source: origin of the measured figures.
+        source: origin of the measured figures, as a reader can find it.
+        criterion: what is asked of the simulated crowd, in words.
         cases: run for each seed.
         judge: verdict, with a table for each figure that is drawn, from the runs of all seeds.
         draw: a picture of a verdict's figures.
@@ -31,6 +32,7 @@ class Experiment:
     name: str
     what: str
     source: str
+    criterion: str
     cases: tuple[Case, ...]
     judge: Callable[[Runs], Verdict]
     draw: Callable[[dict[str, Any]], Figure]

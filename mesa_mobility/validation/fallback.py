@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesa_mobility.validation import bottleneck, drawing
+from mesa_mobility.validation import bottleneck
 from mesa_mobility.validation.experiment import Experiment, Runs
-from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification import Verdict, case, charts
 from mesa_mobility.verification.checks import Check, at_most, exactly
 from mesa_mobility.verification.scenarios.shipped import shipped
 
@@ -36,13 +36,13 @@ def judge(runs: Runs) -> Verdict:
 
 def draw(figures: dict[str, Any]) -> Figure:
     """Share of time by scenario, and the bound."""
-    figure, (axes,) = drawing.panels(1)
+    figure, (axes,) = charts.panels(1)
     place = np.arange(len(figures["scenario"]))
-    axes.bar(place, 100 * np.array(figures["share"]), color=drawing.OURS.colour, width=0.6)
+    axes.bar(place, 100 * np.array(figures["share"]), color=charts.OURS.colour, width=0.6)
     axes.plot(
         place,
         100 * np.array(figures["bound"]),
-        color=drawing.OTHER.colour,
+        color=charts.OTHER.colour,
         marker="_",
         markersize=16,
         linestyle="none",
@@ -50,14 +50,17 @@ def draw(figures: dict[str, Any]) -> Figure:
     )
     axes.set_xticks(place, figures["scenario"], rotation=45, ha="right", fontsize=7)
     axes.set_ylabel("fallback, % of pedestrian-time")
-    drawing.finish([axes])
+    charts.finish([axes])
     return figure
 
 
 EXPERIMENT = Experiment(
     name="fallback",
     what="share of pedestrian-time in the fallback",
-    source="Casburn et al. 2005: 2 % in all",
+    source="Casburn, Srinivasan, Metoyer and Quinn 2005, Pedestrian and Evacuation Dynamics: 2 "
+    "% in all",
+    criterion="People spend little of their time in the fallback movement, which the model uses if "
+    "no recorded movement is possible",
     cases=(
         *(case(shipped, effort=EFFORT[model], model=model) for model in MODELS),
         *(case(bottleneck.bottleneck, effort=4.0, width=width) for width in bottleneck.JUDGED),

@@ -6,10 +6,10 @@ import os
 from collections.abc import Mapping, Sequence
 
 from mesa_mobility.crowd.presets.given import Given
-from mesa_mobility.reports.html import Page, picture
+from mesa_mobility.reports.html import Link, Page, picture
 from mesa_mobility.validation.experiment import Experiment
-from mesa_mobility.verification import Check, Verdict
-from mesa_mobility.verification.report import computed_with, value_text
+from mesa_mobility.verification import Verdict
+from mesa_mobility.verification.report import SAFETY, computed_with, lead_of, table_of_checks
 
 
 def write_report(
@@ -18,6 +18,7 @@ def write_report(
     seeds: int,
     path: str | os.PathLike[str],
     rules: Given | None = None,
+    command: str = "",
 ) -> None:
     """Write how crowds compare with measured ones as one HTML page, which needs no other file.
 
@@ -27,48 +28,61 @@ def write_report(
         seeds: number of seeds.
         path: of the page.
         rules: that models followed instead of the default preset.
+        command: that runs them again, without its options; "" for none.
 
     Raises:
         ResultsError: the page cannot be written.
     """
-    page = Page("Validation of mesa-mobility")
+    page = Page("Validation of mesa-mobility", lead_of(seeds, rules))
     passed = [verdicts[each.name].passed for each in experiments]
+    page.section("Summary", "summary")
     page.text(
         f"{sum(passed)} of {len(passed)} comparisons pass. A comparison passes if each figure that "
         "is judged is as measured; no overlaps of bodies and no steps through walls are allowed."
     )
     page.table(
-        "Summary",
-        ["comparison", "what", "verdict"],
+        "Comparisons and their verdicts",
+        ["comparison", "what is compared", "figures judged", "not as measured", "verdict"],
         [
-            [each.name, each.what, "pass" if well else "FAIL"]
+            [
+                Link(_words(each), each.name),
+                each.what,
+                sum(check.gates for check in verdicts[each.name].checks),
+                sum(check.gates and not check.met for check in verdicts[each.name].checks),
+                "pass" if well else "FAIL",
+            ]
             for each, well in zip(experiments, passed, strict=True)
         ],
     )
+    page.text(SAFETY)
+    page.section("Comparisons", "comparisons")
     for each in experiments:
-        verdict = verdicts[each.name]
-        page.table(
-            f"{each.name}: {each.what}",
-            ["figure", "simulated", "criterion", "verdict"],
-            [
-                [check.figure, value_text(check.value), check.wanted, word_of(check)]
-                for check in verdict.checks
-            ]
-            + [
-                [name, value_text(figure), None, "reported"]
-                for name, figure in verdict.figures.items()
-                if isinstance(figure, int | float)
-            ],
-            f"Source: {each.source}.",
-        )
-        if verdict.figures:
-            page.picture(
-                "", picture(each.draw(verdict.figures)), f"Measured and simulated: {each.what}"
-            )
-    computed_with(page, seeds, rules)
+        _comparison(page, each, verdicts[each.name], seeds)
+    computed_with(page, seeds, rules, command)
+    page.signatures()
     page.write(path)
 
 
-def word_of(check: Check) -> str:
-    """The verdict on one figure: "outside" is reported alone, "FAIL" counts."""
-    return "pass" if check.met else "FAIL" if check.gates else "outside"
+def _words(experiment: Experiment) -> str:
+    return experiment.name.replace("_", " ")
+
+
+def _comparison(page: Page, experiment: Experiment, verdict: Verdict, seeds: int) -> None:
+    page.subsection(f"{_words(experiment)}: {experiment.what}", experiment.name)
+    rows = [
+        ["measured", experiment.source],
+        ["criterion", experiment.criterion],
+        ["verdict", "pass" if verdict.passed else "FAIL"],
+    ]
+    page.table("The comparison", ["", ""], rows)
+    table_of_checks(
+        page,
+        "What was found" + (f" in the runs of {seeds} seeds" if seeds > 1 else ""),
+        verdict.checks,
+        verdict.figures,
+        note="“outside” is reported and does not count for the verdict.",
+    )
+    if verdict.figures:
+        page.picture(
+            f"Measured and simulated: {experiment.what}", picture(experiment.draw(verdict.figures))
+        )

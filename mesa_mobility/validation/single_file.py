@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from mesa_mobility.validation import drawing
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.verification import Verdict, case
 from mesa_mobility.verification.checks import Check, within
+from mesa_mobility.verification.diagrams import single_file_diagram
 from mesa_mobility.verification.judging import single_file_bins, single_file_share
 from mesa_mobility.verification.references import published
 from mesa_mobility.verification.scenarios.tracks.single_file import CASES, single_file
@@ -67,28 +67,17 @@ def _dense(bins: dict[str, NDArray[np.float64]]) -> list[Check]:
 
 def draw(figures: dict[str, Any]) -> Figure:
     """Speed against density."""
-    figure, axes = drawing.panels(1)
-    reference = published("1D single file")
-    drawing.band(
-        axes[0],
-        reference["density"],
-        reference["v_min"],
-        reference["v_mean"],
-        reference["v_max"],
-        drawing.MEASURED,
-    )
-    bins = {name: np.array(values) for name, values in figures["bins"].items()}
-    drawing.band(axes[0], bins["density"], bins["p10"], bins["p50"], bins["p90"], drawing.OURS)
-    axes[0].set_xlabel("density (1/m)")
-    axes[0].set_ylabel("speed (m/s)")
-    drawing.finish(axes)
-    return figure
+    return single_file_diagram({name: np.array(of) for name, of in figures["bins"].items()})
 
 
 EXPERIMENT = Experiment(
     name="single_file",
     what="speed against density of people one behind the other",
-    source="single file of BaSiGo and caserne (fd_juelich_published.csv)",
+    source="single files of BaSiGo 2013 and of the caserne 2006 (data archive of "
+    "Forschungszentrum Jülich)",
+    criterion="The median speed lies between the least and the greatest measured speed in three "
+    "quarters of the bins of density; in dense files up to 2.5 persons/m it is 0.5 to "
+    "1.5 times the measured mean, above that between least and greatest",
     cases=(*CASES, *(case(single_file, effort=4.0, people=people) for people in DENSE)),
     judge=judge,
     draw=draw,

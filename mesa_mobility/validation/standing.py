@@ -10,10 +10,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from mesa_mobility import Trajectories
-from mesa_mobility.validation import drawing
 from mesa_mobility.validation.bottleneck import START, plan
 from mesa_mobility.validation.experiment import Experiment, Runs
-from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification import Verdict, case, charts
 from mesa_mobility.verification.checks import at_most, exactly
 from mesa_mobility.verification.runs import CLEARANCE, SPACING, Run, crowd_model, evacuate
 
@@ -148,17 +147,17 @@ def judge(runs: Runs) -> Verdict:
 
 def draw(figures: dict[str, Any]) -> Figure:
     """Residual motion of people who stand."""
-    figure, axes = drawing.panels(2)
+    figure, axes = charts.panels(2)
     for each, name, bound, label in (
         (axes[0], "speed_p99", MOST_SPEED, "pelvis speed of standing people, p99 (m/s)"),
         (axes[1], "turn_p99", MOST_TURN_DEG, "turn of standing people within 1.5 s, p99 (deg)"),
     ):
         places = ("closed door", "jam")
         values = [figures.get(f"{place}: {name}", float("nan")) for place in places]
-        each.bar(places, values, color=drawing.OURS.colour, width=0.5)
-        each.axhline(bound, color=drawing.OTHER.colour, label="bound")
+        each.bar(places, values, color=charts.OURS.colour, width=0.5)
+        each.axhline(bound, color=charts.OTHER.colour, label="bound")
         each.set_ylabel(label)
-    drawing.finish(axes)
+    charts.finish(axes)
     return figure
 
 
@@ -166,6 +165,8 @@ EXPERIMENT = Experiment(
     name="standing",
     what="motion at rest in a crowd before a closed door, and of those who stand in a jam",
     source="none: people who stand do not move",
+    criterion="People before a door that has closed stand still, up to small movements of the "
+    "body; those in a jam are reported",
     cases=tuple(case(queue, effort=2.0, closes=closes) for closes in (True, False)),
     judge=judge,
     draw=draw,

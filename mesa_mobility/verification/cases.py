@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any, TypeAlias
 
 from mesa_mobility.crowd.presets.given import Given
+from mesa_mobility.reports.words import words_of
 from mesa_mobility.runs.jobs import Failed, run_jobs
 from mesa_mobility.runs.workers import Processes
 from mesa_mobility.verification.drawings import first_run_drawn
@@ -33,6 +34,14 @@ class Case:
     def __call__(self, seed: int) -> Figures:
         """Run it."""
         return self.scenario(seed, **dict(self.numbers))
+
+    @property
+    def words(self) -> str:
+        """Its numbers for a reader, such as "people 20, speed 1.2"."""
+        return ", ".join(
+            f"{words_of(name)} {f'{value:g}' if isinstance(value, float) else value}"
+            for name, value in self.numbers
+        )
 
     def __str__(self) -> str:
         numbers = ", ".join(f"{name} {value}" for name, value in self.numbers)

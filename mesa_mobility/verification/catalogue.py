@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 from mesa_mobility.errors import ModelError
 from mesa_mobility.plugins.registry import did_you_mean
@@ -20,9 +21,10 @@ class Entry:
     Attributes:
         id: its name.
         what: its subject, in one line.
-        source: standard, and where its numbers were read.
+        source: the standards and the numbers of the test in them.
+        read: where its numbers were read, by the names of `readings`.
         applies: "flat", "stairs", "lifts", or "flat*" for a stand-in on a level floor.
-        geometry: floor, start and exits; WKT in metres where the source gives it.
+        geometry: floor, start and exits, in words.
         population: people.
         criterion: the requirement, as text.
         criterion_strict: its limit as a number, if there is one.
@@ -40,6 +42,7 @@ class Entry:
     criterion_strict: str = ""
     chosen: str = ""
     cap: str = ""
+    read: tuple[str, ...] = ()
 
     @property
     def asked(self) -> str:
@@ -50,8 +53,24 @@ class Entry:
 @cache
 def catalogue() -> dict[str, Entry]:
     """All tests by id, in the order of the standards."""
+    tests = _content()["test"]
+    return {each["id"]: Entry(**{**each, "read": tuple(each.get("read", ()))}) for each in tests}
+
+
+def standards() -> dict[str, str]:
+    """Title of each standard, by its short name."""
+    return dict(_content()["standards"])
+
+
+def readings() -> dict[str, str]:
+    """Where numbers of tests were read, by the names that entries have."""
+    return dict(_content()["readings"])
+
+
+@cache
+def _content() -> dict[str, Any]:
     text = files("mesa_mobility.verification").joinpath("data/catalogue.toml").read_text("utf-8")
-    return {each["id"]: Entry(**each) for each in tomllib.loads(text)["test"]}
+    return tomllib.loads(text)
 
 
 def suite(ids: Sequence[str] = ()) -> dict[str, VerificationTest]:

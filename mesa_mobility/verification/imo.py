@@ -72,5 +72,5 @@ TESTS = {
     "imo-09": rimea.TESTS["rimea-09"],
     "imo-10": rimea.TESTS["rimea-10"],
     "imo-11": VerificationTest((rimea.FOOT_OF_STAIR,), judge=rimea.jam_at_the_foot),
-    "imo-12": VerificationTest(rimea.TRACKS, judge=flow_at_high_density),
+    "imo-12": VerificationTest(rimea.TRACKS, judge=flow_at_high_density, chart="corridor"),
 }

@@ -112,6 +112,7 @@ TESTS = {
             for n in PEOPLE
         ),
         judge=corridor_flow,
+        chart="filled corridor",
     ),
     "iso-17": VerificationTest(
         (

@@ -295,7 +295,7 @@ TESTS = {
     "rimea-03": VerificationTest(
         tuple(climb(speed, up=False) for speed in CLIMBS), judge=judging.climbs(CLIMBS)
     ),
-    "rimea-04": VerificationTest(TRACKS, judge=fundamental_diagram),
+    "rimea-04": VerificationTest(TRACKS, judge=fundamental_diagram, chart="corridor"),
     "rimea-05": VerificationTest(
         (case(premovement.late_starters, people=10, times=Uniform(10.0, 100.0)),),
         judge=starts_on_time,
@@ -333,5 +333,5 @@ TESTS = {
     "rimea-15": VerificationTest(
         tuple(case(halls.wide_way, effort=5.0, way=way) for way in halls.WAYS), judge=three_ways
     ),
-    "rimea-16": VerificationTest(SINGLE_FILE, pooled=single_file),
+    "rimea-16": VerificationTest(SINGLE_FILE, pooled=single_file, chart="single file"),
 }

@@ -27,11 +27,13 @@ class VerificationTest:
         cases: run for each seed.
         judge: verdict on one seed, from the figures of the cases in their order.
         pooled: verdict on all seeds together, where the criterion is one of statistics.
+        chart: name of a diagram of the runs of all seeds, for reports (`diagrams.DIAGRAMS`).
     """
 
     cases: tuple[Case, ...]
     judge: Judge | None = None
     pooled: PooledJudge | None = None
+    chart: str = ""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,10 @@ class Outcome:
         seeds: the seeds.
         per_seed: verdict and figures of each seed, or of all together.
         safety: overlaps and wall crossings, and the share of time in the fallback.
-        drawings: of the cases with the first seed, each with the case's name, if asked for.
+        checks: each figure with a criterion, once for all seeds: the median of its values, met if
+            it is met with every seed.
+        drawings: of the cases with the first seed, each with what the case is of, if asked for.
+        chart: name of a diagram and the figures of all runs, if asked for and the test has one.
     """
 
     verdict: str
@@ -56,7 +61,9 @@ class Outcome:
     seeds: list[int]
     per_seed: list[dict[str, Any]]
     safety: dict[str, Any]
+    checks: list[Check] = field(default_factory=list)
     drawings: list[tuple[str, Drawing]] = field(default_factory=list)
+    chart: tuple[str, Sequence[Sequence[Figures]]] | None = None
 
     @property
     def passed(self) -> bool:
@@ -90,7 +97,7 @@ def verify(
     outcomes = {}
     for name, test in tests.items():
         runs = [[results[each, seed] for each in test.cases] for seed in seeds]
-        outcomes[name] = judged(test, seeds, runs, is_cap=name in caps)
+        outcomes[name] = judged(test, seeds, runs, is_cap=name in caps, drawn=drawn)
     return outcomes
 
 
@@ -100,6 +107,7 @@ def judged(
     runs: Sequence[Sequence[Figures]],
     *,
     is_cap: bool = False,
+    drawn: bool = False,
 ) -> Outcome:
     """The outcome of a test from the figures of its cases, for each seed in turn."""
     verdicts: list[tuple[int | None, Verdict]]
@@ -120,7 +128,9 @@ def judged(
     verdict_word = PASS if all(verdict.passed for _, verdict in verdicts) else FAIL
     if verdict_word == PASS and is_cap and reported:
         verdict_word = CAP
-    flat = [figures for row in runs for figures in row if "error" not in figures]
+    every = [figures for row in runs for figures in row]
+    flat = [figures for figures in every if "error" not in figures]
+    whole = len(flat) == len(every)
     return Outcome(
         verdict=verdict_word,
         measured=_medians([verdict.measured for _, verdict in verdicts]),
@@ -132,8 +142,10 @@ def judged(
             for seed, verdict in verdicts
         ],
         safety=_safety(flat),
+        checks=_over_seeds([verdict.checks for _, verdict in verdicts]),
+        chart=(test.chart, runs) if drawn and whole and test.chart else None,
         drawings=[
-            (str(each), figures["drawing"])
+            (each.words, figures["drawing"])
             for each, figures in zip(test.cases, runs[0], strict=True)
             if "drawing" in figures
         ],
@@ -155,6 +167,23 @@ def _verdict(judge: Callable[[Any], Verdict], runs: Any, figures: Sequence[Figur
 def _said(check: Check) -> str:
     value = "not measured" if check.value is None else f"{check.value:.4g}"
     return f"{check.figure}: {value}, wanted {check.wanted}"
+
+
+def _over_seeds(checks: Sequence[Sequence[Check]]) -> list[Check]:
+    """Each figure once: the median of its values, None where a seed has none, and whether all meet
+    the criterion."""
+    by_figure: dict[str, list[Check]] = {}
+    for each in (check for of in checks for check in of):
+        by_figure.setdefault(each.figure, []).append(each)
+    found = []
+    for figure, own in by_figure.items():
+        values = [each.value for each in own if each.value is not None]
+        middle = float(np.median(values)) if len(values) == len(own) else None
+        # A criterion may be another one with each seed: one that is not met says most.
+        worst = next((each for each in own if not each.met), own[0])
+        met = all(each.met for each in own)
+        found.append(Check(figure, middle, worst.wanted, met, any(each.gates for each in own)))
+    return found
 
 
 def _medians(measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -56,3 +56,55 @@ def test_bad_input_is_one_line(command, rooms, tmp_path):
         outcome = command(*arguments, "--rooms", rooms)
         assert outcome.status == 2
         assert outcome.err == f"error: {rooms}: expected a GeoJSON FeatureCollection\n"
+
+
+def test_the_report_of_a_run_made_or_saved(command, rooms, tmp_path):
+    page = tmp_path / "made.html"
+    options = ("--seed", 5, "--rooms", rooms, "--report", page, "--out", tmp_path / "run")
+    outcome = command("run", "corridor", *options)
+    assert outcome.status == 0, outcome.err
+    assert f"written to {page}" in outcome.err
+    saved = tmp_path / "saved.html"
+    outcome = command("results", tmp_path / "run", "--rooms", rooms, "--report", saved)
+    assert outcome.status == 0, outcome.err
+    for each in (page, saved):
+        text = each.read_text(encoding="utf-8")
+        assert 'id="level-of-service"' in text
+        # The room of the file, which all three have left after 2.1 s.
+        assert "room end" in text
+        assert "mesa-mobility run corridor --seed 5 --preset default</pre>" in text
+        assert "trajectories.parquet" in text
+
+
+def test_what_lacks_for_a_report_is_found_out_before_the_run(command, tmp_path, monkeypatch):
+    outcome = command("run", "corridor", "--pdf", "--out", tmp_path / "run")
+    assert outcome.status == 2
+    assert outcome.err == "error: --pdf: prints a report, expected --report FILE as well\n"
+    monkeypatch.setenv("MESA_MOBILITY_BROWSER", "no-such-browser")
+    page = tmp_path / "page.html"
+    outcome = command("run", "corridor", "--report", page, "--pdf", "--out", tmp_path / "run")
+    assert outcome.status == 2
+    assert "no browser to write PDF: MESA_MOBILITY_BROWSER is 'no-such-browser'" in outcome.err
+    assert not page.exists()
+    assert not (tmp_path / "run").exists()
+
+
+def test_designs_compared_on_the_command_line(command, tmp_path):
+    from mesa_mobility.experiments import Experiment, run_experiment
+
+    model = "tests.fixtures.experiments.models:Leaving"
+    experiment = Experiment(model, {"width": [1.0, 1.2]}, replications=20, seeds="common")
+    run_experiment(experiment, tmp_path / "store", executor="serial")
+    given = ("experiment", "compare", tmp_path / "store", "--by", "width")
+    outcome = command(*given, "--json")
+    assert outcome.status == 0, outcome.err
+    answer = json.loads(outcome.out)
+    [found] = answer["comparisons"]
+    assert (answer["figure"], found["first"], found["second"]) == ("egress_s", 1.0, 1.2)
+    assert found["different"]
+    table = command(*given)
+    assert "different" in table.out
+    assert table.err == "time until everybody is out (s), by width\n"
+    outcome = command("experiment", "compare", tmp_path / "store", "--by", "height")
+    assert outcome.status == 2
+    assert "no parameter 'height', expected one of width" in outcome.err

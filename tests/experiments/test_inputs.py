@@ -36,8 +36,8 @@ def sha256(path):
 def table_of(text):
     """Rows of the report's table of inputs."""
     part = text.split("Inputs of the runs")[1].split("</table>")[0]
-    rows = re.findall(r"<tr>(<td>.*?)</tr>", part)
-    return [re.findall(r"<td>(.*?)</td>", row) for row in rows]
+    rows = re.findall(r"<tr>(<td.*?)</tr>", part)
+    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows]
 
 
 @pytest.mark.thorough

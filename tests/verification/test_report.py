@@ -12,6 +12,7 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.reports.html import Page
 from mesa_mobility.results import Trajectories
 from mesa_mobility.verification import Outcome, catalogue
+from mesa_mobility.verification.checks import within
 from mesa_mobility.verification.drawings import collect, draw, first_run_drawn
 from mesa_mobility.verification.report import write_report
 
@@ -21,6 +22,12 @@ WALLS = np.array([[0.0, 0.0, 10.0, 0.0], [0.0, 2.0, 10.0, 2.0]])
 def tracks(people, frames):
     frame, person = (each.ravel() for each in np.mgrid[0:frames, 0:people])
     return Trajectories(frame, person, frame * 0.04, person * 0.02, np.zeros(len(frame)))
+
+
+def rows_of(text):
+    """Cells of all rows of all tables."""
+    rows = re.findall(r"<tr>(<td.*?)</tr>", text)
+    return [tuple(re.findall(r"<td[^>]*>(.*?)</td>", row)) for row in rows]
 
 
 def outcome(verdict, **keywords):
@@ -55,27 +62,38 @@ def test_the_page_has_criterion_source_figures_picture_verdict_and_versions(tmp_
     entries = catalogue()
     names = ["rimea-01", "rimea-06", "imo-04"]
     verdicts = [
-        outcome("pass", drawings=[("walk(speed 1.33)", found[0])]),
+        outcome(
+            "pass",
+            checks=[within("travel time s", 30.25, 26.0, 34.0)],
+            drawings=[("speed 1.33", found[0])],
+        ),
         outcome("fail", failed=["points outside: 3, wanted 0 (seed 2)"]),
         outcome("cap", reported=["flow: 2, wanted at most 1.33"]),
     ]
     page = tmp_path / "report.html"
     write_report(entries, dict(zip(names, verdicts, strict=True)), page)
     text = page.read_text(encoding="utf-8")
-    assert not re.search(r"(?:src|href)=\"(?!data:)", text)
+    assert not re.search(r"(?:src|href)=\"(?!data:|#)", text)
     assert "Passed: 1. Failed: 1. Over a design cap that measured crowds exceed too: 1." in text
-    assert "<h2>rimea-01: one person walks along a corridor at its own speed</h2>" in text
-    assert f"<td>source</td><td>{entries['rimea-01'].source}</td>" in text
-    assert "travel time over 40 m in [26, 34] s" in text
-    assert "<td>travel time s 30.25</td>" in text
-    assert "points outside: 3, wanted 0 (seed 2)" in text
-    assert text.count('<span class="pass">pass</span>') == 2
+    title = "one person walks along a corridor at its own speed"
+    assert f'<h3 id="rimea-01">3.1 rimea-01: {title}</h3>' in text
+    assert '<a href="#rimea-01">rimea-01</a>' in text
+    assert "<td>source</td><td>RiMEA guideline 3.0 and 4.1.1, test 1</td>" in text
+    assert "The person walks the 40 m in 26 to 34 s" in text
+    row = ("travel time (s)", "30.25", "26 to 34", '<span class="pass">pass</span>')
+    assert row in rows_of(text)
+    assert "Not met: points outside: 3, wanted 0 (seed 2)." in text
+    # In the summary and in the test itself; each figure has its verdict beside it.
+    assert text.count('<span class="pass">pass</span>') == 2 + 1
     assert text.count('<span class="fail">FAIL</span>') == 2
     assert text.count("cap exceeded") == 2
     assert text.count("data:image/png;base64,") == 1
-    assert "walk(speed 1.33): 3 people" in text
+    assert "Ways of 3 people, with a dot where each begins (speed 1.33; seed 1)" in text
+    assert "mesa-mobility verify rimea-01 rimea-06 imo-04 --seeds 2" in text
+    for hidden in ("POLYGON", "LINESTRING", ".csv", ".toml"):
+        assert hidden not in text
     assert re.search(r"<td>mesa-mobility</td><td>\d", text)
-    assert re.search(r"<td>map able_bodied</td><td>sha256 [0-9a-f]{64}", text)
+    assert re.search(r"<td>movements of able-bodied people</td><td>sha256 [0-9a-f]{64}", text)
     assert "Seeds 1 to 2." in text
     with pytest.raises(ResultsError, match="cannot be written"):
         write_report(entries, {"rimea-01": verdicts[0]}, tmp_path / "nowhere" / "report.html")
@@ -84,23 +102,26 @@ def test_the_page_has_criterion_source_figures_picture_verdict_and_versions(tmp_
 def test_the_page_of_a_comparison(tmp_path):
     from mesa_mobility import validation
     from mesa_mobility.validation.report import write_report as write_comparisons
-    from mesa_mobility.verification import Verdict
+    from mesa_mobility.verification import Verdict, charts
     from mesa_mobility.verification.checks import at_most
 
     verdict = Verdict(
         (at_most("never", 1.0, 0.0), at_most("ever", 3.0, 2.0, gates=False)), {"share": 0.5}
     )
     drawn = validation.EXPERIMENTS["walking"]
-    shown = replace(drawn, draw=lambda figures: validation.drawing.panels(1)[0])
+    shown = replace(drawn, draw=lambda figures: charts.panels(1)[0])
     page = tmp_path / "report.html"
     write_comparisons([shown], {"walking": verdict}, 3, page)
     text = page.read_text(encoding="utf-8")
     assert "0 of 1 comparisons pass" in text
-    assert "<td>never</td><td>1</td><td>at most 0</td>" in text
-    assert text.count('<span class="fail">FAIL</span>') == 2
-    assert "<td>outside</td>" in text
-    assert "<td>share</td><td>0.5</td><td>-</td><td>reported</td>" in text
-    assert f"Source: {drawn.source}." in text
+    rows = rows_of(text)
+    assert ("never", "1", "at most 0", '<span class="fail">FAIL</span>') in rows
+    assert ("ever", "3", "at most 2", "outside") in rows
+    assert ("share", "0.5", "-", "reported") in rows
+    assert ("measured", drawn.source) in rows
+    assert ("criterion", drawn.criterion) in rows
+    # The comparison judges one figure, which is not as measured, and reports another.
+    assert rows[0][2:] == ("1", "1", '<span class="fail">FAIL</span>')
     assert text.count("data:image/png;base64,") == 1
 
 
@@ -108,10 +129,10 @@ def test_one_person_is_no_people_and_a_long_floor_has_no_blank_around_it(tmp_pat
     with first_run_drawn() as found:
         collect(tracks(1, 20), np.array([[0.0, 0.0, 40.0, 0.0], [0.0, 2.0, 40.0, 2.0]]))
     page = tmp_path / "report.html"
-    passed = outcome("pass", drawings=[("walk(speed 1.33)", found[0])])
+    passed = outcome("pass", drawings=[("speed 1.33", found[0])])
     write_report(catalogue(), {"rimea-01": passed}, page)
     text = page.read_text(encoding="utf-8")
-    assert "<p>walk(speed 1.33): 1 person</p>" in text
+    assert "Ways of 1 person, with a dot where each begins (speed 1.33; seed 1)" in text
     png = base64.b64decode(re.search(r"base64,([^\"]+)", text)[1])
     width, height = struct.unpack(">II", png[16:24])
     # 40 m by 2 m, and the labels of the axes.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mesa_mobility.commands.console import AsJson, NoProgress, some_path
+from mesa_mobility.commands.console import AsJson, NoProgress
 from mesa_mobility.commands.models.making import Numbers, split_settings
+from mesa_mobility.commands.reports.options import ReportOptions
 from mesa_mobility.errors import ModelError
 from mesa_mobility.runs.processes import available_processors
 
@@ -20,7 +20,7 @@ FAILED = 1
 
 
 @dataclass(frozen=True)
-class CheckOptions:
+class CheckOptions(ReportOptions):
     """How tests are run, and what is written of them."""
 
     seeds: Annotated[
@@ -40,16 +40,6 @@ class CheckOptions:
     ] = None
     numbers: Numbers = None
     as_json: AsJson = False
-    report_file: Annotated[
-        Path | None,
-        typer.Option(
-            "--report",
-            help="HTML page to write, with criteria, sources, figures, pictures, verdicts and "
-            "versions.",
-            parser=some_path,
-            metavar="FILE",
-        ),
-    ] = None
     no_progress: NoProgress = False
 
     @property
@@ -81,14 +71,3 @@ class CheckOptions:
         given = Given(preset, numbers, COMMAND_LINE)
         given.check()
         return given
-
-    def check_report(self) -> None:
-        """Make sure that the report can be written, before anything is run for it.
-
-        Raises:
-            ResultsError: the report cannot be written.
-        """
-        from mesa_mobility.results import check_writable
-
-        if self.report_file is not None:
-            check_writable(self.report_file.parent, [self.report_file.name])

@@ -42,13 +42,26 @@ def validate(
     """
     from mesa_mobility.validation import chosen
 
-    run_experiments(chosen(names or []), options.rules(), options, out)
+    chosen_ones = chosen(names or [])
+    command = " ".join(["mesa-mobility validate", *(each.name for each in chosen_ones)])
+    run_experiments(chosen_ones, options.rules(), options, out, command)
 
 
 def run_experiments(
-    experiments: list[Experiment], rules: Given, options: CheckOptions, out: Path | None
+    experiments: list[Experiment],
+    rules: Given,
+    options: CheckOptions,
+    out: Path | None,
+    command: str = "",
 ) -> None:
     """Run and judge experiments, and write and print what was asked for.
+
+    Args:
+        experiments: to run.
+        rules: for all models that are made.
+        options: how they are run, and the report.
+        out: folder for figures and pictures.
+        command: that runs them again with the options of ``rules``, for the report; "" for none.
 
     Raises:
         typer.Exit: a figure is not as measured.
@@ -80,8 +93,8 @@ def run_experiments(
     if report_file is not None:
         from mesa_mobility.validation.report import write_report
 
-        write_report(experiments, verdicts, options.seeds, report_file, rules)
-        say(f"written to {report_file}")
+        write_report(experiments, verdicts, options.seeds, report_file, rules, command)
+        options.finish_report()
     _print_table(experiments, verdicts)
     if options.as_json:
         answer_json(answer)
@@ -127,7 +140,7 @@ def _print_table(experiments: list[Experiment], verdicts: dict[str, Verdict]) ->
     from rich.console import Console
     from rich.table import Table
 
-    from mesa_mobility.validation.report import word_of
+    from mesa_mobility.verification.report import word_of
 
     table = Table(box=None, padding=(0, 2, 0, 0))
     for column in ("experiment", "figure", "measured", "wanted", "verdict"):

@@ -46,7 +46,7 @@ def verify(
         from mesa_mobility.verification.report import write_report
 
         write_report(entries, outcomes, options.report_file, rules)
-        say(f"written to {options.report_file}")
+        options.finish_report()
     _print_table(entries, outcomes)
     failing = [name for name, outcome in outcomes.items() if outcome.verdict == "fail"]
     capped = [name for name, outcome in outcomes.items() if outcome.verdict == "cap"]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mesa_mobility.crowd.model.crowd_model import CrowdModel
 
 
@@ -18,12 +21,15 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         minute without a reason: ``person``, ``since_s``, ``ring`` as rows, and whether they
         still do, ``stands``), ``decisions``, ``fallback_decision_share``,
         ``fallback_time_share``, ``mean_speed_mps`` (over all pedestrian-time), ``occupancy``
-        ([[t, inside], ...] each second) and, in buildings with lifts, ``lifts`` (of each ``lift``
-        its ``trips`` and how many people it has ``carried``), in those with moving escalators
-        ``escalators`` (of each ``escalator`` how many people it has ``carried``, and the seconds
-        for which it ``stood_s`` with people on it) and in those with refuges ``refuges`` (of each
-        ``refuge`` how many people are ``waiting`` there and, ``by_type``, of which types) and
-        ``cannot_leave`` (all ``people`` who have no way since they cannot use stairs, ``by_type``).
+        ([[t, inside], ...] each second), ``people`` (for each ``type`` the number of ``people``
+        who were ever there and [least, mean, greatest] of the speeds at which they like to walk,
+        ``preferred_mps``, and of the times at which they set off, ``sets_off_s``) and, in buildings
+        with lifts, ``lifts`` (of each ``lift`` its ``trips`` and how many people it has
+        ``carried``), in those with moving escalators ``escalators`` (of each ``escalator`` how many
+        people it has ``carried``, and the seconds for which it ``stood_s`` with people on it) and
+        in those with refuges ``refuges`` (of each ``refuge`` how many people are ``waiting`` there
+        and, ``by_type``, of which types) and ``cannot_leave`` (all ``people`` who have no way since
+        they cannot use stairs, ``by_type``).
     """
     last_left, standing = model.statistics.last_left, model.blocked
     left = model.inside == 0 or model.all_in_refuges
@@ -52,10 +58,34 @@ def summary(model: CrowdModel) -> dict[str, Any]:
         "fallback_time_share": model.statistics.fallback_time_share,
         "mean_speed_mps": model.statistics.mean_speed_so_far,
         "occupancy": [list(row) for row in model.statistics.occupancy],
+        "people": _people(model),
         **({"lifts": _lifts(model)} if len(model.lifts) else {}),
         **({"escalators": _escalators(model)} if len(model.escalators) else {}),
         **(_refuges(model) if len(model.refuges) else {}),
     }
+
+
+def _people(model: CrowdModel) -> list[dict[str, Any]]:
+    count, agenda = model.population.count, model.crowd.agenda
+    of_type = model.crowd.type_index[:count]
+    found = []
+    for number, kind in enumerate(model.pedestrian_types):
+        own = np.flatnonzero(of_type == number)
+        if len(own):
+            speeds, times = agenda["speed"][own], agenda["sets_off"][own] / model.frame_rate
+            found.append(
+                {
+                    "type": kind.name,
+                    "people": len(own),
+                    "preferred_mps": _range(speeds),
+                    "sets_off_s": _range(times),
+                }
+            )
+    return found
+
+
+def _range(values: NDArray[Any]) -> list[float]:
+    return [round(float(each), 6) for each in (values.min(), values.mean(), values.max())]
 
 
 def _lifts(model: CrowdModel) -> list[dict[str, Any]]:

@@ -79,8 +79,9 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
     wall, cpu = time.perf_counter(), time.process_time()
     model = None
     try:
-        with _rules_of(point).followed():
-            model = _made(setup, point, row["seed"])
+        with rules_of(point).followed():
+            record = setup.trajectories or setup.doors
+            model = make_model(setup.model, point, row["seed"], record=record)
             taken = _class(setup.model)[1]
             row["inputs"] = json.dumps(inputs_of(model, taken, point), sort_keys=True)
             row["warning"] = _warning(model)
@@ -148,24 +149,32 @@ def _class(model: type | str) -> tuple[type, dict[str, Any]]:
     return kind, parameters_of(kind)
 
 
-def _made(setup: Setup, point: Point, seed: int) -> Any:
-    kind, taken = _class(setup.model)
+def make_model(model: type | str, point: Point, seed: int, *, record: bool = False) -> Any:
+    """The model of a run, before its first step. Rules of the point must be followed meanwhile.
+
+    Args:
+        model: class, or name of a model.
+        point: all parameters.
+        seed: of the run.
+        record: whether it records its trajectories.
+    """
+    kind, taken = _class(model)
     keywords: dict[str, Any] = {k: v for k, v in point.items() if not is_number_name(k)}
     for name, value in keywords.items():
         # A text for a parameter that takes none stands for a value, as with --set.
         known = taken.get(name)
         if isinstance(value, str) and known is not None and known.kinds and str not in known.kinds:
             keywords[name] = known.convert(value)
-    if setup.trajectories or setup.doors:
+    if record:
         keywords["record"] = True
-    model = kind(**keywords, rng=seed)
-    if _has_pedestrians(model):
+    made = kind(**keywords, rng=seed)
+    if _has_pedestrians(made):
         # Those of behaviours that the model has beside its preset's.
-        model.set_parameters(_rules_of(point).values, EXPERIMENT)
-    return model
+        made.set_parameters(rules_of(point).values, EXPERIMENT)
+    return made
 
 
-def _rules_of(point: Point) -> Given:
+def rules_of(point: Point) -> Given:
     """The numbers of behaviours at a point."""
     values = {name: value for name, value in point.items() if is_number_name(name)}
     return Given(None, values, EXPERIMENT)

@@ -3,25 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from mesa_mobility.results.engineering.clearing import clearing
-from mesa_mobility.results.engineering.doors import clogging, doors, n_t
-from mesa_mobility.results.engineering.maps import CELL_M, FloorMaps, maps_by_type
-from mesa_mobility.results.engineering.queues import queue_lengths, queues, waiting_times
-from mesa_mobility.results.engineering.rooms import Room, check_rooms, rooms_of
+from mesa_mobility.results.engineering.maps import FloorMaps
+from mesa_mobility.results.engineering.measured import Measured
 from mesa_mobility.results.files import all_or_none
-from mesa_mobility.results.measures.by_type import EVERYBODY, tables_by_type
-from mesa_mobility.results.tracks import Tracks
+from mesa_mobility.results.measures.by_type import EVERYBODY
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from mesa_mobility.buildings import Building
-    from mesa_mobility.floorplan import FloorPlan
 
 PICTURES = {
     "level_of_service.png": "density_max",
@@ -43,13 +34,9 @@ RESULT_FILES = (
 
 
 def write_results(
-    trajectories: Tracks,
-    plan: FloorPlan | Building,
+    measured: Measured,
     directory: str | os.PathLike[str],
-    rooms: Sequence[Room] = (),
     *,
-    cell: float = CELL_M,
-    every: float = 1.0,
     title: str = "",
     progress: Callable[[str], None] = lambda what: None,
 ) -> None:
@@ -61,52 +48,33 @@ def write_results(
     `waiting_times`, `n_t`, `queue_lengths` and `maps` define the columns.
 
     Args:
-        trajectories: the run.
-        plan: its floor plan, or its building.
+        measured: the figures, from `measure`.
         directory: folder to write to, created if need be.
-        rooms: named areas, beside those of the plan (`rooms_of`).
-        cell: side of the cells of maps, metres.
-        every: seconds between the measurements of maps.
         title: first line of the pictures.
         progress: called with what is being done.
 
     Raises:
-        ResultsError: the folder or a file cannot be written, rooms that are not on the plan, or
-            what these functions refuse.
+        ResultsError: the folder or a file cannot be written.
     """
     from mesa_mobility.results.engineering.pictures import plot_map
 
-    named = check_rooms([*rooms_of(plan), *rooms], plan)
+    run = measured.trajectories, measured.plan
     with all_or_none(directory, RESULT_FILES) as temporary:
-        progress("tables")
-        for name, table in _tables(trajectories, plan, named):
+        for name, table in _tables(measured):
             table.to_csv(temporary / name, index=False, float_format="%.6g")
-        progress("maps")
-        found = maps_by_type(trajectories, plan, cell=cell, every=every)
-        _table_of_maps(found).to_csv(temporary / "maps.csv", index=False, float_format="%.6g")
         progress("pictures")
         for name, what in PICTURES.items():
-            plot_map(found[EVERYBODY], trajectories, plan, temporary / name, what=what, title=title)
+            plot_map(measured.maps[EVERYBODY], *run, temporary / name, what=what, title=title)
 
 
-def _tables(
-    trajectories: Tracks, plan: FloorPlan | Building, rooms: Sequence[Room]
-) -> Iterator[tuple[str, pd.DataFrame]]:
+def _tables(measured: Measured) -> Iterator[tuple[str, pd.DataFrame]]:
     """Name and content of each file."""
-    import pandas as pd
-
-    def by_type(measure: Callable[[Tracks], pd.DataFrame]) -> pd.DataFrame:
-        return tables_by_type(measure, trajectories)
-
-    clogs = pd.concat([clogging(trajectories, plan)], keys=[EVERYBODY], names=["type"])
-    passed = by_type(lambda tracks: doors(tracks, plan).join(queues(tracks, plan)))
-    yield "doors.csv", passed.join(clogs).reset_index()
-    yield "clearing.csv", by_type(lambda tracks: clearing(tracks, plan, rooms)).reset_index()
-    yield "waiting.csv", by_type(_waiting).droplevel(1).reset_index()
-    yield "n_t.csv", n_t(trajectories, plan)
-    lengths = queue_lengths(trajectories, plan)
-    curves = [(name, *each) for name, curve in lengths.items() for each in curve]
-    yield "queues.csv", pd.DataFrame(curves, columns=["door", "time_s", "people"])
+    yield "doors.csv", measured.doors.reset_index()
+    yield "clearing.csv", measured.clearing.reset_index()
+    yield "waiting.csv", measured.waiting.reset_index()
+    yield "n_t.csv", measured.n_t
+    yield "queues.csv", measured.queues
+    yield "maps.csv", _table_of_maps(measured.maps)
 
 
 def _table_of_maps(found: Mapping[str, Mapping[int, FloorMaps]]) -> pd.DataFrame:
@@ -120,18 +88,3 @@ def _table_of_maps(found: Mapping[str, Mapping[int, FloorMaps]]) -> pd.DataFrame
     }
     whole = pd.concat(list(tables.values()), keys=list(tables), names=["type", "level"])
     return whole.reset_index(["type", "level"])
-
-
-def _waiting(trajectories: Tracks) -> pd.DataFrame:
-    """One row: how many people there are, and the seconds for which they wait."""
-    import pandas as pd
-
-    times = waiting_times(trajectories)[np.unique(trajectories.person)]
-    return pd.DataFrame(
-        {
-            "people": [len(times)],
-            "mean_wait_s": [times.mean() if len(times) else np.nan],
-            "p95_wait_s": [np.quantile(times, 0.95) if len(times) else np.nan],
-            "longest_wait_s": [times.max(initial=0.0)],
-        }
-    )

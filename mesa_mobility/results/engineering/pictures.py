@@ -18,7 +18,14 @@ from matplotlib.patches import Patch, PathPatch
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results.engineering.maps import MAPS, FloorMaps
 from mesa_mobility.results.engineering.service import LETTERS, service_limits
-from mesa_mobility.results.floor import Storey, draw_floor, floor_path, panels_of, storeys_of
+from mesa_mobility.results.floor import (
+    LARGEST,
+    Storey,
+    draw_floor,
+    floor_path,
+    panels_of,
+    storeys_of,
+)
 from mesa_mobility.results.plots import finish
 from mesa_mobility.results.tracks import Tracks
 
@@ -37,8 +44,8 @@ class _Style:
 
 
 _STYLES = {
-    "density_max": _Style("level of service at the greatest density", "RdYlGn_r"),
-    "density_mean": _Style("level of service at the mean density", "RdYlGn_r"),
+    "density_max": _Style("level of service at the greatest density", "YlOrRd"),
+    "density_mean": _Style("level of service at the mean density", "YlOrRd"),
     "dense_s": _Style("time above the limit of density (s)", "YlOrRd"),
     "people": _Style("people who passed", "YlGnBu"),
     "person_s": _Style("time that people spent (s, all together)", "YlGnBu"),
@@ -55,6 +62,7 @@ def plot_map(
     what: str = "density_max",
     service: str = "walkway",
     title: str = "",
+    largest: tuple[float, float] = LARGEST,
 ) -> None:
     """Draw one of the maps of a run on its floor plan; in a building a panel for each level.
 
@@ -69,6 +77,7 @@ def plot_map(
         what: an attribute of `FloorMaps`, such as "dense_s".
         service: kind of the levels of service, "walkway", "stairs" or "queue".
         title: first line of the picture.
+        largest: width and height of the picture, inches.
 
     Raises:
         ResultsError: another name, maps of another plan, or the file cannot be written.
@@ -80,7 +89,7 @@ def plot_map(
         raise ResultsError(
             f"maps of {len(found)} levels for a plan of {len(storeys)}, expected those of this plan"
         )
-    figure, panels = panels_of(storeys)
+    figure, panels = panels_of(storeys, largest=largest)
     colours = _colours(found, what, service)
     handles: dict[str, Line2D | Patch] = {}
     for (axes, storey), own in zip(panels, found.values(), strict=True):
@@ -88,7 +97,9 @@ def plot_map(
             handles.setdefault(str(each.get_label()), each)
         axes.set_title(storey.title, fontsize=10)
         _draw(axes, storey, own, what, colours)
-    bar = figure.colorbar(colours, ax=figure.axes, shrink=0.8, aspect=30, pad=0.02)
+    # Letters stand in the bar of levels of service.
+    aspect = 15 if what.startswith("density") else 30
+    bar = figure.colorbar(colours, ax=figure.axes, shrink=0.8, aspect=aspect, pad=0.02)
     bar.set_label(_STYLES[what].label)
     if what.startswith("density"):
         limits = colours.norm.boundaries  # type: ignore[attr-defined]
@@ -96,7 +107,9 @@ def plot_map(
         bar.set_ticklabels([f"{limit:.2f} /m²" for limit in limits[1:-1]])
         middles = (limits[:-1] + limits[1:]) / 2
         for letter, middle in zip(LETTERS, middles, strict=True):
-            bar.ax.text(0.5, middle, letter, ha="center", va="center")
+            ink = "white" if letter in LETTERS[4:] else "black"
+            said = bar.ax.text(0.5, middle, letter, ha="center", va="center", color=ink)
+            said.set_fontweight("bold")
     finish(figure, list(handles.values()), title, path)
 
 

@@ -11,11 +11,10 @@ from shapely import Polygon, box
 
 from mesa_mobility import Exit, FloorPlan, Source
 from mesa_mobility.results.distances import View, compare
-from mesa_mobility.validation import drawing
 from mesa_mobility.validation.conditions import condition_of, conditions, median
 from mesa_mobility.validation.corridor import RECORDED
 from mesa_mobility.validation.experiment import Experiment, Runs
-from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification import Verdict, case, charts
 from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.checks import Check, at_most, exactly, within
 from mesa_mobility.verification.references import published
@@ -160,16 +159,16 @@ def judge(runs: Runs) -> Verdict:
 
 def draw(figures: dict[str, Any]) -> Figure:
     """Detours of lone people, and the speed of either half of the crowd."""
-    figure, axes = drawing.panels(2)
+    figure, axes = charts.panels(2)
     axes[0].hist(
-        figures["detours"], bins=np.arange(0.95, 1.6, 0.02).tolist(), color=drawing.OURS.colour
+        figures["detours"], bins=np.arange(0.95, 1.6, 0.02).tolist(), color=charts.OURS.colour
     )
-    axes[0].axvline(MOST_DETOUR, color=drawing.OTHER.colour, label="bound of 95 %")
+    axes[0].axvline(MOST_DETOUR, color=charts.OTHER.colour, label="bound of 95 %")
     axes[0].set(xlabel="way round the corner over the shortest one", ylabel="lone people")
     axes[1].bar(
         ["inner half", "outer half"],
-        drawing.numbers(figures["speeds"]),
-        color=drawing.OURS.colour,
+        charts.numbers(figures["speeds"]),
+        color=charts.OURS.colour,
         width=0.5,
     )
     theirs = published(REFERENCE)
@@ -177,17 +176,20 @@ def draw(figures: dict[str, Any]) -> Figure:
         float(np.interp(DENSITY, theirs["density"], theirs[name])) for name in ("v_min", "v_max")
     )
     axes[1].axhspan(
-        slowest, fastest, color=drawing.MEASURED.colour, alpha=0.2, label=drawing.MEASURED.label
+        slowest, fastest, color=charts.MEASURED.colour, alpha=0.2, label=charts.MEASURED.label
     )
     axes[1].set_ylabel("speed before the corner (m/s)")
-    drawing.finish(axes)
+    charts.finish(axes)
     return figure
 
 
 EXPERIMENT = Experiment(
     name="corners",
     what="lone people round a corner, and a crowd in an L-shaped corridor 2.4 m wide",
-    source="corner of 2.4 m (fd_juelich_published.csv); bounds of detours and halves are chosen",
+    source="corner of corridors 2.4 m wide (data archive of Forschungszentrum Jülich); the "
+    "bounds of detours and of halves are chosen",
+    criterion="People alone take no detours round a corner; a crowd has the measured density and "
+    "speed and uses both halves of the corridor alike",
     cases=(case(alone, effort=6.0), case(crowd, effort=6.0)),
     judge=judge,
     draw=draw,

@@ -12,10 +12,9 @@ from shapely import box
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.behaviors import Counter, Queueing
 from mesa_mobility.results.tracks import Tracks
-from mesa_mobility.validation import drawing
 from mesa_mobility.validation.conditions import median
 from mesa_mobility.validation.experiment import Experiment, Runs
-from mesa_mobility.verification import Verdict, case
+from mesa_mobility.verification import Verdict, case, charts
 from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.checks import at_least, at_most, exactly
 from mesa_mobility.verification.runs import CLEARANCE, crowd_model, evacuate
@@ -100,13 +99,11 @@ def judge(runs: Runs) -> Verdict:
 
 def draw(figures: dict[str, Any]) -> Figure:
     """How broad those who wait stand over how long."""
-    figure, axes = drawing.panels(1)
-    axes[0].hist(
-        figures["breadths"], bins=np.linspace(0, 1, 41).tolist(), color=drawing.OURS.colour
-    )
-    axes[0].axvline(MOST_BROAD, color=drawing.OTHER.colour, label="bound of 90 %")
+    figure, axes = charts.panels(1)
+    axes[0].hist(figures["breadths"], bins=np.linspace(0, 1, 41).tolist(), color=charts.OURS.colour)
+    axes[0].axvline(MOST_BROAD, color=charts.OTHER.colour, label="bound of 90 %")
     axes[0].set(xlabel="breadth over length of people who wait", ylabel="seconds")
-    drawing.finish(axes)
+    charts.finish(axes)
     return figure
 
 
@@ -114,6 +111,7 @@ EXPERIMENT = Experiment(
     name="counter",
     what="people who wait before a counter stand in a queue",
     source="none: the bound is chosen",
+    criterion="Four or more people wait, and they stand in a line, not in a cloud",
     cases=(case(counter, effort=3.0),),
     judge=judge,
     draw=draw,

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesa_mobility.validation import drawing
 from mesa_mobility.validation.conditions import median
 from mesa_mobility.validation.experiment import Experiment, Runs
 from mesa_mobility.validation.scenes.corridors import before_exit
-from mesa_mobility.verification import Verdict
+from mesa_mobility.verification import Verdict, charts
 from mesa_mobility.verification.checks import Check, at_least, within
 from mesa_mobility.verification.references import columns, corridor_band
 
@@ -47,35 +46,37 @@ def judge(runs: Runs) -> Verdict:
 
 def draw(figures: dict[str, Any]) -> Figure:
     """Flow against width, and speed against density."""
-    figure, axes = drawing.panels(2)
+    figure, axes = charts.panels(2)
     studies = columns("bottleneck_flow_envelope")
     shown = (studies["width_m"] >= WIDTHS[0] - 0.01) & (studies["width_m"] <= WIDTHS[-1] + 0.01)
     low, mean, high = (studies[f"flow_{name}"][shown] for name in ("min", "mean", "max"))
     errors = [mean - low, high - mean]
-    axes[0].errorbar(studies["width_m"][shown], mean, yerr=errors, **drawing.MEASURED.dots)
-    axes[0].plot(figures["width"], drawing.numbers(figures["flow"]), **drawing.OURS.line)
+    axes[0].errorbar(studies["width_m"][shown], mean, yerr=errors, **charts.MEASURED.dots)
+    axes[0].plot(figures["width"], charts.numbers(figures["flow"]), **charts.OURS.line)
     axes[0].set(xlabel="width of the exit (m)", ylabel="flow (1/s)")
     density = np.linspace(0.5, 5.0, 46)
-    drawing.band(
+    charts.band(
         axes[1],
         density,
         *corridor_band(density),
-        drawing.Look(drawing.MEASURED.colour, "experiments, corridors", ""),
+        charts.Look(charts.MEASURED.colour, "experiments, corridors", ""),
     )
     axes[1].plot(
-        drawing.numbers(figures["density"]), drawing.numbers(figures["speed"]), **drawing.OURS.dots
+        charts.numbers(figures["density"]), charts.numbers(figures["speed"]), **charts.OURS.dots
     )
-    axes[1].axvline(JAMMED, color=drawing.OTHER.colour, linewidth=0.8, label="a jam from here on")
+    axes[1].axvline(JAMMED, color=charts.OTHER.colour, linewidth=0.8, label="a jam from here on")
     axes[1].set(xlabel="density before the exit (1/m\u00b2)", ylabel="speed (m/s)")
-    drawing.finish(axes)
+    charts.finish(axes)
     return figure
 
 
 EXPERIMENT = Experiment(
     name="jams",
     what="jams in a corridor 1.8 m wide before exits of 0.7 to 1.2 m",
-    source="studies of bottlenecks (bottleneck_flow_envelope.csv), corridors of HERMES and BaSiGo "
-    "(fd_corridor_individual_bins.csv)",
+    source="eight studies of bottlenecks, as the validation of JuPedSim collects them; "
+    "corridors of HERMES 2009 and BaSiGo 2013 (data archive of Forschungszentrum Jülich)",
+    criterion="A jam stands before each exit; the flow lies between the least and the greatest of "
+    "all studies, and the speed is that of measured corridors of this density",
     cases=tuple(before_exit(width) for width in WIDTHS),
     judge=judge,
     draw=draw,

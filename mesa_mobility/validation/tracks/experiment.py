@@ -68,7 +68,9 @@ def experiment(setting: Setting, plan: FloorPlan, tracks: Trajectories) -> Exper
     return Experiment(
         name=Path(setting.file).stem,
         what=f"measured people and their replay, {setting}",
-        source=f"{setting.file}, {setting.frame_rate:g} frames a second",
+        source=f"{Path(setting.file).name}, {setting.frame_rate:g} frames a second",
+        criterion="Measured at the same times and places, density, speed and the motion of single "
+        "people of the replay are 0.7 to 1.4 times as measured, and the flow is within 12 %",
         cases=(case(replayed, effort=10.0, **numbers),),
         judge=partial(judge, setting=setting, plan=plan, tracks=tracks),
         draw=partial(draw, setting=setting, plan=plan),

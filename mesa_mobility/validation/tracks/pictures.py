@@ -16,8 +16,8 @@ from mesa_mobility import FloorPlan
 from mesa_mobility.results.distances.figures import DENSITY_BIN
 from mesa_mobility.results.floor import draw_floor
 from mesa_mobility.results.tracks import Tracks
-from mesa_mobility.validation import drawing
 from mesa_mobility.validation.tracks.setting import Setting
+from mesa_mobility.verification import charts
 
 FloatArray = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def draw(figures: dict[str, Any], *, setting: Setting, plan: FloorPlan) -> Figur
     axes["n_t"].set(xlabel="time (s)", ylabel="people over the line")
     _curve(axes["fd"], DENSITY_BIN * (np.arange(len(fd["low"])) + 0.5), fd)
     axes["fd"].set(xlabel="individual density (1/m\u00b2)", ylabel="median speed (m/s)")
-    drawing.finish([axes[name] for name in CURVES])
+    charts.finish([axes[name] for name in CURVES])
     return figure
 
 
@@ -94,7 +94,7 @@ def _tracks(axes: Axes, pieces: FloatArray, plan: FloorPlan, setting: Setting) -
     axes.add_collection(shown)
     outline = np.asarray(setting.area.exterior.coords)
     axes.add_patch(Polygon(outline, fill=False, linestyle="--", edgecolor="black", zorder=6))
-    axes.plot(*np.transpose(setting.line), color=drawing.OTHER.colour, linewidth=2.0, zorder=6)
+    axes.plot(*np.transpose(setting.line), color=charts.OTHER.colour, linewidth=2.0, zorder=6)
     return shown
 
 
@@ -103,8 +103,8 @@ def _histogram(axes: Axes, samples: dict[str, list[float]], label: str) -> None:
     low, high = np.percentile(both, (0.2, 99.8)) if len(both) else (0.0, 0.0)
     edges = np.linspace(low - LEAST_SPREAD, high + LEAST_SPREAD, 41)
     for name, look, how in (
-        ("measured", drawing.MEASURED, "stepfilled"),
-        ("simulated", drawing.OURS, "step"),
+        ("measured", charts.MEASURED, "stepfilled"),
+        ("simulated", charts.OURS, "step"),
     ):
         values = np.array(samples[name])
         mean, sd = (values.mean(), values.std()) if len(values) else (np.nan, np.nan)
@@ -122,12 +122,12 @@ def _histogram(axes: Axes, samples: dict[str, list[float]], label: str) -> None:
 
 def _curve(axes: Axes, x: NDArray[Any], curve: dict[str, list[float]]) -> None:
     n = len(curve["measured"])
-    axes.plot(x[:n], curve["measured"][: len(x)], **{**drawing.MEASURED.line, "label": "measured"})
-    drawing.band(
+    axes.plot(x[:n], curve["measured"][: len(x)], **{**charts.MEASURED.line, "label": "measured"})
+    charts.band(
         axes,
         x,
         curve["low"],
         curve["middle"],
         curve["high"],
-        drawing.Look(drawing.OURS.colour, "simulated, all seeds", ""),
+        charts.Look(charts.OURS.colour, "simulated, all seeds", ""),
     )

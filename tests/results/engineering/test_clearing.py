@@ -13,6 +13,7 @@ from mesa_mobility.errors import FloorPlanError, ResultsError
 from mesa_mobility.results import (
     Room,
     clearing,
+    measure,
     read_rooms,
     room_figures,
     rooms_of,
@@ -172,7 +173,7 @@ def test_rooms_must_be_on_the_plan(two_leave_one_stays, room, rooms, said):
 
 
 def test_the_tables_of_a_run(two_leave_one_stays, room, tmp_path):
-    write_results(two_leave_one_stays, room, tmp_path, [Room("west", WEST)])
+    write_results(measure(two_leave_one_stays, room, [Room("west", WEST)]), tmp_path)
     tables = {each.stem: pd.read_csv(each) for each in tmp_path.glob("*.csv")}
     assert sorted(tables) == ["clearing", "doors", "maps", "n_t", "queues", "waiting"]
     pictures = sorted(each.stem for each in tmp_path.glob("*.png"))

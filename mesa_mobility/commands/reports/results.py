@@ -10,6 +10,7 @@ import typer
 from mesa_mobility.commands.console import NoProgress, progress_bar, say, some_path
 from mesa_mobility.commands.export import RunDir
 from mesa_mobility.commands.grouping import grouped
+from mesa_mobility.commands.reports.options import ReportOptions
 
 if TYPE_CHECKING:
     from mesa_mobility.results import Room
@@ -28,6 +29,7 @@ RoomsFile = Annotated[
 @grouped
 def results(
     run: RunDir,
+    page: ReportOptions,
     *,
     out: Annotated[
         Path | None,
@@ -47,25 +49,28 @@ def results(
     no_progress: NoProgress = False,
 ) -> None:
     """Write the figures of a run for a report: doors, queues, clearing times and maps."""
-    from mesa_mobility.results import write_results
+    from mesa_mobility.results import check_writable, measure, write_results
+    from mesa_mobility.results.engineering.files import RESULT_FILES
     from mesa_mobility.results.excerpts import title_of
     from mesa_mobility.results.run import read_run
 
     folder = out or run / "results"
     given = rooms_in(rooms)
     found = read_run(run)
+    check_writable(folder, RESULT_FILES)
+    page.check_report()
     with progress_bar(shown=not no_progress) as report:
-        write_results(
-            found.trajectories,
-            found.plan,
-            folder,
-            given,
-            cell=cell,
-            every=every,
-            title=title_of(found.summary, found.trajectories),
-            progress=report,
+        measured = measure(
+            found.trajectories, found.plan, given, cell=cell, every=every, progress=report
         )
+        title = title_of(found.summary, found.trajectories)
+        write_results(measured, folder, title=title, progress=report)
+        if page.report_file is not None:
+            from mesa_mobility.reports.run.report import write_run_report
+
+            write_run_report(found, measured, page.report_file, progress=report)
     say(f"written to {folder}")
+    page.finish_report()
 
 
 def rooms_in(file: Path | None) -> list[Room]:

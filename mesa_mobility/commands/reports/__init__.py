@@ -1,0 +1,1 @@
+"""Reports as pages, and the figures of a saved run as files."""

@@ -1,0 +1,199 @@
+"""What a reader needs to trust a run: checks, definitions, versions and how to repeat it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shlex
+from typing import Any
+
+from mesa_mobility.crowd.model_files import find_model
+from mesa_mobility.errors import MobilityError
+from mesa_mobility.plugins.parameters import OWN_OPTION, parameters
+from mesa_mobility.reports.html import Page
+from mesa_mobility.reports.run.basis import said
+from mesa_mobility.reports.run.texts import number
+from mesa_mobility.reports.versions import machine, sha256_of
+from mesa_mobility.results.run import DECISIONS, TRAJECTORIES, Run
+
+DEFINITIONS = (
+    (
+        "people at a door",
+        "everybody who crosses its line, once, at their first passage in either direction",
+        "as PedPy",
+    ),
+    (
+        "flow",
+        "J = (N - 1) / (t_N - t_1) of these N passages",
+        "Seyfried et al. 2009, Transportation Science 43: 395",
+    ),
+    ("specific flow", "J / w, with the width w of the line", "the same"),
+    (
+        "clog",
+        "more than 2 s between two passages while somebody within 1 m waits to pass",
+        "after Zuriguel et al. 2014, Scientific Reports 4: 7324; the numbers are a convention",
+    ),
+    ("waiting", "moving less than 0.2 m in a second", "a convention"),
+    (
+        "queue of a door",
+        "people who wait, and whose next passage is over its line, wherever they stand",
+        "",
+    ),
+    (
+        "time to 50, 95, 100 %",
+        "least time by which so many of the people who were ever there have left for good; people "
+        "who are there at the end count as later than all others (right-censored)",
+        "",
+    ),
+    (
+        "density of a cell",
+        "mean over its floor of 1 / A, with the area A that is nearest to a person (Voronoi)",
+        "Steffen and Seyfried 2010, Physica A 389: 1902",
+    ),
+    (
+        "speed in a cell",
+        "distance from half a second before to half a second after, over 1 s",
+        "",
+    ),
+    (
+        "level of service",
+        "density of walkways in six levels, A to F",
+        "Fruin 1971, Pedestrian Planning and Design",
+    ),
+    (
+        "congestion",
+        "more than 4 persons/m2 for more than a tenth of the evacuation",
+        "IMO MSC.1/Circ.1533 (2016)",
+    ),
+)
+"""Name, definition and source of each figure."""
+
+
+def add_checks(page: Page, run: Run) -> None:
+    """Add what an independent program has counted on the tracks."""
+    summary = run.summary
+    page.section("Checks", "checks")
+    rows: list[list[Any]] = [
+        ["overlaps of bodies", summary.get("overlaps"), "0", _verdict(summary, "overlaps")],
+        [
+            "steps through walls",
+            summary.get("wall_crossings"),
+            "0",
+            _verdict(summary, "wall_crossings"),
+        ],
+        [
+            "frames of people off the floor",
+            summary.get("off_floor"),
+            "0",
+            _verdict(summary, "off_floor"),
+        ],
+        [
+            "people who stood for a minute without a reason",
+            None if summary.get("blocked") is None else len(summary["blocked"]),
+            "0",
+            _verdict(summary, "blocked"),
+        ],
+        [
+            "run ended because nobody made progress",
+            None if summary.get("stalled") is None else said(summary["stalled"]),
+            "no",
+            _verdict(summary, "stalled"),
+        ],
+        [
+            "smallest distance between two body cores (m)",
+            number(summary.get("min_distance_m"), 3),
+            None,
+            "reported",
+        ],
+    ]
+    if "fallback_time_share" in summary:
+        share = summary["fallback_time_share"]
+        rows.append(
+            ["share of the time in the fallback movement", f"{share:.2%}", None, "reported"]
+        )
+    page.table(
+        "Checks of the run",
+        ["check", "found", "wanted", "verdict"],
+        rows,
+        "Overlaps, steps through walls, frames off the floor and the smallest distance are counted "
+        "on the recorded tracks by code that the simulation does not use. The model itself says "
+        "the others.",
+    )
+
+
+def add_definitions(page: Page) -> None:
+    """Add how all figures are defined, with sources."""
+    page.section("Definitions", "definitions")
+    page.table("Figures of this report", ["figure", "definition", "source"], DEFINITIONS)
+
+
+def add_repeating(page: Page, run: Run) -> None:
+    """Add versions, digests and the command that repeats the run."""
+    summary = run.summary
+    page.section("Versions, inputs and how to repeat the run", "repeat")
+    page.table("Versions", ["what", "version"], _versions(summary))
+    page.table("Inputs and results, by their sha256", ["what", "sha256"], _digests(run))
+    page.text("With the same versions and inputs, this command gives the same tracks:")
+    page.code(command_of(summary))
+
+
+def command_of(summary: Any) -> str:
+    """The command that runs a run again, as far as its summary tells."""
+    words = ["mesa-mobility", "run", str(summary.get("model", "MODEL"))]
+    if summary.get("seed") is not None:
+        words += ["--seed", str(summary["seed"])]
+    defaults = _defaults(str(summary.get("model", "")))
+    given = dict(summary.get("parameters") or {})
+    if isinstance(summary.get("preset"), str):
+        words += ["--preset", summary["preset"]]
+    for name, value in given.items():
+        if name in OWN_OPTION or value is None or str(defaults.get(name, "")) == str(value):
+            continue
+        words += ["--exits", str(value)] if name == "exits" else ["--set", f"{name}={value}"]
+    for name, value in (summary.get("set") or {}).items():
+        words += ["--set", f"{name}={value}"]
+    for each in summary.get("behaviors") or ():
+        words += ["--behavior", str(each)]
+    ended = summary.get("egress_s") is not None or summary.get("stalled")
+    if not ended and summary.get("simulated_s"):
+        words += ["--seconds", f"{summary['simulated_s']:g}"]
+    return shlex.join(words)
+
+
+def _defaults(model: str) -> dict[str, Any]:
+    """Defaults of a model's parameters; none if it is not installed here."""
+    try:
+        return {name: each.default for name, each in parameters(find_model(model)).items()}
+    except MobilityError:
+        return {}
+
+
+def _verdict(summary: Any, name: str) -> str:
+    if summary.get(name) is None:
+        return "not counted"
+    return "FAIL" if summary[name] else "pass"
+
+
+def _versions(summary: Any) -> list[list[str]]:
+    rows = [["mesa-mobility", str(summary.get("mesa_mobility", "-"))]]
+    rows += [[name, str(value)] for name, value in (summary.get("versions") or {}).items()]
+    return [*rows, ["machine on which this page was written", machine()]]
+
+
+def _digests(run: Run) -> list[list[str]]:
+    summary = run.summary
+    rows = [[f"preset {summary.get('preset', '-')}", str(summary.get("preset_sha256", "-"))]]
+    for kind, of in (summary.get("maps") or {}).items():
+        rows.append(
+            [
+                f"movements of “{kind}” ({of.get('file') or 'made by the model'})",
+                str(of.get("sha256") or "-"),
+            ]
+        )
+    text = json.dumps(run.plan.to_geojson(), sort_keys=True)
+    rows.append(["floor plan as GeoJSON", hashlib.sha256(text.encode()).hexdigest()])
+    folder = run.folder
+    for name in (TRAJECTORIES, DECISIONS):
+        if folder is not None and (folder / name).is_file():
+            rows.append([name, sha256_of(folder / name)])
+    return rows
