@@ -11,6 +11,7 @@ from mesa_mobility.buildings.features import KINDS
 from mesa_mobility.buildings.storeys import building_of
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan.floor.checks import one_line
 from mesa_mobility.floorplan.formats import geojson
 from mesa_mobility.floorplan.formats.plan_format import PLANS
 from mesa_mobility.floorplan.formats.storeys import Storeys
@@ -47,11 +48,14 @@ def read_floor(
                 warnings.warn(f"{path}: --exits is ignored: it is a building", stacklevel=2)
             return _level_of(Building.from_geojson(path), level, path)
     chosen: Any = PLANS.of(path, READ)
-    found = chosen.read(Path(path), **PLANS.chosen_options(chosen, READ, options))
-    if not isinstance(found, Storeys):
-        return FloorPlan.of_content(found, str(path), exits, level)
+    options = PLANS.chosen_options(chosen, READ, options)
     notes: list[str] = []
-    building = building_of(found, exits, str(path), notes)
+    # Outlines of other programs may be such that the geometry library gives up.
+    with one_line(str(path)):
+        found = chosen.read(Path(path), **options)
+        if not isinstance(found, Storeys):
+            return FloorPlan.of_content(found, str(path), exits, level)
+        building = building_of(found, exits, str(path), notes)
     if building is None or (level is not None and not _has(building, level)):
         found.notes += notes if building is None else []
         return FloorPlan.of_content(found, str(path), exits, level)

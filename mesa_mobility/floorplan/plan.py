@@ -13,7 +13,7 @@ from shapely import Polygon
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import occupants, reachability, sampling
-from mesa_mobility.floorplan.floor.checks import read_polygon
+from mesa_mobility.floorplan.floor.checks import one_line, read_polygon
 from mesa_mobility.floorplan.floor.extent import warn_of_other_units
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.free_area import FreeArea
@@ -200,7 +200,9 @@ class FloorPlan(Floor):
         """
         chosen: Any = PLANS.of(path, READ)
         options = PLANS.chosen_options(chosen, READ, options)
-        return cls.of_content(chosen.read(Path(path), **options), str(path), exits, level)
+        # Outlines of other programs may be such that the geometry library gives up.
+        with one_line(str(path)):
+            return cls.of_content(chosen.read(Path(path), **options), str(path), exits, level)
 
     @classmethod
     def of_content(

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.floor.checks import one_line
 from mesa_mobility.floorplan.formats.people import People
 from mesa_mobility.floorplan.formats.plan_format import PLANS
 from mesa_mobility.floorplan.formats.storeys import Storeys
@@ -27,11 +28,12 @@ def read_scenario(
         FloorPlanError: the file cannot be read, or has no people.
     """
     chosen: Any = PLANS.of(path, READ)
-    content = chosen.read(Path(path))
-    if isinstance(content, Storeys) or not content.people:
-        raise FloorPlanError(f"{path}: has no people, expected a scenario with some")
-    people, content.people = content.people, []
-    return FloorPlan.of_content(content, str(path), exits, None), people
+    with one_line(str(path)):
+        content = chosen.read(Path(path))
+        if isinstance(content, Storeys) or not content.people:
+            raise FloorPlanError(f"{path}: has no people, expected a scenario with some")
+        people, content.people = content.people, []
+        return FloorPlan.of_content(content, str(path), exits, None), people
 
 
 def has_people(path: str | os.PathLike[str]) -> bool:

@@ -100,7 +100,7 @@ class Formats(Generic[F]):
     def usual(self, what: str) -> list[str]:
         """The usual suffix of each format."""
         found = (each for each in self.usable().values() if self.does(each, what))
-        return [each.format.suffixes[0] for each in found]
+        return list(dict.fromkeys(each.format.suffixes[0] for each in found))
 
     def named(self, name: str) -> F:
         """The format of a name.

@@ -73,7 +73,8 @@ def test_what_ships_is_registered_like_any_plug_in():
         "usd",
     }
     assert PLANS.suffixes(WRITE) == [".geojson", ".json"]
-    assert PLANS.usual(READ) == [".dxf", ".geojson", ".zip", ".osm", ".scenario", ".wkt"]
+    usual = [".dxf", ".geojson", ".ifc", ".zip", ".osm", ".scenario", ".wkt"]
+    assert PLANS.usual(READ) == usual
     assert PLANS.broken() == OUTPUTS.broken() == []
 
 

@@ -57,4 +57,4 @@ PLANS = Formats(PLAN_FORMATS, PlanFormat, FloorPlanError)
 
 def plan_suffixes() -> list[str]:
     """The usual suffix of each format that a floor plan can be read from, such as ".wkt"."""
-    return list(dict.fromkeys(PLANS.usual(READ)))
+    return PLANS.usual(READ)
