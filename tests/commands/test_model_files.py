@@ -221,5 +221,5 @@ def test_people_leave_any_floor_plan(tmp_path, command):
     assert command("run", "floor_plan", *arguments).status == 0
     assert command("run", "floor_plan").err == (
         "error: plan: got none, expected a file of a floor plan (.dxf, .geojson, "
-        ".zip, .osm, .scenario, .wkt)\n"
+        ".ifc, .zip, .osm, .scenario, .wkt)\n"
     )

@@ -29,7 +29,8 @@ def test_the_summary_has_doors_and_rooms(command, rooms):
     assert summary["doors"] == {"end": pytest.approx(door, abs=1e-6)}
     # Frames of 0.1 s: they have left in the first frame beyond.
     left = {"people": 3, "first_s": 1.1, "last_s": 2.1, "flow_per_s": 2.0}
-    assert summary["rooms"] == {"end": pytest.approx(left)}
+    # The corridor itself is the room that is found between its doors.
+    assert summary["rooms"] == {"end": pytest.approx(left), "room 1": pytest.approx(left)}
 
 
 def test_tables_beside_the_run(command, rooms, tmp_path):

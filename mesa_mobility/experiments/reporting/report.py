@@ -108,7 +108,8 @@ def _figures_of(store: Store, frame: pd.DataFrame, parameters: set[str]) -> list
             raise ResultsError(f"{store}: report: the runs have no column of numbers {name!r}")
     if asked:
         return list(asked)
-    known = [name for name in _SHOWN if name in frame and frame[name].notna().any()]
+    # Those that no run has reached are shown, too.
+    known = [n for n in _SHOWN if n in frame and not np.isnan(observed(frame, n)).all()]
     if known:
         return known
     others = [str(n) for n in frame if n not in {*RUN_COLUMNS, *SERIES, *parameters}]
