@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
+from shapely.geometry.polygon import orient
 
 from mesa_mobility.floorplan.formats.indoor.shapes import (
     DOORWAY,
@@ -224,7 +225,7 @@ def _lift(
     """A lift whose door is in the side of its shaft that is nearest to a door or a room."""
     if door is None:
         return "nothing leads to it"
-    corners = shapely.get_coordinates(shapely.orient_polygons(shapely.oriented_envelope(area)))
+    corners = shapely.get_coordinates(orient(shapely.oriented_envelope(area)))
     if len(corners) < 5:
         return "its shaft is too small"
     middles = (corners[:4] + corners[1:5]) / 2
