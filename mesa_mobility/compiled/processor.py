@@ -21,8 +21,7 @@ def use_wide_vectors() -> None:
     This holds for all that Numba compiles in this process. Nothing changes where somebody has set
     what it compiles for, or where Numba has made its compiler already.
     """
-    chosen = config.CPU_NAME is not None or config.CPU_FEATURES is not None
-    if chosen or "_toplevel_target_context" in vars(cpu_target):
+    if is_chosen() or "_toplevel_target_context" in vars(cpu_target):
         return
     try:
         features = binding.get_host_cpu_features()
