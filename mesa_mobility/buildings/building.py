@@ -5,7 +5,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, cast
 
 import numpy as np
@@ -14,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from shapely import Polygon
 
 from mesa_mobility.buildings import geojson
-from mesa_mobility.buildings.escalator import DOWN, UP, Escalator
+from mesa_mobility.buildings.checks import check_joined, check_names
+from mesa_mobility.buildings.escalator import Escalator
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
 from mesa_mobility.buildings.headroom import check_headroom
@@ -95,7 +95,7 @@ class Building:
     ) -> None:
         self.levels, self.stairs, self.lifts = tuple(levels), tuple(stairs), tuple(lifts)
         self.name = name
-        _check_names(self.levels, self.stairs, self.lifts)
+        check_names(self.levels, self.stairs, self.lifts)
         flights: list[Flight] = []
         landings: list[Landing] = []
         self._owners: dict[str, int] = {}
@@ -117,7 +117,7 @@ class Building:
                 except FloorPlanError as error:
                     raise FloorPlanError(f"lift {lift.name!r}: {error}") from None
         self._sheets = sheets_of(self.levels, flights, landings, self.lifts)
-        self._check_joined()
+        check_joined(self.levels, self.stairs, self.lifts)
         check_headroom(self._sheets, flights)
         self._places = Places(self._sheets, flights, self._owners, self.lifts)
         self.footing = Footing(flights)
@@ -351,28 +351,6 @@ class Building:
     def _sheet(self, level: int) -> Sheet:
         return self._sheets[sheet_of(self.level(level).number)]
 
-    def _check_joined(self) -> None:
-        """A way must lead from each level to one with an exit; FloorPlanError otherwise."""
-        import networkx as nx
-
-        graph = nx.DiGraph()
-        graph.add_nodes_from(level.number for level in self.levels)
-        for stairs in self.stairs:
-            ways = {UP: (stairs.lower, stairs.upper), DOWN: (stairs.upper, stairs.lower)}
-            if isinstance(stairs, Escalator) and stairs.speed:
-                graph.add_edges_from([ways[stairs.direction]])
-            else:
-                graph.add_edges_from(ways.values())
-        for one, other in (pair for each in self.lifts for pair in pairwise(each.numbers)):
-            graph.add_edges_from([(one, other), (other, one)])
-        leading_out = {level.number for level in self.levels if level.exits}
-        for number in sorted(graph):
-            if len(self.levels) > 1 and not leading_out & {number, *nx.descendants(graph, number)}:
-                raise FloorPlanError(
-                    f"level {number}: no stairs, ramp, escalator or lift lead from there to a "
-                    "level with an exit"
-                )
-
     def _plan(self) -> FloorPlan:
         exits, gates, obstacles, zones = [], [], [], []
         for level in self.levels:
@@ -401,38 +379,3 @@ class Building:
     def _rooms_in_plane(self) -> Sequence[Room]:
         """The rooms of the plane: those of the level if it is the only sheet, otherwise none."""
         return self.levels[0].rooms if len(self._sheets) == 1 else ()
-
-
-def _check_names(
-    levels: Sequence[Level], stairs: Sequence[Stairs | Ramp | Escalator], lifts: Sequence[Lift]
-) -> None:
-    """Levels, stairs and lifts must be that, and have different numbers and names."""
-    if not levels:
-        raise FloorPlanError("a building needs at least one level")
-    for given, kinds in ((levels, (Level,)), (stairs, (Stairs, Ramp, Escalator)), (lifts, (Lift,))):
-        for each in given:
-            if not isinstance(each, kinds):
-                expected = " or ".join(kind.__name__ for kind in kinds)
-                raise FloorPlanError(
-                    f"a building has {expected} objects, found {type(each).__name__}"
-                )
-    for what, names in (
-        ("level", sorted(each.number for each in levels)),
-        (
-            "stairs, ramp, escalator or lift",
-            sorted([each.name for each in stairs] + [each.name for each in lifts]),
-        ),
-        ("refuge", sorted(each.name for level in levels for each in level.refuges)),
-    ):
-        for one, other in pairwise(names):
-            if one == other:
-                raise FloorPlanError(f"{what} {one!r} is there twice")
-    # Such a name stands for all gates of the stairs or the lift.
-    taken = {each.name for each in (*stairs, *lifts)}
-    for level in levels:
-        for opening in (*level.gates, *level.exits):
-            if opening.name in taken:
-                raise FloorPlanError(
-                    f"level {level.number}: {opening.kind} {opening.name!r} has the name of "
-                    "stairs, a ramp, an escalator or a lift, expected another name"
-                )
