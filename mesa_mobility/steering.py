@@ -12,6 +12,9 @@ Python calls, `inner` those that only compiled functions call. They get arrays o
 - ``sight_on(plan, clearance)``, the walls for `unwalled`, which tells whether one point sees
   another.
 
+`by_shares` calls a compiled function for shares of the people, in several threads if there are
+many.
+
 ``behaviors/steering`` has examples.
 """
 
@@ -23,6 +26,7 @@ from shapely import box
 from mesa_mobility.compiled.decorators import entry_point as compiled
 from mesa_mobility.compiled.decorators import internal as inner
 from mesa_mobility.compiled.decorators import kept
+from mesa_mobility.compiled.threads import by_shares
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, LONGEST_MOVEMENT_S
 from mesa_mobility.crowd.state.people_grid import Grid, cells_within
 from mesa_mobility.crowd.state.records import NO_OPTION, Crowd, CrowdState
@@ -40,6 +44,7 @@ __all__ = [
     "CrowdView",
     "Grid",
     "Sight",
+    "by_shares",
     "cells_within",
     "compiled",
     "inner",

@@ -22,9 +22,11 @@ import numpy as np
 from mesa_mobility.behaviors.steering.people_ahead import (
     AHEAD_FIELDS,
     MOTION_FIELDS,
+    Found,
     any_too_near,
     find_ahead,
     note_motion,
+    room_to_find,
     seen,
 )
 from numpy.typing import NDArray
@@ -35,6 +37,7 @@ from mesa_mobility.steering import (
     CrowdState,
     Grid,
     Sight,
+    by_shares,
     compiled,
     inner,
     nobody,
@@ -117,17 +120,22 @@ def turn_aside(
     n = len(grid.people)
     motion = np.empty((MOTION_FIELDS, n))
     note_motion(grid, frame, crowd.records, crowd.agenda, motion)
-    _turn_aside(
-        rows,
-        grid,
-        sight_on(plan, 0.0),
-        crowd.records,
-        motion,
-        points,
-        speeds,
-        np.empty(n + 1, dtype=np.int64),
-        (np.empty((AHEAD_FIELDS, n)), _COURSE_TABLE.copy()),
-    )
+    sight = sight_on(plan, 0.0)
+
+    def turn(own: slice) -> None:
+        _turn_aside(
+            rows[own],
+            grid,
+            sight,
+            crowd.records,
+            motion,
+            points[own],
+            speeds[own],
+            room_to_find(n),
+            (np.empty((AHEAD_FIELDS, n)), _COURSE_TABLE.copy()),
+        )
+
+    by_shares(turn, len(rows))
     return points, speeds
 
 
@@ -140,13 +148,13 @@ def _turn_aside(
     motion: NDArray[np.float64],
     points: NDArray[np.float64],
     speeds: NDArray[np.float64],
-    found: NDArray[np.int64],
+    found: Found,
     work: tuple[NDArray[np.float64], NDArray[np.float64]],
 ) -> None:
     """Change ``points`` and ``speeds`` as of ``turn_aside``.
 
     ``found`` and the first array of ``work`` have room for everybody; the second is of
-    ``_course_table``.
+    ``_course_table``. Each thread has its own.
     """
     ahead, courses = work
     for k in range(len(rows)):

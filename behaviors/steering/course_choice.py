@@ -22,8 +22,10 @@ from mesa_mobility.behaviors.steering.people_ahead import (
     MOTION_FIELDS,
     VX,
     VY,
+    Found,
     find_between,
     note_motion,
+    room_to_find,
     somebody_comes,
 )
 from numpy.typing import NDArray
@@ -34,6 +36,7 @@ from mesa_mobility.steering import (
     CrowdView,
     Grid,
     Sight,
+    by_shares,
     compiled,
     inner,
     nobody,
@@ -122,9 +125,15 @@ def choose_courses(
     motion = np.empty((MOTION_FIELDS, n))
     note_motion(grid, frame, crowd.records, crowd.agenda, motion)
     around = _Around(grid, sight, crowd.records, motion)
-    ahead, found = np.empty((_FIELDS, n)), np.empty(n + 1, dtype=np.int64)
-    courses = _COURSE_TABLE.copy()
-    _choose_courses(rows, around, points, speeds, settings, courses, ahead, found)
+
+    def choose(own: slice) -> None:
+        ahead, found = np.empty((_FIELDS, n)), room_to_find(n)
+        courses = _COURSE_TABLE.copy()
+        _choose_courses(
+            rows[own], around, points[own], speeds[own], settings, courses, ahead, found
+        )
+
+    by_shares(choose, len(rows))
     return points
 
 
@@ -137,11 +146,12 @@ def _choose_courses(
     settings: CourseSettings,
     courses: NDArray[np.float64],
     ahead: NDArray[np.float64],
-    found: NDArray[np.int64],
+    found: Found,
 ) -> None:
     """Change ``points`` as of ``choose_courses``.
 
-    ``ahead`` and ``found`` have room for everybody; ``courses`` is of ``_course_table``.
+    ``ahead`` and ``found`` have room for everybody; ``courses`` is of ``_course_table``. Each
+    thread has its own.
     """
     state, sight, width = around.state, around.sight, settings.width
     cosine, change, ux, uy, on = courses[0], courses[2], courses[3], courses[4], courses[5]
@@ -159,7 +169,7 @@ def _choose_courses(
         way = (x, y, ex, ey, away)
         count = find_between(way, REACH, around.grid, around.motion, found)
         for m in range(count):
-            a = found[m]
+            a = found.who[m]
             ahead[0, m], ahead[1, m] = around.grid.x[a] - x, around.grid.y[a] - y
             ahead[2, m], ahead[3, m] = around.motion[VX, a], around.motion[VY, a]
         if not _held_up(ex, ey, far, speed, width, ahead, count):

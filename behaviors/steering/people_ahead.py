@@ -7,6 +7,7 @@ read in sequence, several at once.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from mesa_mobility.behaviors.right_of_way import OPPOSED
@@ -48,15 +49,31 @@ QUEUES = 0.5
 SAME_WAY = 0.5
 """Cosine of the angle between the ways of two people up to which they go the same way."""
 
-VX, VY, WAY_X, WAY_Y, LIMIT, CORE, MARKED = range(7)
-MOTION_FIELDS = 7
+VX, VY, WAY_X, WAY_Y, LIMIT, CORE = range(6)
+MOTION_FIELDS = 6
 """Rows of the table of motion: velocity, m/s; the way to the target, metres; how far that may lead
-along the way of another for whom somebody still counts, metres; core radius, metres; and
-workspace."""
+along the way of another for whom somebody still counts, metres; core radius, metres."""
 
 AHEAD_FIELDS = 7
 """Rows of the table of people ahead: place from the walker, metres; velocity, m/s; how much they
 count, m/s; the square of the room that is asked of them, square metres; and workspace."""
+
+
+class Found(NamedTuple):
+    """People whom a search has found; of one thread.
+
+    Attributes:
+        who: (n + 1,) their places in the grid of n people; the one more is workspace.
+        marks: (n,) 1 for those in the grid who are found, 0 for others.
+    """
+
+    who: NDArray[np.int64]
+    marks: NDArray[np.float64]
+
+
+def room_to_find(people: int) -> Found:
+    """Room for so many people to be found."""
+    return Found(np.empty(people + 1, dtype=np.int64), np.empty(people))
 
 
 @compiled()
@@ -93,7 +110,7 @@ def find_ahead(
     core: float,
     grid: Grid,
     motion: NDArray[np.float64],
-    found: NDArray[np.int64],
+    found: Found,
     ahead: NDArray[np.float64],
 ) -> int:
     """Write those who count for somebody at ``place`` who walks along ``way``, a unit vector.
@@ -107,7 +124,7 @@ def find_ahead(
         core: radius of the walker, metres.
         grid: everybody inside.
         motion: of the people in the grid.
-        found: workspace with room for all of them and one more.
+        found: workspace.
         ahead: (``AHEAD_FIELDS``, room for everybody), is written.
 
     Returns:
@@ -123,7 +140,7 @@ def find_ahead(
         count = _ahead_in_run(start, end, (px, py, ex, ey, ux, uy), grid, motion, found, count)
     full = 1.0 / ((SLOWEST + RAMP) * (SLOWEST + RAMP) - SLOWEST * SLOWEST)
     for k in range(count):
-        a = found[k]
+        a = found.who[k]
         x, y = grid.x[a] - px, grid.y[a] - py
         vx, vy = motion[VX, a], motion[VY, a]
         wx, wy = vx - ux, vy - uy
@@ -143,7 +160,7 @@ def _ahead_in_run(
     walker: tuple[float, float, float, float, float, float],
     grid: Grid,
     motion: NDArray[np.float64],
-    found: NDArray[np.int64],
+    found: Found,
     count: int,
 ) -> int:
     """Add those of the people ``start`` to ``end`` of the grid who count to ``found``.
@@ -155,7 +172,7 @@ def _ahead_in_run(
     vx, vy = motion[VX, start:end], motion[VY, start:end]
     way_x, way_y = motion[WAY_X, start:end], motion[WAY_Y, start:end]
     limit = motion[LIMIT, start:end]
-    marks = motion[MARKED, start:end]
+    marks = found.marks[start:end]
     for k in range(end - start):
         dx, dy = x[k] - px, y[k] - py
         wx, wy = vx[k] - ux, vy[k] - uy
@@ -164,19 +181,18 @@ def _ahead_in_run(
         counts &= wx * wx + wy * wy > SLOWEST * SLOWEST
         counts &= way_x[k] * ex + way_y[k] * ey <= limit[k]
         marks[k] = 1.0 if counts else 0.0
-    return _marked(start, end, marks, found, count)
+    return _marked(start, end, found, count)
 
 
 @inner()
-def _marked(
-    start: int, end: int, marks: NDArray[np.float64], found: NDArray[np.int64], count: int
-) -> int:
+def _marked(start: int, end: int, found: Found, count: int) -> int:
     """Add those of the people ``start`` to ``end`` of the grid who are marked to ``found``.
 
     Returns how many there are by then.
     """
+    who, marks = found.who, found.marks[start:end]
     for k in range(end - start):
-        found[count] = start + k
+        who[count] = start + k
         count += int(marks[k])
     return count
 
@@ -187,7 +203,7 @@ def find_between(
     reach: float,
     grid: Grid,
     motion: NDArray[np.float64],
-    found: NDArray[np.int64],
+    found: Found,
 ) -> int:
     """Write those on this side of somebody's target to ``found``, by their places in the grid.
 
@@ -196,7 +212,7 @@ def find_between(
         reach: metres within which people count.
         grid: everybody inside.
         motion: of the people in the grid.
-        found: is written; with room for all of them and one more.
+        found: is written.
 
     Returns:
         Their number.
@@ -207,13 +223,13 @@ def find_between(
     for row in range(low, high + 1):
         start = grid.offsets[row * grid.nx + first]
         end = grid.offsets[row * grid.nx + last + 1]
-        x, y, marks = grid.x[start:end], grid.y[start:end], motion[MARKED, start:end]
+        x, y, marks = grid.x[start:end], grid.y[start:end], found.marks[start:end]
         for k in range(end - start):
             dx, dy = x[k] - px, y[k] - py
             along = dx * ex + dy * ey
             counts = (along > 0.0) & (along < away) & (dx * dx + dy * dy <= reach * reach)
             marks[k] = 1.0 if counts else 0.0
-        count = _marked(start, end, marks, found, count)
+        count = _marked(start, end, found, count)
     return count
 
 
@@ -224,7 +240,7 @@ def somebody_comes(
     grid: Grid,
     motion: NDArray[np.float64],
     sight: Sight,
-    found: NDArray[np.int64],
+    found: Found,
 ) -> bool:
     """Whether somebody in view, on this side of a target, wants to go the other way, at more than
     120 degrees.
@@ -237,12 +253,12 @@ def somebody_comes(
         grid: everybody inside.
         motion: of the people in the grid.
         sight: the walls.
-        found: workspace with room for everybody and one more.
+        found: workspace.
     """
     px, py, ex, ey, _ = way
     count = find_between(way, reach, grid, motion, found)
     for k in range(count):
-        a = found[k]
+        a = found.who[k]
         way_x, way_y = motion[WAY_X, a], motion[WAY_Y, a]
         theirs = way_x * ex + way_y * ey
         if (

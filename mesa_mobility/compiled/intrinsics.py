@@ -19,6 +19,9 @@ from mesa_mobility.compiled.twins import with_twin
 _LINE = 64
 """Bytes that come from memory together."""
 
+_REST_US = 50
+"""Microseconds; systems wake a thread some 50 later than it asked for."""
+
 
 def _plain_prefetch(array: NDArray, row: int, size: int) -> None:
     pass
@@ -87,18 +90,27 @@ def store_release(typingctx, array, place, value):
     return types.void(array, place, value), codegen
 
 
-def _plain_yield_thread() -> None:
+def _plain_rest() -> None:
     pass
 
 
-@with_twin(_plain_yield_thread)
-def yield_thread(typingctx):
-    """Yield the processor, since another thread may need it to finish."""
+@with_twin(_plain_rest)
+def rest(typingctx):
+    """Leave the processor to others for some 0.1 ms, since another thread may need it to finish.
+
+    Yielding it is not enough: the other thread may wait for another processor, and gets this one
+    only if it is idle.
+    """
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        name = "SwitchToThread" if sys.platform == "win32" else "sched_yield"
-        yields = ir.FunctionType(vectors.INT, [])
-        builder.call(cgutils.get_or_insert_function(builder.module, yields, name), [])
+        # Windows rests for a whole tick of its clock, which is too long.
+        name, takes = (
+            ("SwitchToThread", []) if sys.platform == "win32" else ("usleep", [vectors.INT])
+        )
+        function = cgutils.get_or_insert_function(
+            builder.module, ir.FunctionType(vectors.INT, takes), name
+        )
+        builder.call(function, [ir.Constant(kind, _REST_US) for kind in takes])
         return context.get_dummy_value()
 
     return types.void(), codegen

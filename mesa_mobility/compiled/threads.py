@@ -46,6 +46,15 @@ def in_threads(work: Callable[[Part], Result], parts: Sequence[Part]) -> list[Re
     return [work(parts[0])] if len(parts) == 1 else list(_pool().map(work, parts))
 
 
+def by_shares(work: Callable[[slice], Result], people: int) -> list[Result]:
+    """``work`` of equal shares of so many people, in order, one by each thread.
+
+    ``work`` gets the slice of a share. What it does for one person must not depend on the others
+    in the share.
+    """
+    return in_threads(work, shares(people))
+
+
 def by_blocks(work: Callable[[int, int], Result], people: int) -> list[Result]:
     """``work(first, last)`` of each block of people, in order, by all threads."""
     if people <= BLOCK:

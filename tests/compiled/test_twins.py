@@ -29,7 +29,7 @@ def _between_threads(counts, place, value):
     seen = intrinsics.load_acquire(counts, place)
     intrinsics.store_release(counts, place + 1, value)
     intrinsics.prefetch(counts, place, 64)
-    intrinsics.yield_thread()
+    intrinsics.rest()
     return taken, seen
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import entry_point, inlined
-from mesa_mobility.compiled.intrinsics import store_release, take_number
 from mesa_mobility.compiled.simd import AT_ONCE, place_of_least
 from mesa_mobility.crowd.collision.broad_phase import cull_groups
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
@@ -28,7 +27,7 @@ from mesa_mobility.crowd.planning.feasibility import Obstacles
 from mesa_mobility.crowd.planning.following import follow
 from mesa_mobility.crowd.planning.grid import place_in
 from mesa_mobility.crowd.planning.neighbours import gather_neighbours
-from mesa_mobility.crowd.planning.thread_queue import Queue, await_neighbours
+from mesa_mobility.crowd.planning.thread_queue import NOBODY_LEFT, Queue, give_back, take
 from mesa_mobility.crowd.planning.workspace import DecisionContext, FrameContext, Workspace
 from mesa_mobility.crowd.state.clearances import MARGIN
 from mesa_mobility.crowd.state.paths import commit, to_world
@@ -47,8 +46,7 @@ def decide(
     """Decide for the pedestrians in ``rows``, one after the other, and commit them.
 
     Costs see the crowd as it was when the frame began. Collision tests see the paths to which
-    pedestrians before have been committed. Several threads may share the work: each takes the next
-    pedestrian, and waits for undecided predecessors within that pedestrian's search radius.
+    pedestrians before have been committed. Several threads may share the work (see `take`).
 
     Args:
         rows: pedestrians, in the order in which they decide.
@@ -71,21 +69,18 @@ def decide(
     bounded = len(extra) == 0 and not has_negative_pairs
     for address in terms.bound.address:
         bounded = bounded and address != 0
-    n = len(rows)
-    before = np.int64(0)
-    while True:
-        d = take_number(queue.next, 0)
-        if d >= n:
-            return n
-        before = await_neighbours(d, before, rows, queue, scene)
+    failed = len(rows)
+    d, first = take(0, rows, queue, scene)
+    while d != NOBODY_LEFT:
         own_extra = extra
         if len(extra) > 0:
             own_extra = extra[extra_offsets[d] : extra_offsets[d + 1]]
         fine = _decide_one(rows[d], scene, own_extra, has_negative_pairs, bounded, work)
-        store_release(queue.done, d, 1)
         if not fine:
-            store_release(queue.next, 0, n)
-            return d
+            failed = min(failed, d)
+        give_back(d, fine, queue)
+        d, first = take(first, rows, queue, scene)
+    return failed
 
 
 class Situation(NamedTuple):

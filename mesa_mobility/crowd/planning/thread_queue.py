@@ -1,10 +1,9 @@
 """The queue by which threads share the decisions of a frame.
 
 People decide in order, since each decision depends on the paths to which people before are
-committed.
-Nothing beyond the search radius matters: two people farther apart, on every sheet on which they
-are seen, may decide in either order, or at once, with the same result to the last bit. So each
-thread takes the next pedestrian, and waits for undecided predecessors within that radius.
+committed. Nothing beyond the search radius matters: two people farther apart, on every sheet on
+which they are seen, may decide in either order, or at once, with the same result to the last bit.
+So each thread takes the first person of whom no predecessor within that radius is undecided.
 """
 
 from __future__ import annotations
@@ -15,57 +14,109 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import internal
-from mesa_mobility.compiled.intrinsics import load_acquire, yield_thread
+from mesa_mobility.compiled.intrinsics import (
+    load_acquire,
+    rest,
+    store_release,
+    take_number,
+)
 from mesa_mobility.crowd.planning.workspace import FrameContext
 from mesa_mobility.crowd.state.records import CrowdState
 from mesa_mobility.crowd.state.twins import Twins
 
-_PATIENCE = 1000
-"""Checks on another thread before the processor is yielded. A decision takes some 10 microseconds;
-a thread that has lost its processor takes milliseconds."""
+NOBODY_LEFT = -1
+
+_AHEAD = 16
+"""People at the head of the queue among whom a thread looks for one who may decide."""
+
+_PATIENCE = 500
+"""Looks at the queue before the thread rests. A decision takes some 30 microseconds, and a thread
+that has lost its processor takes milliseconds."""
 
 
 class Queue(NamedTuple):
-    """``next`` (1,) index of the next pedestrian; ``done`` (n,) 1 for those who have decided."""
+    """What threads know of one another's decisions.
 
-    next: NDArray[np.int64]
+    Attributes:
+        taken: (n,) 0 for those whom no thread has taken.
+        done: (n,) 1 for those who have decided.
+        end: (1,) from this index on nobody is taken any more.
+    """
+
+    taken: NDArray[np.int64]
     done: NDArray[np.int64]
+    end: NDArray[np.int64]
 
 
 def new_queue(people: int) -> Queue:
     """A queue of undecided people."""
-    return Queue(np.zeros(1, np.int64), np.zeros(people, np.int64))
+    return Queue(
+        np.zeros(people, np.int64), np.zeros(people, np.int64), np.array([people], np.int64)
+    )
 
 
 @internal()
-def await_neighbours(
-    d: int, before: int, rows: NDArray[np.int64], queue: Queue, scene: FrameContext
-) -> int:
-    """Wait until those predecessors of the pedestrian at index d who are near have decided.
+def take(first: int, rows: NDArray[np.int64], queue: Queue, scene: FrameContext) -> tuple[int, int]:
+    """Take somebody who may decide, once there is one.
 
-    They are within the search radius, or have a twin there, or are as near to a twin of the
-    pedestrian.
+    Args:
+        first: so many people at the head of the queue have decided, at least.
+        rows: everybody in the queue.
+        queue: shared by all threads.
+        scene: the frame.
 
     Returns:
-        Length of the leading part of the queue that has decided, at least ``before``.
+        Index in ``rows``, or ``NOBODY_LEFT``, and how many at the head have decided by now.
     """
-    while before < d and load_acquire(queue.done, before) == 1:
-        before += 1
+    patience = _PATIENCE
+    while True:
+        end = load_acquire(queue.end, 0)
+        while first < end and load_acquire(queue.done, first) == 1:
+            first += 1
+        last = min(first + _AHEAD, end)
+        left = last < end
+        for d in range(first, last):
+            if load_acquire(queue.taken, d) == 0:
+                left = True
+                if _may_decide(d, first, rows, queue, scene) and take_number(queue.taken, d) == 0:
+                    return d, first
+        if not left:
+            return NOBODY_LEFT, first
+        patience -= 1
+        if patience < 0:
+            rest()
+
+
+@internal()
+def give_back(d: int, fine: bool, queue: Queue) -> None:
+    """Note that the person at index d has decided; unless that was ``fine``, the queue ends."""
+    if not fine and d < load_acquire(queue.end, 0):
+        store_release(queue.end, 0, d)
+    store_release(queue.done, d, 1)
+
+
+@internal()
+def _may_decide(
+    d: int, first: int, rows: NDArray[np.int64], queue: Queue, scene: FrameContext
+) -> bool:
+    """Whether no undecided predecessor of the person at index d is near.
+
+    Those who are near are within the search radius, or have a twin there, or are as near to a twin
+    of the person.
+    """
     i, state, twins = rows[d], scene.state, scene.twins
     radius = scene.rules.search_radius
-    for e in range(before, d):
-        near = _near(i, rows[e], radius, state)
-        if not near and len(twins.follow) > 0:
-            near = _near_twin(i, rows[e], radius, twins, state) or _near_twin(
-                rows[e], i, radius, twins, state
-            )
-        if near:
-            patience = _PATIENCE
-            while load_acquire(queue.done, e) == 0:
-                patience -= 1
-                if patience < 0:
-                    yield_thread()
-    return before
+    for e in range(first, d):
+        if load_acquire(queue.done, e) == 1:
+            continue
+        if _near(i, rows[e], radius, state):
+            return False
+        if len(twins.follow) > 0 and (
+            _near_twin(i, rows[e], radius, twins, state)
+            or _near_twin(rows[e], i, radius, twins, state)
+        ):
+            return False
+    return True
 
 
 @internal()
