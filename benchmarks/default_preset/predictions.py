@@ -141,6 +141,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("tracks", type=Path)
+    parser.add_argument("--runs", nargs="+", choices=tuple(measured.RUNS), default=[*measured.RUNS])
     parser.add_argument("--preset", default="default")
     parser.add_argument("--every", type=float, default=5.0, help="seconds between instants")
     parser.add_argument("--seeds", type=int, default=3)
@@ -148,8 +149,8 @@ def main() -> None:
     preset = Path(given.preset) if given.preset.endswith(".toml") else given.preset
     print("| run | prediction | " + " | ".join(f"{s:g} s" for s in AFTER_S) + " | people |")
     print("|---" * (len(AFTER_S) + 3) + "|")
-    for name, run in measured.RUNS.items():
-        tracks = measured.read(str(given.tracks / run.file), name)
+    for name in given.runs:
+        tracks = measured.read(str(given.tracks / measured.RUNS[name].file), name)
         with model_rules(preset):
             tries = [errors(name, tracks, given.every, seed) for seed in range(given.seeds)]
         for what in tries[0]:
