@@ -199,6 +199,7 @@ def _room(room: Room) -> dict[str, Any]:
         "level": room.level,
         "use": room.use,
         "area_m2": room.area,
+        "stated_area_m2": room.stated_area,
         "doors": list(room.doors),
     }
 

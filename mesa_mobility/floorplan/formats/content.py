@@ -13,7 +13,7 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.extent import check_coordinates
 from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
-from mesa_mobility.floorplan.floor.room import ROOM, Room
+from mesa_mobility.floorplan.floor.room import OF_ROOMS, ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.people import People
 
@@ -98,8 +98,9 @@ def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
             except FloorPlanError as error:
                 raise FloorPlanError(f"{at}: {error}") from None
         else:
+            given = {each: properties[each] for each in OF_ROOMS if each in properties}
             try:
-                content.rooms.append(Room(name, geometry, use=properties.get("use", "")))
+                content.rooms.append(Room(name, geometry, **given))
             except FloorPlanError as error:
                 raise FloorPlanError(f"{at}: {error}") from None
     return content

@@ -13,7 +13,7 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
-from mesa_mobility.floorplan.floor.room import ROOM, Room
+from mesa_mobility.floorplan.floor.room import OF_ROOMS, ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.assembling.texts import parsed
 from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
@@ -152,9 +152,9 @@ def zone_feature(zone: SpeedZone) -> dict[str, Any]:
 
 
 def room_feature(room: Room) -> dict[str, Any]:
-    """The feature of a room, with its use if it has one."""
+    """The feature of a room, with its use and its stated area if it has them."""
     feature = feature_of(ROOM, room.name, room.shape)
-    feature["properties"] |= {"use": room.use} if room.use else {}
+    feature["properties"] |= {name: value for name in OF_ROOMS if (value := getattr(room, name))}
     return feature
 
 

@@ -96,6 +96,14 @@ class House:
             )
         return element
 
+    def stated(self, room, area):
+        """Give a room the base quantity of its floor, square metres."""
+        make, kind = self.model.create_entity, "BaseQuantities"
+        value = make("IfcQuantityArea", "GrossFloorArea", None, None, float(area))
+        own = make("IfcElementQuantity", ifcopenshell.guid.new(), None, kind, None, None, [value])
+        new = ifcopenshell.guid.new()
+        make("IfcRelDefinesByProperties", new, None, None, None, [room], own)
+
     def door(self, name, storey, wall, box, width):
         """A door in an opening of a wall."""
         opening = self.add("IfcOpeningElement", f"opening of {name}", None, [box])
@@ -113,7 +121,8 @@ def house(path: Path, scale: float = 1.0, schema: str = "IFC4", *, flights: bool
     roof = made.storey("Roof", 6)
     made.whole(made.building, [ground, upper, roof])
     made.add("IfcSpace", "101", ground, [(0, 0, 0, 8, 5, 2.7)], LongName="Hall")
-    made.add("IfcSpace", "102", ground, [(8.2, 0, 0, 12, 5, 2.7)], LongName="Office")
+    office = made.add("IfcSpace", "102", ground, [(8.2, 0, 0, 12, 5, 2.7)], LongName="Office")
+    made.stated(office, 21.2)  # to the middle of the walls: 4 m x 5.3 m
     made.add("IfcSpace", "201", upper, [(0, 0, 3, 12, 5, 5.7)], LongName="Loft")
     inner = made.add("IfcWall", "inner", ground, [(8, 0, 0, 8.2, 5, 2.7)])
     west = made.add("IfcWall", "west", ground, [(-0.3, -0.3, 0, 0, 5.3, 2.7)])

@@ -129,5 +129,7 @@ def test_rooms_have_the_names_and_areas_of_the_file(found):
         {"101 Hall": 40.0, "102 Office": 19.0, "201 Loft": 60.0}
     )
     assert [each.level for each in building.rooms] == [0, 0, 1]
+    stated = {name: each.stated_area for name, each in rooms.items()}
+    assert stated == {"101 Hall": None, "102 Office": 21.2, "201 Loft": None}
     assert rooms["102 Office"].doors == ("door 17",)
     assert {"Street", "door 17"} <= set(rooms["101 Hall"].doors)

@@ -64,7 +64,7 @@ def assembled(drawn: Drawn, where: str) -> Content:
         obstacles=obstacles,
         zones=[each for each in drawn.zones if room.covers(each.area)],
         rooms=rooms_named_apart(
-            (name, area) for area, name in drawn.rooms if area.intersection(floor).area > 0.0
+            (name, area, None) for area, name in drawn.rooms if area.intersection(floor).area > 0.0
         ),
         notes=notes,
         foreign=True,

@@ -1,4 +1,4 @@
-"""Runs the script that reads an IFC in a process of its own, within a time and a memory."""
+"""Reads an IFC in a process of its own, within a time and a memory."""
 
 import os
 import subprocess
@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from mesa_mobility import building_models
 from mesa_mobility.errors import FloorPlanError, MobilityError
 from mesa_mobility.floorplan.formats.assembling.texts import parsed
 
@@ -23,11 +24,12 @@ LEAST_BYTES, FACTOR = 1_000_000_000, 200
 MOST_OUTPUT = 256_000_000
 """Bytes of what the process prints."""
 
-SCRIPT = Path(__file__).with_name("extraction.py")
+FOLDER = Path(building_models.__file__).parents[2]
+"""Where the package is found that is run."""
 
 
 def extracted(path: Path, with_furniture: bool) -> dict[str, Any]:
-    """What the script takes from a file; see its ``main``.
+    """All that is taken from a file, as ``mesa_mobility.building_models.extraction`` has it.
 
     Raises:
         FloorPlanError: the file cannot be read, within the time and the memory, or is no IFC.
@@ -40,16 +42,17 @@ def extracted(path: Path, with_furniture: bool) -> dict[str, Any]:
     size = _size_of(path)
     seconds = min(LEAST_S + S_PER_MB * size / 1e6, MOST_S)
     memory = LEAST_BYTES + FACTOR * size
-    words = [str(path.resolve()), *(["furniture"] if with_furniture else [])]
-    # -P: modules beside the script are not looked for.
-    command = [sys.executable, "-P", str(SCRIPT), *words]
+    words = [str(path.resolve()), str(memory), *(["furniture"] if with_furniture else [])]
+    # -P: modules in the working directory are not looked for.
+    command = [sys.executable, "-P", "-m", building_models.__name__, *words]
     few = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    folders = [str(FOLDER), *filter(None, [os.environ.get("PYTHONPATH")])]
     process = subprocess.Popen(
         command,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env=os.environ | few | {"MESA_MOBILITY_MEMORY": str(memory)},
+        env=os.environ | few | {"PYTHONPATH": os.pathsep.join(folders)},
     )
     try:
         output, _ = process.communicate(timeout=seconds)

@@ -98,5 +98,5 @@ def _rooms(draft: Draft, floor: Polygon) -> list[Room]:
         shape = max(parts, key=lambda part: part.area, default=Polygon())
         if each.kind == "room" and shape.intersection(floor).area > 0.0:
             words = dict.fromkeys(word for word in (each.name, each.long_name) if word)
-            named.append((" ".join(words) or "room", shape))
+            named.append((" ".join(words) or "room", shape, each.stated_area))
     return rooms_named_apart(named)
