@@ -114,6 +114,24 @@ class House:
         return door
 
 
+def house_with_a_landing(path: Path) -> Path:
+    """Two storeys 3 m apart; stairs lead up 9 risers along x, a landing, and 8 risers along y."""
+    made = House()
+    ground, upper = made.storey("Ground", 0), made.storey("Upper", 3)
+    made.whole(made.building, [ground, upper])
+    made.add("IfcSpace", "hall", ground, [(0, 0, 0, 10, 8, 2.7)])
+    made.add("IfcSpace", "office", upper, [(0, 0, 3, 10, 8, 5.7)])
+    wall = made.add("IfcWall", "west", ground, [(-0.3, 0, 0, 0, 8, 2.7)])
+    made.door("Street", ground, wall, (-0.35, 1, 0, 0.05, 2, 2.1), 1.0)
+    riser, at = 3 / 17, [(3 + 0.28 * k, 4, 3.28 + 0.28 * k, 5.2) for k in range(8)]
+    at += [(5.24, 4, 6.44, 5.2)]
+    at += [(5.24, 5.2 + 0.28 * k, 6.44, 5.48 + 0.28 * k) for k in range(7)]
+    boxes = [(x0, y0, 0, x1, y1, (k + 1) * riser) for k, (x0, y0, x1, y1) in enumerate(at)]
+    made.add("IfcStair", "Corner", ground, boxes)
+    made.model.write(str(path))
+    return path
+
+
 def house(path: Path, scale: float = 1.0, schema: str = "IFC4", *, flights: bool = True) -> Path:
     """A house 12 m long: hall and office at 0 m, loft at 3 m, an outer and an inner door."""
     made = House(scale, schema)

@@ -14,7 +14,7 @@ from mesa_mobility.floorplan.formats.ifc import child
 from tests.floorplan.formats.mutations import read_all
 
 pytest.importorskip("ifcopenshell", reason="no IfcOpenShell: pip install 'mesa-mobility[ifc]'")
-from tests.floorplan.formats.house import RISERS, TREAD, house
+from tests.floorplan.formats.house import RISERS, TREAD, house, house_with_a_landing
 
 
 def read(path, **options):
@@ -83,6 +83,25 @@ def test_one_level_is_left_by_its_stairs(path):
     assert sorted(each.name for each in plan.exits) == ["Main", "Street"]
     with pytest.raises(FloorPlanError, match=r"house.ifc: has no level '7', expected one of 0"):
         read(path, level="7")
+
+
+@pytest.mark.thorough
+def test_stairs_round_a_corner(tmp_path):
+    """Who walks down walks against y, turns right and walks against x: eight risers, then nine."""
+    building, said = read(house_with_a_landing(tmp_path / "corner.ifc"))
+    (stairs,) = building.stairs
+    assert (stairs.shape, stairs.flights, stairs.turns) == ("flights", (8, 9), ("right",))
+    assert np.allclose(stairs.head, [(6.44, 7.16), (5.24, 7.16)], atol=2e-3)
+    assert stairs.tread == pytest.approx(0.28, abs=1e-3)
+    assert "taken as" not in said
+    upper, lower = stairs.parts(3.0, 0.0)[0]
+    assert np.allclose(upper.foot, [(6.44, 5.2), (5.24, 5.2)], atol=5e-3)
+    # As in the file, but for the post of the handrail: 0.1 m further down the upper flight.
+    assert np.allclose(lower.foot, [(3.0, 4.0 - 0.1), (3.0, 5.2 - 0.1)], atol=5e-3)
+    model = PedestrianModel(building, record=True, rng=1)
+    model.add_pedestrians(building.random_points(6, model.rng, level=1, spacing=0.5, clearance=0.3))
+    model.run(max_seconds=90)
+    assert model.inside == 0
 
 
 @pytest.mark.thorough
