@@ -136,7 +136,7 @@ def test_faulty_topographies(tmp_path, data, message):
 
 def test_faulty_archives(tmp_path):
     (tmp_path / "a.zip").write_bytes(b"PK no")
-    with pytest.raises(FloorPlanError, match=r"a.zip: is not a zip that can be read"):
+    with pytest.raises(FloorPlanError, match=r"a.zip: not a readable zip \(File is not a zip"):
         FloorPlan.from_file(tmp_path / "a.zip")
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         archive.writestr("config.json", "{}")
