@@ -1,24 +1,16 @@
-"""Prints as JSON what a building model holds: ``python -m mesa_mobility.building_models FILE``.
+"""Prints what a building model holds: ``python -m mesa_mobility.building_models FILE BYTES``.
 
-IfcOpenShell is compiled code, which a damaged file may crash, or keep busy. So the reader of floor
-plans starts this in a process of its own. It imports nothing else of the package, so that it starts
-at once.
+It prints JSON, and BYTES limit the memory. IfcOpenShell is compiled code, which a damaged file may
+crash, or keep busy. So the reader of floor plans starts this in a process of its own. It imports
+hardly anything else of the package, so that it starts at once.
 """
 
 import json
 import os
 import sys
 
+from mesa_mobility._memory import limit_memory
 from mesa_mobility.building_models.extraction import all_of
-
-
-def limit_memory(most: int) -> None:
-    """Let this process have so many bytes, where the system can."""
-    if os.name == "posix":
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_DATA, (most, most))
-
 
 if __name__ == "__main__":
     # Compiled code may print whatever it likes.

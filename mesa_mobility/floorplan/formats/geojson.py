@@ -19,6 +19,7 @@ from mesa_mobility.floorplan.formats.assembling.texts import parsed
 from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
 from mesa_mobility.floorplan.formats.indoor.rooms import HEIGHT, read_rooms
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
+from mesa_mobility.floorplan.formats.sources import SOURCE
 from mesa_mobility.floorplan.formats.storeys import Storeys
 from mesa_mobility.plugins.annotations import Range
 
@@ -34,6 +35,12 @@ class GeoJson(PlanFormat):
     ) -> Content | Storeys:
         """See ``read`` of this module; ``height`` is for files of other programs."""
         return read(path, height)
+
+    def has_people(self, path: Path) -> bool:
+        """Whether it has sources."""
+        features = features_of(load(path), str(path))
+        given = (each.get("properties") for each in features if isinstance(each, Mapping))
+        return any(isinstance(each, Mapping) and each.get("kind") == SOURCE for each in given)
 
     def write(self, plan: Floor, path: Path) -> None:
         """Write a floor plan; see ``FloorPlan.write_geojson``."""

@@ -15,10 +15,12 @@ MOST = 20_000
 
 @dataclass(frozen=True)
 class Stop:
-    """An area that people visit, and for how long they stay, seconds."""
+    """An area that people visit, for how long they stay, in seconds, and how many may stay there at
+    once; None for any number."""
 
     area: BaseGeometry
     stay: float = 0.0
+    capacity: int | None = None
 
 
 @dataclass(frozen=True)

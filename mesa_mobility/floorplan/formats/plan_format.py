@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.content import Content
@@ -20,11 +20,15 @@ class PlanFormat(Format):
 
     Keyword-only parameters of these methods are the options of the format.
 
-    Attributes:
-        has_people: whether files are scenarios with people.
     """
 
-    has_people: ClassVar[bool] = False
+    def has_people(self, path: Path) -> bool:
+        """Whether a file is a scenario with people, which ``read`` puts into the content.
+
+        Raises:
+            FloorPlanError: the file cannot be read.
+        """
+        return False
 
     def read(self, path: Path) -> Content | Storeys:
         """What a file holds: one floor, or several storeys and what joins them.

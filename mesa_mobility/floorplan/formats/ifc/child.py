@@ -1,15 +1,13 @@
 """Reads an IFC in a process of its own, within a time and a memory."""
 
 import os
-import subprocess
-import sys
-from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from mesa_mobility import building_models
 from mesa_mobility.errors import FloorPlanError, MobilityError
+from mesa_mobility.files.apart import output_of
 from mesa_mobility.floorplan.formats.assembling.texts import parsed
 
 LARGEST_FILE = 512_000_000
@@ -23,9 +21,6 @@ LEAST_BYTES, FACTOR = 1_000_000_000, 200
 
 MOST_OUTPUT = 256_000_000
 """Bytes of what the process prints."""
-
-FOLDER = Path(building_models.__file__).parents[2]
-"""Where the package is found that is run."""
 
 
 def extracted(path: Path, with_furniture: bool) -> dict[str, Any]:
@@ -43,29 +38,13 @@ def extracted(path: Path, with_furniture: bool) -> dict[str, Any]:
     seconds = min(LEAST_S + S_PER_MB * size / 1e6, MOST_S)
     memory = LEAST_BYTES + FACTOR * size
     words = [str(path.resolve()), str(memory), *(["furniture"] if with_furniture else [])]
-    # -P: modules in the working directory are not looked for.
-    command = [sys.executable, "-P", "-m", building_models.__name__, *words]
-    few = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    folders = [str(FOLDER), *filter(None, [os.environ.get("PYTHONPATH")])]
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env=os.environ | few | {"PYTHONPATH": os.pathsep.join(folders)},
-    )
     try:
-        output, _ = process.communicate(timeout=seconds)
-    except subprocess.TimeoutExpired:
+        output, status = output_of(building_models.__name__, words, seconds)
+    except TimeoutError:
         raise FloorPlanError(
             f"{path}: cannot be read within {seconds:.0f} s, expected a smaller or sound IFC"
         ) from None
-    finally:
-        # Also where somebody interrupts.
-        with suppress(OSError):
-            process.kill()
-        process.wait()
-    return _answer(output, path, process.returncode)
+    return _answer(output, path, status)
 
 
 def _size_of(path: Path) -> int:
