@@ -76,6 +76,13 @@ def count_of(value: Any, at: str) -> int:
     return int(value)
 
 
+def total_of(before: int, more: int, at: str) -> int:
+    """The sum of two numbers of people; FloorPlanError if a scenario may not have so many."""
+    if before + more > MOST:
+        raise FloorPlanError(f"{at}: more than {MOST:,} people in all, expected at most that")
+    return before + more
+
+
 def left_out(counts: Mapping[str, int]) -> list[str]:
     """A note on what of a scenario is not read; none where all is."""
     said = [f"{count} {kind}" for kind, count in counts.items() if count]

@@ -8,7 +8,7 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan.formats.people import MOST, People, Stop, count_of
+from mesa_mobility.floorplan.formats.people import MOST, People, Stop, count_of, total_of
 
 SOURCE, COUNTER = KINDS = "source", "counter"
 
@@ -38,21 +38,19 @@ def people_of(sources: Sequence[Drawn], counters: Sequence[Drawn]) -> list[Peopl
     """
     stops = [_stop(each) for each in counters]
     found: list[People] = []
-    turn = 0
+    total = 0
     for number, each in enumerate(sources, start=1):
         count = count_of(each.given.get("number", 0), f"{each.at}: number")
+        before, total = total, total_of(total, count, each.at)
         seconds = _seconds(each, "seconds")
         times = np.linspace(0.0, seconds, count, endpoint=False).tolist() if seconds else []
         for k in range(max(len(stops), 1)):
-            own = range(count)[(k - turn) % max(len(stops), 1) :: max(len(stops), 1)]
+            own = range(count)[(k - before) % max(len(stops), 1) :: max(len(stops), 1)]
             if own:
                 way = (stops[k],) if stops else ()
                 when = tuple(times[i] for i in own) if seconds else ()
                 name = each.name or f"source {number}"
                 found.append(People(name, each.area, len(own), when, stops=way))
-        turn += count
-    if sum(each.number for each in found) > MOST:
-        raise FloorPlanError(f"{sources[0].at}: more than {MOST:,} people in all")
     return found
 
 

@@ -1,8 +1,9 @@
-"""What the features of an indoor map are: rooms, doors, obstacles, stairs and lifts."""
+"""Rooms, doors, obstacles, stairs and lifts among the features of an indoor map."""
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -178,10 +179,13 @@ def _geometry(value: Any, at: str) -> BaseGeometry | None:
 
 def _levels(value: Any) -> tuple[str, ...]:
     """Levels that a text such as 0, 0;1 or 0-2 names."""
-    if value is None or isinstance(value, list | Mapping):
-        return ()
+    return () if value is None or isinstance(value, list | Mapping) else _named(str(value)[:200])
+
+
+@lru_cache(maxsize=1000)  # features of one level share their names
+def _named(text: str) -> tuple[str, ...]:
     found: list[str] = []
-    for part in str(value)[:200].split(";"):
+    for part in text.split(";"):
         between = re.fullmatch(r"\s*(-?\d{1,3})\s*-\s*(-?\d{1,3})\s*", part)
         if between and int(between[1]) <= int(between[2]):
             found += [str(each) for each in range(int(between[1]), int(between[2]) + 1)]

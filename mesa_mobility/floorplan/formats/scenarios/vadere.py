@@ -1,4 +1,4 @@
-"""Scenarios of Vadere as floor plans: bounds, obstacles, targets and stairs."""
+"""Scenarios of Vadere: bounds, obstacles, targets, stairs and people."""
 
 import math
 from collections.abc import Mapping
