@@ -35,7 +35,7 @@ def meshes_of(model: Any, elements: list[Any]) -> dict[int, tuple[Any, Any]]:
 
 
 def footprint(corners: Any, triangles: Any) -> Any:
-    """What the faces of a body cover in plan."""
+    """The area that the faces of a body cover in plan."""
     xy = corners[triangles][:, :, :2]
     areas = shapely.polygons(xy)
     areas = areas[shapely.area(areas) > 1e-7]

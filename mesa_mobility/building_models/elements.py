@@ -47,7 +47,7 @@ def fillings(opening: Any) -> list[Any]:
 
 
 def host_of(opening: Any) -> Any:
-    """What an opening is cut out of, or None."""
+    """The element that an opening is cut out of, or None."""
     found = getattr(opening, "VoidsElements", None) or ()
     return found[0].RelatingBuildingElement if found else None
 

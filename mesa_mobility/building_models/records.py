@@ -60,7 +60,7 @@ def storey(element: Any, units: Units) -> dict[str, Any]:
 
 
 def record(element: Any, mesh: tuple[Any, Any] | None, units: Units) -> dict[str, Any]:
-    """What is taken from an element."""
+    """The record of an element."""
     values: dict[str, Any] = {
         "id": element.id(),
         "name": text(element.Name),
@@ -108,7 +108,7 @@ def door_record(door: Any, units: Units) -> dict[str, Any]:
 
 
 def way_record(way: Any, meshes: dict[int, tuple[Any, Any]], units: Units) -> dict[str, Any]:
-    """What is taken from stairs or a ramp: its steps, and the numbers that it gives."""
+    """The record of stairs or a ramp, with its steps and the risers that it gives."""
     own = [meshes[part.id()] for part in parts_of(way) if part.id() in meshes]
     values = record(way, None, units)
     risers = [

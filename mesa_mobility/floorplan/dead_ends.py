@@ -106,7 +106,7 @@ def _parts(piece: Polygon, number: int) -> Iterator[_Part]:
 
 
 def _ways(plan: Floor, parts: Sequence[_Part]) -> nx.MultiGraph:
-    """Which parts people go from and to; each edge has the place where they do."""
+    """A graph of the parts between which people go; each edge has the place where they do."""
     ways = nx.MultiGraph()
     ways.add_nodes_from([*range(len(parts)), OUT])
     tree = shapely.STRtree([each.area for each in parts])

@@ -1,4 +1,4 @@
-"""What is odd about a floor plan for an evacuation: narrow doors, dead ends, traps and gaps."""
+"""Oddities of a floor plan for an evacuation: narrow doors, dead ends, traps and gaps."""
 
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
@@ -47,7 +47,7 @@ class Oddity(NamedTuple):
 
 
 def oddities_of(plan: Floor, no_doors: Collection[str] = ()) -> list[Oddity]:
-    """What is odd about a floor plan for an evacuation, at most 50 places of each kind.
+    """The oddities of a floor plan for an evacuation, at most 50 places of each kind.
 
     The kinds are "narrow door", "exit wider than its floor", "no way out", "no way out for
     wheelchairs", "dead end" (see ``dead_ends_of``), "gap" and "thin wall".

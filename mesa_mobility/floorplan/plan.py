@@ -365,7 +365,7 @@ class FloorPlan(Floor):
 
     @staticmethod
     def members() -> dict[str, Kind]:
-        """What the members of ``state`` are."""
+        """Names of the members of ``state``."""
         return {
             "obstacles": Several(Whole(), dict, values=Object(Polygon)),
             "next_obstacle": Whole(),

@@ -1,4 +1,4 @@
-"""What a run of a model used: maps of its people, floor plan, files, preset and population."""
+"""Inputs of a run of a model: maps of its people, floor plan, files, preset and population."""
 
 from __future__ import annotations
 

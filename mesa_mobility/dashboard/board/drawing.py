@@ -25,7 +25,7 @@ FLOOR, WALL, OBSTACLE, DOOR, EXIT = "floor", "wall", "obstacle", "door", "exit"
 AREAS = (FLOOR, OBSTACLE, SOURCE, COUNTER)
 
 KINDS = (*AREAS, WALL, DOOR, EXIT)
-"""What can be drawn: areas, and lines of walls, doors and exits."""
+"""Kinds of shapes: areas, and lines of walls, doors and exits."""
 
 NUMBERS = {SOURCE: ("number", "seconds"), COUNTER: ("stay", "capacity")}
 """Properties of sources and counters, as in the features of a plan."""
@@ -51,7 +51,7 @@ class Drawing(NamedTuple):
 
 
 def drawing_of(shapes: Any, name: Any) -> Drawing:
-    """What somebody has drawn, as a floor plan.
+    """A drawing as a floor plan.
 
     Floors that touch are joined. Doors are openings through the walls that they are drawn on. Exits
     up to 1.2 m off the edge are moved to it.

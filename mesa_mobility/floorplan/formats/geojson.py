@@ -121,7 +121,7 @@ def _has_kind(feature: Any) -> bool:
 
 
 def load(source: "str | os.PathLike[str] | Mapping[str, Any]") -> object:
-    """What a file holds as JSON; a mapping as it is.
+    """The JSON of a file; a mapping as it is.
 
     Raises:
         FloorPlanError: the file cannot be read or is not JSON.

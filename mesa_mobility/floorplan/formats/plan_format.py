@@ -1,4 +1,4 @@
-"""What a format of floor plan files is, and all that are installed."""
+"""The base class of formats of floor plan files, and all that are installed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PlanFormat(Format):
         return False
 
     def read(self, path: Path) -> Content | Storeys:
-        """What a file holds: one floor, or several storeys and what joins them.
+        """The content of a file: one floor, or several storeys and what joins them.
 
         Args:
             path: the file.

@@ -39,7 +39,7 @@ _EXPECTED = "expected a number of people, a density such as 0.5/m2, a space such
 
 @dataclass(frozen=True)
 class UseOfTable:
-    """What a table says of one use.
+    """The line of a table for one use.
 
     Attributes:
         density: people on a square metre.

@@ -1,4 +1,4 @@
-"""What other programs have drawn, put together to the parts of a floor plan."""
+"""Drawings of other programs, put together to the parts of a floor plan."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from mesa_mobility.floorplan.formats.content import Content
 
 @dataclass
 class Drawn:
-    """What a file shows, before it is put together; metres.
+    """The parts of a drawing, before they are put together; metres.
 
     Attributes:
         areas: parts of the floor.

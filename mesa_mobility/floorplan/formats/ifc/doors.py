@@ -149,8 +149,8 @@ def _doorway(
 
 
 def _axis(host: Element | None, box: Box, width: float | None) -> int:
-    """Which side of an opening lies along the wall: that along a long wall, or that as wide as the
-    door, or the longer one."""
+    """The side of an opening that lies along the wall: that along a long wall, or that as wide as
+    the door, or the longer one."""
     wall = None if host is None else box_around(host.area)
     if wall is not None and wall.lengths.max() > 3 * wall.lengths.min():
         return int(np.argmax(np.abs(box.along @ wall.along[int(np.argmax(wall.lengths))])))

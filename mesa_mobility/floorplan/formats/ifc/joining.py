@@ -1,4 +1,4 @@
-"""What joins the storeys of a building model: stairs and ramps, with floor before their ends."""
+"""Stairs and ramps between the storeys of a building model, with floor before their ends."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -44,8 +44,8 @@ AROUND = 0.4
 
 @dataclass(frozen=True)
 class Join:
-    """What joins two storeys: the link, the floor before its ends by the number of the level, and
-    what it takes of both floors."""
+    """Stairs or a ramp between two storeys: the link, the floor before its ends by the number of
+    the level, and what it takes of both floors."""
 
     link: Link
     before: dict[int, Polygon]

@@ -48,7 +48,7 @@ LEAST_LIFT = 0.95
 def links_of(
     shapes: Sequence[Shape], numbers: Mapping[str, int], height: float, notes: list[str]
 ) -> list[Link]:
-    """What joins the levels.
+    """The stairs and lifts that join the levels.
 
     Args:
         shapes: all features, in metres.
@@ -77,7 +77,7 @@ def links_of(
 def _pairs(
     shapes: Sequence[Shape], kind: str, lower: str, upper: str
 ) -> list[tuple[BaseGeometry, str]]:
-    """What two levels have in common of areas of a kind, with the names of these."""
+    """The parts that areas of a kind on two levels have in common, with the names of these."""
     below, above = (
         [each for each in shapes if each.kind == kind and level in each.levels]
         for level in (lower, upper)

@@ -57,7 +57,7 @@ class Shape:
 
 
 def shapes_of(features: Sequence[Any], where: str, notes: list[str]) -> tuple[list[Shape], bool]:
-    """What matters of some features, and whether coordinates are degrees for sure.
+    """The features that matter, and whether coordinates are degrees for sure.
 
     Raises:
         FloorPlanError: too many features, or one that cannot be read.
@@ -91,7 +91,7 @@ def _ordinals(features: Sequence[Any]) -> dict[str, str]:
 
 
 def _shape(feature: Any, ordinals: Mapping[str, str], at: str) -> tuple[Shape | None, bool]:
-    """What a feature is, if it matters, and whether its coordinates are degrees for sure."""
+    """A feature, if it matters, and whether its coordinates are degrees for sure."""
     if not isinstance(feature, Mapping):
         raise FloorPlanError(f"{at}: expected a Feature, found {type(feature).__name__}")
     given = feature.get("properties")
@@ -123,7 +123,7 @@ def _of_imdf(
 
 
 def _of_tags(tags: Mapping[str, Any], geometry: BaseGeometry) -> tuple[Shape | None, bool]:
-    """What a feature with tags of OpenStreetMap is, or one of unknown origin."""
+    """A feature with tags of OpenStreetMap, or one of unknown origin."""
     name, levels = name_of(tags.get("name")), _levels(tags.get("level"))
     indoor = tags.get("indoor")
     if "door" in tags or "entrance" in tags or indoor == "door":
