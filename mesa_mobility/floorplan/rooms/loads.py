@@ -18,6 +18,9 @@ from mesa_mobility.floorplan.floor.room import Room
 MOST_PEOPLE = 1_000_000
 """People in one room at most."""
 
+DIGITS = 20
+"""Digits of a number of people that are read; a number with more is too large anyway."""
+
 DENSEST = 10.0
 """People on a square metre at most."""
 
@@ -157,8 +160,8 @@ def shared_out(shares: Sequence[float]) -> list[int]:
 def _numbers(rooms: Sequence[Room], load: Load) -> list[int]:
     if not rooms:
         return []
-    if isinstance(load, str) and load.strip().isdigit():
-        load = int(load)
+    if isinstance(load, str) and load.strip().isdecimal():
+        load = int(load.strip()[:DIGITS])
     if isinstance(load, int) and not isinstance(load, bool):
         if not 0 <= load <= MOST_PEOPLE:
             raise FloorPlanError(f"{load} people, expected 0 to {MOST_PEOPLE:,}")

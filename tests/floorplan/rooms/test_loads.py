@@ -125,6 +125,8 @@ def test_a_room_gets_the_first_load_whose_pattern_fits_it():
         ("0 m2", "at most 10 people"),
         (-1, "expected 0 to"),
         ("1" * 30, "expected 0 to"),
+        ("1" * 5000, "expected 0 to"),
+        ("\u00b2", "there is no use"),
         (1.5, "expected a number of people"),
         (True, "expected a number of people"),
         (None, "no use is known"),
