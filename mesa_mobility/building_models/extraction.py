@@ -49,9 +49,8 @@ def all_of(path: str, with_furniture: bool) -> dict[str, Any]:
     groups = {kind: found_of(model, names) for kind, names in KINDS.items()}
     ways = {kind: whole_ways(model, name) for kind, name in WAYS.items()}
     storeys = found_of(model, ("IfcBuildingStorey",))
-    lifts = [
-        each for each in found_of(model, ("IfcTransportElement",)) if "ELEVATOR" in type_of(each)
-    ]
+    moving = found_of(model, ("IfcTransportElement",))
+    lifts = [each for each in moving if "ELEVATOR" in type_of(each)]
     parts_of_ways = {
         part.id() for found in ways.values() for each in found for part in parts_of(each)
     }
@@ -59,6 +58,7 @@ def all_of(path: str, with_furniture: bool) -> dict[str, Any]:
     groups["wall"] += [part for each in groups["wall"] for part in panels_of(each)]
     counts = {kind: len(found) for kind, found in (groups | ways).items()}
     counts |= {"lift": len(lifts), "storey": len(storeys)}
+    counts["escalator"] = sum("ESCALATOR" in type_of(each) for each in moving)
     if sum(counts.values()) > MOST:
         raise ValueError(f"has {sum(counts.values()):,} elements, expected at most {MOST:,}")
     if not with_furniture:

@@ -18,7 +18,7 @@ from mesa_mobility.floorplan.formats.ifc.records import model_of
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 from mesa_mobility.floorplan.formats.storeys import Storey, Storeys
 
-LEFT_OUT = {"furniture": "pieces of furniture", "lift": "lifts"}
+LEFT_OUT = {"furniture": "pieces of furniture", "lift": "lifts", "escalator": "escalators"}
 """Kinds of elements that are left out, in words."""
 
 LEAST_PIECE = 0.1
