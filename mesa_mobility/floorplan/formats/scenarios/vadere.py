@@ -99,7 +99,7 @@ def content_of_scenario(data: Any, where: str) -> Content:
     sources = [
         _shape(each, f"{at}: source {number}") for number, each in _each(topography, "sources", at)
     ]
-    people = people_of(topography, {"sources": sources}, targets, at, drawn.notes)
+    people = people_of(topography, sources, targets, at, drawn.notes)
     content = assembled(drawn, where)
     content.people = people
     return content

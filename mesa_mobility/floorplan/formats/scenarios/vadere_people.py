@@ -36,7 +36,7 @@ Shapes = Mapping[int, tuple[BaseGeometry, str, float]]
 
 def people_of(
     topography: Mapping[str, Any],
-    shapes: Mapping[str, Sequence[BaseGeometry]],
+    areas: Sequence[BaseGeometry],
     targets: Shapes,
     at: str,
     notes: list[str],
@@ -45,7 +45,7 @@ def people_of(
 
     Args:
         topography: of the scenario.
-        shapes: areas of its "sources", in their order.
+        areas: of its sources, in their order.
         targets: its targets.
         at: what messages call it.
         notes: takes what is left out.
@@ -59,7 +59,7 @@ def people_of(
     missing: set[str] = set()
     total = 0
     sources = list_of(topography.get("sources"), f"{at}: sources")
-    for number, (each, area) in enumerate(zip(sources, shapes["sources"], strict=True), start=1):
+    for number, (each, area) in enumerate(zip(sources, areas, strict=True), start=1):
         where = f"{at}: source {number}"
         source = mapping_of(each, where)
         times = _times(mapping_of(source.get("spawner", source), f"{where}: spawner"), where, notes)
