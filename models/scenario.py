@@ -1,4 +1,4 @@
-"""Scenarios of JuPedSim and Vadere: their people on their floors."""
+"""Scenarios of JuPedSim and Vadere, and plans with sources: their people on their floors."""
 
 from __future__ import annotations
 
@@ -24,13 +24,14 @@ NEAR = 1.0
 
 
 class Scenario(PedestrianModel):
-    """The people of a scenario of another simulation, who walk as people of this package do.
+    """The people of a scenario of another simulation, or of the sources of a floor plan.
 
     Start areas, numbers, times, speeds, pre-movement, places to visit and exits are those of the
     file; bodies and behaviour are not. Warnings say what is left out.
 
     Args:
-        plan: file or folder of the scenario: JuPedSim's zip, or Vadere's .scenario.
+        plan: file or folder of the scenario: JuPedSim's zip, Vadere's .scenario, or a floor plan
+            with sources.
         preset: "default" or "paper".
         mobility_map: a map or its file; by default the able-bodied one that ships.
         population: the types of people instead, as "mixed" or "able_bodied: 0.9, child: 0.1".
@@ -46,7 +47,7 @@ class Scenario(PedestrianModel):
 
     def __init__(
         self,
-        plan: Annotated[Path | str | None, Files("*.zip", "*.scenario")] = None,
+        plan: Annotated[Path | str | None, Files("*.zip", "*.scenario", "*.geojson")] = None,
         preset: str = "default",
         mobility_map: MobilityMap | str | None = None,
         population: Population | str | None = None,
@@ -56,7 +57,7 @@ class Scenario(PedestrianModel):
         exits: str | None = None,
     ) -> None:
         if plan is None:
-            raise ModelError("plan: got none, expected a scenario (.zip, .scenario)")
+            raise ModelError("plan: got none, expected a scenario (.zip, .scenario, .geojson)")
         floor, people = read_scenario(plan, exits)
         super().__init__(
             floor,
@@ -86,7 +87,7 @@ class Scenario(PedestrianModel):
         free = shapely.union_all([floor.free])
         known: dict[str, Any] = {
             "route": [
-                Visit(_on(free, stop.area), stop.stay)
+                Visit(_on(free, stop.area), stop.stay, stop.capacity)
                 for stop in people.stops
                 if not stop.area.intersection(free).is_empty
             ],

@@ -127,6 +127,10 @@ def level_of(number: int, content: Content, elevation: Any, refuges: Sequence[Re
     Raises:
         FloorPlanError: it is no level.
     """
+    if content.people:
+        raise FloorPlanError(
+            f"level {number}: sources are for floor plans, found one in a building"
+        )
     if content.cut_off:
         raise FloorPlanError(f"level {number}: cut_off is for floor plans, found it in a building")
     return Level(

@@ -77,6 +77,7 @@ def run(
     """
     from mesa_mobility.experiments import open_store, read_experiment, run_experiment
     from mesa_mobility.experiments.missing import count_missing
+    from mesa_mobility.experiments.workers.compiling import is_compiled
 
     if scheduler is not None and workers is not None:
         raise ModelError("--workers: a scheduler has its own workers, expected one of the two")
@@ -94,6 +95,8 @@ def run(
             }
         )
         return
+    if scheduler is None and not is_compiled():
+        say("compiling first, once after installation: takes a minute or two")
     interrupted = False
     with gentle_interrupt() as stop_here, counting_bar(shown=not no_progress) as report:
         told: list[str] = []

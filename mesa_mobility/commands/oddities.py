@@ -1,4 +1,4 @@
-"""What `mesa-mobility plan --check` says: what is odd for an evacuation, on each level."""
+"""The list of `mesa-mobility plan --check`: oddities for an evacuation, on each level."""
 
 from __future__ import annotations
 

@@ -122,7 +122,7 @@ def plan(
 
 
 def _of_building(building: Building) -> tuple[dict[str, Any], dict[str, str]]:
-    """What a building holds, as values and as the rows of a table."""
+    """The parts of a building, as values and as the rows of a table."""
     plan = building.floor_plan
     exits = {each.name: each.length for each in plan.exits}
     levels = {str(each.number): each.elevation for each in building.levels}
@@ -148,7 +148,7 @@ def _of_building(building: Building) -> tuple[dict[str, Any], dict[str, str]]:
 
 
 def _of_plan(found: FloorPlan) -> tuple[dict[str, Any], dict[str, str]]:
-    """What a floor plan holds, as values and as the rows of a table."""
+    """The parts of a floor plan, as values and as the rows of a table."""
     low, high = found.bounds[:2], found.bounds[2:]
     exits = {each.name: each.length for each in found.exits}
     gates = {each.name: each.length for each in found.gates}
@@ -199,6 +199,7 @@ def _room(room: Room) -> dict[str, Any]:
         "level": room.level,
         "use": room.use,
         "area_m2": room.area,
+        "stated_area_m2": room.stated_area,
         "doors": list(room.doors),
     }
 

@@ -1,4 +1,4 @@
-"""What is odd about a floor plan for an evacuation: narrow doors, dead ends, traps and gaps."""
+"""Oddities of a floor plan for an evacuation: narrow doors, dead ends, traps and gaps."""
 
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
@@ -8,6 +8,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.floorplan.dead_ends import dead_ends_of, width_of
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.formats.assembling.edges import Edge
 from mesa_mobility.floorplan.reachability import pieces_of
@@ -17,13 +18,6 @@ WHEELCHAIR = 0.8
 
 ADULT = 0.323
 """Width in metres of the narrowest gap that adults pass."""
-
-CORRIDOR = 2.5
-"""Metres; wider floor is no corridor."""
-
-DEAD_END = 6.1
-"""Metres of a corridor that leads nowhere: 20 feet in the International Building Code, 1020.5,
-without sprinklers."""
 
 GAP = 0.2
 """Metres; floor that is narrower is a gap in which nobody walks."""
@@ -53,10 +47,10 @@ class Oddity(NamedTuple):
 
 
 def oddities_of(plan: Floor, no_doors: Collection[str] = ()) -> list[Oddity]:
-    """What is odd about a floor plan for an evacuation, at most 50 places of each kind.
+    """The oddities of a floor plan for an evacuation, at most 50 places of each kind.
 
     The kinds are "narrow door", "exit wider than its floor", "no way out", "no way out for
-    wheelchairs", "dead end", "gap" and "thin wall".
+    wheelchairs", "dead end" (see ``dead_ends_of``), "gap" and "thin wall".
 
     Args:
         plan: the floor plan. Gates and exits that are closed count as open.
@@ -77,7 +71,7 @@ def oddities_of(plan: Floor, no_doors: Collection[str] = ()) -> list[Oddity]:
         _narrow_doors(plan, no_doors),
         _wide_exits(plan, free, no_doors),
         _traps(plan, free),
-        _dead_ends(plan, free),
+        _dead_ends(plan),
         _gaps(free),
         _thin_walls(free),
     ):
@@ -127,25 +121,10 @@ def _traps(plan: Floor, free: BaseGeometry) -> Iterator[Oddity]:
                 yield Oddity(kind, text, _spot(piece))
 
 
-def _dead_ends(plan: Floor, free: BaseGeometry) -> Iterator[Oddity]:
-    """Corridors that wide floor, or a door, joins at one end only."""
-    half = CORRIDOR / 2
-    wide = free.buffer(-half, join_style="mitre").buffer(half + 1e-3, join_style="mitre")
-    doors = shapely.union_all([each.line for each in plan.openings()]).buffer(0.1)
-    for part in _polygons(free.difference(wide)):
-        width = _width(part)
-        if not GAP < width <= CORRIDOR:
-            continue
-        ends = shapely.union_all([part.intersection(wide.buffer(2e-3)), part.intersection(doors)])
-        joined = shapely.get_parts(ends.buffer(CORRIDOR / 4))
-        if ends.is_empty or len(joined) > 1:
-            continue
-        away = shapely.distance(ends, shapely.points(shapely.get_coordinates(part)))
-        far = int(np.argmax(away))
-        if away[far] > DEAD_END:
-            x, y = shapely.get_coordinates(part)[far].tolist()
-            text = f"a corridor {width:.1f} m wide leads nowhere for {away[far]:.1f} m"
-            yield Oddity("dead end", text, (x, y))
+def _dead_ends(plan: Floor) -> Iterator[Oddity]:
+    for each in dead_ends_of(plan):
+        text = f"a corridor {each.width:.1f} m wide leads nowhere for {each.length:.1f} m"
+        yield Oddity("dead end", text, each.place)
 
 
 def _gaps(free: BaseGeometry) -> Iterator[Oddity]:
@@ -155,7 +134,9 @@ def _gaps(free: BaseGeometry) -> Iterator[Oddity]:
     for part in sorted(_polygons(free.difference(kept)), key=lambda each: -each.area):
         length = max(np.ptp(shapely.get_coordinates(part), axis=0))
         if length >= LEAST_GAP and part.area > 1e-3:
-            text = f"a gap {_width(part):.2f} m wide and {length:.1f} m long, too narrow to walk in"
+            text = (
+                f"a gap {width_of(part):.2f} m wide and {length:.1f} m long, too narrow to walk in"
+            )
             yield Oddity("gap", text, _spot(part))
 
 
@@ -165,14 +146,9 @@ def _thin_walls(free: BaseGeometry) -> Iterator[Oddity]:
     closed = free.buffer(half, join_style="mitre").buffer(-half - 1e-4, join_style="mitre")
     for part in sorted(_polygons(closed.difference(free)), key=lambda each: -each.area):
         length = max(np.ptp(shapely.get_coordinates(part), axis=0))
-        if length >= LEAST_GAP and _width(part) > 1e-3:
-            text = f"floor is parted by {_width(part):.3f} m for {length:.1f} m"
+        if length >= LEAST_GAP and width_of(part) > 1e-3:
+            text = f"floor is parted by {width_of(part):.3f} m for {length:.1f} m"
             yield Oddity("thin wall", text, _spot(part))
-
-
-def _width(part: Polygon) -> float:
-    """Mean width of a long area, metres."""
-    return 2.0 * part.area / max(part.length, 1e-9) if part.length else 0.0
 
 
 def _spot(part: Polygon) -> tuple[float, float]:

@@ -237,7 +237,8 @@ class FloorPlan(Floor):
             warnings.warn(f"{where}: {note}", stacklevel=3)
         if content.people:
             warnings.warn(
-                f"{where}: left out people of {len(content.people)} sources: this is the floor "
+                f"{where}: left out people of {len({each.name for each in content.people})} "
+                "sources: this is the floor "
                 f"plan alone; `mesa-mobility run {where}` has them walk",
                 stacklevel=3,
             )
@@ -364,7 +365,7 @@ class FloorPlan(Floor):
 
     @staticmethod
     def members() -> dict[str, Kind]:
-        """What the members of ``state`` are."""
+        """Names of the members of ``state``."""
         return {
             "obstacles": Several(Whole(), dict, values=Object(Polygon)),
             "next_obstacle": Whole(),

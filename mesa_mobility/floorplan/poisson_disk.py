@@ -131,7 +131,7 @@ def _shake(
 def _away(
     points: NDArray[np.float64], avoid: NDArray[np.float64], spacing: float
 ) -> NDArray[np.bool_]:
-    """Which points are far enough from those to avoid; distances among them do not count."""
+    """A mask of the points far enough from those to avoid; distances among them do not count."""
     away = np.ones(len(points), dtype=np.bool_)
     for place in avoid:
         away &= np.hypot(*(points - place).T) >= spacing
@@ -167,7 +167,7 @@ def _add(
 def _with_room(
     points: NDArray[np.float64], cells: NDArray[np.int64], fixed: int, spacing: float
 ) -> NDArray[np.bool_]:
-    """Which points are kept: the first `fixed`, then each that is `spacing` from those before."""
+    """A mask of the points kept: the first `fixed`, then those `spacing` from all before them."""
     stays = np.zeros(len(points), dtype=np.bool_)
     # A hash table of chains: `last` point of each bucket, `earlier` point of each point.
     # Cells that share a bucket only make its chain longer.

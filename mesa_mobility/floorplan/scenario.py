@@ -37,9 +37,11 @@ def read_scenario(
 
 
 def has_people(path: str | os.PathLike[str]) -> bool:
-    """Whether files of this format are scenarios with people.
+    """Whether a file is a scenario, or a plan with sources, whose people can walk.
 
     Raises:
-        FloorPlanError: no format reads such a file.
+        FloorPlanError: no format reads such a file, or it cannot be read.
     """
-    return PLANS.of(path, READ).has_people
+    chosen: Any = PLANS.of(path, READ)
+    found: bool = chosen.has_people(Path(path))
+    return found

@@ -1,4 +1,4 @@
-"""What a run of a model used: maps of its people, floor plan, files, preset and population."""
+"""Inputs of a run of a model: maps of its people, floor plan, files, preset and population."""
 
 from __future__ import annotations
 
@@ -74,7 +74,8 @@ def inputs_of(
         found[f"map of {kind}"] = (
             f"{of['file']}, sha256 {of['sha256']}" if of["file"] else "made by the model"
         )
-    if plan := getattr(model, "floor_plan", None):
+    # The plane of a building has no GeoJSON of its own.
+    if plan := getattr(model, "building", None) or getattr(model, "floor_plan", None):
         text = json.dumps(plan.to_geojson(), sort_keys=True)
         found["floor plan as GeoJSON"] = f"sha256 {hashlib.sha256(text.encode()).hexdigest()}"
     # A model of another package need not have rules.

@@ -1,4 +1,4 @@
-"""What results were computed with: versions of packages, machine, and sha256 of files."""
+"""Versions of packages, machine and sha256 of files with which results were computed."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ _UNITS = {"_per_m_s": "1/(m s)", "_per_s": "1/s", "_mps": "m/s", "_m2": "m²", "
 
 
 def words_of(name: str, labels: Mapping[str, str] | None = None) -> str:
-    """What a figure is called in a report: words, and its unit.
+    """The words for a figure in a report, with its unit.
 
     Args:
         name: of the column, such as ``egress_s`` or ``door.east.flow_per_s``.

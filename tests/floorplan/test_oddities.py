@@ -63,7 +63,41 @@ def test_dead_ends(length, is_odd):
     assert ("dead end" in found) is is_odd
     if is_odd:
         assert found["dead end"].place[0] == pytest.approx(-length, abs=0.01)
-        assert "for 8.0 m" in found["dead end"].text
+        assert found["dead end"].text == "a corridor 2.0 m wide leads nowhere for 8.0 m"
+
+
+def with_a_long_room(*more, exits=(DOOR,)):
+    """A room 2.2 m wide and 8 m long beside the hall, behind a door; ``more`` has a second room
+    behind a door at its other end."""
+    floor = [HALL, box(-8.2, 3, -0.2, 5.2), box(-0.3, 3.5, 0.1, 4.5)]
+    gates = [Gate("first", (-0.1, 3.5), (-0.1, 4.5))]
+    if more:
+        floor += [box(-9, 0, -4, 2.8), box(-8, 2.7, -7, 3.1)]
+        gates += [Gate("second", (-8, 2.9), (-7, 2.9))]
+    return odd(union_all(floor), exits=exits, gates=gates)
+
+
+def test_rooms_and_ways_to_rooms():
+    """A room behind one door is no dead end. One with another room behind it is the only way from
+    there: a corridor that leads nowhere where there are two exits, both beyond its first door, but
+    not where there is one, since then every way is the only one."""
+    back = Exit("back", (0, 0.5), (0, 2))
+    assert "dead end" not in with_a_long_room()
+    assert "dead end" not in with_a_long_room(exits=[DOOR, back])
+    assert "dead end" not in with_a_long_room("second")
+    found = with_a_long_room("second", exits=[DOOR, back])["dead end"]
+    # From the door to the far corner at (-8.2, 3 or 5.2).
+    assert found.text == "a corridor 2.2 m wide leads nowhere for 8.1 m"
+    assert found.place[0] == -8.2
+    side = Exit("side", (-9, 1), (-9, 2))
+    assert "dead end" not in with_a_long_room("second", exits=[DOOR, side])
+
+
+@pytest.mark.parametrize(("width", "is_odd"), [(2.4, True), (2.49, False)])
+def test_short_wide_recesses_are_no_dead_ends(width, is_odd):
+    """6.2 m long: 2.4 m wide is 2.58 times as long as wide, 2.49 m is 2.49 times."""
+    found = odd(union_all([HALL, box(-6.2, 3, 0, 3 + width)]), exits=[DOOR])
+    assert ("dead end" in found) is is_odd
 
 
 def test_a_corridor_to_an_exit_is_no_dead_end():
@@ -73,6 +107,6 @@ def test_a_corridor_to_an_exit_is_no_dead_end():
 
 def test_gaps_and_thin_walls():
     found = odd(HALL, exits=[DOOR], obstacles=[box(2, 0.15, 4, 2), box(5, 6, 5.03, 8)])
-    assert found["gap"].text == "a gap 0.14 m wide and 2.0 m long, too narrow to walk in"
+    assert found["gap"].text == "a gap 0.15 m wide and 2.0 m long, too narrow to walk in"
     assert found["gap"].place[1] == pytest.approx(0.075, abs=0.01)
     assert found["thin wall"].text == "floor is parted by 0.030 m for 2.0 m"

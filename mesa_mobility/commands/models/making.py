@@ -113,8 +113,10 @@ def model_of_file(text: str, options: ModelOptions) -> tuple[str, ModelOptions]:
 
     if path.is_file() and path.suffix.lower() not in PLANS.suffixes(READ):
         return text, options
-    name = SCENARIO_MODEL if has_people(path) else PLAN_MODEL
-    return name, replace(options, settings=[f"plan={text}", *(options.settings or [])])
+    settings = options.settings or []
+    filled = any(each.startswith("fill=") for each in settings)
+    name = SCENARIO_MODEL if not filled and has_people(path) else PLAN_MODEL
+    return name, replace(options, settings=[f"plan={text}", *settings])
 
 
 def create_model(

@@ -1,4 +1,4 @@
-"""What the runs of an experiment are of: plan, people, assumptions, design."""
+"""The basis of the runs of an experiment: plan, people, assumptions, design."""
 
 from __future__ import annotations
 

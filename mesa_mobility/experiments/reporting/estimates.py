@@ -33,7 +33,7 @@ MOST_VALUES = 6
 """Values of a parameter that are compared two by two."""
 
 _ESTIMATED = {"mean": "mean", "p50": "median", "p95": "95th percentile"}
-"""What is given of each figure, by how it is asked for."""
+"""The kinds of estimates of a figure, by how they are asked for."""
 
 _OF_DOORS = ("people", "first_s", "last_s", "flow_per_s")
 

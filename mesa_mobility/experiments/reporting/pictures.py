@@ -24,7 +24,7 @@ LEAST_RUNS = 5
 """Runs of a point below which no interval is given: it would say little."""
 
 _MARKS = {"v": "median, no mean: some runs did not reach it", "^": "the median is greater"}
-"""What stands at a point where no mean is given."""
+"""Markers at points where no mean is given, in words."""
 
 _MOST_POINTS = 8
 """Points of the design with a colour each."""
@@ -190,7 +190,7 @@ def _said_of_point(of: pd.DataFrame, names: list[str], labels: Mapping[str, str]
 
 
 def _instead(figure: str, values: NDArray[np.float64], marker: str) -> float:
-    """What a marker stands for at a point, or nan where it does not."""
+    """The value of a marker at a point, or nan where it has none."""
     if not np.isinf(values).any():
         return np.nan
     median = estimate(f"p50 {figure}", values)

@@ -230,7 +230,7 @@ def _rows(setup: Setup, batch: Batch, folder: Folder, journal: Journal) -> Itera
             journal.begin(run)
             with _ended_when_late(setup, journal.late):
                 row, model = run_once(setup, point, replication)
-            if setup.trajectories and getattr(model, "recorder", None) is not None:
+            if setup.trajectories and _has_tracks(model):
                 _write_trajectories(folder, model, row["run"])
             journal.end(row)
         yield row
@@ -268,6 +268,12 @@ def _ended_when_late(setup: Setup, said_in: Path) -> Iterator[None]:
             yield
         finally:
             faulthandler.cancel_dump_traceback_later()
+
+
+def _has_tracks(model: Any) -> bool:
+    """Whether a model has recorded anything: a run that failed at its start has not."""
+    recorder = getattr(model, "recorder", None)
+    return recorder is not None and len(recorder.arrays()["frame"]) > 0
 
 
 def _write_trajectories(folder: Folder, model: Any, run: str) -> None:

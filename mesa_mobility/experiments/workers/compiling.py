@@ -30,15 +30,22 @@ def compile_once(model: type | str) -> None:
         return
     # A campaign takes long enough to be worth code for this very processor.
     compile_natively()
-    pattern = "*/decision.decide-*.nbc"
-    if any(place.glob(pattern)):
+    if is_compiled():
         return
     try:
         with FileLock(place / LOCK):
-            if not any(place.glob(pattern)):
+            if not is_compiled():
                 _compile()
     except (OSError, NotImplementedError):  # a cache that cannot be written, or has no locks
         _compile()
+
+
+def is_compiled() -> bool:
+    """Whether the cache has what a run needs, compiled on this machine."""
+    from mesa_mobility.compiled.cache import folder
+
+    place = folder()
+    return place is not None and any(place.glob("*/decision.decide-*.nbc"))
 
 
 def _compile() -> None:

@@ -7,7 +7,7 @@ import math
 import socket
 import time
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from os import getpid
@@ -81,10 +81,13 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
     try:
         with rules_of(point).followed():
             record = setup.trajectories or setup.doors
-            model = make_model(setup.model, point, row["seed"], record=record)
+            # The row has warnings, since a run may be far from those who read them.
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always", UserWarning)
+                model = make_model(setup.model, point, row["seed"], record=record)
             taken = _class(setup.model)[1]
             row["inputs"] = json.dumps(inputs_of(model, taken, point), sort_keys=True)
-            row["warning"] = _warning(model)
+            row["warning"] = _warning(model, [str(each.message) for each in said])
             _advance(model, setup, wall)
         row["status"] = _status(model)
         row |= _figures(model, set(row), occupancy=setup.occupancy)
@@ -200,13 +203,14 @@ def _advance(model: Any, setup: Setup, began: float) -> None:
         check()
 
 
-def _warning(model: Any) -> str | None:
-    """What the model itself would warn of."""
+def _warning(model: Any, said: Sequence[str]) -> str | None:
+    """The warnings of a model: those that it gave when it was made, and of its weights."""
     from mesa_mobility.crowd.costs.terms import without_weight
 
-    if not _has_pedestrians(model):
-        return None
-    return without_weight(model.terms, [each.name for each in model.pedestrian_types])
+    found = list(said)
+    if _has_pedestrians(model):
+        found.append(without_weight(model.terms, [each.name for each in model.pedestrian_types]))
+    return "; ".join(dict.fromkeys(filter(None, found))) or None
 
 
 def _has_pedestrians(model: Any) -> bool:

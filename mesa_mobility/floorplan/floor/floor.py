@@ -13,7 +13,7 @@ from mesa_mobility.floorplan.floor.wall_index import WallIndex
 
 
 class Floor(Layout):
-    """What can be asked about a floor plan as it is now; `FloorPlan` can change it, too.
+    """A floor plan as it is now, to be asked; `FloorPlan` can change it, too.
 
     Attributes:
         version: grows by one with every change of obstacles, gates or exits.

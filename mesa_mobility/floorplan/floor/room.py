@@ -7,14 +7,24 @@ from dataclasses import dataclass
 
 from shapely import Polygon
 
+from mesa_mobility._numbers import is_number
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.checks import read_polygon
 
 ROOM = "room"
 """The kind of a feature that is a room."""
 
+OF_ROOMS = "use", "stated_area"
+"""Properties of such a feature, besides its name, and fields of ``Room``."""
+
 LONGEST = 200
 """Characters of a name or a use."""
+
+MOST_AREA = 1e8
+"""Square metres of a room."""
+
+NEAR = 0.01
+"""Share by which the area of a room and its stated area differ where both are named."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +37,11 @@ class Room:
         level: number of its level; 0 on a floor plan.
         use: what it is used for, such as "office", for `model.fill`.
         doors: names of the gates and exits that lead into it. Plans set it themselves.
+        stated_area: square metres that the file of a plan gives for it, which may include parts of
+            its walls. Occupant loads of gross areas use it.
 
     Raises:
-        FloorPlanError: no polygon, no name, or a use that is no text.
+        FloorPlanError: no polygon, no name, a use that is no text, or no stated area above 0.
     """
 
     name: str
@@ -37,6 +49,7 @@ class Room:
     level: int = 0
     use: str = ""
     doors: tuple[str, ...] = ()
+    stated_area: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not 0 < len(self.name) <= LONGEST:
@@ -52,6 +65,12 @@ class Room:
             raise FloorPlanError(
                 f"room {self.name!r}: level must be a whole number, found {self.level!r:.60}"
             )
+        stated = self.stated_area
+        if stated is not None and not (is_number(stated) and 0.0 < stated <= MOST_AREA):
+            raise FloorPlanError(
+                f"room {self.name!r}: stated_area must be a number of square metres above 0, found "
+                f"{stated!r:.60}"
+            )
         object.__setattr__(self, "polygon", read_polygon(self.polygon, f"room {self.name!r}"))
         object.__setattr__(self, "doors", tuple(self.doors))
 
@@ -63,22 +82,30 @@ class Room:
 
     @property
     def area(self) -> float:
-        """Square metres, furniture included."""
+        """Square metres of its polygon, furniture included."""
         return self.shape.area
 
+    @property
+    def gross_area(self) -> float:
+        """Square metres as the file of a plan gives them; the area where it gives none."""
+        return self.stated_area or self.area
+
     def __str__(self) -> str:
-        return f"{self.name} ({self.area:.2f} m\u00b2{', ' * bool(self.use)}{self.use})"
+        size = f"{self.area:.2f} m\u00b2"
+        if abs(self.gross_area - self.area) > NEAR * self.area:
+            size += f", stated {self.gross_area:.2f} m\u00b2"
+        return f"{self.name} ({size}{', ' * bool(self.use)}{self.use})"
 
 
-def rooms_named_apart(named: Iterable[tuple[str, Polygon]]) -> list[Room]:
-    """Rooms of names that may be there several times; these are numbered from 2 on."""
+def rooms_named_apart(named: Iterable[tuple[str, Polygon, float | None]]) -> list[Room]:
+    """Rooms of names, areas and stated areas. Names that are there again are numbered from 2 on."""
     rooms: dict[str, Room] = {}
-    for name, area in named:
+    for name, area, stated in named:
         number, found = 1, name[:LONGEST]
         while found in rooms:
             number += 1
             found = f"{name[: LONGEST - 10]} {number}"
-        rooms[found] = Room(found, area)
+        rooms[found] = Room(found, area, stated_area=stated)
     return list(rooms.values())
 
 

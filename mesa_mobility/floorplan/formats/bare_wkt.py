@@ -43,7 +43,7 @@ def read_bare(text: str, where: str) -> Content:
 
 
 def drawn_of(text: str, where: str) -> Drawn:
-    """What geometries show, before it is put together; see ``read_bare``."""
+    """The parts of geometries, before they are put together; see ``read_bare``."""
     drawn, others = Drawn(), dict[str, int]()
     geometries = [
         (number, srid, part)

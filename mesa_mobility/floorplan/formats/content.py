@@ -13,14 +13,15 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.extent import check_coordinates
 from mesa_mobility.floorplan.floor.openings import Exit, Gate, Opening
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
-from mesa_mobility.floorplan.floor.room import ROOM, Room
+from mesa_mobility.floorplan.floor.room import OF_ROOMS, ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
+from mesa_mobility.floorplan.formats import sources
 from mesa_mobility.floorplan.formats.people import People
 
 OF_ZONES = [each for each in fields(SpeedZone) if each.name not in ("polygon", "name")]
 """Fields of ``SpeedZone`` that a file gives as properties, besides its name."""
 
-KINDS = ("walkable", "obstacle", "gate", "exit", "zone", ROOM)
+KINDS = ("walkable", "obstacle", "gate", "exit", "zone", ROOM, *sources.KINDS)
 """Values of the property `kind` of a feature."""
 
 
@@ -42,7 +43,7 @@ class Content:
         notes: what the reader has changed or left out, a line each.
         foreign: whether another program drew it. Floor from which no exit is reached is then left
             out, and named in a note.
-        people: those of a scenario, whom the model `scenario` puts on the floor.
+        people: those of a scenario, or of sources, whom the model `scenario` puts on the floor.
     """
 
     walkable: Polygon
@@ -78,6 +79,7 @@ def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
     if len(areas) != 1:
         raise FloorPlanError(f"{where}: expected one walkable area, found {len(areas)}")
     content = Content(name=areas[0][0], walkable=areas[0][1])
+    drawn: dict[str, list[sources.Drawn]] = {kind: [] for kind in sources.KINDS}
     for kind, name, geometry, properties, at in found:
         if kind == "walkable":
             content.cut_off = _flag(properties, "cut_off", at)
@@ -97,11 +99,15 @@ def content_of(features: Iterable[tuple[object, str]], where: str) -> Content:
                 content.zones.append(SpeedZone(geometry, name=name, **{"factor": 0.0, **given}))
             except FloorPlanError as error:
                 raise FloorPlanError(f"{at}: {error}") from None
+        elif kind in drawn:
+            drawn[kind].append(sources.Drawn(name, geometry, properties, at))
         else:
+            given = {each: properties[each] for each in OF_ROOMS if each in properties}
             try:
-                content.rooms.append(Room(name, geometry, use=properties.get("use", "")))
+                content.rooms.append(Room(name, geometry, **given))
             except FloorPlanError as error:
                 raise FloorPlanError(f"{at}: {error}") from None
+    content.people = sources.people_of(drawn[sources.SOURCE], drawn[sources.COUNTER])
     return content
 
 

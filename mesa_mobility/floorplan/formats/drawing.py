@@ -225,5 +225,5 @@ def _read(path: "str | os.PathLike[str]") -> Any:
 
 
 def _line(error: Exception) -> str:
-    """What an error says, on one short line."""
+    """The text of an error, on one short line."""
     return " ".join(str(error).split())[:100] or type(error).__name__

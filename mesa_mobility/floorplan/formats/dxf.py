@@ -22,7 +22,7 @@ from mesa_mobility.floorplan.formats.layers import guessed
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 
 KINDS = ("walkable", "obstacle", "wall", "gate", "exit")
-"""What a layer can hold."""
+"""Contents of a layer."""
 
 JOINED = 0.001
 """Metres between the ends of two lines that meet."""

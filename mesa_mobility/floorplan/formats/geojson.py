@@ -13,12 +13,13 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.outline import SIMPLIFY
-from mesa_mobility.floorplan.floor.room import ROOM, Room
+from mesa_mobility.floorplan.floor.room import OF_ROOMS, ROOM, Room
 from mesa_mobility.floorplan.floor.zones import SpeedZone
 from mesa_mobility.floorplan.formats.assembling.texts import parsed
 from mesa_mobility.floorplan.formats.content import OF_ZONES, Content, content_of
 from mesa_mobility.floorplan.formats.indoor.rooms import HEIGHT, read_rooms
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
+from mesa_mobility.floorplan.formats.sources import SOURCE
 from mesa_mobility.floorplan.formats.storeys import Storeys
 from mesa_mobility.plugins.annotations import Range
 
@@ -34,6 +35,12 @@ class GeoJson(PlanFormat):
     ) -> Content | Storeys:
         """See ``read`` of this module; ``height`` is for files of other programs."""
         return read(path, height)
+
+    def has_people(self, path: Path) -> bool:
+        """Whether it has sources."""
+        features = features_of(load(path), str(path))
+        given = (each.get("properties") for each in features if isinstance(each, Mapping))
+        return any(isinstance(each, Mapping) and each.get("kind") == SOURCE for each in given)
 
     def write(self, plan: Floor, path: Path) -> None:
         """Write a floor plan; see ``FloorPlan.write_geojson``."""
@@ -114,7 +121,7 @@ def _has_kind(feature: Any) -> bool:
 
 
 def load(source: "str | os.PathLike[str] | Mapping[str, Any]") -> object:
-    """What a file holds as JSON; a mapping as it is.
+    """The JSON of a file; a mapping as it is.
 
     Raises:
         FloorPlanError: the file cannot be read or is not JSON.
@@ -152,9 +159,9 @@ def zone_feature(zone: SpeedZone) -> dict[str, Any]:
 
 
 def room_feature(room: Room) -> dict[str, Any]:
-    """The feature of a room, with its use if it has one."""
+    """The feature of a room, with its use and its stated area if it has them."""
     feature = feature_of(ROOM, room.name, room.shape)
-    feature["properties"] |= {"use": room.use} if room.use else {}
+    feature["properties"] |= {name: value for name in OF_ROOMS if (value := getattr(room, name))}
     return feature
 
 

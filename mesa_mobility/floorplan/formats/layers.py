@@ -1,4 +1,4 @@
-"""What the layers of a drawing hold, guessed from their names."""
+"""Kinds of the layers of a drawing, guessed from their names."""
 
 import re
 from collections.abc import Sequence

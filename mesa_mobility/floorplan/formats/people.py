@@ -15,10 +15,12 @@ MOST = 20_000
 
 @dataclass(frozen=True)
 class Stop:
-    """An area that people visit, and for how long they stay, seconds."""
+    """An area that people visit, for how long they stay, in seconds, and how many may stay there at
+    once; None for any number."""
 
     area: BaseGeometry
     stay: float = 0.0
+    capacity: int | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,13 @@ def count_of(value: Any, at: str) -> int:
     if not whole or not 0 <= value <= MOST or value != int(value):
         raise FloorPlanError(f"{at}: got {value!r:.40}, expected 0 to {MOST:,} people")
     return int(value)
+
+
+def total_of(before: int, more: int, at: str) -> int:
+    """The sum of two numbers of people; FloorPlanError if a scenario may not have so many."""
+    if before + more > MOST:
+        raise FloorPlanError(f"{at}: more than {MOST:,} people in all, expected at most that")
+    return before + more
 
 
 def left_out(counts: Mapping[str, int]) -> list[str]:

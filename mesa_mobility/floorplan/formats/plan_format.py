@@ -1,9 +1,9 @@
-"""What a format of floor plan files is, and all that are installed."""
+"""The base class of formats of floor plan files, and all that are installed."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.content import Content
@@ -20,14 +20,18 @@ class PlanFormat(Format):
 
     Keyword-only parameters of these methods are the options of the format.
 
-    Attributes:
-        has_people: whether files are scenarios with people.
     """
 
-    has_people: ClassVar[bool] = False
+    def has_people(self, path: Path) -> bool:
+        """Whether a file is a scenario with people, which ``read`` puts into the content.
+
+        Raises:
+            FloorPlanError: the file cannot be read.
+        """
+        return False
 
     def read(self, path: Path) -> Content | Storeys:
-        """What a file holds: one floor, or several storeys and what joins them.
+        """The content of a file: one floor, or several storeys and what joins them.
 
         Args:
             path: the file.

@@ -32,6 +32,10 @@ class Wkt(PlanFormat):
         """Read a floor plan; see the function ``read`` of this module."""
         return read(path)
 
+    def has_people(self, path: Path) -> bool:
+        """Whether it has sources."""
+        return bool(read(path).people)
+
 
 def read(path: "str | os.PathLike[str]") -> Content:
     """Read a text with a line such as ``exit street LINESTRING (20 3, 20 5)`` for each part.

@@ -39,13 +39,18 @@ def rooms_of(plan: Floor) -> tuple[Room, ...]:
     return tuple(replace(each, doors=_doors(each.shape, openings, floor)) for each in rooms)
 
 
-def _found(plan: Floor) -> list[Room]:
-    obstacles = shapely.union_all(list(plan.obstacles.values()))
-    free = plan.walkable.difference(obstacles)
+def floor_between_gates(plan: Floor) -> list[Polygon]:
+    """The floor without obstacles, cut at the lines of its gates; gaps in which nobody has room are
+    left out."""
+    free = plan.walkable.difference(shapely.union_all(list(plan.obstacles.values())))
     lines = [_longer(gate) for gate in plan.gates]
     pieces = _cut(free, lines) if lines else list(shapely.get_parts(free))
-    pieces = [each for each in pieces if not each.buffer(-HALF_BODY).is_empty]
-    whole = _with_furniture(pieces, plan.walkable.intersection(obstacles))
+    return [each for each in pieces if not each.buffer(-HALF_BODY).is_empty]
+
+
+def _found(plan: Floor) -> list[Room]:
+    obstacles = shapely.union_all(list(plan.obstacles.values()))
+    whole = _with_furniture(floor_between_gates(plan), plan.walkable.intersection(obstacles))
     whole.sort(key=lambda each: (-round(each.area, 3), *each.bounds))
     return [Room(f"room {number}", each) for number, each in enumerate(whole, start=1)]
 

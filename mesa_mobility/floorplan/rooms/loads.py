@@ -18,6 +18,9 @@ from mesa_mobility.floorplan.floor.room import Room
 MOST_PEOPLE = 1_000_000
 """People in one room at most."""
 
+DIGITS = 20
+"""Digits of a number of people that are read; a number with more is too large anyway."""
+
 DENSEST = 10.0
 """People on a square metre at most."""
 
@@ -39,17 +42,24 @@ _EXPECTED = "expected a number of people, a density such as 0.5/m2, a space such
 
 @dataclass(frozen=True)
 class UseOfTable:
-    """What a table says of one use.
+    """The line of a table for one use.
 
     Attributes:
         density: people on a square metre.
+        gross: whether it is for the gross floor area, walls included, of which ``Room.gross_area``
+            is that of a room.
         words: of the table, in short.
         by_heart: whether the figure was written down from memory.
     """
 
     density: float
+    gross: bool
     words: str
     by_heart: bool
+
+    def people(self, room: Room) -> float:
+        """How many people a room of this use holds, not yet rounded."""
+        return self.density * (room.gross_area if self.gross else room.area)
 
 
 @dataclass(frozen=True)
@@ -74,7 +84,9 @@ def load_tables() -> Mapping[str, LoadTable]:
     found = {}
     for name, table in tomllib.loads(text).items():
         uses = {
-            use: UseOfTable(_density(each), each["words"], each.get("by_heart", False))
+            use: UseOfTable(
+                _density(each), each.get("gross", False), each["words"], each.get("by_heart", False)
+            )
             for use, each in table["uses"].items()
         }
         found[name] = LoadTable(
@@ -102,7 +114,8 @@ def occupant_numbers(
         loads: a load for all rooms, or loads by name of a room or by pattern such as "office*"; a
             room gets the first load whose pattern fits it, and nobody if none does. A load is the
             number of people in all these rooms, shared by area; a density, "0.5/m2"; the space of
-            each person, "10 m2"; or a use of a table, "office" or "nfpa101:office". None, or the
+            each person, "10 m2"; or a use of a table, "office" or "nfpa101:office", for which some
+            tables count the gross area of rooms (``Room.gross_area``). None, or the
             name of a table, stands for the rooms' own uses. Rooms without a use are then left
             empty.
 
@@ -147,8 +160,8 @@ def shared_out(shares: Sequence[float]) -> list[int]:
 def _numbers(rooms: Sequence[Room], load: Load) -> list[int]:
     if not rooms:
         return []
-    if isinstance(load, str) and load.strip().isdigit():
-        load = int(load)
+    if isinstance(load, str) and load.strip().isdecimal():
+        load = int(load.strip()[:DIGITS])
     if isinstance(load, int) and not isinstance(load, bool):
         if not 0 <= load <= MOST_PEOPLE:
             raise FloorPlanError(f"{load} people, expected 0 to {MOST_PEOPLE:,}")
@@ -156,15 +169,15 @@ def _numbers(rooms: Sequence[Room], load: Load) -> list[int]:
         return shared_out([load * each.area / whole for each in rooms])
     if not isinstance(load, str | None):
         raise FloorPlanError(f"load {load!r:.60}: {_EXPECTED}")
-    density_of = _read((load or DEFAULT).strip(), rooms)
-    shares = [density_of(each) * each.area for each in rooms]
+    people_in = _read((load or DEFAULT).strip(), rooms)
+    shares = [people_in(each) for each in rooms]
     if max(shares) > MOST_PEOPLE:
         raise FloorPlanError(f"load {load!r:.60}: more than {MOST_PEOPLE:,} people in a room")
     return shared_out(shares)
 
 
 def _read(text: str, rooms: Sequence[Room]) -> Callable[[Room], float]:
-    """The density of a room by a text."""
+    """How many people a room holds by a text, not yet rounded."""
     density, space = _DENSITY.fullmatch(text), _SPACE.fullmatch(text)
     if density or space:
         found = density or space
@@ -175,31 +188,32 @@ def _read(text: str, rooms: Sequence[Room]) -> Callable[[Room], float]:
             raise FloorPlanError(
                 f"load {text!r:.60}: expected at most {DENSEST:g} people on a square metre"
             )
-        return lambda room: per_m2
+        return lambda room: per_m2 * room.area
     if text in load_tables():
         if not any(each.use for each in rooms):
             raise FloorPlanError(
                 f"{_names(rooms)}: no use is known, expected one, or a number or density of people"
             )
-        return lambda room: _of_use(room.use, text, f"room {room.name!r}: ") if room.use else 0.0
+        return lambda room: (
+            _of_use(room.use, text, f"room {room.name!r}: ").people(room) if room.use else 0.0
+        )
     table, _, use = text.rpartition(":")
     if table and table not in load_tables():
         raise FloorPlanError(
             f"load {text!r:.60}: there is no table {table!r:.60}; there are "
             f"{', '.join(load_tables())}"
         )
-    known = _of_use(use, table or DEFAULT, "")
-    return lambda room: known
+    return _of_use(use, table or DEFAULT, "").people
 
 
-def _of_use(use: str, table: str, where: str) -> float:
+def _of_use(use: str, table: str, where: str) -> UseOfTable:
     uses = load_tables()[table].uses
     if use not in uses:
         raise FloorPlanError(
             f"{where}there is no use {use!r:.60} in table {table}: {_EXPECTED} such as "
             f"{', '.join(uses)}"
         )
-    return uses[use].density
+    return uses[use]
 
 
 def _names(rooms: Iterable[Room]) -> str:

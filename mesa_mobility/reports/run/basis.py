@@ -1,4 +1,4 @@
-"""What a run is of: plan, people and assumptions."""
+"""The basis of a run: plan, people and assumptions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.floorplan import FloorPlan, Room
 from mesa_mobility.reports.html import Page, picture
 from mesa_mobility.reports.run.pictures import PAGE
 from mesa_mobility.reports.run.texts import count, number
@@ -33,7 +33,7 @@ ASSUMPTIONS = (
     "The run is one of many possible: another seed gives other people and other chance. Only an "
     "experiment with many runs shows how much the figures scatter.",
 )
-"""What every run assumes."""
+"""Assumptions of every run."""
 
 
 LIMITS = (
@@ -59,8 +59,17 @@ def add_plan(page: Page, measured: Measured) -> None:
         if stairs:
             page.table("Stairs", ["name", "from level", "to level"], stairs)
     if measured.rooms:
-        rooms = [[each.name, each.level, number(each.shape.area)] for each in measured.rooms]
-        page.table("Rooms", ["name", "level", "area (m²)"], rooms)
+        add_rooms(page, measured.rooms)
+
+
+def add_rooms(page: Page, rooms: Sequence[Room]) -> None:
+    """Add the rooms of a plan, with the areas that its file states, if it states any."""
+    columns = ["name", "level", "floor (m²)"]
+    rows = [[each.name, each.level, number(each.area)] for each in rooms]
+    if any(each.stated_area for each in rooms):
+        columns.append("area as the file states it (m²)")
+        rows = [[*row, number(each.stated_area)] for row, each in zip(rows, rooms, strict=True)]
+    page.table("Rooms", columns, rows)
 
 
 def add_plan_picture(page: Page, plan: FloorPlan | Building) -> None:

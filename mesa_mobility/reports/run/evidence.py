@@ -1,4 +1,4 @@
-"""What a reader needs to trust a run: checks, definitions, versions and how to repeat it."""
+"""Evidence for a run: checks, definitions, versions and the command that repeats it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run has found: results, doors and levels of service."""
+"""Findings of a run: main figures, results over time, and doors."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ _MOST_DOORS = 8
 
 
 def drawn(plot: Callable[[str | os.PathLike[str]], None]) -> bytes:
-    """What a function draws to the path that it gets, as PNG."""
+    """The PNG that a function draws to the path that it gets."""
     with tempfile.TemporaryDirectory(prefix="mesa-mobility-report-") as folder:
         path = Path(folder) / "picture.png"
         plot(path)

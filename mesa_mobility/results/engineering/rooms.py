@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.errors import FloorPlanError, ResultsError
 from mesa_mobility.floorplan import FloorPlan, Room
-from mesa_mobility.floorplan.floor.room import ROOM
+from mesa_mobility.floorplan.floor.room import OF_ROOMS, ROOM
 from mesa_mobility.results.engineering.doors import figures_of_times
 from mesa_mobility.results.measures.storeys import last_there, where
 from mesa_mobility.results.tracks import Tracks
@@ -48,7 +48,7 @@ def read_rooms(source: str | os.PathLike[str] | Mapping[str, Any]) -> list[Room]
     """Read rooms from a GeoJSON file, or from the FeatureCollection itself.
 
     Each feature is a Polygon with the properties ``kind``, "room", its ``name``, perhaps its
-    ``use`` and, in buildings, the number of its ``level``.
+    ``use`` and ``stated_area`` and, in buildings, the number of its ``level``.
 
     Raises:
         FloorPlanError: no such file, or a feature that is no room; the message names both.
@@ -65,9 +65,9 @@ def read_rooms(source: str | os.PathLike[str] | Mapping[str, Any]) -> list[Room]
             raise FloorPlanError(f"{here}: expected a Feature with the property kind {ROOM!r}")
         area: Any = geometry_of(feature, "Polygon", ROOM, here)
         level = whole(properties, "level", here, 0)
+        given = {each: properties[each] for each in OF_ROOMS if each in properties}
         try:
-            use = properties.get("use", "")
-            rooms.append(Room(properties.get("name", ""), area, level, use))
+            rooms.append(Room(properties.get("name", ""), area, level, **given))
         except FloorPlanError as error:
             raise FloorPlanError(f"{here}: {error}") from None
     return rooms

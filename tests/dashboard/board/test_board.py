@@ -1,8 +1,14 @@
 """A floor plan drawn in the browser, saved and run."""
 
+import json
+
 import matplotlib.image
 import numpy as np
 import pytest
+from matplotlib.backends.backend_pdf import PdfPages
+from matplotlib.figure import Figure
+from mesa_mobility.models import Scenario
+from shapely.geometry import shape
 
 from mesa_mobility import FloorPlan, PedestrianModel
 
@@ -107,3 +113,56 @@ def test_a_picture_has_its_scale_by_two_clicks(tab, tmp_path):
     tab.page.get_by_role("status").filter(has_text="wide").wait_for()
     assert float(image.get_attribute("width")) == pytest.approx(15.0, abs=0.2)
     assert float(image.get_attribute("height")) == pytest.approx(7.5, abs=0.1)
+
+
+def test_people_of_a_drawn_source_are_served_and_leave(tab, tmp_path):
+    board = Board(tab)
+    board.draw("floor", 2, 2, 20, 10)
+    board.draw("exit", 20, 5, 20, 7)
+    board.draw("source", 2, 2, 5, 10)
+    board.page.get_by_label("people", exact=True).fill("6")
+    board.page.get_by_label("seconds over which they come").fill("12")
+    board.page.get_by_label("name of the selected").fill("bus")
+    board.draw("counter", 10, 3, 12, 4)
+    board.page.get_by_label("seconds for each").fill("2")
+    board.page.get_by_label("people at once").fill("3")
+    board.draw("counter", 14, 3, 15, 4)
+    board.page.get_by_role("button", name="delete", exact=True).click()
+    tab.expect(board.sheet.locator(".counter")).to_have_count(1)
+    board.tool("select")
+    board.drag(11, 4, 11, 8)
+    board.save(tmp_path / "desk.geojson")
+    features = json.loads((tmp_path / "desk.geojson").read_text())["features"]
+    drawn = {each["properties"]["kind"]: each for each in features}
+    assert drawn["source"]["properties"] == {
+        "kind": "source",
+        "name": "bus",
+        "number": 6,
+        "seconds": 12,
+    }
+    given = drawn["counter"]["properties"]
+    assert (given["stay"], given["capacity"]) == (2, 3)
+    assert shape(drawn["counter"]["geometry"]).bounds == (10.0, 7.0, 12.0, 8.0)
+    model = Scenario(tmp_path / "desk.geojson", rng=1)
+    model.run(max_seconds=120)
+    assert (model.sources[0].entered, model.inside) == (6, 0)
+
+
+def test_a_page_of_a_pdf_is_drawn_over(tab, tmp_path):
+    with PdfPages(tmp_path / "plan.pdf") as pdf:
+        for size in ((6, 3), (4, 4)):
+            figure = Figure(figsize=size)
+            figure.subplots()
+            pdf.savefig(figure)
+    board = Board(tab)
+    board.page.get_by_label("picture to draw over").set_input_files(tmp_path / "plan.pdf")
+    image = board.sheet.locator("image")
+    image.wait_for()
+    tab.expect(image).to_have_attribute("height", "15")
+    page = board.page.get_by_label("page of the PDF")
+    page.fill("2")
+    page.press("Enter")
+    tab.expect(image).to_have_attribute("height", "30")
+    page.fill("3")
+    page.press("Enter")
+    tab.page.get_by_role("status").filter(has_text="has 2 pages").wait_for()

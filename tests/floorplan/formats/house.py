@@ -96,6 +96,14 @@ class House:
             )
         return element
 
+    def stated(self, room, area):
+        """Give a room the base quantity of its floor, square metres."""
+        make, kind = self.model.create_entity, "BaseQuantities"
+        value = make("IfcQuantityArea", "GrossFloorArea", None, None, float(area))
+        own = make("IfcElementQuantity", ifcopenshell.guid.new(), None, kind, None, None, [value])
+        new = ifcopenshell.guid.new()
+        make("IfcRelDefinesByProperties", new, None, None, None, [room], own)
+
     def door(self, name, storey, wall, box, width):
         """A door in an opening of a wall."""
         opening = self.add("IfcOpeningElement", f"opening of {name}", None, [box])
@@ -106,6 +114,24 @@ class House:
         return door
 
 
+def house_with_a_landing(path: Path) -> Path:
+    """Two storeys 3 m apart; stairs lead up 9 risers along x, a landing, and 8 risers along y."""
+    made = House()
+    ground, upper = made.storey("Ground", 0), made.storey("Upper", 3)
+    made.whole(made.building, [ground, upper])
+    made.add("IfcSpace", "hall", ground, [(0, 0, 0, 10, 8, 2.7)])
+    made.add("IfcSpace", "office", upper, [(0, 0, 3, 10, 8, 5.7)])
+    wall = made.add("IfcWall", "west", ground, [(-0.3, 0, 0, 0, 8, 2.7)])
+    made.door("Street", ground, wall, (-0.35, 1, 0, 0.05, 2, 2.1), 1.0)
+    riser, at = 3 / 17, [(3 + 0.28 * k, 4, 3.28 + 0.28 * k, 5.2) for k in range(8)]
+    at += [(5.24, 4, 6.44, 5.2)]
+    at += [(5.24, 5.2 + 0.28 * k, 6.44, 5.48 + 0.28 * k) for k in range(7)]
+    boxes = [(x0, y0, 0, x1, y1, (k + 1) * riser) for k, (x0, y0, x1, y1) in enumerate(at)]
+    made.add("IfcStair", "Corner", ground, boxes)
+    made.model.write(str(path))
+    return path
+
+
 def house(path: Path, scale: float = 1.0, schema: str = "IFC4", *, flights: bool = True) -> Path:
     """A house 12 m long: hall and office at 0 m, loft at 3 m, an outer and an inner door."""
     made = House(scale, schema)
@@ -113,7 +139,8 @@ def house(path: Path, scale: float = 1.0, schema: str = "IFC4", *, flights: bool
     roof = made.storey("Roof", 6)
     made.whole(made.building, [ground, upper, roof])
     made.add("IfcSpace", "101", ground, [(0, 0, 0, 8, 5, 2.7)], LongName="Hall")
-    made.add("IfcSpace", "102", ground, [(8.2, 0, 0, 12, 5, 2.7)], LongName="Office")
+    office = made.add("IfcSpace", "102", ground, [(8.2, 0, 0, 12, 5, 2.7)], LongName="Office")
+    made.stated(office, 21.2)  # to the middle of the walls: 4 m x 5.3 m
     made.add("IfcSpace", "201", upper, [(0, 0, 3, 12, 5, 5.7)], LongName="Loft")
     inner = made.add("IfcWall", "inner", ground, [(8, 0, 0, 8.2, 5, 2.7)])
     west = made.add("IfcWall", "west", ground, [(-0.3, -0.3, 0, 0, 5.3, 2.7)])

@@ -14,7 +14,7 @@ from mesa_mobility.floorplan.formats.ifc import child
 from tests.floorplan.formats.mutations import read_all
 
 pytest.importorskip("ifcopenshell", reason="no IfcOpenShell: pip install 'mesa-mobility[ifc]'")
-from tests.floorplan.formats.house import RISERS, TREAD, house
+from tests.floorplan.formats.house import RISERS, TREAD, house, house_with_a_landing
 
 
 def read(path, **options):
@@ -86,6 +86,25 @@ def test_one_level_is_left_by_its_stairs(path):
 
 
 @pytest.mark.thorough
+def test_stairs_round_a_corner(tmp_path):
+    """Who walks down walks against y, turns right and walks against x: eight risers, then nine."""
+    building, said = read(house_with_a_landing(tmp_path / "corner.ifc"))
+    (stairs,) = building.stairs
+    assert (stairs.shape, stairs.flights, stairs.turns) == ("flights", (8, 9), ("right",))
+    assert np.allclose(stairs.head, [(6.44, 7.16), (5.24, 7.16)], atol=2e-3)
+    assert stairs.tread == pytest.approx(0.28, abs=1e-3)
+    assert "taken as" not in said
+    upper, lower = stairs.parts(3.0, 0.0)[0]
+    assert np.allclose(upper.foot, [(6.44, 5.2), (5.24, 5.2)], atol=5e-3)
+    # As in the file, but for the post of the handrail: 0.1 m further down the upper flight.
+    assert np.allclose(lower.foot, [(3.0, 4.0 - 0.1), (3.0, 5.2 - 0.1)], atol=5e-3)
+    model = PedestrianModel(building, record=True, rng=1)
+    model.add_pedestrians(building.random_points(6, model.rng, level=1, spacing=0.5, clearance=0.3))
+    model.run(max_seconds=90)
+    assert model.inside == 0
+
+
+@pytest.mark.thorough
 def test_people_of_the_loft_walk_out(found):
     model = PedestrianModel(found[0], record=True, rng=1)
     places = found[0].random_points(4, model.rng, level=1, spacing=0.5, clearance=0.3)
@@ -129,5 +148,7 @@ def test_rooms_have_the_names_and_areas_of_the_file(found):
         {"101 Hall": 40.0, "102 Office": 19.0, "201 Loft": 60.0}
     )
     assert [each.level for each in building.rooms] == [0, 0, 1]
+    stated = {name: each.stated_area for name, each in rooms.items()}
+    assert stated == {"101 Hall": None, "102 Office": 21.2, "201 Loft": None}
     assert rooms["102 Office"].doors == ("door 17",)
     assert {"Street", "door 17"} <= set(rooms["101 Hall"].doors)

@@ -9,6 +9,7 @@ import pytest
 from mesa_mobility import FloorPlan
 from mesa_mobility.buildings import read_floor
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.formats.indoor.shapes import _levels
 from tests.floorplan.formats.mutations import read_all
 
 EAST, NORTH = 70197.68, 111248.28
@@ -142,6 +143,22 @@ def test_imdf(read):
     plan, _ = read([level, *units, *openings])
     assert plan.area == pytest.approx(9.9 * 1.9 + 4.9 * 3.9 + 0.1, abs=0.02)
     assert [each.length for each in plan.exits] == pytest.approx([1.0], abs=0.01)
+
+
+def test_a_door_at_a_corner_that_is_there_twice(read):
+    """The first corner of the room is repeated, and the door is at it."""
+    room = area(0, 0, 6, 4, (EAST, NORTH), (7, 51), indoor="room", level="0")
+    room["geometry"]["coordinates"][0].insert(0, room["geometry"]["coordinates"][0][0])
+    [corner, *_] = room["geometry"]["coordinates"][0]
+    door = feature("Point", corner, properties={"door": "yes", "level": "0"})
+    plan, _ = read([room, door], exits="longest")
+    assert plan.area == pytest.approx(5.9 * 3.9, abs=0.1)
+
+
+def test_levels_of_many_features_are_kept_once():
+    assert _levels("0-2") == ("0", "1", "2")
+    assert _levels("-1;3.0; 4") == ("-1", "3", "4")
+    assert _levels("-999-999") is _levels("-999-999")
 
 
 def test_metres_in_a_degree():

@@ -9,6 +9,7 @@ import pytest
 
 from mesa_mobility import FloorPlan
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.floorplan.scenario import read_scenario
 from tests.floorplan.formats.mutations import damaged, read_all
 
 
@@ -136,7 +137,7 @@ def test_faulty_topographies(tmp_path, data, message):
 
 def test_faulty_archives(tmp_path):
     (tmp_path / "a.zip").write_bytes(b"PK no")
-    with pytest.raises(FloorPlanError, match=r"a.zip: is not a zip that can be read"):
+    with pytest.raises(FloorPlanError, match=r"a.zip: not a readable zip \(File is not a zip"):
         FloorPlan.from_file(tmp_path / "a.zip")
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         archive.writestr("config.json", "{}")
@@ -147,6 +148,49 @@ def test_faulty_archives(tmp_path):
     zipped(tmp_path / "c.zip", config={"exits": {"a": {"coordinates": [[0, 0], [1]]}}})
     with pytest.raises(FloorPlanError, match="exits: a: expected corners of two numbers"):
         FloorPlan.from_file(tmp_path / "c.zip")
+
+
+def people_of(path, **options):
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        _, people = read_scenario(path, **options)
+    return people, "\n".join(str(each.message) for each in found)
+
+
+def test_journeys_are_found_whatever_their_ids_are(tmp_path):
+    """A number in one place and a text in another; a list is no id. Names of exits may be long."""
+    config = deepcopy(CONFIG)
+    long = "exit " * 20
+    config["exits"][long] = config["exits"].pop("jps-exits_0")
+    config["journeys_v2"] = [{"id": 7, "sequence": ["c", long]}]
+    weights = [{"journey_id": "7", "weight": 1}, {"journey_id": ["b"], "weight": 3}]
+    config["distributions"]["a"]["journey_weights"] = weights
+    [one], _ = people_of(zipped(tmp_path / "hall.zip", config))
+    assert (len(one.stops), one.exits) == (1, (long[:40],))
+
+
+def test_all_people_of_a_scenario_are_counted(tmp_path):
+    config = deepcopy(CONFIG)
+    many = {**config["distributions"]["a"], "parameters": {"number": 15_000}}
+    config["distributions"] = {"a": many, "b": many}
+    with pytest.raises(FloorPlanError, match="b: more than 20,000 people in all"):
+        people_of(zipped(tmp_path / "hall.zip", config))
+    data = deepcopy(VADERE)
+    sources = data["scenario"]["topography"]["sources"]
+    sources[0]["spawner"] = {"eventElementCount": 15_000}
+    sources.append(sources[0])
+    (tmp_path / "hall.scenario").write_text(json.dumps(data))
+    with pytest.raises(FloorPlanError, match="source 2: more than 20,000 people in all"):
+        people_of(tmp_path / "hall.scenario")
+
+
+def test_missing_targets_are_named_once(tmp_path):
+    data = deepcopy(VADERE)
+    data["scenario"]["topography"]["sources"][0]["targetIds"] = [*range(100, 200), "x", 3] * 50
+    (tmp_path / "hall.scenario").write_text(json.dumps(data))
+    _, said = people_of(tmp_path / "hall.scenario")
+    assert said.count("there is no target") == 1
+    assert "there is no target 'x', 100, 101" in said
 
 
 @pytest.mark.parametrize("count", [60, pytest.param(1500, marks=pytest.mark.slow)])

@@ -81,16 +81,18 @@ def test_given_rooms_keep_names_uses_and_areas():
 
 
 def test_rooms_go_through_files(tmp_path):
-    plan = two_rooms(rooms=[Room("hall", box(0, 0, 5, 4), use="office")])
+    hall = Room("hall", box(0, 0, 5, 4), use="office", stated_area=23.5)
+    plan = two_rooms(rooms=[hall])
     plan.write_geojson(tmp_path / "plan.geojson")
     assert FloorPlan.from_file(tmp_path / "plan.geojson").rooms == plan.rooms
     (tmp_path / "plan.wkt").write_text(
         "walkable POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))\n"
         "exit street LINESTRING (6 1, 6 3)\n"
-        "room long hall use=office POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))\n"
+        "room long hall use=office stated_area=30.5 POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))\n"
     )
     [read] = FloorPlan.from_file(tmp_path / "plan.wkt").rooms
     assert (read.name, read.use, read.area) == ("long hall", "office", 24.0)
+    assert read.gross_area == 30.5
 
 
 def test_the_auditorium_has_its_hall_foyer_offices_and_forecourts():

@@ -1,6 +1,7 @@
 """How many people rooms hold."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import assume, given
@@ -82,6 +83,31 @@ def test_rooms_have_the_loads_of_their_own_uses():
     assert numbers(rooms, "adb") == [5, 100, 0]
 
 
+def test_gross_areas_are_those_that_the_file_states():
+    """Of 25 m2 inside and 30 m2 to the middle of the walls, IBC counts gross areas of offices, net
+    ones of classrooms; a density is of the floor."""
+    room = Room("a", box(0, 0, 5, 5), stated_area=30.0)
+    assert numbers([room], "office") == [2]  # 30 / 13.935 = 2.15; 25 would be 1.79
+    assert numbers([room], "classroom") == [13]  # 25 / 1.858 = 13.45
+    assert numbers([room], "ibc:warehouse") == [1]  # 30 / 46.45 = 0.65
+    assert numbers([room], "1/m2") == [25]
+    assert numbers([room], "adb:office") == [4]  # 25 / 6
+    assert numbers([replace(room, stated_area=31.0, use="residential")]) == [2]  # 31 / 18.58 = 1.67
+
+
+@pytest.mark.parametrize("stated", [0, -1.0, math.nan, math.inf, True, "20", 1e9])
+def test_stated_areas_that_cannot_be(stated):
+    with pytest.raises(FloorPlanError, match="room 'a': stated_area must be a number of square"):
+        Room("a", box(0, 0, 5, 5), stated_area=stated)
+
+
+def test_a_room_says_both_areas_where_they_differ():
+    assert str(Room("a", box(0, 0, 5, 5), stated_area=25.2)) == "a (25.00 m\u00b2)"
+    assert str(Room("a", box(0, 0, 5, 5), stated_area=30.0, use="office")) == (
+        "a (25.00 m\u00b2, stated 30.00 m\u00b2, office)"
+    )
+
+
 def test_a_room_gets_the_first_load_whose_pattern_fits_it():
     rooms = [Room(name, box(0, 0, 10, 1)) for name in ("hall", "office 1", "office 2", "store")]
     assert numbers(rooms, {"hall": 7, "office*": "0.25/m2", "*": 0}) == [7, 3, 2, 0]
@@ -99,6 +125,8 @@ def test_a_room_gets_the_first_load_whose_pattern_fits_it():
         ("0 m2", "at most 10 people"),
         (-1, "expected 0 to"),
         ("1" * 30, "expected 0 to"),
+        ("1" * 5000, "expected 0 to"),
+        ("\u00b2", "there is no use"),
         (1.5, "expected a number of people"),
         (True, "expected a number of people"),
         (None, "no use is known"),

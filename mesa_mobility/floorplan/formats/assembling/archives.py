@@ -1,12 +1,12 @@
 """Texts of files in a zip or a folder."""
 
 import zipfile
-import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from mesa_mobility.errors import FloorPlanError
+from mesa_mobility.files.archives import reading
 from mesa_mobility.floorplan.formats.assembling.texts import LARGEST_FILE, decoded, read_bytes
 
 MOST = 10_000
@@ -52,23 +52,10 @@ def members(path: Path, needed: Sequence[str], others: Sequence[str] = ()) -> di
 
 @contextmanager
 def _opened(path: Path) -> Iterator[zipfile.ZipFile]:
-    """An archive; what ``zipfile`` raises for a damaged one depends on where it is damaged."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            if len(archive.infolist()) > MOST:
-                raise FloorPlanError(f"{path}: more than {MOST:,} files, expected fewer")
-            yield archive
-    except (
-        OSError,
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        NotImplementedError,
-        RuntimeError,
-        ValueError,
-    ) as error:
-        reason = " ".join(str(error).split())[:100]
-        raise FloorPlanError(f"{path}: is not a zip that can be read ({reason})") from None
+    with reading(path, "zip", FloorPlanError), zipfile.ZipFile(path) as archive:
+        if len(archive.infolist()) > MOST:
+            raise FloorPlanError(f"{path}: more than {MOST:,} files, expected fewer")
+        yield archive
 
 
 def _base(info: zipfile.ZipInfo) -> str:

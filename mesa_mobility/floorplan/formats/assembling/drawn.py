@@ -1,4 +1,4 @@
-"""What other programs have drawn, put together to the parts of a floor plan."""
+"""Drawings of other programs, put together to the parts of a floor plan."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from mesa_mobility.floorplan.formats.content import Content
 
 @dataclass
 class Drawn:
-    """What a file shows, before it is put together; metres.
+    """The parts of a drawing, before they are put together; metres.
 
     Attributes:
         areas: parts of the floor.
@@ -64,7 +64,7 @@ def assembled(drawn: Drawn, where: str) -> Content:
         obstacles=obstacles,
         zones=[each for each in drawn.zones if room.covers(each.area)],
         rooms=rooms_named_apart(
-            (name, area) for area, name in drawn.rooms if area.intersection(floor).area > 0.0
+            (name, area, None) for area, name in drawn.rooms if area.intersection(floor).area > 0.0
         ),
         notes=notes,
         foreign=True,

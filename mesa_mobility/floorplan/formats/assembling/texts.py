@@ -11,7 +11,7 @@ LARGEST_FILE = 64_000_000
 
 
 def read_bytes(path: "str | os.PathLike[str]", most: int = LARGEST_FILE) -> bytes:
-    """What a file holds.
+    """The bytes of a file.
 
     Raises:
         FloorPlanError: the file cannot be read, or has more than ``most`` bytes.
@@ -45,7 +45,7 @@ def read_text(path: "str | os.PathLike[str]", most: int, expected: str) -> str:
 
 
 def parsed(text: str, where: str) -> Any:
-    """What a text holds as JSON.
+    """The JSON of a text.
 
     Raises:
         FloorPlanError: it is not JSON.

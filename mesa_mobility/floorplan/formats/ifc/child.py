@@ -1,14 +1,13 @@
-"""Runs the script that reads an IFC in a process of its own, within a time and a memory."""
+"""Reads an IFC in a process of its own, within a time and a memory."""
 
 import os
-import subprocess
-import sys
-from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from mesa_mobility import building_models
 from mesa_mobility.errors import FloorPlanError, MobilityError
+from mesa_mobility.files.apart import output_of
 from mesa_mobility.floorplan.formats.assembling.texts import parsed
 
 LARGEST_FILE = 512_000_000
@@ -23,11 +22,9 @@ LEAST_BYTES, FACTOR = 1_000_000_000, 200
 MOST_OUTPUT = 256_000_000
 """Bytes of what the process prints."""
 
-SCRIPT = Path(__file__).with_name("extraction.py")
-
 
 def extracted(path: Path, with_furniture: bool) -> dict[str, Any]:
-    """What the script takes from a file; see its ``main``.
+    """All that is taken from a file, as ``mesa_mobility.building_models.extraction`` has it.
 
     Raises:
         FloorPlanError: the file cannot be read, within the time and the memory, or is no IFC.
@@ -40,29 +37,14 @@ def extracted(path: Path, with_furniture: bool) -> dict[str, Any]:
     size = _size_of(path)
     seconds = min(LEAST_S + S_PER_MB * size / 1e6, MOST_S)
     memory = LEAST_BYTES + FACTOR * size
-    words = [str(path.resolve()), *(["furniture"] if with_furniture else [])]
-    # -P: modules beside the script are not looked for.
-    command = [sys.executable, "-P", str(SCRIPT), *words]
-    few = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env=os.environ | few | {"MESA_MOBILITY_MEMORY": str(memory)},
-    )
+    words = [str(path.resolve()), str(memory), *(["furniture"] if with_furniture else [])]
     try:
-        output, _ = process.communicate(timeout=seconds)
-    except subprocess.TimeoutExpired:
+        output, status = output_of(building_models.__name__, words, seconds)
+    except TimeoutError:
         raise FloorPlanError(
             f"{path}: cannot be read within {seconds:.0f} s, expected a smaller or sound IFC"
         ) from None
-    finally:
-        # Also where somebody interrupts.
-        with suppress(OSError):
-            process.kill()
-        process.wait()
-    return _answer(output, path, process.returncode)
+    return _answer(output, path, status)
 
 
 def _size_of(path: Path) -> int:

@@ -9,6 +9,7 @@ from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
+from mesa_mobility.floorplan.formats.assembling.boxes import Box, box_around
 from mesa_mobility.floorplan.formats.ifc.drafts import HEAD, OFF, Draft
 from mesa_mobility.floorplan.formats.ifc.records import Element, Model
 
@@ -123,7 +124,7 @@ def _doorways(draft: Draft, model: Model) -> list[Doorway]:
     for door in doors.values():  # those in no opening have a body of their own
         if door.area.area > 0 and _at(door, draft.elevation):
             found.append(_doorway(door, door, None, draft.walls))
-    return [each for each in found if each.width >= NARROWEST]
+    return [each for each in found if each is not None and each.width >= NARROWEST]
 
 
 def _at(opening: Element, height: float) -> bool:
@@ -133,14 +134,13 @@ def _at(opening: Element, height: float) -> bool:
 
 def _doorway(
     opening: Element, door: Element | None, host: Element | None, walls: BaseGeometry
-) -> Doorway:
-    corners = shapely.get_coordinates(shapely.oriented_envelope(opening.area))
-    sides = corners[1:3] - corners[:2]
-    lengths = np.hypot(*sides.T)
-    axis = _axis(host, sides, lengths, None if door is None else door.width)
-    along = sides[axis] / max(lengths[axis], 1e-9)
-    centre = corners[:4].mean(axis=0)
-    width, depth = float(lengths[axis]), float(lengths[1 - axis])
+) -> Doorway | None:
+    box = box_around(opening.area)
+    if box is None:
+        return None
+    axis = _axis(host, box, None if door is None else door.width)
+    along, centre = box.along[axis], box.centre
+    width, depth = float(box.lengths[axis]), float(box.lengths[1 - axis])
     ends = _wall_at(walls, centre, along, depth)
     name = _name_of(door) if door is not None else f"opening {opening.key}"
     external = None if door is None else door.external
@@ -148,24 +148,15 @@ def _doorway(
     return Doorway(name, centre, along, clear, ends, door is not None, external)
 
 
-def _axis(
-    host: Element | None,
-    sides: NDArray[np.float64],
-    lengths: NDArray[np.float64],
-    width: float | None,
-) -> int:
-    """Which side of an opening lies along the wall: that along a long wall, or that as wide as the
-    door, or the longer one."""
-    if host is not None and host.area.area > 0:
-        corners = shapely.get_coordinates(shapely.oriented_envelope(host.area))
-        walls = corners[1:3] - corners[:2]
-        sizes = np.hypot(*walls.T)
-        if sizes.max() > 3 * sizes.min():
-            along = walls[int(np.argmax(sizes))] / sizes.max()
-            return int(np.argmax(np.abs(sides @ along) / np.maximum(lengths, 1e-9)))
+def _axis(host: Element | None, box: Box, width: float | None) -> int:
+    """The side of an opening that lies along the wall: that along a long wall, or that as wide as
+    the door, or the longer one."""
+    wall = None if host is None else box_around(host.area)
+    if wall is not None and wall.lengths.max() > 3 * wall.lengths.min():
+        return int(np.argmax(np.abs(box.along @ wall.along[int(np.argmax(wall.lengths))])))
     if width is not None:
-        return int(np.argmin(np.abs(lengths - width)))
-    return int(np.argmax(lengths))
+        return int(np.argmin(np.abs(box.lengths - width)))
+    return int(np.argmax(box.lengths))
 
 
 def _wall_at(

@@ -1,14 +1,17 @@
-"""Stairs from the level faces of their body: straight ones, and those that turn."""
+"""Stairs from the level faces of their body: straight ones, with landings, and those that turn."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.floorplan.formats.assembling.boxes import box_around
 from mesa_mobility.floorplan.formats.ifc.records import Step
+from mesa_mobility.floorplan.formats.ifc.way import LEFT, ON, RIGHT, Way
 
 SAME = 0.02
 """Metres between the heights of faces of one step."""
@@ -25,62 +28,30 @@ RISERS = 0.10, 0.22
 TREADS = 0.20, 0.60
 """Least and greatest depth of a tread, metres."""
 
+EVEN = 0.005
+"""Metres by which treads of one depth differ."""
+
+LEAST_LANDING = 0.6
+"""Least depth of a landing, metres."""
+
 USUAL_RISER = 0.175
 """Metres, where stairs do not say how many risers they have."""
 
 WELL = 0.1
 """Least metres between the flights of stairs that turn."""
 
+LANDING = 1.8
+"""How much larger than a usual step a landing is, at least."""
 
-@dataclass(frozen=True)
-class Way:
-    """Stairs as a building takes them; metres.
+LEAST_RISERS = 3
+"""Risers of one of several flights."""
 
-    Attributes:
-        head: (2, 2) the upper edge, its left end first as seen by somebody who walks down.
-        risers: number of all risers.
-        tread: depth of a tread.
-        given: further properties of a feature of stairs, such as ``turn``.
-        guessed: what is only like the stairs of the file, for a note; or nothing.
-    """
+RIGHT_ANGLE = 0.05
+"""The most that the cosine of a right angle is off 0."""
 
-    head: NDArray[np.float64]
-    risers: int
-    tread: float
-    given: dict[str, object]
-    guessed: str = ""
-
-    @property
-    def width(self) -> float:
-        """Clear width, metres."""
-        return float(np.hypot(*(self.head[1] - self.head[0])))
-
-    @property
-    def along(self) -> NDArray[np.float64]:
-        """(2,) direction along the upper edge, to the right of somebody who walks down."""
-        found: NDArray[np.float64] = (self.head[1] - self.head[0]) / self.width
-        return found
-
-    def ends(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-        """(2,) middles of the upper and the lower edge, each with the direction away from it."""
-        along, middle = self.along, self.head.mean(axis=0)
-        down = np.array([-along[1], along[0]])
-        if self.given.get("type") != "dog_leg":
-            return [(middle, -down), (middle + (self.risers - 1) * self.tread * down, down)]
-        side = -1.0 if self.given["turn"] == "left" else 1.0
-        aside = side * (float(self.given["well"]) + self.width)  # type: ignore[arg-type]
-        # Of an odd number of risers the lower flight has one more.
-        longer = self.risers % 2 * self.tread
-        return [(middle, -down), (middle + aside * along - longer * down, -down)]
-
-    def between(self, low: float, high: float) -> "Way":
-        """The same as narrow as from ``low`` to ``high`` metres along the upper edge, measured from
-        its middle."""
-        middle, given = self.head.mean(axis=0), dict(self.given)
-        if "well" in given:
-            given["well"] = float(given["well"]) + self.width - (high - low)  # type: ignore[arg-type]
-        head = np.array([middle + low * self.along, middle + high * self.along])
-        return replace(self, head=head, given=given)
+ASTRAY = 0.15, 0.5
+"""Metres by which the lower end of several flights lies off that of the file: where this is said,
+and where they are not taken."""
 
 
 def way_of(steps: Sequence[Step], bottom: float, top: float, given: int | None) -> Way | None:
@@ -99,7 +70,10 @@ def way_of(steps: Sequence[Step], bottom: float, top: float, given: int | None) 
     own = _merged([each for each in steps if bottom + SAME < each.height < top - SAME])
     if len(own) < 3 or risers is None:
         return None
-    spots = np.array([shapely.get_coordinates(each.area.centroid)[0] for each in own])
+    several = _several(own, bottom, top, risers)
+    if several is not None:
+        return several
+    spots = _middles(own)
     whole = shapely.union_all([each.area for each in own])
     way = spots[-1] - spots[0]
     up = way / max(float(np.hypot(*way)), 1e-9)
@@ -144,6 +118,19 @@ def _width(steps: Sequence[Step], aside: NDArray[np.float64]) -> float:
     return float(np.median([np.ptp(_extent(each.area, aside)) for each in steps]))
 
 
+def _middles(steps: Sequence[Step]) -> NDArray[np.float64]:
+    """(n, 2) the middle of each step."""
+    return np.array([shapely.get_coordinates(each.area.centroid)[0] for each in steps])
+
+
+def _head_of(steps: Sequence[Step], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The upper edge of a straight flight."""
+    aside = np.array([-up[1], up[0]])
+    edge = max(_extent(each.area, up)[1] for each in steps)
+    middle = float(np.mean([np.mean(_extent(each.area, aside)) for each in steps]))
+    return _head(up, edge, middle, _width(steps, aside))
+
+
 def _head(up: NDArray[np.float64], edge: float, middle: float, width: float) -> NDArray[np.float64]:
     """The upper edge: ``edge`` metres along ``up``, around ``middle`` metres aside of it."""
     right_down = np.array([-up[1], up[0]])  # the right of somebody who walks down
@@ -155,22 +142,76 @@ def _straight(
     steps: Sequence[Step], whole: BaseGeometry, up: NDArray[np.float64], risers: int
 ) -> Way:
     up = _squared(whole, up)
-    aside = np.array([-up[1], up[0]])
-    width = _width(steps, aside)
     low, high = _extent(whole, up)
-    middle = float(np.mean([np.mean(_extent(each.area, aside)) for each in steps]))
-    tread = (high - low) / (risers - 1)
-    clipped = float(np.clip(tread, *TREADS))
-    guessed = "" if abs(clipped - tread) < 0.005 else f"treads of {clipped:.2f} m"
-    return Way(_head(up, high, middle, width), risers, clipped, {}, guessed)
+    tread, guessed = _tread([(high - low) / (risers - 1)])
+    return Way(_head_of(steps, up), risers, tread, guessed=guessed)
+
+
+def _several(steps: Sequence[Step], bottom: float, top: float, risers: int) -> Way | None:
+    """Flights with landings between, on which the way goes on or turns by a right angle; None for
+    other stairs."""
+    usual = float(np.median([each.area.area for each in steps]))
+    at = [k for k, each in enumerate(steps) if each.area.area > LANDING * usual]
+    runs = [steps[a + 1 : b] for a, b in pairwise([-1, *at, len(steps)])]
+    if not at or min(len(run) for run in runs) < LEAST_RISERS - 1:
+        return None
+    heights = np.array([bottom, *(steps[k].height for k in at), top])
+    exact = np.diff(heights) / ((top - bottom) / risers)
+    counts = [round(each) for each in exact.tolist()]
+    if sum(counts) != risers or min(counts) < LEAST_RISERS or np.ptp(exact - counts) > 0.5:
+        return None
+    if not all(len(run) < 3 or _in_line(_middles(run)) for run in runs):
+        return None
+    areas = [shapely.union_all([each.area for each in run]) for run in runs]
+    ups = [_squared(area, _run(_middles(run), 1)) for area, run in zip(areas, runs, strict=True)]
+    turns = [_turn(-above, -below) for below, above in pairwise(ups)]
+    if not all(turns):
+        return None
+    ends = [_extent(area, up) for area, up in zip(areas, ups, strict=True)]
+    tread, guessed = _tread(
+        [(high - low) / (count - 1) for (low, high), count in zip(ends, counts, strict=True)]
+    )
+    deep = [ends[k + 1][0] - ends[k][1] for k, turn in enumerate(turns) if turn == ON]
+    way = Way(
+        _head_of(runs[-1], ups[-1]),
+        risers,
+        tread,
+        landing=float(np.mean(deep)) if deep else None,
+        flights=tuple(counts[::-1]),
+        turns=tuple(turns[::-1]),
+        guessed=guessed,
+    )
+    foot = _head_of(runs[0], ups[0]).mean(axis=0) - (ends[0][1] - ends[0][0]) * ups[0]
+    astray = float(np.hypot(*(way.ends()[1].middle - foot)))
+    if astray > ASTRAY[1] or (deep and min(deep) < LEAST_LANDING):
+        return None
+    if astray > ASTRAY[0]:
+        way = replace(way, guessed=f"flights whose lower end is {astray:.1f} m off")
+    return way
+
+
+def _turn(first: NDArray[np.float64], second: NDArray[np.float64]) -> str:
+    """The way on from one direction to another; nothing where it is at no right angle."""
+    (ax, ay), (bx, by) = first, second
+    cosine, sine = ax * bx + ay * by, ax * by - ay * bx
+    if abs(cosine) < RIGHT_ANGLE:
+        return LEFT if sine > 0 else RIGHT
+    return ON if cosine > 1 - RIGHT_ANGLE else ""
+
+
+def _tread(measured: Sequence[float]) -> tuple[float, str]:
+    """One depth of a tread for those measured in several flights, and a note if it is none."""
+    tread = float(np.clip(np.median(measured), *TREADS))
+    even = max(abs(each - tread) for each in measured) < EVEN
+    return tread, "" if even else f"treads of {tread:.2f} m"
 
 
 def _squared(whole: BaseGeometry, up: NDArray[np.float64]) -> NDArray[np.float64]:
     """The side of the smallest rectangle around stairs that is nearest to their direction."""
-    corners = shapely.get_coordinates(shapely.oriented_envelope(whole))
-    sides = corners[1:3] - corners[:2]
-    sides = sides / np.maximum(np.hypot(*sides.T), 1e-9)[:, None]
-    sides = np.concatenate([sides, -sides])
+    box = box_around(whole)
+    if box is None:
+        return up
+    sides = np.concatenate([box.along, -box.along])
     best: NDArray[np.float64] = sides[int(np.argmax(sides @ up))]
     return best if best @ up > 0.98 else up
 
@@ -197,22 +238,24 @@ def _turning(
     middle = (far - width / 2) if side > 0 else (near + width / 2)
     low, high = _extent(whole, up)
     count = risers // 2
-    landing = max(width, 0.6) if not back else _landing(steps, up, width)
+    landing = max(width, LEAST_LANDING) if not back else _landing(steps, up, width)
     tread = float(np.clip((high - low - landing) / max(risers - count - 1, 1), *TREADS))
-    given: dict[str, object] = {
-        "type": "dog_leg",
-        # The lower flight is on the other side; the left of who walks down is at -aside.
-        "turn": "left" if side > 0 else "right",
-        "well": max(across - 2 * width, WELL),
-        "landing": landing,
-    }
     if not back:
         said = "two flights side by side"
     elif abs(risers - 2 * count) or not _even(spots, last):
         said = "two flights of half the risers each"
     else:
         said = ""
-    return Way(_head(up, high, middle, width), risers, tread, given, said)
+    return Way(
+        _head(up, high, middle, width),
+        risers,
+        tread,
+        # The lower flight is on the other side; the left of who walks down is at -aside.
+        turn=LEFT if side > 0 else RIGHT,
+        well=max(across - 2 * width, WELL),
+        landing=landing,
+        guessed=said,
+    )
 
 
 def _in_line(spots: NDArray[np.float64]) -> bool:
@@ -236,7 +279,7 @@ def _landing(steps: Sequence[Step], up: NDArray[np.float64], width: float) -> fl
     """Depth of the largest step, if it is a landing."""
     largest = max(steps, key=lambda each: each.area.area)
     depth = float(np.ptp(_extent(largest.area, up)))
-    return depth if depth >= 0.6 else max(width, 0.6)
+    return depth if depth >= LEAST_LANDING else max(width, LEAST_LANDING)
 
 
 def _even(spots: NDArray[np.float64], last: NDArray[np.float64]) -> bool:

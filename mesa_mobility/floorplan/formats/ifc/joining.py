@@ -1,7 +1,7 @@
-"""What joins the storeys of a building model: stairs and ramps, with floor before their ends."""
+"""Stairs and ramps between the storeys of a building model, with floor before their ends."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from mesa_mobility.floorplan.formats.assembling.boxes import box_around
 from mesa_mobility.floorplan.formats.ifc.drafts import Draft
-from mesa_mobility.floorplan.formats.ifc.flights import Way, way_of
+from mesa_mobility.floorplan.formats.ifc.flights import way_of
 from mesa_mobility.floorplan.formats.ifc.records import Element, Model
+from mesa_mobility.floorplan.formats.ifc.way import End, Way
 from mesa_mobility.floorplan.formats.storeys import Link
 
 NEAR = 0.6
@@ -27,6 +29,12 @@ INTO = 0.01
 MORE = 0.002
 """Metres by which that floor is larger than needed, so that nothing is missing by rounding."""
 
+CLEAR = 1e-3
+"""Metres between the ends of stairs and what is in the way before them."""
+
+LEAST_PART = 1e-6
+"""Square metres of floor that may be missing."""
+
 LEAST_WIDTH = 0.6
 """Metres; narrower stairs are left out."""
 
@@ -36,8 +44,8 @@ AROUND = 0.4
 
 @dataclass(frozen=True)
 class Join:
-    """What joins two storeys: the link, the floor before its ends by the number of the level, and
-    what it takes of both floors."""
+    """Stairs or a ramp between two storeys: the link, the floor before its ends by the number of
+    the level, and what it takes of both floors."""
 
     link: Link
     before: dict[int, Polygon]
@@ -116,13 +124,12 @@ def _stairs(element: Element, lower: Draft, upper: Draft, name: str) -> Join | s
         return narrower
     way = narrower
     before = {
-        draft.number: _strip(spot, way.along, away, way.width)
-        for draft, (spot, away) in zip((upper, lower), way.ends(), strict=True)
+        draft.number: _strip(end, way.width)
+        for draft, end in zip((upper, lower), way.ends(), strict=True)
     }
     corners = [*way.head, *(shapely.get_coordinates(each) for each in before.values())]
     taken = shapely.union_all([shapely.MultiPoint(np.vstack(corners)), element.area])
-    given = {"risers": way.risers, "tread": round(way.tread, 4), **way.given}
-    link = Link("stairs", name, _line(way.head), (upper.number, lower.number), given)
+    link = Link("stairs", name, _line(way.head), (upper.number, lower.number), way.given)
     return Join(link, before, taken.convex_hull.buffer(AROUND), way.guessed)
 
 
@@ -131,33 +138,47 @@ def _with_floor(way: Way, lower: Draft, upper: Draft) -> Way | str:
 
     Floor is put where holes of slabs, or missing rooms, leave none.
     """
-    low, high = -way.width / 2, way.width / 2
-    for draft, (spot, away) in zip((upper, lower), way.ends(), strict=True):
-        before = _strip(spot, way.along, away, way.width)
-        draft.passages.append(before.buffer(MORE, join_style="mitre").difference(draft.walls))
-        blocked = before.difference(draft.floor())
-        for part in shapely.get_parts(blocked):
-            if part.area > 1e-6:
-                at = (shapely.get_coordinates(part) - spot) @ way.along
-                # What is blocked is at one side, as a rule.
-                if at.mean() > 0:
-                    high = min(high, float(at.min()) - 1e-3)
-                else:
-                    low = max(low, float(at.max()) + 1e-3)
-    if high - low < LEAST_WIDTH:
-        return f"only {max(high - low, 0.0):.2f} m of floor are before both its ends"
-    return way if high - low > way.width - 1e-6 else way.between(low, high)
+    upper_free, lower_free = (
+        _blocked(draft, end, way.width)
+        for draft, end in zip((upper, lower), way.ends(), strict=True)
+    )
+    if max(sum(upper_free), sum(lower_free)) == 0.0:
+        return way
+    narrow = way.width - max(sum(upper_free), sum(lower_free))
+    if narrow >= LEAST_WIDTH:
+        narrower = way.narrowed(upper_free, lower_free)
+        narrow = narrower.width
+        if narrow >= LEAST_WIDTH:
+            ends = zip((upper, lower), narrower.ends(), strict=True)
+            left = max(sum(_blocked(draft, end, narrow)) for draft, end in ends)
+            if left < 2 * CLEAR:
+                return narrower
+            narrow -= left
+    return f"only {max(narrow, 0.0):.2f} m of floor are before both its ends"
 
 
-def _strip(
-    spot: NDArray[np.float64],
-    along: NDArray[np.float64],
-    away: NDArray[np.float64],
-    width: float,
-) -> Polygon:
+def _blocked(draft: Draft, end: End, width: float) -> tuple[float, float]:
+    """Metres on the left and the right of an end before which there is no floor.
+
+    Floor is put there first, where no wall stands.
+    """
+    before = _strip(end, width)
+    draft.passages.append(before.buffer(MORE, join_style="mitre").difference(draft.walls))
+    sides = [0.0, 0.0]
+    for part in shapely.get_parts(before.difference(draft.floor())):
+        if part.area > LEAST_PART:
+            at = (shapely.get_coordinates(part) - end.middle) @ end.across
+            # It is at one side, as a rule.
+            k, much = (1, width / 2 - at.min()) if at.mean() > 0 else (0, width / 2 + at.max())
+            sides[k] = max(sides[k], float(much) + CLEAR)
+    return sides[0], sides[1]
+
+
+def _strip(end: End, width: float) -> Polygon:
     """The floor before an end of stairs."""
-    half, near, far = width / 2 * along, -INTO * away, BEFORE * away
-    return Polygon([spot - half + near, spot + half + near, spot + half + far, spot - half + far])
+    half, near, far = width / 2 * end.across, -INTO * end.away, BEFORE * end.away
+    left, right = end.middle - half, end.middle + half
+    return Polygon([left + near, right + near, right + far, left + far])
 
 
 def _ramp(element: Element, lower: Draft, upper: Draft, name: str) -> Join | str:
@@ -165,24 +186,23 @@ def _ramp(element: Element, lower: Draft, upper: Draft, name: str) -> Join | str
     nearer."""
     if element.area.is_empty:
         return "it has no body"
-    corners = shapely.get_coordinates(shapely.oriented_envelope(element.area))[:4]
-    sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
-    if sides[0] > sides[1]:
-        corners = np.roll(corners, -1, axis=0)
+    box = box_around(element.area)
+    if box is None:
+        return "it has no width"
+    corners = np.roll(box.corners, -int(box.lengths[0] > box.lengths[1]), axis=0)
     ends = [corners[:2], corners[2:]]
     away = [shapely.LineString(each).distance(upper.open) for each in ends]
     head = ends[int(np.argmin(away))]
     (bx, by), (ix, iy) = head[1] - head[0], corners.mean(axis=0) - head.mean(axis=0)
     if bx * iy - by * ix < 0:
         head = head[::-1]
-    ramp = Way(head, 2, float(max(sides)), {}, "straight")
-    narrower = _with_floor(ramp, lower, upper)
-    if isinstance(narrower, str):
-        return narrower
-    ramp = replace(narrower, guessed="straight")
+    whole = Way(head, 2, float(box.lengths.max()), guessed="straight")
+    ramp = _with_floor(whole, lower, upper)
+    if isinstance(ramp, str):
+        return ramp
     before = {
-        draft.number: _strip(spot, ramp.along, outwards, ramp.width)
-        for draft, (spot, outwards) in zip((upper, lower), ramp.ends(), strict=True)
+        draft.number: _strip(end, ramp.width)
+        for draft, end in zip((upper, lower), ramp.ends(), strict=True)
     }
     given: dict[str, object] = {"length": ramp.tread}
     link = Link("ramp", name, _line(ramp.head), (upper.number, lower.number), given)

@@ -18,6 +18,9 @@ from mesa_mobility.floorplan.formats.ifc.records import model_of
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
 from mesa_mobility.floorplan.formats.storeys import Storey, Storeys
 
+LEFT_OUT = {"furniture": "pieces of furniture", "lift": "lifts", "escalator": "escalators"}
+"""Kinds of elements that are left out, in words."""
+
 LEAST_PIECE = 0.1
 """Metres; a piece of floor in which no point is this far from its edge is left out."""
 
@@ -48,9 +51,9 @@ class Ifc(PlanFormat):
         for draft in drafts:
             add_doors(draft, model, ground, taken)
         joins = joins_of(model, drafts, notes)
-        for kind in ("furniture", "lift"):
+        for kind, words in LEFT_OUT.items():
             if model.counts.get(kind) and not (kind == "furniture" and furniture):
-                notes.append(f"left out {model.counts[kind]} of {kind}")
+                notes.append(f"left out {model.counts[kind]} {words}")
         storeys = [
             Storey(each.number, each.storey.name, each.elevation, _content(each, joins))
             for each in drafts
@@ -98,5 +101,5 @@ def _rooms(draft: Draft, floor: Polygon) -> list[Room]:
         shape = max(parts, key=lambda part: part.area, default=Polygon())
         if each.kind == "room" and shape.intersection(floor).area > 0.0:
             words = dict.fromkeys(word for word in (each.name, each.long_name) if word)
-            named.append((" ".join(words) or "room", shape))
+            named.append((" ".join(words) or "room", shape, each.stated_area))
     return rooms_named_apart(named)

@@ -1,4 +1,4 @@
-"""What a building model holds, checked: its storeys and their elements."""
+"""The content of a building model, checked: its storeys and their elements."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -51,6 +51,7 @@ class Element:
         in_slab: whether this is a slab or a roof.
         risers: number of risers that stairs give, or None.
         steps: level faces of stairs.
+        stated_area: square metres that the file gives for a room, or None.
     """
 
     kind: str
@@ -71,6 +72,7 @@ class Element:
     in_slab: bool = False
     risers: int | None = None
     steps: tuple[Step, ...] = ()
+    stated_area: float | None = None
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ class Model:
 
 
 def model_of(answer: Mapping[str, Any], where: str) -> Model:
-    """The model of what the script has printed.
+    """The model of what the other process has printed.
 
     Raises:
         FloorPlanError: coordinates that are too large.

@@ -7,8 +7,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
-from shapely.geometry.polygon import orient
 
+from mesa_mobility.floorplan.formats.assembling.boxes import box_around
 from mesa_mobility.floorplan.formats.indoor.shapes import (
     DOORWAY,
     LIFT,
@@ -48,7 +48,7 @@ LEAST_LIFT = 0.95
 def links_of(
     shapes: Sequence[Shape], numbers: Mapping[str, int], height: float, notes: list[str]
 ) -> list[Link]:
-    """What joins the levels.
+    """The stairs and lifts that join the levels.
 
     Args:
         shapes: all features, in metres.
@@ -77,7 +77,7 @@ def links_of(
 def _pairs(
     shapes: Sequence[Shape], kind: str, lower: str, upper: str
 ) -> list[tuple[BaseGeometry, str]]:
-    """What two levels have in common of areas of a kind, with the names of these."""
+    """The parts that areas of a kind on two levels have in common, with the names of these."""
     below, above = (
         [each for each in shapes if each.kind == kind and level in each.levels]
         for level in (lower, upper)
@@ -145,14 +145,12 @@ def _in_room(
     """
     if doors[0] is None or doors[1] is None:
         return "nothing leads to it on one of its levels"
-    corners = shapely.get_coordinates(shapely.oriented_envelope(area))
-    sides = corners[1:3] - corners[:2]
-    lengths = np.hypot(*sides.T)
-    if len(sides) < 2 or lengths.min() < LEAST_WIDTH:
+    box = box_around(area)
+    if box is None or box.lengths.min() < LEAST_WIDTH:
         return "its area is too small"
-    axis = int(np.argmax(lengths))
-    along, length, breadth = sides[axis] / lengths[axis], lengths[axis], lengths[1 - axis]
-    middle = corners[:4].mean(axis=0)
+    axis = int(np.argmax(box.lengths))
+    along, length, breadth = box.along[axis], box.lengths[axis], box.lengths[1 - axis]
+    middle = box.centre
     top, bottom = ((each - middle) @ along for each in doors if each is not None)
     up = along if top >= 0 else -along
     aside = np.array([-up[1], up[0]])  # the right of somebody who walks down
@@ -225,17 +223,15 @@ def _lift(
     """A lift whose door is in the side of its shaft that is nearest to a door or a room."""
     if door is None:
         return "nothing leads to it"
-    corners = shapely.get_coordinates(orient(shapely.oriented_envelope(area)))
-    if len(corners) < 5:
+    box = box_around(area)
+    if box is None or box.lengths.min() < LEAST_LIFT:
         return "its shaft is too small"
-    middles = (corners[:4] + corners[1:5]) / 2
+    sides = np.roll(box.corners, -1, axis=0) - box.corners
+    middles = box.corners + sides / 2
     k = int(np.argmin(np.hypot(*(middles - door).T)))
-    side = corners[k + 1] - corners[k]
-    width, depth = float(np.hypot(*side)), float(np.hypot(*(corners[(k + 2) % 4] - corners[k + 1])))
-    if min(width, depth) < LEAST_LIFT:
-        return "its shaft is too small"
+    width, depth = float(box.lengths[k % 2]), float(box.lengths[(k + 1) % 2])
     car = min(width - 2 * BESIDE, 3.0)
-    half = min(car, 0.9) / 2 * side / width
+    half = min(car, 0.9) / 2 * sides[k] / width
     # The floor of the shaft is on the left of its sides.
     line = np.round([middles[k] - half, middles[k] + half], 4).tolist()
     given = {"width": round(car, 3), "depth": round(min(depth - 2 * BESIDE, 3.0), 3)}

@@ -210,10 +210,9 @@ def _add_doors(
 
 def _across(spot: Point, edge: BaseGeometry, width: float) -> LineString:
     """A door at a place: a line along the wall there."""
-    at = edge.project(spot) if edge.geom_type == "LineString" else 0.0
-    if edge.geom_type != "LineString":
-        edge = min(shapely.get_parts(edge), key=lambda each: each.distance(spot))
-        at = edge.project(spot)
+    edge = min(shapely.get_parts(edge), key=lambda each: each.distance(spot))
+    edge = shapely.remove_repeated_points(edge)
+    at = edge.project(spot)
     corners = shapely.get_coordinates(edge)
     reached = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
     k = int(np.clip(np.searchsorted(reached, at) - 1, 0, len(corners) - 2))

@@ -1,8 +1,9 @@
-"""What the features of an indoor map are: rooms, doors, obstacles, stairs and lifts."""
+"""Rooms, doors, obstacles, stairs and lifts among the features of an indoor map."""
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -56,7 +57,7 @@ class Shape:
 
 
 def shapes_of(features: Sequence[Any], where: str, notes: list[str]) -> tuple[list[Shape], bool]:
-    """What matters of some features, and whether coordinates are degrees for sure.
+    """The features that matter, and whether coordinates are degrees for sure.
 
     Raises:
         FloorPlanError: too many features, or one that cannot be read.
@@ -90,7 +91,7 @@ def _ordinals(features: Sequence[Any]) -> dict[str, str]:
 
 
 def _shape(feature: Any, ordinals: Mapping[str, str], at: str) -> tuple[Shape | None, bool]:
-    """What a feature is, if it matters, and whether its coordinates are degrees for sure."""
+    """A feature, if it matters, and whether its coordinates are degrees for sure."""
     if not isinstance(feature, Mapping):
         raise FloorPlanError(f"{at}: expected a Feature, found {type(feature).__name__}")
     given = feature.get("properties")
@@ -122,7 +123,7 @@ def _of_imdf(
 
 
 def _of_tags(tags: Mapping[str, Any], geometry: BaseGeometry) -> tuple[Shape | None, bool]:
-    """What a feature with tags of OpenStreetMap is, or one of unknown origin."""
+    """A feature with tags of OpenStreetMap, or one of unknown origin."""
     name, levels = name_of(tags.get("name")), _levels(tags.get("level"))
     indoor = tags.get("indoor")
     if "door" in tags or "entrance" in tags or indoor == "door":
@@ -178,10 +179,13 @@ def _geometry(value: Any, at: str) -> BaseGeometry | None:
 
 def _levels(value: Any) -> tuple[str, ...]:
     """Levels that a text such as 0, 0;1 or 0-2 names."""
-    if value is None or isinstance(value, list | Mapping):
-        return ()
+    return () if value is None or isinstance(value, list | Mapping) else _named(str(value)[:200])
+
+
+@lru_cache(maxsize=1000)  # features of one level share their names
+def _named(text: str) -> tuple[str, ...]:
     found: list[str] = []
-    for part in str(value)[:200].split(";"):
+    for part in text.split(";"):
         between = re.fullmatch(r"\s*(-?\d{1,3})\s*-\s*(-?\d{1,3})\s*", part)
         if between and int(between[1]) <= int(between[2]):
             found += [str(each) for each in range(int(between[1]), int(between[2]) + 1)]

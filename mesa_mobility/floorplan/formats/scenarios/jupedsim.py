@@ -1,4 +1,4 @@
-"""Scenarios of JuPedSim's web editor as floor plans: a geometry and its exits."""
+"""Scenarios of JuPedSim's web editor: a geometry, its exits, zones and people."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,7 +16,7 @@ from mesa_mobility.floorplan.formats.bare_wkt import drawn_of
 from mesa_mobility.floorplan.formats.content import Content
 from mesa_mobility.floorplan.formats.people import left_out
 from mesa_mobility.floorplan.formats.plan_format import PlanFormat
-from mesa_mobility.floorplan.formats.scenarios.jupedsim_people import people_of
+from mesa_mobility.floorplan.formats.scenarios.jupedsim_people import exit_name, people_of
 
 CONFIG, GEOMETRY = "config.json", "geometry.wkt"
 """Files of a scenario."""
@@ -30,7 +30,10 @@ class JuPedSimScenario(PlanFormat):
 
     name = "jupedsim_scenario"
     suffixes = (".zip",)
-    has_people = True
+
+    def has_people(self, path: Path) -> bool:
+        """All such files do."""
+        return True
 
     def takes(self, path: Path) -> bool:
         """Whether an archive or a folder has one of the files of a scenario."""
@@ -51,7 +54,7 @@ class JuPedSimScenario(PlanFormat):
             raise FloorPlanError(f"{at}: {len(exits):,}, expected at most {MOST:,}")
         for key, each in exits.items():
             points = mapping_of(each, f"{at}: {key:.40}").get("coordinates")
-            drawn.ways_out.append(WayOut(key[:40] or "exit", ring_of(points, f"{at}: {key:.40}")))
+            drawn.ways_out.append(WayOut(exit_name(key), ring_of(points, f"{at}: {key:.40}")))
         where = f"{path}: {CONFIG}"
         _add_zones(drawn, mapping_of(config.get("zones"), f"{where}: zones"), where)
         throttled = sum(

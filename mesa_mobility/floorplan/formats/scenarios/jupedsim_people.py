@@ -15,7 +15,7 @@ from mesa_mobility.floorplan.formats.assembling.values import (
     number_of,
     ring_of,
 )
-from mesa_mobility.floorplan.formats.people import People, Stop, checked, count_of
+from mesa_mobility.floorplan.formats.people import People, Stop, checked, count_of, total_of
 
 LEAST_SPEED, MOST_SPEED = 0.05, 5.0
 """Bounds of speeds, m/s."""
@@ -47,15 +47,17 @@ def people_of(config: Mapping[str, Any], where: str, notes: list[str]) -> list[P
     }
     journeys = _journeys(config, where)
     found: list[People] = []
+    total = 0
     for key, value in parts["distributions"].items():
         at = f"{where}: {key:.40}"
         given = mapping_of(value, at)
         area = ring_of(given.get("coordinates"), at)
         numbers = mapping_of(given.get("parameters"), f"{at}: parameters")
         whole = _number(numbers, area, at)
+        total = total_of(total, whole, at)
         ways = [
             (
-                mapping_of(each, at).get("journey_id"),
+                str(mapping_of(each, at).get("journey_id")),
                 number_of(mapping_of(each, at).get("weight"), at, 1.0),
             )
             for each in list_of(given.get("journey_weights"), at)
@@ -68,7 +70,7 @@ def people_of(config: Mapping[str, Any], where: str, notes: list[str]) -> list[P
         for k, (sequence, count) in enumerate(_shared(whole, known or [((), 1.0)])):
             if not count:
                 continue
-            exits = tuple(each for each in sequence if each in parts["exits"])
+            exits = tuple(exit_name(each) for each in sequence if each in parts["exits"])
             found.append(
                 People(
                     f"{key:.40}" if k == 0 else f"{key:.40} journey {k + 1}",
@@ -84,7 +86,12 @@ def people_of(config: Mapping[str, Any], where: str, notes: list[str]) -> list[P
     return found
 
 
-def _journeys(config: Mapping[str, Any], where: str) -> dict[Any, tuple[str, ...]]:
+def exit_name(key: str) -> str:
+    """The name of an exit, which the file may call by a long text."""
+    return key[:40] or "exit"
+
+
+def _journeys(config: Mapping[str, Any], where: str) -> dict[str, tuple[str, ...]]:
     """Stages of each journey by its id."""
     found = {}
     for each in list_of(config.get("journeys_v2"), f"{where}: journeys_v2")[:MOST]:

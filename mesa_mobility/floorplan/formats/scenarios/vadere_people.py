@@ -16,6 +16,7 @@ from mesa_mobility.floorplan.formats.people import (
     Stop,
     checked,
     count_of,
+    total_of,
 )
 
 DEFAULTS = {
@@ -26,13 +27,16 @@ DEFAULTS = {
 }
 """Speeds of Vadere's people, m/s, where a scenario says nothing."""
 
+SAID = 20
+"""Targets that a message names."""
+
 Shapes = Mapping[int, tuple[BaseGeometry, str, float]]
 """Shape of each target by its number, its name if people leave there, and seconds of waiting."""
 
 
 def people_of(
     topography: Mapping[str, Any],
-    shapes: Mapping[str, Sequence[BaseGeometry]],
+    areas: Sequence[BaseGeometry],
     targets: Shapes,
     at: str,
     notes: list[str],
@@ -41,7 +45,7 @@ def people_of(
 
     Args:
         topography: of the scenario.
-        shapes: areas of its "sources", in their order.
+        areas: of its sources, in their order.
         targets: its targets.
         at: what messages call it.
         notes: takes what is left out.
@@ -52,12 +56,15 @@ def people_of(
     speeds = mapping_of(topography.get("attributesPedestrian"), f"{at}: attributesPedestrian")
     speed = _speed(speeds, at)
     found: list[People] = []
+    missing: set[str] = set()
+    total = 0
     sources = list_of(topography.get("sources"), f"{at}: sources")
-    for number, (each, area) in enumerate(zip(sources, shapes["sources"], strict=True), start=1):
+    for number, (each, area) in enumerate(zip(sources, areas, strict=True), start=1):
         where = f"{at}: source {number}"
         source = mapping_of(each, where)
         times = _times(mapping_of(source.get("spawner", source), f"{where}: spawner"), where, notes)
-        stops, exits = _ways(source, targets, where, notes)
+        total = total_of(total, len(times), where)
+        stops, exits = _ways(source, targets, where, missing)
         first = [time for time in times if time <= 0]
         later = tuple(time for time in times if time > 0)
         name = f"source {number}"
@@ -69,8 +76,7 @@ def people_of(
             )
     others = 0
     elements = list_of(topography.get("dynamicElements"), f"{at}: dynamicElements")
-    if len(elements) > MOST:
-        raise FloorPlanError(f"{at}: {len(elements):,} people, expected at most {MOST:,}")
+    total_of(total, len(elements), f"{at}: dynamicElements")
     for number, each in enumerate(elements, start=1):
         where = f"{at}: person {number}"
         element = mapping_of(each, where)
@@ -80,7 +86,7 @@ def people_of(
         place = mapping_of(element.get("position"), f"{where}: position")
         x, y = (number_of(place.get(key), f"{where}: position") for key in ("x", "y"))
         own = number_of(element.get("freeFlowSpeed"), f"{where}: freeFlowSpeed", 0.0)
-        stops, exits = _ways(element, targets, where, notes)
+        stops, exits = _ways(element, targets, where, missing)
         pace = checked(Constant, where, own) if 0.05 <= own <= 5 else speed
         spots = ((x, y),)
         found.append(
@@ -94,6 +100,9 @@ def people_of(
                 spots=spots,
             )
         )
+    if missing:
+        said = ", ".join(sorted(missing)[:SAID]) + (", ..." if len(missing) > SAID else "")
+        notes.append(f"there is no target {said}, to which people are to go")
     if others:
         notes.append(f"left out {others} dynamicElements that are no pedestrians")
     return found
@@ -138,14 +147,14 @@ def _first(given: Mapping[str, Any], names: Sequence[str], default: Any = None) 
 
 
 def _ways(
-    element: Mapping[str, Any], targets: Shapes, at: str, notes: list[str]
+    element: Mapping[str, Any], targets: Shapes, at: str, missing: set[str]
 ) -> tuple[tuple[Stop, ...], tuple[str, ...] | None]:
-    """Targets that people visit, and the one by which they leave."""
+    """Targets that people visit, and the one by which they leave; ``missing`` takes others."""
     stops: list[Stop] = []
     for key in list_of(element.get("targetIds"), f"{at}: targetIds")[:MOST]:
         found = targets.get(key) if isinstance(key, int) else None
         if found is None:
-            notes.append(f"{at.rpartition(': ')[2]}: there is no target {key!r:.20}")
+            missing.add(f"{key!r:.20}")
             continue
         area, name, wait = found
         if name:

@@ -1,0 +1,1 @@
+"""Takes from building models what a floor plan needs, in a process of its own."""
