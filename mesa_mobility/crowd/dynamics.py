@@ -314,6 +314,7 @@ class Dynamics(Saved):
         with self._twins(everybody):  # whom tactics see beyond seams
             # The crowd has the rest of the targets by then, so they can be freed here.
             order = decision_order(deciding, self._set_targets(deciding, inside))
+        scene.grounds.change(deciding, scene.crowd)
         with self._twins(everybody) as (twins, rows):  # with the new targets
             self._scheduler.take(
                 order,
