@@ -80,7 +80,7 @@ def test_a_model_saved_while_people_are_on_stairs_goes_on(tmp_path):
         if (model.crowd.cluster[model.rows] >= OWN.n_clusters).sum() > 5:
             break
     model.save(tmp_path / "saved.zip")
-    again = PedestrianModel.load(tmp_path / "saved.zip")
+    again = PedestrianModel.load(tmp_path / "saved.zip", floor_plan=OFFICE)
     for each in (model, again):
         each.run(max_seconds=model.elapsed + 5.0)
     for one, other in zip(model.decided().values(), again.decided().values(), strict=True):

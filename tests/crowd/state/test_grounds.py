@@ -25,7 +25,7 @@ def stairs(x, tread=TREAD):
 
 def test_maps_of_types_come_first_and_stairs_share_theirs():
     one, other = climbing_type(), PedestrianType(mobility_map=strider())
-    third = PedestrianType(mobility_map=strider(), up=one.up, down=one.down)
+    third = PedestrianType(mobility_map=one.mobility_map, up=one.up, down=one.down)
     shop = SpeedZone(box(20, 0, 22, 2), 0.5)
     found = GroundMaps([stairs(0.0), stairs(5.0), shop], [one, other, third])
     assert found.maps[:3] == (one.mobility_map, other.mobility_map, third.mobility_map)
@@ -115,7 +115,7 @@ def test_the_ground_ahead_and_the_way_to_the_target_decide():
     crowd.target_x[rows] = [20.0, 20.0, 20.0, 0.0, 11.0, 20.0, 20.0]
     crowd.target_y[rows] = 1.0
     crowd.heading[4] = np.pi
-    crowd.cluster[rows] = [WALKING] * 3 + [down + WALKING, 0, down + WALKING, up + WALKING]
+    crowd.cluster[rows] = [WALKING] * 3 + [down + WALKING, 0, down + WALKING, down + WALKING]
     grounds.change(rows, crowd)
     expected = [level + 1, down + 1, down + 1, up + 1, up, level + 1, level + 1]
     assert crowd.cluster[rows].tolist() == expected
