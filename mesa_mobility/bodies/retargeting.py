@@ -145,7 +145,7 @@ def _heights(
 ) -> NDArray[np.float64]:
     """Heights of the pelvis of a body with the neutral legs, whose soles touch the same floor.
 
-    On stairs the floor is the slope through the toes that bear.
+    On stairs the floor is the slope through the middles of the feet that bear.
     """
     pelvis = 0.5 * (found["left_hip"][:, 2] + found["right_hip"][:, 2])
     soles = []
@@ -154,8 +154,8 @@ def _heights(
         if not recording.slope:
             soles.append(np.percentile(place[:, 2], LOWEST) - height)
         elif height == TOE_HEIGHT and contacts[:, column].any():
-            ahead = place[:, 0] - recording.root_position[:, 0]
-            above = place[:, 2] - recording.slope * ahead
+            middle = 0.5 * (place[:, 0] + found[FEET[column - 1]][:, 0])
+            above = place[:, 2] - recording.slope * (middle - recording.root_position[:, 0])
             soles.append(np.median(above[contacts[:, column]]) - height)
     floor = float(np.mean(soles))
     ratio = LEG_LENGTH / leg_length(recording.skeleton)

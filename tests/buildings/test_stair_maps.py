@@ -81,8 +81,9 @@ def test_a_model_saved_while_people_are_on_stairs_goes_on(tmp_path):
             break
     model.save(tmp_path / "saved.zip")
     again = PedestrianModel.load(tmp_path / "saved.zip", floor_plan=OFFICE)
+    end = model.elapsed + 5.0
     for each in (model, again):
-        each.run(max_seconds=model.elapsed + 5.0)
+        each.run(max_seconds=end)
     for one, other in zip(model.decided().values(), again.decided().values(), strict=True):
         assert one.tobytes() == other.tobytes()
 
