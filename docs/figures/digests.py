@@ -5,7 +5,8 @@
 | `preset` | settings of the preset `default`, its terms and its tactics; reference runs with it |
 | `paper` | the same of the preset `paper` |
 | `map` | the able-bodied map, its body and its preferred speeds |
-| `types` | all maps that ship likewise; a reference run of people of many types |
+| `types` | all maps of types that ship likewise; a reference run of people of many types |
+| `stairs` | the maps for stairs that ship |
 | `version` | the version of the package, for times and memory |
 
 Tactics may be rewritten without a change of their settings, so short runs with a fixed seed are
@@ -85,11 +86,16 @@ def _types() -> list[Any]:
     return [kinds, positions(MixedEvacuation(rng=1))]
 
 
+def _stairs() -> list[Any]:
+    return [MobilityMap.named(f"able_bodied_{way}").digest for way in ("up", "down")]
+
+
 PARTS: dict[str, Callable[[], list[Any]]] = {
     "preset": _preset,
     "paper": _paper,
     "map": _map,
     "types": _types,
+    "stairs": _stairs,
     "version": lambda: [__version__],
 }
 

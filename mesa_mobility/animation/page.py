@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -159,7 +160,7 @@ def run_parts(
     people = selection.people_of(trajectories)
     decisions = trajectories.decisions
     banks = {} if decisions is None else _banks(decisions, bank)
-    digests = list(banks)
+    known = list(dict.fromkeys(banks.values()))
     types = trajectories.person_data.get("type")
     names = [] if types is None else np.unique(types[people]).tolist()
     tracks, courses, decided, rows = [], [], [], []
@@ -169,13 +170,13 @@ def run_parts(
         track = _track(
             trajectories, ordered[begins[person] : begins[person + 1]], (first, last), storeys
         )
-        course, own, digest = _course(decisions, banks, person, int(track[0, 0]), last)
+        course, own, found = _course(decisions, banks, person, int(track[0, 0]), last)
         tracks.append(track)
         courses.append(course)
         decided.append(own)
         kind = 0 if types is None else names.index(str(types[person]))
-        known = -1 if digest is None else digests.index(digest)
-        rows.append((person, len(track), len(course), len(own), kind, known))
+        number = -1 if found is None else known.index(found)
+        rows.append((person, len(track), len(course), len(own), kind, number))
         if progress is not None:
             progress(done)
     header, arrays = figure_parts()
@@ -184,36 +185,30 @@ def run_parts(
         "last": last,
         "types": names,
         "aids": [aid_of(name) for name in names],
-        "scales": [found.scale for found in banks.values()],
-        "clips": [
-            [str(clip["clip"]) for clip in each.metadata["clips"]] for each in banks.values()
-        ],
+        "scales": [each.scale for each in known],
+        "clips": [[str(clip["clip"]) for clip in each.metadata["clips"]] for each in known],
         "decided": decisions is not None,
         "steps": {"place": PLACE_STEP, "turn": TURN_STEP, "share": SHARE_STEP},
     }
-    for number, found in enumerate(banks.values()):
-        arrays |= bank_arrays(found, f"bank{number}")
+    for number, each in enumerate(known):
+        arrays |= bank_arrays(each, f"bank{number}")
     arrays["people"] = np.array(rows, dtype=np.int32)
-    for name, each in (("tracks", tracks), ("courses", courses), ("decisions", decided)):
-        together = np.concatenate(each)
+    for name, parts in (("tracks", tracks), ("courses", courses), ("decisions", decided)):
+        together = np.concatenate(parts)
         for k, column in enumerate(together.T):
             arrays[f"{name}.{k}"] = np.ascontiguousarray(column, dtype=np.int32)
     return header, arrays
 
 
-def _banks(decisions: Decisions, given: PoseBank | None) -> dict[str, PoseBank]:
-    """The poses known of the run's maps, by the maps' digests."""
+def _banks(decisions: Decisions, given: PoseBank | None) -> dict[int, PoseBank]:
+    """The poses known of the run's types, by the numbers of the types."""
     if given is not None and given.metadata["map_digest"] not in decisions.maps:
         given.check_map(decisions.maps[0])
     found = {}
-    for digest in dict.fromkeys(decisions.maps):
-        if given is not None and given.metadata["map_digest"] == digest:
-            found[digest] = given
-            continue
-        try:
-            found[digest] = PoseBank.of(digest)
-        except MapError:
-            continue
+    for kind, digest in enumerate(decisions.maps):
+        own = given if given is not None and given.metadata["map_digest"] == digest else None
+        with suppress(MapError):
+            found[kind] = decisions.bank_of(kind, own)
     return found
 
 
@@ -246,12 +241,12 @@ def _track(
 
 def _course(
     decisions: Decisions | None,
-    banks: dict[str, PoseBank],
+    banks: dict[int, PoseBank],
     person: int,
     first: int,
     last: int,
-) -> tuple[NDArray[np.int64], NDArray[np.int64], str | None]:
-    """(s, 5) stretches and (d, 3) decisions of a person, and the digest of their map if known.
+) -> tuple[NDArray[np.int64], NDArray[np.int64], PoseBank | None]:
+    """(s, 5) stretches and (d, 3) decisions of a person, and the poses behind these if known.
 
     A stretch is frame, pose, whether the person moves, stride in thousandths, decision; a decision
     is frame, option, share. Frames are differences of successive rows.
@@ -264,14 +259,13 @@ def _course(
     share = np.rint(movements.shares / SHARE_STEP).astype(np.int64)
     own = np.column_stack([movements.starts, movements.options, share])
     kind = int(decisions.type_index[rows[0]]) if len(rows) else 0
-    digest = decisions.maps[kind]
-    table = none[0]
-    if digest in banks:
+    bank, table = banks.get(kind), none[0]
+    if bank is not None:
         began = min(first, int(movements.starts.min(initial=first)))
-        found = stretches(banks[digest], movements, began)
+        found = stretches(bank, movements, began)
         stride = np.rint(found.strides * 1000).astype(np.int64)
         table = np.column_stack([found.frames, found.poses, found.moving, stride, found.own])
         table = table[table[:, 0] <= last]
     for each in (table, own):
         each[:, 0] = np.diff(each[:, 0], prepend=0)
-    return table, own, digest if digest in banks else None
+    return table, own, bank

@@ -9,6 +9,7 @@ from mesa_mobility._lazy import names_of
 if TYPE_CHECKING:
     from mesa_mobility.bodies.bank import PoseBank as PoseBank
     from mesa_mobility.bodies.building import build_bank as build_bank
+    from mesa_mobility.bodies.joining import bank_of_maps as bank_of_maps
     from mesa_mobility.bodies.motion import BodyMotion as BodyMotion
     from mesa_mobility.bodies.motion import body_motion as body_motion
     from mesa_mobility.bodies.quality import BodyQuality as BodyQuality

@@ -35,6 +35,10 @@ STILL_SPEED = 0.30
 STILL_HEIGHT = 0.05
 """... by which it may be above where it is lowest in the clip, metres."""
 
+STILL_SHARE = 0.15
+"""On stairs a joint of a foot bears if it is slower than this share of its greatest speed: recorded
+steps are repeated at other cadences."""
+
 LOWEST = 5
 """Percentile of a joint's heights in a clip that counts as lowest."""
 
@@ -66,12 +70,13 @@ def retarget(recording: Recording, facing: NDArray[np.float64]) -> RetargetedCli
         CaptureError: legs that are not found.
     """
     found = landmarks(recording)
+    contacts = _contacts(found, recording)
     away = about_z(-facing)
     seen = {name: np.einsum("nij,nj->ni", away, place) for name, place in found.items()}
     return RetargetedClip(
         rotations=_rotations(seen),
-        heights=_heights(found, recording),
-        contacts=_contacts(found, recording.frame_rate),
+        heights=_heights(found, recording, contacts),
+        contacts=contacts,
     )
 
 
@@ -135,24 +140,38 @@ def _rotations(seen: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
     return turned
 
 
-def _heights(found: dict[str, NDArray[np.float64]], recording: Recording) -> NDArray[np.float64]:
-    """Heights of the pelvis of a body with the neutral legs, whose soles touch the same floor."""
+def _heights(
+    found: dict[str, NDArray[np.float64]], recording: Recording, contacts: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Heights of the pelvis of a body with the neutral legs, whose soles touch the same floor.
+
+    On stairs the floor is the slope through the middles of the feet that bear.
+    """
     pelvis = 0.5 * (found["left_hip"][:, 2] + found["right_hip"][:, 2])
-    soles = [
-        np.percentile(found[f"{side}_{joint}"][:, 2], LOWEST) - height
-        for side in ("left", "right")
-        for joint, height in (("ankle", ANKLE_HEIGHT), ("toe", TOE_HEIGHT))
-    ]
+    soles = []
+    for column, (name, height) in enumerate(zip(FEET, (ANKLE_HEIGHT, TOE_HEIGHT) * 2, strict=True)):
+        place = found[name]
+        if not recording.slope:
+            soles.append(np.percentile(place[:, 2], LOWEST) - height)
+        elif height == TOE_HEIGHT and contacts[:, column].any():
+            middle = 0.5 * (place[:, 0] + found[FEET[column - 1]][:, 0])
+            above = place[:, 2] - recording.slope * (middle - recording.root_position[:, 0])
+            soles.append(np.median(above[contacts[:, column]]) - height)
     floor = float(np.mean(soles))
     ratio = LEG_LENGTH / leg_length(recording.skeleton)
     return (pelvis - floor - ANKLE_HEIGHT) * ratio + ANKLE_HEIGHT
 
 
-def _contacts(found: dict[str, NDArray[np.float64]], frame_rate: float) -> NDArray[np.bool_]:
+def _contacts(found: dict[str, NDArray[np.float64]], recording: Recording) -> NDArray[np.bool_]:
+    """(n, 4) whether joints of feet bear on the floor or, on stairs, on a tread."""
     columns = []
+    rises = recording.slope * recording.root_position[:, 0]
     for name in FEET:
-        place = found[name]
-        speed = np.linalg.norm(np.gradient(place, axis=0), axis=1) * frame_rate
+        place = found[name] + rises[:, None] * [0.0, 0.0, 1.0]
+        speed = np.linalg.norm(np.gradient(place, axis=0), axis=1) * recording.frame_rate
+        if recording.slope:
+            columns.append(_steady(speed < STILL_SHARE * speed.max()))
+            continue
         low = place[:, 2] < np.percentile(place[:, 2], LOWEST) + STILL_HEIGHT
         columns.append(_steady((speed < STILL_SPEED) & low))
     return np.column_stack(columns)

@@ -78,7 +78,7 @@ def retrace(
     labels = grouped.labels
     families = OptionFamilies.of(poses.step, grouped, options, map_.metadata)
     options = families.options()
-    strides = np.array([1.0, *(edit.stride for edit in families.edits())])
+    strides = np.array([1.0, *(edit.stride for edit in families.editing().edits)])
     if missing(options, grouped):
         options, grouped = borrow(options, grouped, MobilityMap.load())
     _check_same(map_, options)

@@ -49,6 +49,8 @@ class Recording:
         rotations: (F, J, 4) float64; unit quaternions (x, y, z, w).  The root's turns file axes
             into the world; every other joint's is relative to its parent.
         clip: the row of the manifest that the recording came from, if any.
+        slope: metres by which the ground rises for each metre along x, and which are taken out of
+            the heights; 0 on a level floor.
 
     Raises:
         CaptureError: no frames, shapes that disagree, values that are not finite, quaternions that
@@ -61,6 +63,7 @@ class Recording:
     root_position: NDArray[np.float64]
     rotations: NDArray[np.float64]
     clip: Clip | None = None
+    slope: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame_rate", float(self.frame_rate))

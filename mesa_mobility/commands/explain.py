@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -83,10 +84,15 @@ def answer_of(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
     from mesa_mobility.crowd import FREE, WALL
 
     candidates, chosen = explained.candidates, explained.chosen
-    kind = model.pedestrian_types[int(model.crowd.type_index[explained.pedestrian])]
+    number = int(model.crowd.type_index[explained.pedestrian])
+    kind = model.pedestrian_types[number]
     totals, parts = explained.totals, explained.weights[:, None] * explained.costs
     turns = np.degrees(candidates.headings - candidates.facings[0])
-    own = model.capabilities[int(model.crowd.type_index[explained.pedestrian])].parts
+    parts_of = explained.capability.parts
+    before = takewhile(
+        lambda each: each is not explained.capability.map, model.mobility_maps[number]
+    )
+    first_row = sum(each.n_options for each in before)
 
     def in_the_way(k: int) -> str | int | None:
         if explained.verdicts[k] == FREE:
@@ -108,8 +114,8 @@ def answer_of(explained: Explanation, model: PedestrianModel) -> dict[str, Any]:
         "blocked_by": None if explained.blocked_by < 0 else explained.blocked_by,
         "options": [
             {
-                "option": int(own.rows[candidates.options[k]]),
-                "share": float(own.share[candidates.options[k]]),
+                "option": first_row + int(parts_of.rows[candidates.options[k]]),
+                "share": float(parts_of.share[candidates.options[k]]),
                 "taken": k == chosen,
                 "in_the_way": in_the_way(k),
                 "ends_at": candidates.points[k].tolist(),

@@ -73,8 +73,10 @@ def read_scene(
     )
     shares = None if population is None else Population.of(population)
     types = types_of(mobility_map, pedestrian_types, shares)
-    for map_ in dict.fromkeys(kind.mobility_map for kind in types):
-        warn_unless_passed(map_)
+    given = [each for kind in types for each in (kind.mobility_map, kind.up, kind.down)]
+    for map_ in dict.fromkeys(given):
+        if map_ is not None:
+            warn_unless_passed(map_)
     return make_scene(floor_plan, types, rules, shares=shares, fields=kinds)
 
 

@@ -294,12 +294,12 @@ class Dynamics(Saved):
     def _take_decisions(self) -> None:
         """Take the decisions of those whose movement has ended; note when the next event is."""
         rows, now = self._model.population.present, self._model.frame
-        state = self._scene.crowd.records
-        deciding, soonest = due(rows, now, state)
+        deciding, soonest = due(rows, now, self._scene.crowd.records)
         self._next = LONG_AFTER  # brought forward if a behaviour adds people meanwhile
         if len(deciding):
             self._decide(deciding)
-            soonest = min(soonest, due(deciding, now, state)[1])
+            # Twins may have had the records grow.
+            soonest = min(soonest, due(deciding, now, self._scene.crowd.records)[1])
         self._next = min(self._next, soonest)
 
     def _decide(self, deciding: NDArray[np.int64]) -> None:
@@ -314,6 +314,7 @@ class Dynamics(Saved):
         with self._twins(everybody):  # whom tactics see beyond seams
             # The crowd has the rest of the targets by then, so they can be freed here.
             order = decision_order(deciding, self._set_targets(deciding, inside))
+        scene.grounds.change(deciding, scene.crowd)
         with self._twins(everybody) as (twins, rows):  # with the new targets
             self._scheduler.take(
                 order,

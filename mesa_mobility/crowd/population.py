@@ -15,6 +15,7 @@ from mesa_mobility.crowd.insertion.free_space import first_free, too_close
 from mesa_mobility.crowd.insertion.newcomers import Newcomers
 from mesa_mobility.crowd.insertion.placement import face, place_newcomers
 from mesa_mobility.crowd.journeys.visit import Route
+from mesa_mobility.crowd.options.capability import Capability
 from mesa_mobility.crowd.people.pedestrian import Pedestrian, number_from
 from mesa_mobility.crowd.people.space import CrowdSpace
 from mesa_mobility.crowd.saved import Saved
@@ -109,9 +110,12 @@ class Population(Saved):
         return self._scene.crowd.core[: self.count].copy()
 
     def cluster_of(self, row: int) -> int:
-        """Cluster of the pose in which a person's movement ends, in the map of their type."""
-        crowd, first_cluster = self._scene.crowd, self._scene.repertoire.first_cluster
-        return int(crowd.cluster[row]) - int(first_cluster[crowd.type_index[row]])
+        """Cluster of the pose in which a person's movement ends, in the map by which they move."""
+        return self._scene.repertoire.capability_of(int(self._scene.crowd.cluster[row]))[1]
+
+    def capability_of(self, row: int) -> Capability:
+        """The capability of the map by which a person moves."""
+        return self._scene.repertoire.capability_of(int(self._scene.crowd.cluster[row]))[0]
 
     def bodies(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
         """(n,) row, (n, 2) position and (n,) core radius, metres, of everybody inside."""

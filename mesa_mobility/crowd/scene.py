@@ -13,9 +13,11 @@ from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import Lifts
 from mesa_mobility.crowd.options.repertoire import Repertoire, repertoire
+from mesa_mobility.crowd.options.table import FRAME_SECONDS
 from mesa_mobility.crowd.planning.workspace import Rules
 from mesa_mobility.crowd.presets.preset import Preset
 from mesa_mobility.crowd.state.environment import Environment
+from mesa_mobility.crowd.state.grounds import GroundMaps, Grounds
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.state.twins import strips_of
 from mesa_mobility.crowd.types.pedestrian_type import PedestrianType
@@ -32,7 +34,8 @@ class Scene:
         types: the pedestrian types.
         shares: the population that people are drawn from unless a type is given, if there is one.
         preset: the rules by which they move.
-        repertoire: the movement options of all types.
+        repertoire: the movement options of all maps: those of the types, then those for stairs.
+        grounds: by which map people walk where.
         rules: the constants of a decision.
         environment: walls and routes.
         journeys: the routes of people who cross gates in order.
@@ -48,6 +51,7 @@ class Scene:
     shares: Population | None
     preset: Preset
     repertoire: Repertoire
+    grounds: Grounds
     rules: Rules
     environment: Environment
     journeys: Journeys
@@ -74,16 +78,19 @@ def make_scene(
         fields: types of the fields that the model declares for its people.
 
     Raises:
-        ModelError: a type's map has no option of the preset's durations.
+        ModelError: a map has no option of the preset's durations.
+        MapError: a map for stairs that does not say for which treads it is.
     """
+    maps = GroundMaps(plan.zones, types)
     known = repertoire(
-        tuple(each.mobility_map for each in types),
+        maps.maps,
         preset.durations,
         preset.shares,
         preset.most_acceleration,
     )
     radii = np.array([each.half_width for each in types])
-    reach, extent, largest = known.reach.max(), known.extent.max(), radii.max()
+    reaches, extents = maps.longest(known.reach), maps.longest(known.extent)
+    reach, extent, largest = reaches.max(), extents.max(), radii.max()
     environment = Environment(
         plan,
         reach=float(reach + largest) + 0.02,
@@ -96,13 +103,12 @@ def make_scene(
         shares=shares,
         preset=preset,
         repertoire=known,
+        grounds=Grounds(maps, known, 0.5 * max(preset.durations) * FRAME_SECONDS),
         rules=Rules(
             search_radius=float(reach + extent + 2.0 * largest) + 0.01,
             # One range for all would let people heed others from farther away as soon as a faster
             # type might walk there as well.
-            interaction_ranges=np.add.outer(known.reach, known.extent)
-            + np.add.outer(radii, radii)
-            + 0.01,
+            interaction_ranges=np.add.outer(reaches, extents) + np.add.outer(radii, radii) + 0.01,
             hard_bodies=preset.hard_bodies,
             standing=known.standing,
             first_option=known.first_option,

@@ -14,7 +14,7 @@ from mesa_mobility.mobility import clusters as clustering
 from mesa_mobility.mobility import graph as graphs
 from mesa_mobility.mobility import paths, thinning
 from mesa_mobility.mobility.clusters import Clusters, cluster_poses
-from mesa_mobility.mobility.edits import EDITS, HORIZON, STRIDES, TURNS_DEG, Edit, grid
+from mesa_mobility.mobility.edits import HORIZON, ON_FLOORS, Editing
 from mesa_mobility.mobility.graph import MotionGraph, motion_graph
 from mesa_mobility.mobility.map import MobilityMap
 from mesa_mobility.mobility.map_data import CORE_RADIUS
@@ -80,7 +80,7 @@ def build_families(
     *,
     type_name: str = "able_bodied",
     clusters: int | None = None,
-    strides: Sequence[float] = STRIDES,
+    editing: Editing = ON_FLOORS,
     metadata: dict[str, Any] | None = None,
     progress: Progress | None = None,
 ) -> OptionFamilies:
@@ -90,19 +90,17 @@ def build_families(
         recordings: as for ``build_map``.
         type_name: as for ``build_map``.
         clusters: as for ``build_map``.
-        strides: factors of the length of each step in edited options.
+        editing: which options are edited, and how.
         metadata: as for ``build_map``.
         progress: as for ``build_map``.
 
     Raises:
         MapError: as for ``build_map``.
     """
-    graph, grouped, options = options_of_recordings(
-        recordings, clusters, progress, grid(TURNS_DEG, strides)
-    )
+    graph, grouped, options = options_of_recordings(recordings, clusters, progress, editing)
     parameters = {
         "clusters_asked": clusters,
-        **_build_parameters(graph, grouped, options, strides),
+        **_build_parameters(graph, grouped, options, editing),
     }
     lacks = missing(options, grouped)
     lender = MobilityMap.load().pedestrian_type if lacks else ""
@@ -129,7 +127,7 @@ def options_of_recordings(
     recordings: Sequence[Recording],
     clusters: int | None = None,
     progress: Progress | None = None,
-    edited: Sequence[Edit] = EDITS,
+    editing: Editing = ON_FLOORS,
 ) -> tuple[MotionGraph, Clusters, ReachableOptions]:
     """The motion graph of recordings, its clusters and their options, edited ones included.
 
@@ -137,7 +135,7 @@ def options_of_recordings(
         recordings: as for ``build_map``.
         clusters: as for ``build_map``.
         progress: as for ``build_map``.
-        edited: the edits.
+        editing: which options are edited, and how.
 
     Raises:
         MapError: too little is recorded, or nobody walks.
@@ -153,7 +151,13 @@ def options_of_recordings(
     if progress is not None:
         progress("motion graph", len(poses), len(poses))
     grouped = cluster_poses(graph, clusters, report("clusters"))
-    options = reachable_options(graph, grouped, edited, progress=report("options"))
+    options = reachable_options(
+        graph,
+        grouped,
+        editing.edits,
+        progress=report("options"),
+        edited_frames=editing.frames,
+    )
     return graph, grouped, options
 
 
@@ -185,7 +189,7 @@ def _walking_speeds(poses: PoseTable) -> dict[str, float]:
 
 
 def _build_parameters(
-    graph: MotionGraph, grouped: Clusters, options: ReachableOptions, strides: Sequence[float]
+    graph: MotionGraph, grouped: Clusters, options: ReachableOptions, editing: Editing
 ) -> dict[str, Any]:
     return {
         "poses": len(graph.poses),
@@ -203,8 +207,9 @@ def _build_parameters(
         "budget": paths.BUDGET,
         "cell": [round(float(size), 6) for size in paths.CELL],
         "edits": {
-            "turns_deg_in_45_frames": list(TURNS_DEG),
-            "strides": list(strides),
+            "turns_deg_in_45_frames": list(editing.turns_deg),
+            "strides": list(editing.strides),
+            **({} if editing.frames == ON_FLOORS.frames else {"frames": list(editing.frames)}),
             "cell": [round(float(size), 6) for size in thinning.EDIT_CELL],
             "options": int((options.edits > 0).sum()),
         },

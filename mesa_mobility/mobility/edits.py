@@ -81,4 +81,31 @@ def grid(turns: Sequence[float], strides: Sequence[float]) -> tuple[Edit, ...]:
 TURNS_DEG = (-20.0, -10.0, 0.0, 10.0, 20.0)
 STRIDES = (0.7, 0.85, 1.0, 1.15, 1.3)
 EDITS = grid(TURNS_DEG, STRIDES)
-"""Edits of the options of every map; their extent was chosen on clips left out."""
+"""Edits of the options of every map but those for stairs; their extent was chosen on clips left
+out."""
+
+
+@dataclass(frozen=True)
+class Editing:
+    """Which options of a map are edited, and how.
+
+    Attributes:
+        turns_deg: turns, degrees in 45 frames.
+        strides: factors of the length of each step.
+        frames: durations of the options that are edited.
+    """
+
+    turns_deg: tuple[float, ...] = TURNS_DEG
+    strides: tuple[float, ...] = STRIDES
+    frames: tuple[int, ...] = (HORIZON,)
+
+    @property
+    def edits(self) -> tuple[Edit, ...]:
+        """All edits with one of the turns and one of the strides."""
+        return grid(self.turns_deg, self.strides)
+
+
+ON_FLOORS = Editing()
+ON_STAIRS = Editing((-60.0, -40.0, -20.0, 0.0, 20.0, 40.0, 60.0), (1.0,), (12, 24, 45))
+"""On stairs the stride is the tread. Nobody was recorded who turns there: without edits of short
+options people could not steer."""

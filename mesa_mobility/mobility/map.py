@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
+from mesa_mobility._numbers import is_number
+from mesa_mobility._once import cached_once
+from mesa_mobility.errors import MapError
 from mesa_mobility.files.read_once import read_once
 from mesa_mobility.mobility.kept_map import read_kept_map
 from mesa_mobility.mobility.map_data import MapData
@@ -12,6 +18,9 @@ from mesa_mobility.mobility.mapfile import shipped_map_path, write_map
 
 LENDER = "able_bodied"
 """The map that ships of which others borrow what they lack."""
+
+LEAST_TREAD, MOST_TREAD = 0.1, 1.0
+"""Metres."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,3 +83,42 @@ class MobilityMap(MapData):
             MapError: there is no such map.
         """
         return cls.load(shipped_map_path(name))
+
+    def for_treads(self, tread: float) -> MobilityMap:
+        """A map of people on stairs for treads of this depth: strides are as long as a tread.
+
+        Movements take the same time. A map that does not say for which treads it is stays as it is.
+
+        Args:
+            tread: metres.
+
+        Raises:
+            MapError: the metadata have something else than the depth of a tread.
+        """
+        derived = self.metadata.get("derived", {})
+        own = derived.get("tread_m", tread) if isinstance(derived, Mapping) else tread
+        if not (is_number(own) and LEAST_TREAD <= own <= MOST_TREAD):
+            raise MapError(
+                f"mobility map of {self.pedestrian_type!r}: metadata 'tread_m' is {own!r:.40}, "
+                f"expected {LEAST_TREAD:g} to {MOST_TREAD:g} m"
+            )
+        return _lengthened(self, round(tread / own, 4))
+
+
+@cached_once(maxsize=16)
+def _lengthened(map_: MobilityMap, lengths: float) -> MobilityMap:
+    """A map whose movements are longer by a factor, in the same time; itself for a factor of 1."""
+    if lengths == 1.0:
+        return map_
+    factor = np.float32(lengths)
+    made = replace(
+        map_,
+        paths=map_.paths * np.array([factor, factor, 1.0], dtype=np.float32),
+        mean_speeds=map_.mean_speeds * factor,
+    )
+    origin = None if map_.origin is None else f"{map_.origin} x {lengths:g}"
+    for name, value in (("file", map_.file), ("origin", origin), ("lengths", lengths)):
+        object.__setattr__(made, name, value)
+    # Its options are those of the map with this digest, and so are their poses.
+    vars(made)["digest"] = map_.digest
+    return made

@@ -61,6 +61,9 @@ class MapData:
     origin: str | None = field(default=None, init=False, repr=False, compare=False)
     """The digest of all files that it follows from, None for a map that was made in memory."""
 
+    lengths: float = field(default=1.0, init=False, repr=False, compare=False)
+    """Factor by which its movements are longer than those of the map with its digest."""
+
     def __post_init__(self) -> None:
         check_map(self)
         for name, array in vars(self).items():

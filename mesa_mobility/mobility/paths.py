@@ -30,6 +30,7 @@ from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit
 from mesa_mobility.mobility.thinning import (
     BUDGET,
     DURATIONS,
+    EDITED_FRAMES,
     ClusterOptions,
     edit_copies,
     merge,
@@ -96,6 +97,7 @@ def reachable_options(
     edits: Sequence[Edit] = (),
     cell: tuple[float, float, float] = CELL,
     progress: Callable[[int, int], None] | None = None,
+    edited_frames: Sequence[int] = EDITED_FRAMES,
 ) -> ReachableOptions:
     """Options of every cluster: all places its poses can reach, thinned.
 
@@ -105,6 +107,7 @@ def reachable_options(
         edits: how recorded options are edited to fill further cells.
         cell: cell of thinning; metres, metres, radians.
         progress: called as ``progress(poses done, poses)``.
+        edited_frames: durations of the options that are edited.
     """
     order = np.argsort(clusters.labels, kind="stable")
     order = order[clusters.labels[order] >= 0].astype(np.int32)
@@ -143,11 +146,13 @@ def reachable_options(
             done += len(chunk)
             if progress is not None:
                 progress(done, len(order))
-    return joined([merge(parts) if parts else None for parts in found], edits)
+    return joined([merge(parts) if parts else None for parts in found], edits, edited_frames)
 
 
 def joined(
-    recorded: Iterable[ClusterOptions | None], edits: Sequence[Edit] = ()
+    recorded: Iterable[ClusterOptions | None],
+    edits: Sequence[Edit] = (),
+    edited_frames: Sequence[int] = EDITED_FRAMES,
 ) -> ReachableOptions:
     """The options of all clusters from those recorded in each, with edited copies.
 
@@ -155,11 +160,12 @@ def joined(
         recorded: of each cluster; None for one without poses, where nobody stands in the
             recordings.
         edits: how recorded options are edited to fill further cells.
+        edited_frames: durations of the options that are edited.
     """
     each: list[ClusterOptions | None] = []
     counts: list[int] = []
     for own in recorded:
-        copies = None if own is None else with_copies(own, edits)
+        copies = None if own is None else with_copies(own, edits, edited_frames)
         each.append(copies)
         counts.append(0 if copies is None else len(copies.layers))
         if sum(counts) > MOST_OPTIONS:

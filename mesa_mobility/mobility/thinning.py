@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
-from mesa_mobility.mobility.edits import Edit, edit_paths, rotations
+from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit, edit_paths, rotations
 
 DURATIONS = (12, 24, 45)
 """Option durations in frames; 45 frames, 1.5 s, is the paper's time step."""
@@ -19,6 +19,9 @@ BUDGET = 3.3
 
 An edit counts too.
 """
+
+EDITED_FRAMES = DURATIONS[-1:]
+"""Durations of the options that are edited, if nothing else is said."""
 
 EDIT_CELL = (0.15, 0.15, np.deg2rad(20.0))
 """Cell in which the cheapest edited option is kept if no recorded one ends there."""
@@ -63,34 +66,47 @@ def merge(parts: list[tuple[NDArray, ...]]) -> ClusterOptions:
     )
 
 
-def with_copies(recorded: ClusterOptions, edits: Sequence[Edit]) -> ClusterOptions:
-    """Add copies of the longest options, the cheapest in each cell that no recorded one ends in.
+def with_copies(
+    recorded: ClusterOptions, edits: Sequence[Edit], frames: Sequence[int] = EDITED_FRAMES
+) -> ClusterOptions:
+    """Add edited copies of options, the cheapest in each cell that no recorded one ends in.
 
     Each has the number of its edit; its path is still that of the original.
 
     Recordings leave gaps among the places that a body can be in after 1.5 s.  Shorter options lie
     close to each other as recorded; edited ones would add hardly a place and cost time in each
     decision.
+
+    Args:
+        recorded: the options, by layer.
+        edits: how they are edited.
+        frames: durations of the options of which there are copies.
     """
     if not edits:
         return recorded
-    longest = recorded.taken(np.flatnonzero(recorded.layers == len(DURATIONS) - 1))
-    turned = np.array([rotations(edit, longest.paths.shape[1]) for edit in edits])
-    rows, by, cells, costs = _cheapest_copies(
-        longest.costs,
-        longest.paths,
-        np.array([edit.cost for edit in edits]),
-        np.array([edit.turn_rate for edit in edits]),
-        turned,
-        BUDGET,
-        np.array(EDIT_CELL),
-    )
-    order = np.argsort(cells)
-    added = longest.taken(rows[order])._replace(
-        cells=cells[order], costs=costs[order], edits=(by[order] + 1).astype(np.int16)
-    )
-    # The longest come last.
-    return _joined((recorded, added))
+    parts = []
+    for layer, duration in enumerate(DURATIONS):
+        own = recorded.taken(np.flatnonzero(recorded.layers == layer))
+        parts.append(own)
+        if duration not in frames or not len(own.layers):
+            continue
+        paths = np.ascontiguousarray(own.paths[:, : duration // SAMPLE_EVERY])
+        rows, by, cells, costs = _cheapest_copies(
+            own.costs,
+            paths,
+            np.array([edit.cost for edit in edits]),
+            np.array([edit.turn_rate for edit in edits]),
+            np.array([rotations(edit, paths.shape[1]) for edit in edits]),
+            BUDGET,
+            np.array(EDIT_CELL),
+        )
+        order = np.argsort(cells)
+        parts.append(
+            own.taken(rows[order])._replace(
+                cells=cells[order], costs=costs[order], edits=(by[order] + 1).astype(np.int16)
+            )
+        )
+    return _joined(parts)
 
 
 def edit_copies(options: ClusterOptions, edits: Sequence[Edit]) -> None:

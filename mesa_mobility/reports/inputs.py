@@ -16,12 +16,18 @@ from mesa_mobility.reports.versions import sha256_of
 
 
 def map_files(model: Any) -> dict[str, dict[str, str | None]]:
-    """Name and sha256 of the map file of each type of people, by the type; None for a map made."""
-    found = {}
+    """Name and sha256 of the map file of each type of people, by the type; None for a map made.
+
+    Those of maps for stairs have the names of these maps.
+    """
     # Another package's model need not know types.
-    for kind in getattr(model, "pedestrian_types", ()):
-        path = kind.mobility_map.file
-        found[kind.name] = {
+    used = {kind.name: kind.mobility_map for kind in getattr(model, "pedestrian_types", ())}
+    for _, *others in getattr(model, "mobility_maps", ()):
+        used |= {each.pedestrian_type: each for each in others}
+    found = {}
+    for name, map_ in used.items():
+        path = map_.file
+        found[name] = {
             "file": None if path is None else path.name,
             "sha256": None if path is None else digest_of(path),
         }

@@ -30,7 +30,8 @@ def body_of(
         trajectories: the run, with its decisions.
         person: who.
         frames: (k,) frames, whole or between two; by default all in which the person is there.
-        bank: poses of the person's type; by default those that ship for the type's map.
+        bank: poses of the person's type on level floors; by default those that ship for the type's
+            map. Poses on stairs are always those that ship.
         building: where the run was, to put feet on the treads of its stairs. Without it, bodies on
             stairs walk as on a slope.
 
@@ -52,12 +53,9 @@ def body_of(
             f"person {person}: expected each frame of its track at {FRAME_RATE:g} Hz"
         )
     own = decisions.rows_of(person)
-    digest = decisions.maps[int(decisions.type_index[own[0]]) if len(own) else 0]
-    if bank is None:
-        bank = PoseBank.of(digest)
-    bank.check_map(digest)
+    kind = int(decisions.type_index[own[0]]) if len(own) else 0
     motion = body_motion(
-        bank,
+        decisions.bank_of(kind, bank),
         decisions.movements_of(person),
         known,
         track,

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.results.seal import FIELD, UNSEALED, check_seal, seal
-from mesa_mobility.schema import Array, Several, Text, check
+from mesa_mobility.schema import Array, Each, Real, Several, Text, check
 
 if TYPE_CHECKING:
-    from mesa_mobility.bodies import Movements
+    from mesa_mobility.bodies import Movements, PoseBank
 
 FILE = "decisions.parquet"
 FORMAT_VERSION = 1
@@ -35,6 +35,9 @@ COLUMNS: dict[str, Array] = {
 }
 """The columns, and what each of them is."""
 
+STAIRS = Several(Several(Each(Text(), Real(0.01, 100.0), of=list)))
+"""What a file says of maps for stairs."""
+
 SCHEMA = pa.schema([(name, pa.from_numpy_dtype(kind.dtype)) for name, kind in COLUMNS.items()])
 
 
@@ -46,9 +49,12 @@ class Decisions:
         frame: (n,) int32; when the movement begins.
         person: (n,) int32; who moves, as in ``Trajectories``.
         type_index: (n,) int32; number of the person's type.
-        option: (n,) int32; row of the type's mobility map, or -2 for the fallback.
+        option: (n,) int32; row of the type's mobility map, or of its maps for stairs, which follow
+            one after the other; -2 for the fallback.
         share: (n,) float32; share of the option's ground that is covered.
         maps: for each type, the digest of its mobility map.
+        stairs: for each type, the digests of its maps for stairs, each with the factor of its
+            lengths; empty without stairs.
 
     Raises:
         ResultsError: columns of unequal length, decisions that go back in time, types without map.
@@ -60,6 +66,7 @@ class Decisions:
     option: NDArray[np.int32]
     share: NDArray[np.float32]
     maps: tuple[str, ...]
+    stairs: tuple[tuple[tuple[str, float], ...], ...] = ()
 
     def __post_init__(self) -> None:
         sizes = {"types": len(self.maps), "rows": len(self.frame)}
@@ -69,6 +76,11 @@ class Decisions:
             view = values.view()
             view.setflags(write=False)
             object.__setattr__(self, name, view)
+        if self.stairs and len(self.stairs) != len(self.maps):
+            raise ResultsError(
+                f"decisions: maps for stairs of {len(self.stairs)} types, expected those of "
+                f"{len(self.maps)}"
+            )
         if np.any(np.diff(self.frame) < 0):
             raise ResultsError("decisions: frames go back, expected the order of time")
 
@@ -84,8 +96,10 @@ class Decisions:
             raise ResultsError(
                 'the model has recorded no decisions: create it with record="decisions"'
             )
-        maps = tuple(each.mobility_map.digest for each in model.pedestrian_types)
-        return cls(**arrays, maps=maps)
+        used = [[(each.digest, each.lengths) for each in maps] for maps in model.mobility_maps]
+        stairs = tuple(tuple(others) for _, *others in used)
+        maps = tuple(digest for (digest, _), *_ in used)
+        return cls(**arrays, maps=maps, stairs=stairs if any(stairs) else ())
 
     def __len__(self) -> int:
         return len(self.frame)
@@ -117,13 +131,33 @@ class Decisions:
             self.share[rows].astype(np.float64),
         )
 
+    def bank_of(self, kind: int, given: PoseBank | None = None) -> PoseBank:
+        """The poses behind the options of a type.
+
+        Args:
+            kind: number of the type.
+            given: poses of its own map; by default those that ship.
+
+        Raises:
+            MapError: no poses of one of its maps ship, or those given are of another map.
+        """
+        from mesa_mobility.bodies import bank_of_maps
+
+        stairs = self.stairs[kind] if self.stairs else ()
+        return bank_of_maps([(self.maps[kind], 1.0), *stairs], given)
+
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Write a Parquet file with a checksum over all of it; equal decisions give equal bytes.
 
         Raises:
             ResultsError: the file cannot be written.
         """
-        metadata = {"format_version": FORMAT_VERSION, "maps": list(self.maps), FIELD: UNSEALED}
+        metadata = {
+            "format_version": FORMAT_VERSION,
+            "maps": self.maps,
+            "stairs": self.stairs,
+            FIELD: UNSEALED,
+        }
         table = pa.table([getattr(self, name) for name in SCHEMA.names], schema=SCHEMA)
         with replacing(path, ResultsError) as temporary:
             with pq.ParquetWriter(
@@ -153,9 +187,14 @@ def read_decisions(path: str | os.PathLike[str]) -> Decisions:
                 f"{source}: format version {values['format_version']}, expected {FORMAT_VERSION}"
             )
         columns = table.select(SCHEMA.names).cast(SCHEMA)
-        check(values["maps"], Several(Text()), "metadata, maps", error=ResultsError)
-        maps = tuple(values["maps"])
-        return Decisions(**{name: columns[name].to_numpy() for name in SCHEMA.names}, maps=maps)
+        maps, stairs = values["maps"], values.get("stairs", [])
+        check(maps, Several(Text()), "metadata, maps", error=ResultsError)
+        check(stairs, STAIRS, "metadata, stairs", error=ResultsError)
+        return Decisions(
+            **{name: columns[name].to_numpy() for name in SCHEMA.names},
+            maps=tuple(maps),
+            stairs=tuple(tuple((digest, by) for digest, by in each) for each in stairs),
+        )
     except FileNotFoundError as error:
         raise ResultsError(f"{source}: no such file") from error
     except ResultsError as error:

@@ -1,6 +1,7 @@
-"""Edited options of 1.5 s fill cells that no recorded option ends in, at least cost."""
+"""Edited options fill cells that no recorded option ends in, at least cost."""
 
 import numpy as np
+import pytest
 
 from mesa_mobility.mobility import cluster_poses, motion_graph, reachable_options
 from mesa_mobility.mobility.edits import EDITS, Edit, edit_paths
@@ -20,12 +21,13 @@ def ends(options, cluster, edited):
     return rows, options.paths[rows, last].astype(float)
 
 
-def test_edited_options_fill_free_cells_at_least_cost():
+@pytest.mark.parametrize("frames", [(45,), (12, 24, 45), (24,)])
+def test_edited_options_fill_free_cells_at_least_cost(frames):
     graph = motion_graph(random_poses(np.random.default_rng(3), clips=3, length=40, wobble=0.05))
     clusters = cluster_poses(graph, 6)
     plain = reachable_options(graph, clusters)
     edits = (Edit(0.3, 1.0), Edit(-0.3, 1.0), Edit(0.0, 0.8))
-    both = reachable_options(graph, clusters, edits)
+    both = reachable_options(graph, clusters, edits, edited_frames=frames)
     assert not plain.edits.any()
     assert both.edits.any()
     for cluster in range(len(clusters)):
@@ -34,12 +36,12 @@ def test_edited_options_fill_free_cells_at_least_cost():
         np.testing.assert_array_equal(both.paths[recorded], plain.paths[own])
         np.testing.assert_array_equal(both.costs[recorded], plain.costs[own])
         taken = {
-            (frames, cell_of(end))
-            for frames, end in zip(both.durations[recorded], recorded_ends, strict=True)
+            (duration, cell_of(end))
+            for duration, end in zip(both.durations[recorded], recorded_ends, strict=True)
         }
         # Every edit of every option by hand: the least cost of each cell that is free.
         best: dict[tuple, float] = {}
-        for row in recorded[both.durations[recorded] == 45]:
+        for row in recorded[np.isin(both.durations[recorded], frames)]:
             samples = both.durations[row] // 3
             for edit in edits:
                 cost = both.costs[row] + edit.cost

@@ -247,7 +247,7 @@ def _from_recordings(
         derived_type,
         prepare_recordings,
     )
-    from mesa_mobility.mobility.edits import STRIDES
+    from mesa_mobility.mobility.edits import ON_FLOORS, ON_STAIRS
     from mesa_mobility.mobility.preparing.stairs import on_long_stairs
     from mesa_mobility.mobility.preparing.summary import summary_of
 
@@ -271,19 +271,19 @@ def _from_recordings(
         metadata: dict[str, Any] = {}
         if plan is not None:
             recordings, metadata = plan.derive(recordings, plan.time_factor(recordings))
-        strides: Sequence[float] = STRIDES
+        editing = ON_FLOORS
         if wanted.stairs is not None:
             recordings, metadata = on_long_stairs(
                 recordings, up=wanted.stairs is OnStairs.UP, tread=wanted.tread
             )
-            strides = (1.0,)
+            editing = ON_STAIRS
         name = wanted.name or wanted.derived or recorded
         command = wanted.command(source.name, recorded, name)
         families = build_families(
             recordings,
             type_name=name,
             clusters=wanted.clusters,
-            strides=strides,
+            editing=editing,
             metadata={"command": command, "preparation": prepared.choices, **metadata},
             progress=report,
         )

@@ -98,10 +98,12 @@ def repeat_decision(
             other maps, other decisions or other positions up to this frame.
         ModelError: there is no such model or behaviour any more.
     """
+    from mesa_mobility.results.decisions import Decisions
+
     model = _make(found.summary, name, map_file)
     decisions = _recorded(found.trajectories)
-    maps = tuple(each.mobility_map.digest for each in model.pedestrian_types)
-    if maps != decisions.maps:
+    here = Decisions.of(model)
+    if (here.maps, here.stairs) != (decisions.maps, decisions.stairs):
         raise ResultsError(
             f"{name}: its decisions were taken with other mobility maps, expected those of the run"
         )

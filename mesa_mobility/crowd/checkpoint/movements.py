@@ -15,6 +15,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from mesa_mobility.crowd.options.repertoire import within_maps
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, SAMPLE_FRAMES
 from mesa_mobility.crowd.planning.fallback import FALLBACK_FRAMES
 from mesa_mobility.crowd.scene import Scene
@@ -79,18 +80,28 @@ def check_next(scene: Scene, inside: NDArray[np.int64], frame: int, following: i
 
 
 def check_choices(types: NDArray[np.integer], options: NDArray[np.integer], scene: Scene) -> None:
-    """Raise ContentError unless options are those of the people's types, or none."""
-    firsts = np.append(scene.repertoire.first_option, len(scene.repertoire.table.options))
-    own = (options < 0) | ((options >= firsts[types]) & (options < firsts[types + 1]))
+    """Raise ContentError unless options are of maps of the people's types, or none."""
+    own = (options < 0) | _of_types(types, options, scene.repertoire.first_option, scene)
     _check(own, np.arange(len(own)), "option", options, "one of the type of the person")
+
+
+def _of_types(
+    types: NDArray[np.integer],
+    numbers: NDArray[np.integer],
+    firsts: NDArray[np.integer],
+    scene: Scene,
+) -> NDArray[np.bool_]:
+    """(n,) whether (n,) numbers of options or clusters are of maps of the people's types."""
+    found: NDArray[np.bool_] = (
+        scene.grounds.known.first_rows[types, within_maps(numbers, firsts)[0]] >= 0
+    )
+    return found
 
 
 def _check_options(people: Records, scene: Scene) -> None:
     kinds, rows = people["type_index"], np.arange(len(people))
     check_choices(kinds, people["option"], scene)
-    found = scene.repertoire
-    firsts = np.append(found.first_cluster, len(found.table.offsets) - 1)
-    own = (people["cluster"] >= firsts[kinds]) & (people["cluster"] < firsts[kinds + 1])
+    own = _of_types(kinds, people["cluster"], scene.repertoire.first_cluster, scene)
     _check(own, rows, "cluster", people["cluster"], "one of the type of the person")
     bodies = scene.environment.bodies
     body = np.array([scene.environment.body(k) for k in range(len(scene.types))])

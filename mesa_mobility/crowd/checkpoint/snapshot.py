@@ -81,7 +81,7 @@ def save_model(model: CrowdModel, path: str | os.PathLike[str]) -> None:
         "model": class_name(type(model)),
         "arguments": arguments,
         "missing_arguments": missing,
-        "map_sha256": [map_digest(each.mobility_map) for each in model.pedestrian_types],
+        "map_sha256": [map_digest(each) for each in model._scene.grounds.known.maps],
         **{
             name: packer.pack(value, f"{type(model).__name__}, {name}")
             for name, value in state.items()
@@ -145,7 +145,7 @@ def _load(
     unpacker = Unpacker(arrays, _Shipped())
     arguments = {name: unpacker.unpack(each) for name, each in content["arguments"].items()}
     model = made(**{**arguments, **given})
-    digests = [map_digest(each.mobility_map) for each in model.pedestrian_types]
+    digests = [map_digest(each) for each in model._scene.grounds.known.maps]
     if digests != content["map_sha256"]:
         raise ModelError("its mobility maps are others than those of the model that was saved")
     unpacker.objects = objects = dict(_names(model))

@@ -44,7 +44,7 @@ class Candidates:
         displacements: (n,) straight distance from the pedestrian's position, metres.
         durations: (n,) seconds the option takes.
         speeds: (n,) displacement over duration, m/s.
-        options: (n,) row of the option in the capability's table.
+        options: (n,) row of the option in the table of the capability by which its person moves.
         owner: (n,) index in the batch (0 to b - 1) of the option's pedestrian.
         offsets: (b + 1,) options of pedestrian i are rows ``offsets[i]:offsets[i + 1]``.
         grid: people, and where they are; only columns of its table are kept of them.

@@ -220,7 +220,16 @@ class CrowdModel(RefugeFigures, mesa.Model):
     @property
     def capabilities(self) -> tuple[Capability, ...]:
         """The capability of each pedestrian type."""
-        return self._scene.repertoire.capabilities
+        return self._scene.repertoire.capabilities[: len(self.pedestrian_types)]
+
+    @property
+    def mobility_maps(self) -> tuple[tuple[MobilityMap, ...], ...]:
+        """The maps by which people of each type move: that of the type, and those for stairs."""
+        known = self._scene.grounds.known
+        return tuple(
+            tuple(known.maps[number] for number in known.of_type(kind))
+            for kind in range(len(self.pedestrian_types))
+        )
 
     @property
     def stall_reason(self) -> str | None:

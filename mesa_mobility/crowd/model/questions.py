@@ -19,7 +19,7 @@ def decided(model: CrowdModel, since: int = 0) -> dict[str, NDArray[np.generic]]
     """
     if model.decisions is None:
         return None
-    return model.decisions.arrays(model._scene.repertoire, since)
+    return model.decisions.arrays(model._scene, since)
 
 
 def under_way(model: CrowdModel) -> dict[str, NDArray[np.generic]]:
@@ -28,7 +28,7 @@ def under_way(model: CrowdModel) -> dict[str, NDArray[np.generic]]:
     Entry k belongs to the person ``rows[k]`` of the model, and ``frame`` is when the movement
     began. This works without recorded decisions, too.
     """
-    return movements_under_way(model.crowd, model.rows, model._scene.repertoire)
+    return movements_under_way(model.crowd, model.rows, model._scene)
 
 
 def explain(model: CrowdModel, row: int) -> Explanation:

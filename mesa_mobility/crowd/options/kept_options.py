@@ -53,7 +53,7 @@ _MEMBERS: dict[str, Array | Records] = {
     "parts.rows": Array("i8", ("options",), 0),
     "parts.share": Array("f8", ("options",), 0.0, 1.0),
     "parts.clusters": Array("i8", ("options",), 0, below="clusters"),
-    "extent": Array("f8", ("types",), 0.0, 2.0 * _FAR),
+    "extent": Array("f8", ("maps",), 0.0, 2.0 * _FAR),
 }
 
 DTYPES = {name: np.dtype(kind.dtype) for name, kind in _MEMBERS.items()}
@@ -64,10 +64,10 @@ def check_options(arrays: Arrays, maps: Sequence[MobilityMap]) -> None:
 
     Args:
         arrays: those of ``DTYPES``.
-        maps: one for each type.
+        maps: whose options they are.
     """
     sizes = {
-        "types": len(maps),
+        "maps": len(maps),
         "clusters": sum(each.n_clusters for each in maps),
         "options": len(arrays["table.options"]),
         "groups": len(arrays["table.groups"]),
@@ -99,7 +99,7 @@ def _check_groups(arrays: Arrays) -> None:
 
 
 def _check_parts(arrays: Arrays, map_: MobilityMap, options: slice, first: int) -> None:
-    """Refuse options of one type that are not of its map, whose first cluster has this number."""
+    """Refuse options that are not of their map, whose first cluster has this number."""
     laid_out, rows = arrays["table.options"][options], arrays["parts.rows"][options]
     clusters = arrays["parts.clusters"][options]
     _refuse_unless(

@@ -1,4 +1,4 @@
-"""Movement options of all pedestrian types of a model, stacked for compiled functions."""
+"""Movement options of all maps of a model, stacked for compiled functions."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from mesa_mobility.mobility import MobilityMap
 
 @dataclass(frozen=True, eq=False)
 class Repertoire:
-    """Capabilities of several types, with consecutive numbers of clusters and options.
+    """Capabilities of several maps, with consecutive numbers of clusters and options.
 
     Attributes:
-        capabilities: one for each type.
+        capabilities: one for each map: those of the pedestrian types, then others.
         table: their options.
         groups: the options in groups, with the extent of each.
-        first_cluster: (types,) number of each type's first cluster.
-        first_option: (types,) row of each type's first option.
-        standing: (types,) number of each type's standing cluster.
-        reach: by type, greatest distance of an option from its start, metres.
-        extent: by type, upper bound of the distance between two points of one option, metres.
+        first_cluster: (maps,) number of each map's first cluster.
+        first_option: (maps,) row of each map's first option.
+        standing: (maps,) number of each map's standing cluster.
+        reach: by map, greatest distance of an option from its start, metres.
+        extent: by map, upper bound of the distance between two points of one option, metres.
     """
 
     capabilities: tuple[Capability, ...]
@@ -53,6 +53,27 @@ class Repertoire:
         """Itself: models share it, and its arrays are aligned for compiled functions."""
         return self
 
+    def capability_of(self, cluster: int) -> tuple[Capability, int]:
+        """The capability with a cluster, and the number of the cluster in it."""
+        number, own = within_maps(np.array([cluster]), self.first_cluster)
+        return self.capabilities[int(number[0])], int(own[0])
+
+
+def within_maps(
+    numbers: NDArray[np.integer], firsts: NDArray[np.integer]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """What numbers of clusters or options mean.
+
+    Args:
+        numbers: (n,) at least 0.
+        firsts: (maps,) the first of each map.
+
+    Returns:
+        (n,) number of the map, and (n,) number in this map.
+    """
+    of = np.searchsorted(firsts, numbers, side="right").astype(np.int64) - 1
+    return of, numbers.astype(np.int64) - firsts[of]
+
 
 @cached_once(maxsize=4)
 def repertoire(
@@ -64,7 +85,7 @@ def repertoire(
     """The repertoire of these maps; models with the same maps share it.
 
     Args:
-        maps: one for each type.
+        maps: those of the types, and others.
         durations: option durations in frames.
         shares: shortened copies, as for ``Capability``.
         most_acceleration: of an option, m/s2, as for ``Capability``.

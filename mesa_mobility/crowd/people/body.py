@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.bodies import BodyMotion, Movements, PoseBank, body_motion
+from mesa_mobility.bodies import BodyMotion, Movements, PoseBank, bank_of_maps, body_motion
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND, LONGEST_MOVEMENT
 from mesa_mobility.errors import ModelError
+from mesa_mobility.mobility import MobilityMap
 
 REMEMBERED = 3 * FRAMES_A_SECOND
 """Frames of the past that a body is worked out from: some five steps."""
@@ -25,14 +27,16 @@ class Recorded(Protocol):
         """The decisions from a frame on, or None."""
 
 
-def body_now(model: Recorded, row: int, digest: str, bank: PoseBank | None = None) -> BodyMotion:
+def body_now(
+    model: Recorded, row: int, maps: Sequence[MobilityMap], bank: PoseBank | None = None
+) -> BodyMotion:
     """The body of a pedestrian in the present frame; see ``Pedestrian.pose``.
 
     Args:
         model: the model.
         row: the pedestrian.
-        digest: of the mobility map of their type.
-        bank: poses of the type; by default those that ship for the map.
+        maps: by which people of their type move, that of the type first.
+        bank: poses of the first map; by default those that ship for it.
     """
     since = model.frame - REMEMBERED
     decided = model.decided(since - LONGEST_MOVEMENT)
@@ -48,9 +52,7 @@ def body_now(model: Recorded, row: int, digest: str, bank: PoseBank | None = Non
         options=decided["option"][own].astype(np.int64),
         shares=decided["share"][own].astype(np.float64),
     )
-    if bank is None:
-        bank = PoseBank.of(digest)
-    bank.check_map(digest)
+    poses = bank_of_maps([(each.digest, each.lengths) for each in maps], bank)
     track = np.column_stack([tracks[name][rows] for name in ("x", "y", "heading")])
-    motion = body_motion(bank, movements, tracks["frame"][rows].astype(np.int64), track)
+    motion = body_motion(poses, movements, tracks["frame"][rows].astype(np.int64), track)
     return motion.at(model.frame)

@@ -275,12 +275,13 @@ class Pedestrian(ContinuousSpaceAgent):
 
     @property
     def capability(self) -> Capability:
-        """The component through which the person consults the mobility map of their type."""
-        return self.model.capabilities[int(self.model.crowd.type_index[self.row])]
+        """The component through which the person consults the mobility map by which they move:
+        that of their type, or one for stairs."""
+        return self.model.population.capability_of(self.row)
 
     @property
     def cluster(self) -> int:
-        """Cluster, in the type's map, of the pose in which the movement under way ends."""
+        """Cluster, in the map by which they move, of the pose in which the movement ends."""
         return self.model.population.cluster_of(self.row)
 
     @property
@@ -307,8 +308,8 @@ class Pedestrian(ContinuousSpaceAgent):
         """
         from mesa_mobility.crowd.people.body import body_now
 
-        digest = self.pedestrian_type.mobility_map.digest
-        return body_now(self.model, self.row, digest, bank)
+        maps = self.model.mobility_maps[int(self.model.crowd.type_index[self.row])]
+        return body_now(self.model, self.row, maps, bank)
 
     def movement_options(self) -> Candidates:
         """The person's movement options if they decided here and now."""

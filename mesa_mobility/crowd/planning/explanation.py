@@ -18,7 +18,8 @@ from mesa_mobility.compiled.decorators import entry_point
 from mesa_mobility.crowd.collision.exact import exit_distance, near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates
 from mesa_mobility.crowd.costs.terms import CostTerm
-from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.options.capability import Capability
+from mesa_mobility.crowd.options.repertoire import Repertoire, within_maps
 from mesa_mobility.crowd.options.table import SAMPLE_FRAMES, SAMPLES, OptionTable
 from mesa_mobility.crowd.planning.evaluation.candidate_batch import Outlook, make_candidates
 from mesa_mobility.crowd.planning.feasibility import Obstacles, Trial, path_gone_or_blocked
@@ -39,7 +40,8 @@ class Explanation:
         pedestrian: row in the crowd.
         frame: when the decision was or would be taken.
         taken: whether the decision was taken; if not, it is the one that would be taken.
-        cluster: cluster of the pose from which the pedestrian decides, in the map of their type.
+        capability: what the pedestrian can do on the ground where they are.
+        cluster: cluster of the pose from which the pedestrian decides, in that capability's map.
         candidates: the pedestrian's options; a batch of one pedestrian.
         terms: names of the terms that people of this type have.
         weights: (terms,) factors of the terms in the sum.
@@ -57,6 +59,7 @@ class Explanation:
     pedestrian: int
     frame: int
     taken: bool
+    capability: Capability
     cluster: int
     candidates: Candidates
     terms: tuple[str, ...]
@@ -92,8 +95,7 @@ class Watch:
     def commits(self, crowd: Crowd, first_option: NDArray[np.int64]) -> None:
         """Note which option the engine has committed the pedestrian to."""
         if self.decision is not None:
-            option = int(crowd.option[self.pedestrian])
-            option -= int(first_option[crowd.type_index[self.pedestrian]])
+            _, option = within_maps(crowd.option[[self.pedestrian]], first_option)
             at = np.flatnonzero(self.decision.candidates.options == option)
             self.decision = replace(self.decision, taken=True, chosen=int(at[0]) if len(at) else -1)
 
@@ -109,13 +111,15 @@ def weigh(
     crowd = outlook.crowd
     candidates = make_candidates(np.array([row], dtype=np.int64), outlook)
     n, kind = len(candidates), crowd.type_index[row]
+    capability, cluster = known.capability_of(int(crowd.cluster[row]))
     terms = [term for term in terms if term.is_for(types[kind])]
     costs = [np.asarray(term.cost(candidates), dtype=np.float64) for term in terms]
     return Explanation(
         pedestrian=row,
         frame=outlook.moment.frame,
         taken=False,
-        cluster=int(crowd.cluster[row]) - int(known.first_cluster[crowd.type_index[row]]),
+        capability=capability,
+        cluster=cluster,
         candidates=candidates,
         terms=tuple(term.name for term in terms),
         weights=np.array([term.weights(types)[kind] for term in terms]),
@@ -133,7 +137,8 @@ def judge(weighed: Explanation, outlook: Outlook) -> Explanation:
     """The explanation with verdicts on the options, against walls and everybody's movements."""
     table, crowd, _, around, rules, _ = outlook
     row = weighed.pedestrian
-    options = weighed.candidates.options + rules.first_option[crowd.type_index[row]]
+    options = weighed.candidates.options + table.offsets[crowd.cluster[row]]
+    options -= weighed.capability.table.offsets[weighed.cluster]
     near = rows_seen(crowd, weighed.candidates.neighbours, weighed.candidates.neighbour_positions)
     verdicts, blockers = weighed.verdicts.copy(), weighed.blockers.copy()
     walls = np.empty((around.most_walls, 5))

@@ -29,8 +29,8 @@ class Rules(NamedTuple):
             somebody who decides: the farthest from which a movement of each can bring them
             together. Rows are the type of who decides, columns that of the other.
         hard_bodies: whether bodies may not overlap.
-        standing: (types,) standing cluster of each pedestrian type.
-        first_option: (types,) first row of each pedestrian type in the table.
+        standing: (maps,) standing cluster of each map; first come the maps of the types.
+        first_option: (maps,) first row of each map in the table.
     """
 
     search_radius: float

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.options.repertoire import Repertoire
+from mesa_mobility.crowd.options.repertoire import within_maps
 from mesa_mobility.crowd.saved import Saved
+from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.records import FARTHEST, LAST_FRAME, Crowd
 from mesa_mobility.schema import Array, Each, Either, Kind
 
@@ -108,27 +109,27 @@ class DecisionRecorder(Saved):
             )
         )
 
-    def arrays(self, repertoire: Repertoire, since: int = 0) -> dict[str, NDArray[np.generic]]:
+    def arrays(self, scene: Scene, since: int = 0) -> dict[str, NDArray[np.generic]]:
         """What was decided from frame ``since`` on, in order of time.
 
         Args:
-            repertoire: the model's movement options, from which people chose.
+            scene: the model's, with the options from which people chose.
             since: first frame.
 
         Returns:
             Arrays (n,) with an entry for each of n decisions: ``frame``; ``person``;
-            ``type_index`` of the person's type; ``option``, a row of the type's map, or -2 for the
-            fallback; ``share``, the part of the option's length that is walked, 0 to 1; less than 1
-            for shortened options.
+            ``type_index`` of the person's type; ``option``, a row of the type's maps, one after the
+            other, or -2 for the fallback; ``share``, the part of the option's length that is
+            walked, 0 to 1; less than 1 for shortened options.
         """
         names = ("frame", "person", "type_index", "option")
         columns = [np.concatenate(each) for each in zip(*_since(self._blocks, since), strict=True)]
         found = dict(zip(names, columns or [np.empty(0, np.int32)] * 4, strict=True))
-        return _in_maps(found, repertoire)
+        return _in_maps(found, scene)
 
 
 def movements_under_way(
-    crowd: Crowd, rows: NDArray[np.int64], repertoire: Repertoire
+    crowd: Crowd, rows: NDArray[np.int64], scene: Scene
 ) -> dict[str, NDArray[np.generic]]:
     """What the people in ``rows`` are doing now, as arrays like ``DecisionRecorder.arrays``.
 
@@ -140,19 +141,19 @@ def movements_under_way(
         "type_index": crowd.type_index[rows].astype(np.int32),
         "option": crowd.option[rows],
     }
-    return _in_maps(found, repertoire)
+    return _in_maps(found, scene)
 
 
-def _in_maps(
-    found: dict[str, NDArray[Any]], repertoire: Repertoire
-) -> dict[str, NDArray[np.generic]]:
+def _in_maps(found: dict[str, NDArray[Any]], scene: Scene) -> dict[str, NDArray[np.generic]]:
     """These arrays with rows of the types' maps as options, and with the ``share`` of each."""
     option, share = found["option"].copy(), np.ones(len(found["option"]), dtype=np.float32)
-    for number, capability in enumerate(repertoire.capabilities):
-        own = (found["type_index"] == number) & (option >= 0)
-        rows = option[own] - repertoire.first_option[number]
-        option[own] = capability.parts.rows[rows]
-        share[own] = capability.parts.share[rows]
+    chosen = np.flatnonzero(option >= 0)
+    numbers, rows = within_maps(option[chosen], scene.repertoire.first_option)
+    for number, capability in enumerate(scene.repertoire.capabilities):
+        own, parts = chosen[numbers == number], capability.parts
+        firsts = scene.grounds.known.first_rows[found["type_index"][own], number]
+        option[own] = firsts + parts.rows[rows[numbers == number]]
+        share[own] = parts.share[rows[numbers == number]]
     return {**found, "option": option, "share": share}
 
 

@@ -24,6 +24,9 @@ _LEAST, _GREATEST = EXTREMES
 _SEATED = "wheelchair"
 """With this begin the types of maps of people in wheelchairs."""
 
+_STEP_OVER_STEP = "able_bodied", "child", "older_adult"
+"""Types of maps of people who put one foot on each tread."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PedestrianType:
@@ -37,6 +40,10 @@ class PedestrianType:
         core_radius: radius of the body, a disc about the person's position that no other body
             enters, metres, or a distribution of radii; by default the map's.
         climbs: whether they use stairs; by default all do but those with a map of a wheelchair.
+        up: the map by which they walk up stairs, as `mesa-mobility map build --stairs` makes them;
+            by default that of able-bodied people for types of this gait: able-bodied people,
+            children and older adults. Other types walk by ``mobility_map``, more slowly.
+        down: the same, down.
     """
 
     mobility_map: MobilityMap
@@ -44,6 +51,8 @@ class PedestrianType:
     preferred_speed: Distribution | float | None = None
     core_radius: Distribution | float = field(default=0.0)
     climbs: bool | None = None
+    up: MobilityMap | None = None
+    down: MobilityMap | None = None
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -100,6 +109,21 @@ class PedestrianType:
         return tuple(
             cls.named(kind) if isinstance(kind, str) else kind for kind in population.shares
         )
+
+    def on_stairs(self, tread: float, *, up: bool) -> MobilityMap:
+        """The map by which they walk on stairs.
+
+        Args:
+            tread: depth of the treads, metres.
+            up: whether they walk up, or down.
+
+        Raises:
+            MapError: a map of stairs with something else than the depth of a tread.
+        """
+        own = self.up if up else self.down
+        if own is None and self.climbs and self.mobility_map.pedestrian_type in _STEP_OVER_STEP:
+            own = MobilityMap.named(f"able_bodied_{'up' if up else 'down'}")
+        return self.mobility_map if own is None else own.for_treads(tread)
 
     @property
     def least_core(self) -> float:

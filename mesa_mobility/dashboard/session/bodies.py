@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mesa_mobility import PedestrianModel
 from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
-from mesa_mobility.bodies import Movements, PoseBank
+from mesa_mobility.bodies import Movements, PoseBank, bank_of_maps
 from mesa_mobility.bodies.sequence import stretch_of_each
 from mesa_mobility.errors import MapError
 
@@ -29,16 +29,15 @@ class Bodies:
         self._model = model
         self._banks: list[PoseBank] = []
         self._bank_of: list[int] = []
-        known: dict[str, int] = {}
-        for kind in model.pedestrian_types:
-            digest = kind.mobility_map.digest
-            if digest not in known:
-                try:
-                    self._banks.append(PoseBank.of(digest))
-                    known[digest] = len(self._banks) - 1
-                except MapError:  # drawn without limbs
-                    known[digest] = -1
-            self._bank_of.append(known[digest])
+        for maps in model.mobility_maps:
+            try:
+                bank = bank_of_maps([(each.digest, each.lengths) for each in maps])
+            except MapError:  # drawn without limbs
+                self._bank_of.append(-1)
+                continue
+            if bank not in self._banks:
+                self._banks.append(bank)
+            self._bank_of.append(self._banks.index(bank))
 
     def bundle(self) -> str:
         """Figures and poses as ``viewer/bundle.js`` opens them.

@@ -25,7 +25,8 @@ class SpeedZone:
     of its way. So people slow down at most 1.5 s before a zone, speed up at most 1.5 s before its
     end, and come to its far side when they should. Where zones overlap, their factors multiply.
     People keep the same distances as elsewhere, at a lower speed (`Headway`). On stairs they keep a
-    tread more, since a body needs the tread before it.
+    tread more, since a body needs the tread before it. A zone with a tread and a direction is a
+    stair, on which people walk by the maps for stairs (`PedestrianType.up`).
 
     Args:
         polygon: shapely or WKT, metres.

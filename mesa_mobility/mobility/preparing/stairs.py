@@ -88,6 +88,7 @@ class StairCycle:
             name=f"{of.name} at {cadence:g} steps a second",
             root_position=(ways + step).reshape(-1, 3),
             rotations=np.tile(of.rotations[:-1], (times, 1, 1)),
+            slope=self.rise / (2.0 * tread),
         )
         return scale(long, time=self.cadence / cadence)
 

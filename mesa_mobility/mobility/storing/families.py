@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import kept
-from mesa_mobility.errors import MapError
+from mesa_mobility.errors import ContentError, MapError
 from mesa_mobility.mobility.clusters import Clusters
-from mesa_mobility.mobility.edits import SAMPLE_EVERY, Edit, grid
+from mesa_mobility.mobility.edits import ON_FLOORS, SAMPLE_EVERY, Editing
 from mesa_mobility.mobility.paths import MOST_JUMPS, MOST_OPTIONS, ReachableOptions, joined
 from mesa_mobility.mobility.poses import MOTION_STEP
 from mesa_mobility.mobility.storing.archive import read_metadata, write_arrays
@@ -96,7 +96,7 @@ class OptionFamilies:
         """All options of the map, edited ones included."""
         layers = np.tile(np.arange(len(DURATIONS)), len(self.counts))
         layers = np.repeat(layers, self.counts.reshape(-1))
-        edits = self.edits()
+        editing = self.editing()
         frames = np.array(DURATIONS)[layers]
         paths, clusters, valid = _follow(
             frames, self.sources, self.jumps, self.steps * MOTION_STEP, self.clusters.labels
@@ -118,7 +118,7 @@ class OptionFamilies:
             columns.taken(np.arange(first, last)) if last > first else None
             for first, last in itertools.pairwise(bounds)
         ]
-        return joined(parts, edits)
+        return joined(parts, editing.edits, editing.frames)
 
     def fields(self, lender: Callable[[], Any]) -> dict[str, Any]:
         """The fields of the map.
@@ -161,21 +161,26 @@ class OptionFamilies:
         metadata = {"format_version": FORMAT_VERSION, **self.metadata}
         write_arrays(path, FAMILIES, arrays, metadata)
 
-    def edits(self) -> tuple[Edit, ...]:
-        """How recorded options are edited, in the order of the numbers in ``ReachableOptions``.
+    def editing(self) -> Editing:
+        """How recorded options are edited; edits have the numbers in ``ReachableOptions``.
 
         Raises:
-            ContentError: they are no turns and strides of people, or too many.
+            ContentError: they are no turns and strides of people, too many, or of options of other
+                durations.
         """
         edits = self.metadata.get("build", {}).get("edits", {})
         turns = edits.get("turns_deg_in_45_frames", [0.0])
         strides = edits.get("strides", [1.0])
+        frames = edits.get("frames", list(ON_FLOORS.frames))
         check(turns, Several(Real(-180.0, 180.0)), "metadata, turns_deg_in_45_frames")
         check(strides, Several(Real(0.01, 10.0)), "metadata, strides")
+        check(frames, Several(Whole(1, DURATIONS[-1])), "metadata, frames of edits")
+        if not set(frames) <= set(DURATIONS):
+            raise ContentError(f"metadata, frames of edits: {frames}, expected some of {DURATIONS}")
         check(len(turns) * len(strides), Whole(0, MOST_EDITS), "metadata, number of edits")
         copies = int(self.counts.sum(axis=1).max()) * (len(turns) * len(strides) + 1)
         check(copies, Whole(0, MOST_OPTIONS), "array 'counts', edited options of a cluster")
-        return grid(turns, strides)
+        return Editing(tuple(turns), tuple(strides), tuple(frames))
 
 
 def read_families(arrays: dict[str, NDArray[Any]]) -> OptionFamilies:

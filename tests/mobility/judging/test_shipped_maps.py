@@ -12,8 +12,9 @@ import pytest
 from mesa_mobility.mobility import WHEELCHAIRS, MobilityMap, abilities_of, shipped_map_path
 from mesa_mobility.mobility.judging.verdict import with_verdict
 from mesa_mobility.mobility.standing.ways_back import check_ways_back
-from tests.fixtures.maps import ALL_TYPES
+from tests.fixtures.maps import ALL_TYPES, STAIR_MAPS
 
+ALL_MAPS = (*ALL_TYPES, *STAIR_MAPS)
 FOLDER = Path(str(files("mesa_mobility.maps")))
 
 
@@ -31,9 +32,9 @@ SPEEDS = {
 }
 
 
-def test_twelve_maps_ship_in_at_most_20_megabytes():
-    assert {path.stem for path in FOLDER.glob("*.npz")} == set(ALL_TYPES)
-    assert sum(shipped_map_path(name).stat().st_size for name in ALL_TYPES) <= 20e6
+def test_fourteen_maps_ship_in_at_most_20_megabytes():
+    assert {path.stem for path in FOLDER.glob("*.npz")} == set(ALL_MAPS)
+    assert sum(shipped_map_path(name).stat().st_size for name in ALL_MAPS) <= 20e6
 
 
 def test_the_readme_has_their_sums():
@@ -45,12 +46,12 @@ def test_the_readme_has_their_sums():
         )
     )
     assert listed == {
-        name: hashlib.sha256(shipped_map_path(name).read_bytes()).hexdigest() for name in ALL_TYPES
+        name: hashlib.sha256(shipped_map_path(name).read_bytes()).hexdigest() for name in ALL_MAPS
     }
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", [each for each in ALL_TYPES if each != "able_bodied"])
+@pytest.mark.parametrize("name", [each for each in ALL_MAPS if each != "able_bodied"])
 def test_each_says_what_it_is_and_traps_nobody(name):
     map_ = MobilityMap.load(shipped_map_path(name))
     assert map_.pedestrian_type == name
@@ -67,7 +68,7 @@ def test_each_says_what_it_is_and_traps_nobody(name):
         assert min(abilities_of(map_)["side_step_m"]) >= 0.14
 
 
-@pytest.mark.parametrize("name", ALL_TYPES)
+@pytest.mark.parametrize("name", ALL_MAPS)
 def test_each_has_passed_its_examination(name):
     with np.load(shipped_map_path(name)) as arrays:
         metadata = json.loads(arrays["metadata"].tobytes())
@@ -109,3 +110,14 @@ def test_a_map_of_recordings_is_built_again_to_the_same_bytes(captures_dir, tmp_
     families.save(tmp_path / "again.npz")
     assert (tmp_path / "again.npz").read_bytes() == shipped.read_bytes()
     assert np.isclose(families.costs.max(), 3.3, atol=0.2)
+
+
+@pytest.mark.parametrize("up", [True, False])
+def test_people_on_stairs_go_as_far_as_a_tread_with_each_step(up):
+    map_ = MobilityMap.named(f"able_bodied_{'up' if up else 'down'}")
+    derived = map_.metadata["derived"]
+    assert (derived["direction"], derived["tread_m"]) == ("up" if up else "down", 0.29)
+    # Strides of 0.29 m at 0.6 to 3 steps a second.
+    speeds = np.hypot(*map_.end_points.T) / map_.durations * 30.0
+    walks = np.repeat(np.arange(map_.n_clusters), np.diff(map_.offsets)) != map_.standing
+    assert np.percentile(speeds[walks], 95) <= 1.1 * 3.0 * 0.29

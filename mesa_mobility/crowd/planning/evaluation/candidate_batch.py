@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesa_mobility.compiled.decorators import internal, kept
 from mesa_mobility.crowd.collision.exact import near_walls, wall_reach
 from mesa_mobility.crowd.costs.candidates import Candidates, Moment
+from mesa_mobility.crowd.options.repertoire import within_maps
 from mesa_mobility.crowd.options.table import FRAME_SECONDS, OptionTable
 from mesa_mobility.crowd.planning.grid import farthest_range, interact, people_within, place_in
 from mesa_mobility.crowd.planning.workspace import Rules
@@ -23,7 +24,7 @@ class Outlook(NamedTuple):
     """Everything that a decision looks at: options, people, walls, rules and the moment.
 
     Attributes:
-        table: options of all pedestrian types.
+        table: options of all maps.
         crowd: the crowd; targets must be set.
         grid: people by place.
         around: walls and exits.
@@ -86,6 +87,7 @@ def candidates_of(
     if len(crowd.person_of):
         # Terms know people by their own rows, wherever they see them.
         grid = grid._replace(people=crowd.person_of[grid.people])
+    maps, _ = within_maps(table.offsets[crowd.cluster[rows]], rules.first_option)
     wall_offsets, walls = _all_walls(rows, table, around, crowd.records)
     durations = table.options.frames[options] * FRAME_SECONDS
     speeds = table.options.speed[options].astype(np.float64)
@@ -95,7 +97,7 @@ def candidates_of(
         displacements=speeds * durations,
         durations=durations,
         speeds=speeds,
-        options=options - rules.first_option[crowd.type_index[rows]][owner],
+        options=options - rules.first_option[maps][owner],
         owner=owner,
         offsets=offsets,
         grid=grid,
