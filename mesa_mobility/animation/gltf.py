@@ -1,7 +1,8 @@
 """A run as glTF 2.0: people as skinned, animated figures between the walls of the plan.
 
-People share one mesh, those with a stick or a wheelchair another. Each has a skeleton of its own,
-whose joints are animated at 30 frames a second with quaternions of 16 bits.
+People share one mesh, those with a stick or a wheelchair another; their clothes are its materials.
+Each has a skeleton of its own, whose joints are animated with quaternions of 16 bits. Frames are
+left out where what viewers mix between the others is near enough (see ``keys.py``).
 """
 
 from __future__ import annotations
@@ -15,10 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from mesa_mobility.animation.aids import aid_of, figure_with
-from mesa_mobility.animation.figure import rest_positions
+from mesa_mobility.animation.figures.aids import aid_of, figure_with
+from mesa_mobility.animation.figures.clothes import LOOKS, PARTS, look_of
+from mesa_mobility.animation.figures.figure import Figure, rest_positions
+from mesa_mobility.animation.gltf_store import Store
+from mesa_mobility.animation.keys import key_frames
 from mesa_mobility.animation.people import Walker, walkers
-from mesa_mobility.animation.scenery import COLOURS, linear, surfaces
+from mesa_mobility.animation.scenery import linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.errors import ResultsError
@@ -34,6 +38,27 @@ _UP = Rotation.from_euler("x", -90, degrees=True).as_quat().tolist()
 """From z up to glTF's y up."""
 
 _FLOAT, _SHORT, _USHORT, _UBYTE = 5126, 5122, 5123, 5121
+_ARRAY, _INDEX = 34962, 34963
+
+OFF = 0.005
+"""Metres by which the far end of what a joint carries, and a pelvis, may be off."""
+
+
+def _reaches() -> NDArray[np.float64]:
+    """(22,) metres from each joint to the farthest one that it carries."""
+    places = rest_positions()
+    found = np.zeros(len(JOINTS))
+    for j in range(len(JOINTS)):
+        carrier = j
+        while carrier >= 0:
+            away = float(np.linalg.norm(places[j] - places[carrier]))
+            found[carrier] = max(found[carrier], away)
+            carrier = int(PARENTS[carrier])
+    return found
+
+
+_TOLERANCES = OFF / _reaches()[TURNING]
+"""(17,) radians by which joints may be off."""
 
 
 class Glb(OutputFormat):
@@ -74,7 +99,7 @@ def write_glb(
             "glTF files need pygltflib: pip install 'mesa-mobility[animation]'"
         ) from error
     file = gltf.GLTF2(asset=gltf.Asset(version="2.0", generator="mesa-mobility"))
-    store = _Store(gltf, file)
+    store = Store(gltf, file)
     world = store.node(gltf.Node(name="world", rotation=_UP, children=[]))
     top = [world]
     _add_plan(gltf, file, store, plan, world)
@@ -82,19 +107,17 @@ def write_glb(
     aids = sorted({aid_of(walker.type_name) for walker in shown})
     meshes, bind = _add_figures(gltf, file, store, aids)
     first = min(walker.first for walker in shown)
-    last = max(walker.first + len(walker.motion) for walker in shown)
-    times = store.view(np.arange(last - first + 1, dtype=np.float32) / FRAME_RATE)
     animation = gltf.Animation(name="walk", samplers=[], channels=[])
     for done, walker in enumerate(shown, start=1):
         joints = _add_skeleton(gltf, file, store, walker, world)
         file.skins.append(gltf.Skin(inverseBindMatrices=bind, joints=joints, skeleton=joints[0]))
         figure = gltf.Node(
             name=f"person {walker.person}",
-            mesh=meshes[aid_of(walker.type_name)][walker.person % len(COLOURS)],
+            mesh=meshes[aid_of(walker.type_name)][walker.person % LOOKS],
             skin=len(file.skins) - 1,
         )
         top.append(store.node(figure))
-        _animate(gltf, store, animation, walker, joints, times, first)
+        _animate(gltf, file, store, animation, walker, joints, first)
         if progress is not None:
             progress(done)
     file.animations.append(animation)
@@ -106,71 +129,9 @@ def write_glb(
         temporary.write_bytes(content)
 
 
-class _Store:
-    """Arrays of a glTF file in one buffer."""
-
-    def __init__(self, gltf: Any, file: Any) -> None:
-        self._gltf, self._file = gltf, file
-        self._parts: list[bytes] = []
-        self._length = 0
-
-    def node(self, node: Any) -> int:
-        """Add a node; its number."""
-        self._file.nodes.append(node)
-        return len(self._file.nodes) - 1
-
-    def view(self, array: NDArray[Any], target: int | None = None) -> int:
-        """Add an array; the number of its view."""
-        data = np.ascontiguousarray(array).tobytes()
-        self._file.bufferViews.append(
-            self._gltf.BufferView(
-                buffer=0, byteOffset=self._length, byteLength=len(data), target=target
-            )
-        )
-        data += bytes(-len(data) % 4)
-        self._parts.append(data)
-        self._length += len(data)
-        return len(self._file.bufferViews) - 1
-
-    def accessor(
-        self,
-        array: NDArray[Any],
-        kind: str,
-        component: int,
-        *,
-        target: int | None = None,
-        view: int | None = None,
-        **more: Any,
-    ) -> int:
-        """Add an accessor of an array, which is added too unless its view is given."""
-        self._file.accessors.append(
-            self._gltf.Accessor(
-                bufferView=self.view(array, target) if view is None else view,
-                componentType=component,
-                count=len(array),
-                type=kind,
-                **more,
-            )
-        )
-        return len(self._file.accessors) - 1
-
-    def finish(self) -> None:
-        """Put all arrays into the file."""
-        self._file.buffers.append(self._gltf.Buffer(byteLength=self._length))
-        self._file.set_binary_blob(b"".join(self._parts))
-
-
-_ARRAY, _INDEX = 34962, 34963
-
-
-def _mesh(
-    store: _Store,
-    gltf: Any,
-    vertices: NDArray[np.float32],
-    normals: NDArray[np.float32],
-    triangles: NDArray[np.integer],
-) -> tuple[Any, int]:
-    """Attributes and indices of a mesh."""
+def _attributes(
+    gltf: Any, store: Store, vertices: NDArray[np.float32], normals: NDArray[np.float32]
+) -> Any:
     places = store.accessor(
         vertices,
         "VEC3",
@@ -179,11 +140,13 @@ def _mesh(
         min=vertices.min(axis=0).tolist(),
         max=vertices.max(axis=0).tolist(),
     )
-    attributes = gltf.Attributes(
-        POSITION=places, NORMAL=store.accessor(normals, "VEC3", _FLOAT, target=_ARRAY)
-    )
+    facing = store.accessor(normals, "VEC3", _FLOAT, target=_ARRAY)
+    return gltf.Attributes(POSITION=places, NORMAL=facing)
+
+
+def _indices(store: Store, triangles: NDArray[np.integer]) -> int:
     flat = triangles.astype(np.uint16).reshape(-1)
-    return attributes, store.accessor(flat, "SCALAR", _USHORT, target=_INDEX)
+    return store.accessor(flat, "SCALAR", _USHORT, target=_INDEX)
 
 
 def _material(
@@ -204,29 +167,47 @@ def _material(
 
 
 def _add_figures(
-    gltf: Any, file: Any, store: _Store, aids: list[str]
+    gltf: Any, file: Any, store: Store, aids: list[str]
 ) -> tuple[dict[str, list[int]], int]:
-    """The mesh for each aid in each colour, and the accessor of the inverse bind matrices."""
+    """The meshes for each aid, one for each look, and the accessor of inverse bind matrices."""
     meshes: dict[str, list[int]] = {aid: [] for aid in aids}
-    materials = [_material(gltf, file, colour) for colour in COLOURS]
+    materials: dict[str, int] = {}
     for aid in aids:
-        figure = figure_with(aid)
-        attributes, indices = _mesh(store, gltf, figure.vertices, figure.normals, figure.triangles)
-        attributes.JOINTS_0 = store.accessor(figure.joints, "VEC4", _UBYTE, target=_ARRAY)
-        attributes.WEIGHTS_0 = store.accessor(figure.weights, "VEC4", _FLOAT, target=_ARRAY)
-        for material in materials:
-            part = gltf.Primitive(attributes=attributes, indices=indices, material=material)
-            file.meshes.append(gltf.Mesh(name="person", primitives=[part]))
+        attributes, parts = _add_figure(gltf, store, figure_with(aid))
+        for number in range(LOOKS):
+            look, primitives = look_of(number), []
+            for part, indices in parts.items():
+                if look[part] not in materials:
+                    materials[look[part]] = _material(gltf, file, look[part])
+                primitives.append(
+                    gltf.Primitive(
+                        attributes=attributes, indices=indices, material=materials[look[part]]
+                    )
+                )
+            file.meshes.append(gltf.Mesh(name="person", primitives=primitives))
             meshes[aid].append(len(file.meshes) - 1)
     bind = np.tile(np.eye(4, dtype=np.float32), (len(JOINTS), 1, 1))
     bind[:, 3, :3] = -rest_positions()  # matrices are stored column by column
     return meshes, store.accessor(bind, "MAT4", _FLOAT)
 
 
-def _add_plan(gltf: Any, file: Any, store: _Store, plan: FloorPlan | Building, world: int) -> None:
+def _add_figure(gltf: Any, store: Store, figure: Figure) -> tuple[Any, dict[str, int]]:
+    """Attributes of a figure, and the accessor of the triangles of each of its parts."""
+    attributes = _attributes(gltf, store, figure.vertices, figure.normals)
+    attributes.JOINTS_0 = store.accessor(figure.joints, "VEC4", _UBYTE, target=_ARRAY)
+    attributes.WEIGHTS_0 = store.accessor(figure.weights, "VEC4", _FLOAT, target=_ARRAY)
+    of = figure.parts[figure.triangles[:, 0]]
+    parts = {PARTS[k]: _indices(store, figure.triangles[of == k]) for k in np.unique(of).tolist()}
+    return attributes, parts
+
+
+def _add_plan(gltf: Any, file: Any, store: Store, plan: FloorPlan | Building, world: int) -> None:
     # Indices have 16 bits, and 65,535 is not allowed.
     for name, vertices, normals, triangles, colour, both_sides, opacity in surfaces(plan, 65_535):
-        attributes, indices = _mesh(store, gltf, vertices, normals, triangles)
+        attributes, indices = (
+            _attributes(gltf, store, vertices, normals),
+            _indices(store, triangles),
+        )
         material = _material(gltf, file, colour, both_sides=both_sides, opacity=opacity)
         part = gltf.Primitive(attributes=attributes, indices=indices, material=material)
         file.meshes.append(gltf.Mesh(name=name, primitives=[part]))
@@ -234,7 +215,7 @@ def _add_plan(gltf: Any, file: Any, store: _Store, plan: FloorPlan | Building, w
         file.nodes[world].children.append(node)
 
 
-def _add_skeleton(gltf: Any, file: Any, store: _Store, walker: Walker, world: int) -> list[int]:
+def _add_skeleton(gltf: Any, file: Any, store: Store, walker: Walker, world: int) -> list[int]:
     """Nodes of a person's joints, the pelvis below the world; their numbers."""
     start = len(file.nodes)
     joints = [start + j for j in range(len(JOINTS))]
@@ -255,28 +236,18 @@ def _add_skeleton(gltf: Any, file: Any, store: _Store, walker: Walker, world: in
 
 def _animate(
     gltf: Any,
-    store: _Store,
+    file: Any,
+    store: Store,
     animation: Any,
     walker: Walker,
     joints: list[int],
-    times: int,
     first: int,
 ) -> None:
     """Channels of one person: pelvis, joints, and when they are there."""
     n = len(walker.motion)
     begin = walker.first - first
-    span = [begin / FRAME_RATE, (begin + n - 1) / FRAME_RATE]
-    stamps = store.accessor(
-        np.empty(n),
-        "SCALAR",
-        _FLOAT,
-        view=times,
-        byteOffset=4 * begin,
-        min=[float(np.float32(span[0]))],
-        max=[float(np.float32(span[1]))],
-    )
 
-    def channel(node: int, what: str, output: int, when: int = stamps, how: str = "LINEAR") -> None:
+    def channel(node: int, what: str, output: int, when: int, how: str = "LINEAR") -> None:
         animation.samplers.append(
             gltf.AnimationSampler(input=when, output=output, interpolation=how)
         )
@@ -287,19 +258,34 @@ def _animate(
             )
         )
 
-    channel(
-        joints[0], "translation", store.accessor(walker.pelvis.astype(np.float32), "VEC3", _FLOAT)
-    )
-    turns = walker.turns()
-    for k, joint in enumerate(TURNING.tolist()):
-        whole = np.rint(turns[:, k] * 32767).astype(np.int16)
-        channel(joints[joint], "rotation", store.accessor(whole, "VEC4", _SHORT, normalized=True))
-    _show(gltf, store, channel, walker, joints[0], (begin, begin + n))
+    def stamps(frames: NDArray[np.int64]) -> int:
+        when = ((begin + frames) / FRAME_RATE).astype(np.float32)
+        ends = {"min": [float(when[0])], "max": [float(when[-1])]}
+        return store.keys(when, "SCALAR", _FLOAT, **ends)
+
+    pelvis = walker.pelvis
+    (frames,) = key_frames(pelvis[None], np.array([OFF]))
+    if len(frames) > 1:
+        places = pelvis[frames].astype(np.float32)
+        channel(joints[0], "translation", store.keys(places, "VEC3", _FLOAT), stamps(frames))
+    turns = walker.turns().swapaxes(0, 1)
+    kept = key_frames(turns, _TOLERANCES, turns=True)
+    for turn, frames, joint in zip(turns, kept, TURNING.tolist(), strict=True):
+        whole = np.rint(turn[frames] * 32767).astype(np.int16)
+        if len(frames) == 1:
+            file.nodes[joints[joint]].rotation = _of_length_one(turn[0])
+            continue
+        output = store.keys(whole, "VEC4", _SHORT, normalized=True)
+        channel(joints[joint], "rotation", output, stamps(frames))
+    _show(store, channel, walker, joints[0], (begin, begin + n))
+
+
+def _of_length_one(turn: NDArray[np.float64]) -> list[float]:
+    return (turn / np.linalg.norm(turn)).tolist()  # type: ignore[no-any-return]
 
 
 def _show(
-    gltf: Any,
-    store: _Store,
+    store: Store,
     channel: Callable[..., None],
     walker: Walker,
     pelvis: int,
@@ -310,6 +296,6 @@ def _show(
     keys = [(0, [0.0] * 3)] if there[0] > 0 else []
     keys += [(there[0], full), (there[1], [0.0] * 3)]
     when = np.array([frame / FRAME_RATE for frame, _ in keys], dtype=np.float32)
-    stamps = store.accessor(when, "SCALAR", _FLOAT, min=[float(when[0])], max=[float(when[-1])])
+    stamps = store.keys(when, "SCALAR", _FLOAT, min=[float(when[0])], max=[float(when[-1])])
     sizes = np.array([size for _, size in keys], dtype=np.float32)
-    channel(pelvis, "scale", store.accessor(sizes, "VEC3", _FLOAT), stamps, "STEP")
+    channel(pelvis, "scale", store.keys(sizes, "VEC3", _FLOAT), stamps, "STEP")

@@ -7,10 +7,12 @@ import subprocess
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
+from shapely import box
 
+from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.animation import Selection, walkers, write_bvh, write_film, write_glb
-from mesa_mobility.animation.figure import human_figure, rest_positions
+from mesa_mobility.animation.figures.figure import human_figure, rest_positions
 from mesa_mobility.animation.scenery import surfaces
 from mesa_mobility.bodies.skeleton import JOINTS, PARENTS
 from mesa_mobility.capture.bvh import read_bvh
@@ -49,8 +51,15 @@ def joints_in_glb(path, person, seconds):
     for channel in animation["channels"]:
         sampler = animation["samplers"][channel["sampler"]]
         times, output = values(sampler["input"])[:, 0], values(sampler["output"])
-        at = int(np.searchsorted(times, seconds + 1e-6)) - 1
-        moved[channel["target"]["node"], channel["target"]["path"]] = output[max(at, 0)]
+        at = max(int(np.searchsorted(times, seconds + 1e-6)) - 1, 0)
+        what, now = channel["target"]["path"], output[at]
+        if sampler["interpolation"] == "LINEAR" and seconds > times[at] and at + 1 < len(times):
+            share = (seconds - times[at]) / (times[at + 1] - times[at])
+            if what == "rotation":
+                now = Slerp([0, 1], Rotation.from_quat(output[at : at + 2]))(share).as_quat()
+            else:
+                now = (1 - share) * now + share * output[at + 1]
+        moved[channel["target"]["node"], what] = now
     parents = {child: k for k, node in enumerate(nodes) for child in node.get("children", [])}
 
     def matrix(k):
@@ -68,12 +77,27 @@ def joints_in_glb(path, person, seconds):
 def test_joints_in_a_glb_are_where_ours_are(run, plan, tmp_path):
     path = tmp_path / "crowd.glb"
     write_glb(walkers(run, Selection()), plan, path)
+    off = []
     for person in (0, 1):
         motion = run.poses(person)
         for frame in (0, 7, 20, 31, 40):
             found = joints_in_glb(path, person, frame / 30)
             x, y, z = motion.at(frame).positions[0].T
-            np.testing.assert_allclose(found, np.column_stack([x, z, -y]), atol=0.0005)
+            off.append(np.linalg.norm(found - np.column_stack([x, z, -y]), axis=1))
+    # Each joint on the way to a foot or a hand, and the pelvis, may add 5 mm.
+    assert np.max(off) < 0.025
+    assert np.mean(off) < 0.005
+
+
+def test_motion_is_told_by_fewer_frames_than_there_are(run, plan, tmp_path):
+    path = tmp_path / "crowd.glb"
+    write_glb(walkers(run, Selection()), plan, path)
+    described, _ = read_glb(path)
+    animation = described["animations"][0]
+    keys = [described["accessors"][each["output"]]["count"] for each in animation["samplers"]]
+    # Of 17 joints and a pelvis, 30 frames a second.
+    frames = sum(len(run.poses(person).frames) for person in (0, 1))
+    assert sum(keys) < 0.6 * 18 * frames
 
 
 def test_who_has_left_is_seen_no_more(run, plan, tmp_path):
@@ -181,11 +205,11 @@ def test_a_film_has_a_picture_for_each_fifteenth_of_a_second(run, plan, tmp_path
         write_film(run, plan, path, speed=-1.0)
 
 
-@pytest.mark.parametrize(
-    ("most", "walls"), [(None, [5]), (65_535, [5]), (16, [4, 1]), (15, [3, 2]), (4, [1] * 5)]
-)
-def test_walls_are_divided_among_meshes_of_so_many_vertices(plan, most, walls):
-    _, *meshes = surfaces(plan, most)
-    assert [len(each.vertices) for each in meshes] == [4 * count for count in walls]
-    starts = np.concatenate([each.vertices[::4, :2] for each in meshes])
-    np.testing.assert_array_equal(starts, plan.walls[:, :2].astype(np.float32))
+def test_walls_are_divided_among_meshes_of_so_many_vertices():
+    blocks = [box(2 * k + 1, 1, 2 * k + 2, 2) for k in range(4)]
+    plan = FloorPlan(box(0, 0, 10, 4), obstacles=blocks, exits=[Exit("door", (10, 1), (10, 2))])
+    (whole,) = (len(each.vertices) for each in surfaces(plan) if each.name == "walls")
+    # Walls round the floor have 12 faces with an exit; a block has 4; 4 corners each.
+    assert whole == 4 * 12 + 4 * 4 * 4
+    parts = [len(each.vertices) for each in surfaces(plan, 48) if each.name == "walls"]
+    assert sorted(parts) == [16, 48, 48]

@@ -9,10 +9,10 @@ const QUICK = 0.018; // seconds between pictures from which on there is more det
 // Where pictures come more slowly than in so many seconds: fewer pixels, then fewer figures.
 const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
   { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
-const SEATED = "wheelchair", METAL = [0.26, 0.27, 0.29];
+const SEATED = "wheelchair";
 
 class Stage {
-  // figure: {skeleton, meshes}, see animation/levels.py. Throws where a page cannot draw so.
+  // figure: {skeleton, meshes, looks}, see animation/figures/levels.py and animation/figures/clothes.py. Throws where a page cannot draw so.
   constructor(holder, figure) {
     this.holder = holder;
     this.skeleton = figure.skeleton;
@@ -29,7 +29,8 @@ class Stage {
     this.body = new Body(this.skeleton);
     this.rows = 0;
     this.bones = { value: null };
-    this.troops = new Troops(figure.meshes, this.bones, this.scene);
+    this.tops = figure.looks.map(([top]) => channels(top));
+    this.troops = new Troops(figure.meshes, figure.looks, this.bones, this.scene);
     this.ring = new THREE.Mesh(new THREE.RingGeometry(0.36, 0.46, 24),
       new THREE.MeshBasicMaterial({ color: 0xe6007e, side: THREE.DoubleSide }));
     this.scene.add(this.ring);
@@ -108,7 +109,8 @@ class Stage {
     this.resize();
   }
 
-  // people: [{row, track, course or null, aid: what they hold or sit in, colour: [r, g, b]}]; chosen: a row or -1.
+  // people: [{row, track, course or null, aid: what they hold or sit in, colour: [r, g, b] or null for the colour of
+  // their clothes}]; chosen: a row or -1.
   draw(people, frame, chosen) {
     this.resize();
     const rows = people.length;
@@ -134,28 +136,30 @@ class Stage {
       if (right && Math.abs(dx * right.x + dy * right.y) > wide * Math.max(depth, 0) + 1.5) continue; // beside the picture
       const high = camera === this.above ? pixels : (1.75 * pixels) / Math.max(depth, 0.3);
       if (person === who) this.mark(x, y, z);
-      if (person.aid === SEATED || (person.course && high >= least)) figures.push({ person, high });
+      const look = person.row % this.tops.length, colour = person.colour || this.tops[look];
+      const size = person.course ? person.course.bank.scale : person.scale || 1;
+      this.troops.shadows.add({ stand: [x, y, heading, person.aid === SEATED ? 1.3 : size], rise: z + OVER_MARKINGS });
+      if (person.aid === SEATED || (person.course && high >= least)) figures.push({ person, high, look, colour });
       else {
-        const scale = person.course ? person.course.bank.scale : person.scale || 1;
-        this.troops.add("person_pawn", { stand: [x, y, heading, scale], rise: z, colour: person.colour });
+        this.troops.add("person_pawn", { stand: [x, y, heading, size], rise: z, colour, look });
         pawns += 1;
       }
     }
     figures.sort((a, b) => b.high - a.high);
     let fine = 0, row = 0;
     while (fine < Math.min(FINE_MOST, figures.length) && figures[fine].high >= FINE_PIXELS) fine += 1;
-    figures.forEach(({ person }, k) => {
-      const level = k < fine ? "near" : "far", { aid, colour } = person;
+    figures.forEach(({ person, look, colour }, k) => {
+      const level = k < fine ? "near" : "far", { aid } = person;
       if (aid === SEATED) {
         const [x, y, heading, rise] = person.track.at(frame), stand = [x, y, heading, 1];
-        this.troops.add(`seated_${level}`, { stand, rise, colour });
-        this.troops.add(`${aid}_${level}`, { stand, rise, colour: METAL });
+        this.troops.add(`seated_${level}`, { stand, rise, colour, look });
+        this.troops.add(`${aid}_${level}`, { stand, rise, colour, look });
         return;
       }
       this.body.pose(person, frame, k < HELD_MOST || person === who);
       this.write(data, row, person.course.bank.scale);
-      this.troops.add(`person_${level}`, { row, colour });
-      if (aid) this.troops.add(`${aid}_${level}`, { row, colour: METAL });
+      this.troops.add(`person_${level}`, { row, colour, look });
+      if (aid) this.troops.add(`${aid}_${level}`, { row, colour, look });
       row += 1;
     });
     this.troops.finish();
@@ -239,6 +243,13 @@ class Stage {
   look(how) {
     if (this.how === "eyes" && how !== "eyes") this.fit();
     this.how = how;
+  }
+
+  // From a place at another one, both [x, y, z].
+  lookFrom(eye, target) {
+    this.orbit.target.set(...target);
+    this.perspective.position.set(...eye);
+    this.orbit.update();
   }
 
   // The direction on the floor that is to the right in the picture, of length 1.

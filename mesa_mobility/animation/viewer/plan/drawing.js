@@ -44,3 +44,19 @@ function savePicture(canvas, name) {
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   });
 }
+
+function saveText(text, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+// A file of the reader's choice.
+function readText(take) {
+  const input = document.createElement("input");
+  input.type = "file";
+  input.onchange = async () => take(await input.files[0].text());
+  input.click();
+}
