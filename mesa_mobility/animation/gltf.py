@@ -2,7 +2,7 @@
 
 People share one mesh, those with a stick or a wheelchair another; their clothes are its materials.
 Each has a skeleton of its own, whose joints are animated with quaternions of 16 bits. Frames are
-left out where what viewers mix between the others is near enough (see ``keys.py``).
+left out where what viewers mix between the others is near enough (see ``keyed.py``).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from mesa_mobility.animation.figures.aids import aid_of, figure_with
 from mesa_mobility.animation.figures.clothes import LOOKS, PARTS, look_of
 from mesa_mobility.animation.figures.figure import Figure, rest_positions
 from mesa_mobility.animation.gltf_store import Store
-from mesa_mobility.animation.keys import key_frames
+from mesa_mobility.animation.keyed import WITHIN, Keyed, Keys, keyed, within_of
 from mesa_mobility.animation.people import Walker, walkers
 from mesa_mobility.animation.scenery import linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
@@ -37,28 +37,15 @@ if TYPE_CHECKING:
 _UP = Rotation.from_euler("x", -90, degrees=True).as_quat().tolist()
 """From z up to glTF's y up."""
 
-_FLOAT, _SHORT, _USHORT, _UBYTE = 5126, 5122, 5123, 5121
+_FLOAT, _SHORT, _BYTE, _USHORT, _UBYTE = 5126, 5122, 5120, 5123, 5121
+
+_COARSE = 0.015
+"""Metres from which on 8 bits a number are near enough: they turn by up to 0.9 degrees."""
+
+_NEAR_ONE = 0.0075
+"""By how much the length of a rounded quaternion may differ from 1."""
+
 _ARRAY, _INDEX = 34962, 34963
-
-OFF = 0.005
-"""Metres by which the far end of what a joint carries, and a pelvis, may be off."""
-
-
-def _reaches() -> NDArray[np.float64]:
-    """(22,) metres from each joint to the farthest one that it carries."""
-    places = rest_positions()
-    found = np.zeros(len(JOINTS))
-    for j in range(len(JOINTS)):
-        carrier = j
-        while carrier >= 0:
-            away = float(np.linalg.norm(places[j] - places[carrier]))
-            found[carrier] = max(found[carrier], away)
-            carrier = int(PARENTS[carrier])
-    return found
-
-
-_TOLERANCES = OFF / _reaches()[TURNING]
-"""(17,) radians by which joints may be off."""
 
 
 class Glb(OutputFormat):
@@ -68,10 +55,18 @@ class Glb(OutputFormat):
     suffixes = (".glb",)
     storeys = True
 
-    def write(self, excerpt: Excerpt, path: Path) -> None:
-        """See ``write_glb``."""
+    def write(self, excerpt: Excerpt, path: Path, *, within: float | None = None) -> None:
+        """See ``write_glb``.
+
+        Args:
+            excerpt: what to write.
+            path: the file.
+            within: metres by which limbs may be off; by default 5 mm of up to 100 people, and more
+                in a larger crowd: 25 mm of 750.
+        """
         people = walkers(excerpt.trajectories, excerpt.selection, excerpt.bank, excerpt.building)
-        write_glb(people, excerpt.plan, path, progress=excerpt.person_done)
+        within = within_of(len(excerpt.people)) if within is None else within
+        write_glb(people, excerpt.plan, path, within=within, progress=excerpt.person_done)
 
 
 def write_glb(
@@ -79,6 +74,7 @@ def write_glb(
     plan: FloorPlan | Building,
     path: str | os.PathLike[str],
     *,
+    within: float = WITHIN,
     progress: Callable[[int], None] | None = None,
 ) -> None:
     """Write a binary glTF file: metres, y up, one animation.
@@ -87,11 +83,16 @@ def write_glb(
         people: those shown; the animation begins with the first of their frames.
         plan: floor and walls, or a building.
         path: the file.
+        within: metres by which a pelvis, and the far end of what a joint carries, may be off
+            between the frames that are kept. From 15 mm on turns have 8 bits, otherwise 16.
         progress: called with the number of people done.
 
     Raises:
-        ResultsError: the file cannot be written, or pygltflib is not installed.
+        ResultsError: the file cannot be written, ``within`` is not positive, or pygltflib is not
+            installed.
     """
+    if not 0.0 < within < np.inf:
+        raise ResultsError(f"glTF: within {within} m, expected more than 0")
     try:
         import pygltflib as gltf
     except ImportError as error:
@@ -103,23 +104,27 @@ def write_glb(
     world = store.node(gltf.Node(name="world", rotation=_UP, children=[]))
     top = [world]
     _add_plan(gltf, file, store, plan, world)
-    shown = list(people)
-    aids = sorted({aid_of(walker.type_name) for walker in shown})
+    # Whole motions of hundreds of people would take gigabytes.
+    shown = []
+    for done, walker in enumerate(people, start=1):
+        shown.append(keyed(walker, within))
+        if progress is not None:
+            progress(done)
+    aids = sorted({aid_of(each.type_name) for each in shown})
     meshes, bind = _add_figures(gltf, file, store, aids)
-    first = min(walker.first for walker in shown)
+    first = min(each.first for each in shown)
     animation = gltf.Animation(name="walk", samplers=[], channels=[])
-    for done, walker in enumerate(shown, start=1):
-        joints = _add_skeleton(gltf, file, store, walker, world)
+    coded = _in_bytes if within >= _COARSE else _in_shorts
+    for each in shown:
+        joints = _add_skeleton(gltf, file, store, each, world)
         file.skins.append(gltf.Skin(inverseBindMatrices=bind, joints=joints, skeleton=joints[0]))
         figure = gltf.Node(
-            name=f"person {walker.person}",
-            mesh=meshes[aid_of(walker.type_name)][walker.person % LOOKS],
+            name=f"person {each.person}",
+            mesh=meshes[aid_of(each.type_name)][each.person % LOOKS],
             skin=len(file.skins) - 1,
         )
         top.append(store.node(figure))
-        _animate(gltf, file, store, animation, walker, joints, first)
-        if progress is not None:
-            progress(done)
+        _animate(gltf, file, store, animation, each, joints, first, coded)
     file.animations.append(animation)
     file.scenes.append(gltf.Scene(nodes=top))
     file.scene = 0
@@ -215,18 +220,18 @@ def _add_plan(gltf: Any, file: Any, store: Store, plan: FloorPlan | Building, wo
         file.nodes[world].children.append(node)
 
 
-def _add_skeleton(gltf: Any, file: Any, store: Store, walker: Walker, world: int) -> list[int]:
+def _add_skeleton(gltf: Any, file: Any, store: Store, person: Keyed, world: int) -> list[int]:
     """Nodes of a person's joints, the pelvis below the world; their numbers."""
     start = len(file.nodes)
     joints = [start + j for j in range(len(JOINTS))]
     for j, name in enumerate(JOINTS):
         children = [start + int(child) for child in np.flatnonzero(j == PARENTS)]
-        place = walker.pelvis[0] if j == 0 else OFFSETS[j]
+        place = person.pelvis.values[0] if j == 0 else OFFSETS[j]
         store.node(
             gltf.Node(
-                name=f"{walker.person}.{name}",
+                name=f"{person.person}.{name}",
                 translation=[float(value) for value in place],
-                scale=[walker.motion.scale] * 3 if j == 0 else None,
+                scale=[person.scale] * 3 if j == 0 else None,
                 children=children,
             )
         )
@@ -239,13 +244,13 @@ def _animate(
     file: Any,
     store: Store,
     animation: Any,
-    walker: Walker,
+    person: Keyed,
     joints: list[int],
     first: int,
+    coded: Callable[[NDArray[np.float64]], tuple[NDArray[Any], int]],
 ) -> None:
     """Channels of one person: pelvis, joints, and when they are there."""
-    n = len(walker.motion)
-    begin = walker.first - first
+    begin = person.first - first
 
     def channel(node: int, what: str, output: int, when: int, how: str = "LINEAR") -> None:
         animation.samplers.append(
@@ -258,43 +263,46 @@ def _animate(
             )
         )
 
-    def stamps(frames: NDArray[np.int64]) -> int:
-        when = ((begin + frames) / FRAME_RATE).astype(np.float32)
+    def stamps(keys: Keys) -> int:
+        when = ((begin + keys.frames) / FRAME_RATE).astype(np.float32)
         ends = {"min": [float(when[0])], "max": [float(when[-1])]}
         return store.keys(when, "SCALAR", _FLOAT, **ends)
 
-    pelvis = walker.pelvis
-    (frames,) = key_frames(pelvis[None], np.array([OFF]))
-    if len(frames) > 1:
-        places = pelvis[frames].astype(np.float32)
-        channel(joints[0], "translation", store.keys(places, "VEC3", _FLOAT), stamps(frames))
-    turns = walker.turns().swapaxes(0, 1)
-    kept = key_frames(turns, _TOLERANCES, turns=True)
-    for turn, frames, joint in zip(turns, kept, TURNING.tolist(), strict=True):
-        whole = np.rint(turn[frames] * 32767).astype(np.int16)
-        if len(frames) == 1:
-            file.nodes[joints[joint]].rotation = _of_length_one(turn[0])
+    if len(person.pelvis.frames) > 1:
+        places = store.keys(person.pelvis.values.astype(np.float32), "VEC3", _FLOAT)
+        channel(joints[0], "translation", places, stamps(person.pelvis))
+    for keys, joint in zip(person.turns, TURNING.tolist(), strict=True):
+        if len(keys.frames) == 1:
+            turn = keys.values[0] / np.linalg.norm(keys.values[0])
+            file.nodes[joints[joint]].rotation = turn.tolist()
             continue
-        output = store.keys(whole, "VEC4", _SHORT, normalized=True)
-        channel(joints[joint], "rotation", output, stamps(frames))
-    _show(store, channel, walker, joints[0], (begin, begin + n))
+        whole, component = coded(keys.values)
+        output = store.keys(whole, "VEC4", component, normalized=True)
+        channel(joints[joint], "rotation", output, stamps(keys))
+    _show(store, channel, person, joints[0], begin)
 
 
-def _of_length_one(turn: NDArray[np.float64]) -> list[float]:
-    return (turn / np.linalg.norm(turn)).tolist()  # type: ignore[no-any-return]
+def _in_shorts(turns: NDArray[np.float64]) -> tuple[NDArray[np.int16], int]:
+    return np.rint(turns * 32767).astype(np.int16), _SHORT
+
+
+def _in_bytes(turns: NDArray[np.float64]) -> tuple[NDArray[np.int8], int]:
+    """Of a few roundings, for each turn the one of about length 1 that is turned the least."""
+    sizes = np.array([1.0, 0.993, 0.996, 1.004, 1.007])[:, None, None]
+    whole = np.clip(np.rint(turns * 127 * sizes), -127, 127)
+    length = np.linalg.norm(whole, axis=2)
+    along = np.abs(np.einsum("snk,nk->sn", whole, turns)) / length
+    best = np.argmax(along - (np.abs(length / 127 - 1.0) > _NEAR_ONE), axis=0)
+    return whole[best, np.arange(len(turns))].astype(np.int8), _BYTE
 
 
 def _show(
-    store: Store,
-    channel: Callable[..., None],
-    walker: Walker,
-    pelvis: int,
-    there: tuple[int, int],
+    store: Store, channel: Callable[..., None], person: Keyed, pelvis: int, begin: int
 ) -> None:
     """A person has their size while they are there, and size 0 before and after."""
-    full = [walker.motion.scale] * 3
-    keys = [(0, [0.0] * 3)] if there[0] > 0 else []
-    keys += [(there[0], full), (there[1], [0.0] * 3)]
+    full = [person.scale] * 3
+    keys = [(0, [0.0] * 3)] if begin > 0 else []
+    keys += [(begin, full), (begin + person.count, [0.0] * 3)]
     when = np.array([frame / FRAME_RATE for frame, _ in keys], dtype=np.float32)
     stamps = store.keys(when, "SCALAR", _FLOAT, min=[float(when[0])], max=[float(when[-1])])
     sizes = np.array([size for _, size in keys], dtype=np.float32)

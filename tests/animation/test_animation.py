@@ -13,12 +13,13 @@ from shapely import box
 from mesa_mobility import Exit, FloorPlan
 from mesa_mobility.animation import Selection, walkers, write_bvh, write_film, write_glb
 from mesa_mobility.animation.figures.figure import human_figure, rest_positions
+from mesa_mobility.animation.keyed import within_of
 from mesa_mobility.animation.scenery import surfaces
 from mesa_mobility.bodies.skeleton import JOINTS, PARENTS
 from mesa_mobility.capture.bvh import read_bvh
 from mesa_mobility.errors import ResultsError
 
-TYPES = {5126: "<f4", 5122: "<i2", 5123: "<u2", 5121: "u1"}
+TYPES = {5120: "i1", 5126: "<f4", 5122: "<i2", 5123: "<u2", 5121: "u1"}
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
 
@@ -37,7 +38,8 @@ def read_glb(path):
         start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
         found = np.frombuffer(binary, kind, accessor["count"] * width, start)
         found = found.reshape(accessor["count"], width).astype(np.float64)
-        return found / 32767 if accessor.get("normalized") else found
+        most = {5122: 32767, 5120: 127}
+        return found / most[accessor["componentType"]] if accessor.get("normalized") else found
 
     return described, values
 
@@ -87,6 +89,36 @@ def test_joints_in_a_glb_are_where_ours_are(run, plan, tmp_path):
     # Each joint on the way to a foot or a hand, and the pelvis, may add 5 mm.
     assert np.max(off) < 0.025
     assert np.mean(off) < 0.005
+
+
+def test_a_large_crowd_is_told_more_coarsely(run, plan, tmp_path):
+    assert [within_of(people) for people in (1, 60, 100)] == [0.005] * 3
+    assert within_of(750) == pytest.approx(0.025, abs=0.0005)
+    sizes = []
+    for within in (0.005, 0.025):
+        path = tmp_path / f"{within}.glb"
+        write_glb(walkers(run, Selection()), plan, path, within=within)
+        described, values = read_glb(path)
+        animation = described["animations"][0]
+        outputs = [
+            described["accessors"][animation["samplers"][each["sampler"]]["output"]]
+            for each in animation["channels"]
+            if each["target"]["path"] == "rotation"
+        ]
+        sizes.append(sum(each["count"] * (4 if within > 0.01 else 8) for each in outputs))
+        for each in outputs:
+            length = np.linalg.norm(values(described["accessors"].index(each)), axis=1)
+            assert np.abs(length - 1).max() < 0.0077  # of Khronos' validator
+        off = []
+        for frame in range(0, 60, 7):
+            found = joints_in_glb(path, 0, frame / 30)
+            x, y, z = run.poses(0).at(frame).positions[0].T
+            off.append(np.linalg.norm(found - np.column_stack([x, z, -y]), axis=1))
+        assert np.mean(off) < within
+        assert np.max(off) < 4 * within
+    assert sizes[1] < 0.25 * sizes[0]
+    with pytest.raises(ResultsError, match="within 0 m"):
+        write_glb(walkers(run, Selection()), plan, path, within=0)
 
 
 def test_motion_is_told_by_fewer_frames_than_there_are(run, plan, tmp_path):
