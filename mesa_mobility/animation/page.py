@@ -134,7 +134,7 @@ def page_text(
     header |= {
         "title": title,
         "floor": _drawn(plan),
-        "doors": _passages(trajectories, plan),
+        "doors": _passages(trajectories, plan, header["last"] / FRAME_RATE),
         "service": service_limits().tolist(),
     }
     return Template(viewer_part("page.html")).substitute(
@@ -229,11 +229,11 @@ def _drawn(plan: FloorPlan | Building) -> dict[str, Any]:
     return drawn_floor(plan) if isinstance(plan, FloorPlan) else drawn_building(plan)
 
 
-def _passages(trajectories: Tracks, plan: FloorPlan | Building) -> list[dict[str, Any]]:
-    """Seconds of each first passage of a gate or exit, by name."""
+def _passages(trajectories: Tracks, plan: FloorPlan | Building, end: float) -> list[dict[str, Any]]:
+    """Seconds of each first passage of a gate or exit until a time, by name."""
     found = crossings_of_doors(trajectories, plan)
     return [
-        {"name": name, "times": [round(time, 2) for time, _ in passed_by(own)]}
+        {"name": name, "times": [round(time, 2) for time, _ in passed_by(own) if time <= end]}
         for name, own in found.items()
     ]
 

@@ -96,8 +96,10 @@ function look() {
   }
   element("view").hidden = inPlan();
   element("plan").hidden = element("scale").hidden = !inPlan();
-  if (inPlan()) showFloor();
-  else state.stage.look(element("camera").value);
+  if (inPlan()) {
+    showFloor();
+    state.plan.resize();
+  } else state.stage.look(element("camera").value);
 }
 
 // The floor of the storey that the plan shows.

@@ -26,13 +26,14 @@ function turned(q, i, v, j, p, m, out, k) {
   out[k + 2] = p[m + 2] + vz + w * tz + x * ty - y * tx;
 }
 
+// Math.hypot takes ten times as long as a root.
 function normalise(q, i) {
-  const scale = 1 / Math.hypot(q[i], q[i + 1], q[i + 2], q[i + 3]);
+  const scale = 1 / Math.sqrt(q[i] * q[i] + q[i + 1] * q[i + 1] + q[i + 2] * q[i + 2] + q[i + 3] * q[i + 3]);
   for (let k = i; k < i + 4; k += 1) q[k] *= scale;
 }
 
 function exponential(x, y, z, out) {
-  const angle = Math.hypot(x, y, z), s = angle < 1e-9 ? 0.5 : Math.sin(angle / 2) / angle;
+  const angle = Math.sqrt(x * x + y * y + z * z), s = angle < 1e-9 ? 0.5 : Math.sin(angle / 2) / angle;
   out[0] = x * s;
   out[1] = y * s;
   out[2] = z * s;

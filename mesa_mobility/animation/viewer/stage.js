@@ -3,12 +3,14 @@
 
 const EYES = 0.1, BONES = 22;
 const FOLLOWED = 1.1, OVER = 0.25; // metres: height of the place that is followed; a camera's way above walls
-const FINE_PIXELS = 110, FIGURE_PIXELS = 16; // height on the screen from which people are figures
+// Height on the screen from which people are figures, have feet on the floor, and all corners.
+const FIGURE_PIXELS = 6, PLACED_PIXELS = 64, FINE_PIXELS = 110;
 const FINE_MOST = 24, HELD_MOST = 100; // figures with all corners, with feet held on the floor
 const QUICK = 0.018; // seconds between pictures from which on there is more detail
 // Where pictures come more slowly than in so many seconds: fewer pixels, then fewer figures.
 const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
   { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
+const FROM = [0.31, -0.77, 0.72], ROOM_HIGH = 1.8, MARGIN = 1.06; // where the camera stands; metres; room round the floor
 const SEATED = "wheelchair";
 
 class Stage {
@@ -68,12 +70,26 @@ class Stage {
   // The whole floor is in the picture.
   fit() {
     this.resize(true);
-    const [x0, y0, x1, y1] = this.bounds, { top } = this.scenery, half = Math.hypot(x1 - x0, y1 - y0, top) / 2;
-    const high = Math.tan((this.perspective.fov * Math.PI) / 360), wide = high * this.perspective.aspect;
-    const far = Math.max(half / wide, ((top ? 1 : 0.75) * half) / high) + 1; // storeys need more room above each other
-    this.orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, 0.8 + top / 2);
-    this.perspective.position.set(0.31, -0.77, 0.56).multiplyScalar(far).add(this.orbit.target);
-    this.orbit.update();
+    const [x0, y0, x1, y1] = this.bounds, { top } = this.scenery, { orbit, perspective } = this;
+    orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, top / 2);
+    const away = new THREE.Vector3(...FROM).normalize();
+    perspective.position.copy(away).add(orbit.target);
+    perspective.lookAt(orbit.target);
+    perspective.updateMatrixWorld();
+    const [right, up] = [0, 1].map((k) => new THREE.Vector3().setFromMatrixColumn(perspective.matrixWorld, k));
+    const high = Math.tan((perspective.fov * Math.PI) / 360), wide = high * perspective.aspect;
+    let far = 1;
+    for (const x of [x0, x1]) {
+      for (const y of [y0, y1]) {
+        for (const z of [0, top + ROOM_HIGH]) {
+          const corner = new THREE.Vector3(x, y, z).sub(orbit.target);
+          const needed = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / high);
+          far = Math.max(far, corner.dot(away) + needed * MARGIN);
+        }
+      }
+    }
+    perspective.position.copy(away).multiplyScalar(far).add(orbit.target);
+    orbit.update();
   }
 
   resize(always = false) {
@@ -148,7 +164,7 @@ class Stage {
     figures.sort((a, b) => b.high - a.high);
     let fine = 0, row = 0;
     while (fine < Math.min(FINE_MOST, figures.length) && figures[fine].high >= FINE_PIXELS) fine += 1;
-    figures.forEach(({ person, look, colour }, k) => {
+    figures.forEach(({ person, high, look, colour }, k) => {
       const level = k < fine ? "near" : "far", { aid } = person;
       if (aid === SEATED) {
         const [x, y, heading, rise] = person.track.at(frame), stand = [x, y, heading, 1];
@@ -156,7 +172,8 @@ class Stage {
         this.troops.add(`${aid}_${level}`, { stand, rise, colour, look });
         return;
       }
-      this.body.pose(person, frame, k < HELD_MOST || person === who);
+      if (high >= PLACED_PIXELS || person === who) this.body.pose(person, frame, k < HELD_MOST || person === who);
+      else this.body.poseFarAway(person, frame);
       this.write(data, row, person.course.bank.scale);
       this.troops.add(`person_${level}`, { row, colour, look });
       if (aid) this.troops.add(`${aid}_${level}`, { row, colour, look });

@@ -10,6 +10,7 @@ class Curves {
     this.doors = doors.filter(({ times }) => times.length).sort((a, b) => b.times.length - a.times.length).slice(0, CURVES_MOST);
     this.most = Math.max(1, ...this.doors.map(({ times }) => times.length));
     this.still = document.createElement("canvas");
+    for (const each of [canvas, this.still]) drawnByProcessor(each);
   }
 
   passed(door, seconds) {

@@ -20,6 +20,9 @@ function pixelRatio() {
   return window.devicePixelRatio || 1;
 }
 
+// Many small pictures are slow where a graphics card is only stood in for; they are quick without.
+function drawnByProcessor(canvas) { return canvas.getContext("2d", { willReadFrequently: true }); }
+
 // Gives canvases a size in pixels of the screen; tells whether it was another one.
 function resizeTo(canvases, width, height) {
   if (canvases.every((canvas) => canvas.width === width && canvas.height === height)) return false;

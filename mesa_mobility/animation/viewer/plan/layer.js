@@ -188,7 +188,7 @@ function paintedCells(kind, values, limits, most) {
 // Cells on a plan; `place` turns metres into pixels, of which a metre has `scale`.
 function paintCells(ctx, { pixels, grid }, place, scale) {
   const { columns, rows, x0, y0 } = grid, cells = new OffscreenCanvas(columns, rows), [x, y] = place(x0, y0);
-  cells.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(pixels.buffer), columns, rows), 0, 0);
+  drawnByProcessor(cells).putImageData(new ImageData(new Uint8ClampedArray(pixels.buffer), columns, rows), 0, 0);
   ctx.save();
   ctx.translate(x, y);
   ctx.scale(1, -1); // the first row is the lowest one

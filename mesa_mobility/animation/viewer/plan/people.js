@@ -74,7 +74,7 @@ const PEOPLE = {
       }
     },
     sprite(fill, heading, size, half) {
-      const canvas = new OffscreenCanvas(2 * half, 2 * half), ctx = canvas.getContext("2d");
+      const canvas = new OffscreenCanvas(2 * half, 2 * half), ctx = drawnByProcessor(canvas);
       ctx.translate(half, half);
       ctx.rotate(-heading);
       ctx.fillStyle = fill;

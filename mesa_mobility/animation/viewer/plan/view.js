@@ -12,6 +12,7 @@ class PlanView {
     this.colours = LIGHT;
     this.selected = -1;
     this.background = document.createElement("canvas");
+    for (const each of [canvas, this.background]) drawnByProcessor(each);
     this.floor = null;
     this.layer = null; // {pixels, grid}
     this.drawn = 0;
