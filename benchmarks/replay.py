@@ -1,4 +1,5 @@
-"""The page of a run in a real browser without a graphics card: frames a second, opening, seeking.
+"""The page of a run in a real browser without a graphics card: frames a second, opening, seeking,
+clicks.
 
     mesa-mobility run auditorium --seed 1 --record decisions --out out/auditorium
     mesa-mobility replay out/auditorium --no-open
@@ -28,14 +29,38 @@ ARGUMENTS = (
     "--disable-background-networking",
     "--disable-component-update",
 )
+VIEWS = (
+    ("plan", ""),
+    ("plan", "density"),
+    ("orbit", ""),
+    ("orbit", "density"),
+    ("follow", ""),
+    ("eyes", ""),
+)
+"""Views of the page, and maps on the floor."""
+
 TICKS = os.sysconf("SC_CLK_TCK")
 
 COUNT = """async (seconds) => {
   const frame = () => new Promise(requestAnimationFrame);
-  const begin = performance.now(), drawn = state.stage.drawn;
+  const count = () => state.stage.drawn + state.plan.drawn;
+  const begin = performance.now(), drawn = count();
   while (performance.now() - begin < 1000 * seconds) await frame();
-  return [(performance.now() - begin) / 1000, state.stage.drawn - drawn];
+  return [(performance.now() - begin) / 1000, count() - drawn];
 }"""
+
+CLICK = """() => new Promise((done) => {
+  const person = present()[Math.floor(present().length / 2)], [x, y] = person.track.at(state.frame);
+  const [clientX, clientY] = state.plan.onPage(x, y), canvas = state.plan.$refs.canvas;
+  const event = { clientX, clientY, isPrimary: true, button: 0, pointerType: "touch" };
+  element("person").value = -1;
+  const begin = performance.now();
+  canvas.dispatchEvent(new PointerEvent("pointerdown", event));
+  canvas.dispatchEvent(new PointerEvent("pointerup", event));
+  const look = () => (element("why").textContent ? done((performance.now() - begin) / 1000)
+    : requestAnimationFrame(look));
+  requestAnimationFrame(look);
+})"""
 
 SEEK = """async (share) => {
   const begin = performance.now();
@@ -80,8 +105,9 @@ def measure(page: Page, path: Path, seconds: float) -> None:
     people = page.evaluate(
         "Math.max(...[1, 5, 10].map((s) => (state.frame = s * 30, present().length)))"
     )
-    for view in ("orbit", "plan", "follow", "eyes"):
+    for view, layer in VIEWS:
         page.evaluate("show(30)")
+        page.select_option("#layer", layer)
         page.select_option("#camera", view)
         page.click("#play")
         page.evaluate(COUNT, 1.0)
@@ -90,10 +116,12 @@ def measure(page: Page, path: Path, seconds: float) -> None:
         used = processor_time(os.getpid()) - before
         share, figures = page.evaluate("[DETAIL[state.stage.detail].share, state.stage.figures]")
         page.click("#play")
+        if view == "plan" and not layer:
+            print(f"a click is answered in {page.evaluate(CLICK):.3f} s")
         print(
-            f"{view}, {people} people: {drawn / real:.1f} frames/s, {1000 * used / drawn:.0f} ms "
-            f"of processor time each; {100 * share:.0f} % of the pixels' width; near, far, pawns: "
-            f"{figures}; load {os.getloadavg()[0]:.1f}",
+            f"{view}{layer and ' with '}{layer}, {people} people: {drawn / real:.1f} frames/s, "
+            f"{1000 * used / drawn:.0f} ms of processor time each; {100 * share:.0f} % of the "
+            f"pixels' width; near, far, pawns: {figures}; load {os.getloadavg()[0]:.1f}",
             flush=True,
         )
 
@@ -108,7 +136,7 @@ def main() -> None:
     chosen = parser.parse_args()
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=chosen.browser, args=list(ARGUMENTS))
-        page = browser.new_page(viewport={"width": 1000, "height": 640})
+        page = browser.new_page(viewport={"width": 1366, "height": 768})
         page.on("pageerror", lambda error: print("error:", error))
         for each in chosen.pages:
             measure(page, each, chosen.seconds)

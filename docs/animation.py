@@ -52,7 +52,7 @@ def draw(run: Path, picture: Path, *, rate: int, speed_up: int, dpi: int) -> Non
         LineCollection(plan.walls.reshape(-1, 2, 2), colors="#333333", linewidths=1.5)
     )
     bodies = EllipseCollection(
-        [], [], [], units="xy", cmap="viridis", offset_transform=ax.transData
+        [], [], [], units="xy", cmap="plasma_r", offset_transform=ax.transData
     )
     bodies.set_clim(0.0, 1.6)
     strokes = LineCollection([], colors="black", linewidths=0.8)

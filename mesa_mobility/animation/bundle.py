@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.animation.figure import Figure, rest_positions
-from mesa_mobility.animation.levels import jointed_figures, rigid_figures, seated_head
+from mesa_mobility.animation.figures.clothes import looks
+from mesa_mobility.animation.figures.figure import Figure, rest_positions
+from mesa_mobility.animation.figures.levels import jointed_figures, rigid_figures, seated_head
 from mesa_mobility.bodies import PoseBank
 from mesa_mobility.bodies.bank_data import OTHER_SIDE
 from mesa_mobility.bodies.feet import LEGS
@@ -51,6 +52,7 @@ def figure_parts() -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     jointed, rigid = jointed_figures(), rigid_figures()
     header = {
         "figures": [*jointed, *rigid],
+        "looks": looks(),
         "skeleton": {
             "parents": parents.tolist(),
             "offsets": OFFSETS.reshape(-1).tolist(),
@@ -75,6 +77,7 @@ def _mesh(figure: Figure) -> dict[str, NDArray[Any]]:
         "vertices": figure.vertices,
         "normals": figure.normals,
         "triangles": figure.triangles,
+        "parts": figure.parts,
     }
 
 

@@ -1,11 +1,12 @@
-"""Films and stills of a run, seen from above."""
+"""Films of a run, seen from above or in three dimensions."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,23 +35,125 @@ SPEED_OVER = 15
 DPI = 100
 
 
+PLAN, BODIES = "plan", "bodies"
+
+
 class Film(OutputFormat):
-    """Film from above, people coloured by speed; `.mp4` needs ffmpeg."""
+    """Film from above, people coloured by speed, or of walking people; `.mp4` needs ffmpeg."""
 
     name = "film"
     suffixes = (".mp4", ".gif", ".webp")
     storeys = True
 
-    def write(self, excerpt: Excerpt, path: Path, *, speed: float = 1.0) -> None:
-        """See ``write_film``."""
-        write_film(
-            excerpt.trajectories,
-            excerpt.plan,
-            path,
-            excerpt.selection,
-            speed=speed,
-            progress=excerpt.progress,
+    def write(
+        self,
+        excerpt: Excerpt,
+        path: Path,
+        *,
+        speed: float = 1.0,
+        view: Literal["plan", "bodies"] = "plan",
+        camera: str | None = None,
+        colour: Literal["clothes", "speed", "type"] = "clothes",
+        width: int = 960,
+        height: int = 540,
+    ) -> None:
+        """See ``write_film`` and ``write_film_of_bodies``.
+
+        Args:
+            excerpt: what to draw.
+            path: the film.
+            speed: how many times as fast as it was.
+            view: "plan" from above, "bodies" in three dimensions.
+            camera: with "bodies": a camera path that the replay page has saved.
+            colour: with "bodies": what the colours of people stand for.
+            width: with "bodies": pixels.
+            height: with "bodies": pixels.
+        """
+        if view == PLAN:
+            write_film(
+                excerpt.trajectories,
+                excerpt.plan,
+                path,
+                excerpt.selection,
+                speed=speed,
+                progress=excerpt.progress,
+            )
+        else:
+            size = (width, height)
+            write_film_of_bodies(
+                excerpt, path, speed=speed, camera=camera, colour=colour, size=size
+            )
+
+
+def write_film_of_bodies(
+    excerpt: Excerpt,
+    path: str | os.PathLike[str],
+    *,
+    speed: float = 1.0,
+    camera: str | os.PathLike[str] | None = None,
+    colour: str = "clothes",
+    size: tuple[int, int] = (960, 540),
+) -> None:
+    """Draw people as walking figures, by Chromium or Chrome on this machine.
+
+    Args:
+        excerpt: the run, and whom and when to show.
+        path: the film; its suffix is one of ``Film.suffixes``. MP4 needs ffmpeg.
+        speed: how many times as fast as it was.
+        camera: a camera path that the replay page has saved; by default the whole floor from aside.
+        colour: what the colours of people stand for: "clothes", "speed" or "type".
+        size: width and height, pixels, even numbers.
+
+    Raises:
+        ResultsError: another suffix, no ffmpeg, no browser, a damaged camera path, a size out of
+            bounds, nobody to show, or the file cannot be written.
+    """
+    from mesa_mobility.animation.film_bodies import LARGEST, TYPES, camera_path, pictures
+    from mesa_mobility.animation.page import page_text
+    from mesa_mobility.animation.reels import write_reel
+
+    suffix = _checked(path, speed)
+    if not all(16 <= each <= LARGEST and each % 2 == 0 for each in size):
+        raise ResultsError(
+            f"film of {size[0]} x {size[1]} pixels, expected even numbers from 16 to {LARGEST}"
         )
+    views = None if camera is None else camera_path(camera)
+    frames = _frames(excerpt.trajectories, excerpt.selection, speed)
+    page = page_text(
+        excerpt.trajectories,
+        excerpt.plan,
+        excerpt.selection,
+        title=excerpt.title,
+        bank=excerpt.bank,
+    )
+
+    def told() -> Iterator[bytes]:
+        drawn = pictures(page, frames, TYPES[suffix], size, views, colour=colour)
+        for done, picture in enumerate(drawn, start=1):
+            excerpt.progress(done, len(frames))
+            yield picture
+
+    with replacing(path, ResultsError) as temporary:
+        write_reel(told(), temporary, suffix, PICTURES_A_SECOND)
+
+
+def _checked(path: str | os.PathLike[str], speed: float) -> str:
+    """The suffix of a film."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in Film.suffixes:
+        raise ResultsError(f"{path}: films end with {', '.join(Film.suffixes)}")
+    if suffix == ".mp4" and shutil.which("ffmpeg") is None:
+        raise ResultsError(f"{path}: MP4 needs ffmpeg on the path; .gif and .webp do not")
+    if not (np.isfinite(speed) and speed > 0):
+        raise ResultsError(f"speed {speed:g}: expected a positive number")
+    return suffix
+
+
+def _frames(trajectories: Tracks, selection: Selection, speed: float) -> list[int]:
+    first, last = selection.frames_of(trajectories)
+    step = speed * trajectories.frame_rate / PICTURES_A_SECOND
+    frames: list[int] = np.floor(np.arange(first, last + 1, step)).astype(np.int64).tolist()
+    return frames
 
 
 def write_film(
@@ -84,17 +187,9 @@ def write_film(
     from mesa_mobility.results.floor import panels_of, storeys_of
 
     selection = selection or Selection()
-    suffix = Path(path).suffix.lower()
-    if suffix not in Film.suffixes:
-        raise ResultsError(f"{path}: films end with {', '.join(Film.suffixes)}")
-    if suffix == ".mp4" and not FFMpegWriter.isAvailable():
-        raise ResultsError(f"{path}: MP4 needs ffmpeg on the path; .gif and .webp do not")
-    if not (np.isfinite(speed) and speed > 0):
-        raise ResultsError(f"speed {speed:g}: expected a positive number")
-    first, last = selection.frames_of(trajectories)
+    suffix = _checked(path, speed)
     shown = np.isin(trajectories.person, selection.people_of(trajectories))
-    step = speed * trajectories.frame_rate / PICTURES_A_SECOND
-    frames = np.floor(np.arange(first, last + 1, step)).astype(np.int64)
+    frames = _frames(trajectories, selection, speed)
     pace = _speeds(trajectories)
     figure, axes = panels_of(storeys_of(trajectories, plan))
     panels = [_Panel(each, storey) for each, storey in axes]
@@ -106,7 +201,7 @@ def write_film(
         figure.canvas.draw()
         figure.set_layout_engine("none")
         with writer.saving(figure, str(temporary), DPI):
-            for done, frame in enumerate(frames.tolist(), start=1):
+            for done, frame in enumerate(frames, start=1):
                 own = slice(*trajectories.frame_offsets[frame : frame + 2].tolist())
                 rows = np.arange(own.start, own.stop)[shown[own]]
                 for panel in panels:
@@ -128,7 +223,7 @@ class _Panel:
         draw_floor(axes, storey.plan, storey.stairs, storey.refuges)
         self._axes, self._storey = axes, storey
         self.bodies = EllipseCollection(
-            [], [], [], units="xy", cmap="viridis", offset_transform=axes.transData, zorder=5
+            [], [], [], units="xy", cmap="plasma_r", offset_transform=axes.transData, zorder=5
         )
         self.bodies.set_clim(0.0, FASTEST)
         self._strokes = LineCollection([], colors="black", linewidths=0.8, zorder=6)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from mesa_mobility.animation.solids import drawn_solid, solids_of
+
 if TYPE_CHECKING:
     from mesa_mobility.buildings import Refuge
     from mesa_mobility.floorplan import FloorPlan
@@ -20,6 +22,7 @@ def drawn_floor(plan: FloorPlan) -> dict[str, Any]:
         "outline": [ring(part.exterior) for part in shapely.get_parts(plan.walkable)],
         "free": [rings(part) for part in shapely.get_parts(plan.free)],
         "walls": plan.walls.tolist(),
+        "solids": [drawn_solid(solid) for solid in solids_of(plan)],
         "zones": [ring(zone.area.exterior) for zone in plan.zones],
         "openings": [
             drawn_opening(opening, plan.is_open(opening.name)) for opening in plan.openings()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-FLOOR, WALL = "#e6e6e2", "#8b8b88"
+FLOOR, WALL = "#e6e6e2", "#b9bab8"
 
 WALL_HEIGHT = 1.2
 """Metres: low enough to look over."""
@@ -41,23 +41,6 @@ class Surface(NamedTuple):
     colour: str
     both_sides: bool
     opacity: float = 1.0
-
-
-def wall_surfaces(
-    name: str, walls: NDArray[np.float64], base: float, most_vertices: int | None
-) -> Iterator[Surface]:
-    """Walls as upright rectangles.
-
-    Args:
-        name: of the meshes.
-        walls: (m, 4) x0, y0, x1, y1, metres.
-        base: elevation of their lower edges, metres.
-        most_vertices: see ``scenery.surfaces``.
-    """
-    at_once = len(walls) if most_vertices is None else most_vertices // 4
-    for start in range(0, len(walls), at_once):
-        part = upright(walls[start : start + at_once], base, base + WALL_HEIGHT)
-        yield Surface(name, *part, WALL, True)
 
 
 def upright(walls: NDArray[np.float64], bottom: float, top: float) -> Mesh:

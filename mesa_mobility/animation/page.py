@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
+from mesa_mobility.animation.figures.aids import aid_of
 from mesa_mobility.animation.floor import drawn_floor
 from mesa_mobility.animation.storeys import drawn_building
 from mesa_mobility.bodies import PoseBank
@@ -24,8 +24,11 @@ from mesa_mobility.bodies.sequence import stretches
 from mesa_mobility.errors import MapError, ResultsError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan import FloorPlan
+from mesa_mobility.results.engineering.doors import crossings_of_doors
+from mesa_mobility.results.engineering.service import service_limits
 from mesa_mobility.results.excerpts import Selection
 from mesa_mobility.results.formats.output_format import OutputFormat
+from mesa_mobility.results.measures.crossings import passed_by
 from mesa_mobility.results.tracks import Tracks
 
 if TYPE_CHECKING:
@@ -43,6 +46,15 @@ SHARE_STEP = 0.001
 
 STAGE_SCRIPTS = "bundle", "poses", "footing", "bodies", "troop", "scenery", "stage"
 """Files of the viewer that draw a crowd in three dimensions, in the order in which they load."""
+
+PLAN_SCRIPTS = (
+    *("plan/colours", "plan/drawing", "plan/floor", "plan/gestures", "plan/people", "plan/plane"),
+    *("plan/layer", "plan/curves", "plan/view"),
+)
+"""Those that draw it from above, with maps and curves."""
+
+PLAYER_SCRIPTS = "run", "maps", "path", "film", "player"
+"""Those of the page of a run."""
 
 
 class Page(OutputFormat):
@@ -120,24 +132,19 @@ def page_text(
     header, arrays = run_parts(
         trajectories, selection or Selection(), bank, progress, storeys=not whole
     )
-    header |= {"title": title, "floor": _drawn(plan)}
+    header |= {
+        "title": title,
+        "floor": _drawn(plan),
+        "doors": _passages(trajectories, plan, header["last"] / FRAME_RATE),
+        "service": service_limits().tolist(),
+    }
     return Template(viewer_part("page.html")).substitute(
         title=html.escape(title),
         # Would end the script early.
         three=viewer_part("three.bundle.js").replace("</script", "<\\/script"),
         content=bundled(header, arrays),
         viewer="\n".join(
-            viewer_part(f"{each}.js")
-            for each in (
-                "bundle",
-                "poses",
-                "footing",
-                "bodies",
-                "troop",
-                "scenery",
-                "stage",
-                "player",
-            )
+            viewer_part(f"{each}.js") for each in (*PLAN_SCRIPTS, *STAGE_SCRIPTS, *PLAYER_SCRIPTS)
         ),
     )
 
@@ -176,7 +183,8 @@ def run_parts(
         decided.append(own)
         kind = 0 if types is None else names.index(str(types[person]))
         number = -1 if found is None else known.index(found)
-        rows.append((person, len(track), len(course), len(own), kind, number))
+        out = int(trajectories.exit_frames[person]) in range(first, last + 1)
+        rows.append((person, len(track), len(course), len(own), kind, number, out))
         if progress is not None:
             progress(done)
     header, arrays = figure_parts()
@@ -214,6 +222,15 @@ def _banks(decisions: Decisions, given: PoseBank | None) -> dict[int, PoseBank]:
 
 def _drawn(plan: FloorPlan | Building) -> dict[str, Any]:
     return drawn_floor(plan) if isinstance(plan, FloorPlan) else drawn_building(plan)
+
+
+def _passages(trajectories: Tracks, plan: FloorPlan | Building, end: float) -> list[dict[str, Any]]:
+    """Seconds of each first passage of a gate or exit until a time, by name."""
+    found = crossings_of_doors(trajectories, plan)
+    return [
+        {"name": name, "times": [round(time, 2) for time, _ in passed_by(own) if time <= end]}
+        for name, own in found.items()
+    ]
 
 
 def _track(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from mesa_mobility.animation.aids import aid_of
+from mesa_mobility.animation.figures.aids import aid_of
 from mesa_mobility.bodies import BodyMotion, PoseBank
 from mesa_mobility.bodies.seated import seated_motion
 from mesa_mobility.results.bodies import body_of, elevation_of, track_of

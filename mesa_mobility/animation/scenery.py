@@ -1,4 +1,4 @@
-"""Floor and walls as meshes, and the colours of a scene."""
+"""Floor and walls as meshes."""
 
 from __future__ import annotations
 
@@ -7,22 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mesa_mobility.animation.meshes import FLOOR, SQUARE, Surface, wall_surfaces
+from mesa_mobility.animation.meshes import FLOOR, SQUARE, Surface
+from mesa_mobility.animation.solids import solid_surfaces, solids_of
 from mesa_mobility.animation.storeys import storey_surfaces
 from mesa_mobility.floorplan import FloorPlan
 
 if TYPE_CHECKING:
     from mesa_mobility.buildings import Building
 
-COLOURS = ("#3f6ea8", "#b65a43", "#5b8f5a", "#8c6bb1", "#c59a3d", "#4f9d9d", "#7d7d7d", "#a8577e")
-"""Of the people, in turn."""
-
 MARGIN = 0.5
 """Metres by which the floor reaches beyond the walls."""
 
 
 def surfaces(plan: FloorPlan | Building, most_vertices: int | None = None) -> Iterator[Surface]:
-    """The floor, and the walls as upright rectangles; of a building, each level and the stairs.
+    """The floor, walls and seats; of a building, each level and the stairs.
 
     Args:
         plan: floor and walls, or a building.
@@ -37,7 +35,7 @@ def surfaces(plan: FloorPlan | Building, most_vertices: int | None = None) -> It
     floor = np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]], dtype=np.float32)
     up = np.tile(np.array([0, 0, 1], dtype=np.float32), (4, 1))
     yield Surface("floor", floor, up, SQUARE, FLOOR, False)
-    yield from wall_surfaces("walls", np.asarray(plan.walls, dtype=np.float64), 0.0, most_vertices)
+    yield from solid_surfaces("", solids_of(plan), 0.0, most_vertices)
 
 
 def linear(colour: str) -> list[float]:

@@ -22,8 +22,8 @@ from mesa_mobility.animation.meshes import (
     flat,
     joined,
     prism,
-    wall_surfaces,
 )
+from mesa_mobility.animation.solids import Solid, drawn_solid, solid_surfaces, solids
 from mesa_mobility.buildings.level import sheet_of
 from mesa_mobility.buildings.places import height_on, place_on
 from mesa_mobility.floorplan.floor.boundaries import boundary_segments, cut_out
@@ -56,12 +56,14 @@ class Storey:
         floor: the floor without obstacles, with holes over the flights that lead down.
         walls: (m, 4) x0, y0, x1, y1, metres: the edge of the level and of obstacles without open
             exits.
+        solids: walls and obstacles as they stand on the floor.
         openings: exits and gates, and whether each is open.
     """
 
     level: Level
     floor: shapely.Geometry
     walls: NDArray[np.float64]
+    solids: list[Solid]
     openings: list[tuple[Opening, bool]]
 
 
@@ -80,7 +82,8 @@ def storeys_of(building: Building) -> list[Storey]:
         exits = [each for each in level.exits if is_open(each.name)]
         walls = cut_out(boundary_segments(free), exits)
         openings = [(each, is_open(each.name)) for each in (*level.exits, *level.gates)]
-        found.append(Storey(level, floor, walls, openings))
+        stand = solids(level.area, free, [each.line for each in exits])
+        found.append(Storey(level, floor, walls, stand, openings))
     return found
 
 
@@ -95,7 +98,7 @@ def storey_surfaces(building: Building, most_vertices: int | None = None) -> Ite
         level, label = storey.level, f"level_{storey.level.number}".replace("-", "minus_")
         floor = flat(storey.floor, level.elevation)
         yield Surface(f"floor_{label}", *floor, FLOOR, True, SEE_THROUGH if above else 1.0)
-        yield from wall_surfaces(f"walls_{label}", storey.walls, level.elevation, most_vertices)
+        yield from solid_surfaces(f"_{label}", storey.solids, level.elevation, most_vertices)
         for number, (opening, is_open) in enumerate(storey.openings):
             colour = (EXIT if opening.kind == "exit" else DOOR) if is_open else CLOSED
             stripe = opening.line.buffer(_STRIPE, cap_style="flat")
@@ -127,6 +130,7 @@ def drawn_building(building: Building) -> dict[str, Any]:
                 "elevation": each.level.elevation,
                 "free": [rings(part) for part in shapely.get_parts(each.floor)],
                 "walls": each.walls.tolist(),
+                "solids": [drawn_solid(solid) for solid in each.solids],
                 "openings": [drawn_opening(*opening) for opening in each.openings],
                 "refuges": [drawn_refuge(refuge) for refuge in each.level.refuges],
             }

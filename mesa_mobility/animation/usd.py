@@ -7,18 +7,19 @@ each has an animation of its own.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.animation.aids import aid_of, figure_with
-from mesa_mobility.animation.figure import rest_positions
+from mesa_mobility.animation.figures.aids import aid_of, figure_with
+from mesa_mobility.animation.figures.clothes import LOOKS, PARTS, look_of
+from mesa_mobility.animation.figures.figure import rest_positions
 from mesa_mobility.animation.meshes import FLOOR, WALL
 from mesa_mobility.animation.people import Walker, walkers
-from mesa_mobility.animation.scenery import COLOURS, linear, surfaces
+from mesa_mobility.animation.scenery import linear, surfaces
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.skeleton import JOINTS, OFFSETS, PARENTS, TURNING
 from mesa_mobility.errors import ResultsError
@@ -82,7 +83,12 @@ def write_usd(
     stage.SetFramesPerSecond(FRAME_RATE)
     stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/world").GetPrim())
     stage.DefinePrim("/world/materials", "Scope")
-    materials = {colour: _material(stage, colour) for colour in (*COLOURS, FLOOR, WALL)}
+    materials = {colour: _material(stage, colour) for colour in (FLOOR, WALL)}
+    materials |= {
+        colour: _material(stage, colour)
+        for number in range(LOOKS)
+        for colour in look_of(number).values()
+    }
     _add_plan(stage, plan, materials)
     figures: dict[str, str] = {}
     first, last = np.inf, -np.inf
@@ -90,8 +96,7 @@ def write_usd(
         aid = aid_of(walker.type_name)
         if aid not in figures:
             figures[aid] = _add_figure(stage, aid)
-        colour = COLOURS[walker.person % len(COLOURS)]
-        _add_person(stage, walker, figures[aid], materials[colour])
+        _add_person(stage, walker, figures[aid], materials)
         first = min(first, walker.first)
         last = max(last, walker.first + len(walker.motion) - 1)
         if progress is not None:
@@ -169,7 +174,7 @@ def _names() -> list[str]:
 
 def _add_figure(stage: Any, aid: str) -> str:
     """The mesh bound to its skeleton, as a class that people refer to; its path."""
-    from pxr import Sdf, UsdGeom, UsdSkel, Vt
+    from pxr import Sdf, UsdGeom, UsdShade, UsdSkel, Vt
 
     path = f"/figure_with_{aid}" if aid else "/figure"
     stage.CreateClassPrim(path)
@@ -187,10 +192,14 @@ def _add_figure(stage: Any, aid: str) -> str:
     binding.CreateJointWeightsPrimvar(False, 4).Set(Vt.FloatArray.FromNumpy(weights))
     binding.CreateGeomBindTransformAttr(_translations(np.zeros((1, 3)))[0])
     binding.CreateSkeletonRel().SetTargets([Sdf.Path(f"{path}/skeleton")])
+    of = figure.parts[figure.triangles[:, 0]]
+    for part in np.unique(of).tolist():
+        faces = Vt.IntArray.FromNumpy(np.flatnonzero(of == part).astype(np.int32))
+        UsdShade.MaterialBindingAPI(mesh).CreateMaterialBindSubset(PARTS[part], faces)
     return path
 
 
-def _add_person(stage: Any, walker: Walker, figure: str, material: Any) -> None:
+def _add_person(stage: Any, walker: Walker, figure: str, materials: Mapping[str, Any]) -> None:
     from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt
 
     place = f"/world/person_{walker.person}"
@@ -203,7 +212,10 @@ def _add_person(stage: Any, walker: Walker, figure: str, material: Any) -> None:
     space = np.stack([joints.min(axis=(0, 1)) - _AROUND_JOINTS, joints.max(axis=(0, 1))])
     space[1] += _AROUND_JOINTS
     root.CreateExtentAttr(_vectors(space))
-    _bind(UsdGeom.Mesh.Get(stage, f"{place}/body"), material)
+    for part, colour in look_of(walker.person).items():
+        own = UsdGeom.Subset.Get(stage, f"{place}/body/{part}")
+        if own:
+            _bind(own, materials[colour])
     walk = UsdSkel.Animation.Define(stage, f"{place}/walk")
     skeleton = UsdSkel.BindingAPI.Apply(stage.GetPrimAtPath(f"{place}/skeleton"))
     skeleton.CreateAnimationSourceRel().SetTargets([walk.GetPath()])

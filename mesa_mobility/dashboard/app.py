@@ -138,9 +138,19 @@ def Dashboard(
 
 @solara.component
 def _Simulation(session: Session) -> None:
+    folded, fold = solara.use_state(False)
     with solara.Div(classes=["mm-time"]):
         TimeControls(session)
-    with solara.Div(classes=["mm-halves"]):
+        solara.Button(
+            "Show decision and charts" if folded else "Crowd alone",
+            small=True,
+            on_click=lambda: fold(not folded),
+            attributes={
+                "title": "The crowd over the whole page, or beside decision and charts",
+                "aria-pressed": "true" if folded else "false",
+            },
+        )
+    with solara.Div(classes=["mm-halves", "mm-folded"] if folded else ["mm-halves"]):
         with solara.Div(classes=["mm-left"]):
             _Crowd(session)
             _Messages(session)
@@ -173,7 +183,9 @@ def _Map(session: Session) -> None:
 
 STYLE = (
     ".mm-halves { display: flex; flex-wrap: wrap; gap: 12px; }"
-    ".mm-left { flex: 3 1 480px; min-width: 0; } .mm-right { flex: 2 1 380px; min-width: 0; }"
+    ".mm-left { flex: 5 1 480px; min-width: 0; } .mm-right { flex: 2 1 340px; min-width: 0; }"
+    ".mm-folded .mm-right { display: none; }"
+    ".mm-time { display: flex; flex-wrap: wrap; gap: 8px; align-items: center; }"
     # In a low window they cover the lower end of the crowd.
     ".mm-messages { position: sticky; bottom: 0; background: #fff; }"
     ".theme--dark .mm-messages { background: #121212; }"

@@ -17,9 +17,12 @@ PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 _LONGEST_S = 300.0
 
 
-def browser_program() -> str:
+def browser_program(purpose: str = "write PDF") -> str:
     """Path of Chromium or Chrome: that of the variable ``MESA_MOBILITY_BROWSER``, or an installed
     one.
+
+    Args:
+        purpose: what it is needed for, in an error.
 
     Raises:
         ResultsError: there is none.
@@ -28,8 +31,8 @@ def browser_program() -> str:
     found = shutil.which(given) if given else next(filter(None, map(shutil.which, PROGRAMS)), None)
     if found is None:
         raise ResultsError(
-            f"no browser to write PDF: {f'{BROWSER} is {given!r}' if given else 'none installed'}, "
-            f"expected Chromium or Chrome (open the HTML page in any browser to print it)"
+            f"no browser to {purpose}: {f'{BROWSER} is {given!r}' if given else 'none installed'}, "
+            f"expected Chromium or Chrome (any browser opens the HTML page)"
         )
     return found
 

@@ -12,37 +12,6 @@ from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import Trajectories
 from tests.fixtures.buildings import two_storeys
 
-DRAWN_BY_THE_PROCESSOR = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-
-
-@pytest.fixture
-def open_page(playwright, browser_program, tmp_path):
-    """Opens the page of a run; it may ask for nothing, and nothing may go wrong in it."""
-    path = tmp_path / "replay.html"
-    trouble = []
-    browser = playwright.chromium.launch(
-        executable_path=browser_program, args=DRAWN_BY_THE_PROCESSOR
-    )
-    context = browser.new_context(offline=True, viewport={"width": 480, "height": 320})
-
-    def opened(*arguments, **keywords):
-        write_page(*arguments, path=path, **keywords)
-        shown = context.new_page()
-        shown.on("pageerror", lambda error: trouble.append(str(error)))
-        shown.on("request", lambda request: asked(request.url))
-        shown.goto(path.as_uri())
-        shown.wait_for_selector("body[data-ready=yes]", timeout=60_000)
-        shown.click("#play")
-        return shown
-
-    def asked(address):
-        if address != path.as_uri() and not address.startswith(("data:", "blob:")):
-            trouble.append(f"asks for {address}")
-
-    yield opened
-    browser.close()
-    assert trouble == []
-
 
 @pytest.fixture
 def page(open_page, run, plan):
@@ -129,19 +98,19 @@ def test_all_views_draw_and_a_click_chooses(page):
     page.evaluate("show(30)")
     for view in ("plan", "follow", "eyes", "orbit"):
         page.select_option("#camera", view)
-        before = page.evaluate("state.stage.drawn")
-        page.wait_for_function(f"state.stage.drawn > {before + 1}")
+        drawn = "state.plan.drawn" if view == "plan" else "state.stage.drawn"
+        before = page.evaluate(drawn)
+        page.wait_for_function(f"{drawn} > {before + 1}")
     # Somebody is followed as soon as a view needs it.
     assert page.input_value("#person") == "0"
     page.select_option("#person", "-1")
-    page.select_option("#camera", "plan")
     # What is told of the person chosen before may lie over the place.
-    page.wait_for_function("state.stage.how === 'plan' && !element('why').textContent")
+    page.wait_for_function("!element('why').textContent")
     x, y = page.evaluate(
         """() => {
+          const { canvas, perspective } = state.stage, box = canvas.getBoundingClientRect();
           const [x, y] = state.people[1].track.at(state.frame);
-          const box = state.stage.canvas.getBoundingClientRect();
-          const at = new THREE.Vector3(x, y, 1).project(state.stage.above);
+          const at = new THREE.Vector3(x, y, 1).project(perspective);
           return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height];
         }"""
     )

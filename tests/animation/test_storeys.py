@@ -79,8 +79,11 @@ def test_floors_have_their_elevations_and_the_upper_lets_one_see_through():
     # The exits, 2 m wide, are on the ground floor and not walled.
     assert {"opening_level_0_0", "opening_level_0_1"} < set(found)
     assert not any(name.startswith("opening_level_1") for name in found)
-    assert area_of(found["walls_level_0"]) == pytest.approx(1.2 * (64 - 4), rel=1e-6)
-    assert area_of(found["walls_level_1"]) == pytest.approx(1.2 * 64, rel=1e-6)
+    # Walls of 0.15 m have an inner and an outer side, and two jambs at each exit.
+    inner, outer = 64.0, 64 + 8 * 0.15
+    sides = inner + outer - 2 * 4 + 4 * 0.15
+    assert area_of(found["walls_level_0"]) == pytest.approx(1.2 * sides, rel=1e-6)
+    assert area_of(found["walls_level_1"]) == pytest.approx(1.2 * (inner + outer), rel=1e-6)
 
 
 def test_closed_exits_are_walls():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from mesa_mobility.animation import Selection, walkers, write_usd
-from mesa_mobility.animation.aids import figure_with
-from mesa_mobility.animation.figure import human_figure
+from mesa_mobility.animation.figures.aids import figure_with
+from mesa_mobility.animation.figures.figure import human_figure
 from mesa_mobility.animation.people import Walker
 from mesa_mobility.bodies import BodyMotion
 from mesa_mobility.bodies.skeleton import JOINTS
@@ -99,9 +99,9 @@ def test_metres_seconds_and_the_plan(stage, run, plan):
     assert stage.GetTimeCodesPerSecond() == 30
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (0, round(run.duration * 30))
     walls = np.array(UsdGeom.Mesh.Get(stage, "/world/walls").GetPointsAttr().Get())
-    assert len(walls) == 4 * len(plan.walls)
-    # The room of 8 m x 4 m; its walls stand on the floor, which reaches 0.5 m further.
-    assert (walls.min(axis=0).tolist(), walls[:, :2].max(axis=0).tolist()) == ([0, 0, 0], [8, 4])
+    # The room of 8 m x 4 m with walls of 0.15 m, on the floor that reaches 0.5 m further.
+    np.testing.assert_allclose(walls.min(axis=0), [-0.15, -0.15, 0], atol=1e-6)
+    np.testing.assert_allclose(walls.max(axis=0), [8.15, 4.15, 1.2], atol=1e-6)
     floor = np.array(UsdGeom.Mesh.Get(stage, "/world/floor").GetPointsAttr().Get())
     assert (floor.min(axis=0).tolist(), floor.max(axis=0).tolist()) == (
         [-0.5, -0.5, 0],

@@ -17,6 +17,8 @@ class Body {
     this.whole = Array.from(skeleton.parents, (_, j) => j);
     this.legs = [0, ...skeleton.legs.flat()];
     this.turnOf = new Map(Array.from(skeleton.turning, (j, k) => [j, k]));
+    this.turnAt = Int32Array.from({ length: 22 }, (_, j) => this.turnOf.get(j) ?? -1);
+    this.inLeg = Uint8Array.from({ length: 22 }, (_, j) => (skeleton.legs.some((leg) => leg.includes(j)) ? 1 : 0));
   }
 
   // The body at a time in frames; feet are held where they bear on the floor, if asked for.
@@ -24,6 +26,48 @@ class Body {
     const from = Math.floor(frame), feet = holding ? this.held(course, from, track) : null;
     this.unheld(course, frame, track, this.whole);
     this.put(course.bank.scale, track.at(frame), feet, frame - from);
+  }
+
+  // The same for somebody far away: the nearest recorded frame, feet as they were recorded, shorter steps by legs that
+  // swing less.
+  poseFarAway({ course, track }, frame) {
+    const { bank, starts } = course, { parents, offsets } = this.skeleton, { places, turns, local, other } = this;
+    const index = course.at(frame), number = course.number(index, frame), stride = course.strides[index];
+    const join = index > 0 && frame - starts[index] < BLEND ? course.join(index) : null;
+    const left = join && join.any ? fade(Math.max(frame - starts[index], 0)) : 0;
+    for (let j = 0; j < 22; j += 1) {
+      const k = this.turnAt[j], parent = parents[j];
+      if (parent >= 0) turned(turns, 4 * parent, offsets, 3 * j, places, 3 * parent, places, 3 * j);
+      else places.fill(0, 0, 3);
+      if (k < 0) {
+        for (let i = 0; i < 4; i += 1) turns[4 * j + i] = turns[4 * parent + i];
+        continue;
+      }
+      bank.turn(number, k, local, 0);
+      if (left) {
+        exponential(left * join.turns[3 * k], left * join.turns[3 * k + 1], left * join.turns[3 * k + 2], other);
+        multiply(local, 0, other, 0, local, 0);
+      }
+      if (stride < 0.999 && this.inLeg[j]) {
+        const sign = local[3] < 0 ? -1 : 1;
+        for (let i = 0; i < 3; i += 1) local[i] *= stride * sign;
+        local[3] = 1 - stride + stride * sign * local[3];
+        normalise(local, 0);
+      }
+      if (parent >= 0) multiply(turns, 4 * parent, local, 0, turns, 4 * j);
+      else for (let i = 0; i < 4; i += 1) turns[i] = local[i];
+    }
+    this.height = bank.height(number) + (join ? left * join.height : 0);
+    const [x, y, heading, z] = track.at(frame), { scale } = bank, carried = this.footing ? this.footing.carried([x, y, z]) : z;
+    const c = Math.cos(heading), s = Math.sin(heading);
+    local.set([0, 0, Math.sin(heading / 2), Math.cos(heading / 2)]);
+    for (let j = 0; j < 22; j += 1) {
+      const px = places[3 * j], py = places[3 * j + 1];
+      places[3 * j] = scale * (c * px - s * py) + x;
+      places[3 * j + 1] = scale * (s * px + c * py) + y;
+      places[3 * j + 2] = scale * (places[3 * j + 2] + this.height) + carried;
+      multiply(local, 0, turns, 4 * j, turns, 4 * j);
+    }
   }
 
   // The pose seen from where the person faces, the pelvis at the origin.

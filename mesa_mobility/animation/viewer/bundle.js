@@ -27,7 +27,7 @@ function partsOf(arrays, name) {
 }
 
 function figureOf({ header, arrays }) {
-  return { skeleton: header.skeleton,
+  return { skeleton: header.skeleton, looks: header.looks,
     meshes: Object.fromEntries(header.figures.map((name) => [name, partsOf(arrays, name)])) };
 }
 

@@ -3,16 +3,18 @@
 
 const EYES = 0.1, BONES = 22;
 const FOLLOWED = 1.1, OVER = 0.25; // metres: height of the place that is followed; a camera's way above walls
-const FINE_PIXELS = 110, FIGURE_PIXELS = 16; // height on the screen from which people are figures
+// Height on the screen from which people are figures, have feet on the floor, and all corners.
+const FIGURE_PIXELS = 6, PLACED_PIXELS = 64, FINE_PIXELS = 110;
 const FINE_MOST = 24, HELD_MOST = 100; // figures with all corners, with feet held on the floor
 const QUICK = 0.018; // seconds between pictures from which on there is more detail
 // Where pictures come more slowly than in so many seconds: fewer pixels, then fewer figures.
 const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
   { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
-const SEATED = "wheelchair", METAL = [0.26, 0.27, 0.29];
+const FROM = [0.31, -0.77, 0.72], ROOM_HIGH = 1.8, MARGIN = 1.06; // where the camera stands; metres; room round the floor
+const SEATED = "wheelchair";
 
 class Stage {
-  // figure: {skeleton, meshes}, see animation/levels.py. Throws where a page cannot draw so.
+  // figure: {skeleton, meshes, looks}, see animation/figures/levels.py and animation/figures/clothes.py. Throws where a page cannot draw so.
   constructor(holder, figure) {
     this.holder = holder;
     this.skeleton = figure.skeleton;
@@ -29,7 +31,8 @@ class Stage {
     this.body = new Body(this.skeleton);
     this.rows = 0;
     this.bones = { value: null };
-    this.troops = new Troops(figure.meshes, this.bones, this.scene);
+    this.tops = figure.looks.map(([top]) => channels(top));
+    this.troops = new Troops(figure.meshes, figure.looks, this.bones, this.scene);
     this.ring = new THREE.Mesh(new THREE.RingGeometry(0.36, 0.46, 24),
       new THREE.MeshBasicMaterial({ color: 0xe6007e, side: THREE.DoubleSide }));
     this.scene.add(this.ring);
@@ -67,12 +70,26 @@ class Stage {
   // The whole floor is in the picture.
   fit() {
     this.resize(true);
-    const [x0, y0, x1, y1] = this.bounds, { top } = this.scenery, half = Math.hypot(x1 - x0, y1 - y0, top) / 2;
-    const high = Math.tan((this.perspective.fov * Math.PI) / 360), wide = high * this.perspective.aspect;
-    const far = Math.max(half / wide, ((top ? 1 : 0.75) * half) / high) + 1; // storeys need more room above each other
-    this.orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, 0.8 + top / 2);
-    this.perspective.position.set(0.31, -0.77, 0.56).multiplyScalar(far).add(this.orbit.target);
-    this.orbit.update();
+    const [x0, y0, x1, y1] = this.bounds, { top } = this.scenery, { orbit, perspective } = this;
+    orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, top / 2);
+    const away = new THREE.Vector3(...FROM).normalize();
+    perspective.position.copy(away).add(orbit.target);
+    perspective.lookAt(orbit.target);
+    perspective.updateMatrixWorld();
+    const [right, up] = [0, 1].map((k) => new THREE.Vector3().setFromMatrixColumn(perspective.matrixWorld, k));
+    const high = Math.tan((perspective.fov * Math.PI) / 360), wide = high * perspective.aspect;
+    let far = 1;
+    for (const x of [x0, x1]) {
+      for (const y of [y0, y1]) {
+        for (const z of [0, top + ROOM_HIGH]) {
+          const corner = new THREE.Vector3(x, y, z).sub(orbit.target);
+          const needed = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / high);
+          far = Math.max(far, corner.dot(away) + needed * MARGIN);
+        }
+      }
+    }
+    perspective.position.copy(away).multiplyScalar(far).add(orbit.target);
+    orbit.update();
   }
 
   resize(always = false) {
@@ -108,7 +125,8 @@ class Stage {
     this.resize();
   }
 
-  // people: [{row, track, course or null, aid: what they hold or sit in, colour: [r, g, b]}]; chosen: a row or -1.
+  // people: [{row, track, course or null, aid: what they hold or sit in, colour: [r, g, b] or null for the colour of
+  // their clothes}]; chosen: a row or -1.
   draw(people, frame, chosen) {
     this.resize();
     const rows = people.length;
@@ -134,28 +152,31 @@ class Stage {
       if (right && Math.abs(dx * right.x + dy * right.y) > wide * Math.max(depth, 0) + 1.5) continue; // beside the picture
       const high = camera === this.above ? pixels : (1.75 * pixels) / Math.max(depth, 0.3);
       if (person === who) this.mark(x, y, z);
-      if (person.aid === SEATED || (person.course && high >= least)) figures.push({ person, high });
+      const look = person.row % this.tops.length, colour = person.colour || this.tops[look];
+      const size = person.course ? person.course.bank.scale : person.scale || 1;
+      this.troops.shadows.add({ stand: [x, y, heading, person.aid === SEATED ? 1.3 : size], rise: z + OVER_MARKINGS });
+      if (person.aid === SEATED || (person.course && high >= least)) figures.push({ person, high, look, colour });
       else {
-        const scale = person.course ? person.course.bank.scale : person.scale || 1;
-        this.troops.add("person_pawn", { stand: [x, y, heading, scale], rise: z, colour: person.colour });
+        this.troops.add("person_pawn", { stand: [x, y, heading, size], rise: z, colour, look });
         pawns += 1;
       }
     }
     figures.sort((a, b) => b.high - a.high);
     let fine = 0, row = 0;
     while (fine < Math.min(FINE_MOST, figures.length) && figures[fine].high >= FINE_PIXELS) fine += 1;
-    figures.forEach(({ person }, k) => {
-      const level = k < fine ? "near" : "far", { aid, colour } = person;
+    figures.forEach(({ person, high, look, colour }, k) => {
+      const level = k < fine ? "near" : "far", { aid } = person;
       if (aid === SEATED) {
         const [x, y, heading, rise] = person.track.at(frame), stand = [x, y, heading, 1];
-        this.troops.add(`seated_${level}`, { stand, rise, colour });
-        this.troops.add(`${aid}_${level}`, { stand, rise, colour: METAL });
+        this.troops.add(`seated_${level}`, { stand, rise, colour, look });
+        this.troops.add(`${aid}_${level}`, { stand, rise, colour, look });
         return;
       }
-      this.body.pose(person, frame, k < HELD_MOST || person === who);
+      if (high >= PLACED_PIXELS || person === who) this.body.pose(person, frame, k < HELD_MOST || person === who);
+      else this.body.poseFarAway(person, frame);
       this.write(data, row, person.course.bank.scale);
-      this.troops.add(`person_${level}`, { row, colour });
-      if (aid) this.troops.add(`${aid}_${level}`, { row, colour: METAL });
+      this.troops.add(`person_${level}`, { row, colour, look });
+      if (aid) this.troops.add(`${aid}_${level}`, { row, colour, look });
       row += 1;
     });
     this.troops.finish();
@@ -239,6 +260,13 @@ class Stage {
   look(how) {
     if (this.how === "eyes" && how !== "eyes") this.fit();
     this.how = how;
+  }
+
+  // From a place at another one, both [x, y, z].
+  lookFrom(eye, target) {
+    this.orbit.target.set(...target);
+    this.perspective.position.set(...eye);
+    this.orbit.update();
   }
 
   // The direction on the floor that is to the right in the picture, of length 1.

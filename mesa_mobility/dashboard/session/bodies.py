@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility import PedestrianModel
-from mesa_mobility.animation.aids import aid_of
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
+from mesa_mobility.animation.figures.aids import aid_of
 from mesa_mobility.bodies import Movements, PoseBank, bank_of_maps
 from mesa_mobility.bodies.sequence import stretch_of_each
 from mesa_mobility.errors import MapError

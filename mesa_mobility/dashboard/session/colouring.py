@@ -20,8 +20,9 @@ class Colouring:
 
     Attributes:
         label: title of the legend.
-        low: value of the scale's first colour.
-        high: value of its last colour, which larger values have as well.
+        low: value of the scale's first colour, which is dark.
+        high: value of its last, bright colour; less than ``low`` where little is a jam. Values
+            beyond either end have its colour.
         values: (n,) value of everybody inside, in order of the model's rows.
         by_type: whether values are indices of pedestrian types.
     """
@@ -47,7 +48,7 @@ def _types(model: PedestrianModel, _: Observer) -> NDArray[np.float64]:
 
 
 COLOURINGS = {
-    "speed": Colouring("speed of the movement under way, m/s", 0.0, 1.8, _speeds),
+    "speed": Colouring("speed of the movement under way, m/s", 1.8, 0.0, _speeds),
     "type": Colouring("type", 0.0, 1.0, _types, by_type=True),
     "waiting time": Colouring(
         "seconds spent below 0.2 m/s",

@@ -74,6 +74,11 @@ class Observer:
         self._make_room()
         return self._waited[rows]
 
+    def passed(self) -> list[tuple[str, int]]:
+        """Name and net passages, in the direction of most, of each opening that has any."""
+        pairs = zip(self.openings, np.abs(self._net).tolist(), strict=True)
+        return [(name, people) for name, people in pairs if people]
+
     def columns(self) -> dict[str, list[float]]:
         """The time series so far, an entry each second; may be called from any thread.
 

@@ -39,7 +39,8 @@ def frame(
 
     ``people`` holds six numbers each: row, x, y, heading, the value that gives the colour, and how
     far the car of a lift has carried the person from the floor on which it is drawn, metres.
-    Float32 holds rows up to 16 million, and places on a plan 1 km wide to 0.1 mm.
+    Float32 holds rows up to 16 million, and places on a plan 1 km wide to 0.1 mm. ``passed`` has
+    name and net passages of each door and exit through which somebody has gone.
 
     Args:
         model: the model.
@@ -68,6 +69,7 @@ def frame(
         "inside": model.inside,
         "people": packed(people),
         "legend": colouring.legend(model),
+        "passed": observer.passed(),
     }
 
 

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
-import mesa_mobility.animation
 from mesa_mobility.animation.page import STAGE_SCRIPTS
 from mesa_mobility.dashboard.views.canvases import canvas_component
-
-_VIEWER = Path(mesa_mobility.animation.__file__).parent / "viewer"
 
 
 @canvas_component(
     "body_view.vue",
     "frames.js",
-    "people.js",
+    "past.js",
+    "plan/curves.js",
+    "plan/people.js",
     "sheets.js",
     "steering.js",
-    *(str(_VIEWER / f"{name}.js") for name in ("three.bundle", *STAGE_SCRIPTS)),
+    *(f"{name}.js" for name in ("three.bundle", *STAGE_SCRIPTS)),
 )
 def BodyCanvas(
     floor: dict[str, Any],

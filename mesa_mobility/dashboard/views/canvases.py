@@ -9,7 +9,12 @@ from typing import Any
 
 import solara
 
+import mesa_mobility.animation
+
 _FOLDER = Path(__file__).parent / "browser"
+VIEWER = Path(mesa_mobility.animation.__file__).parent / "viewer"
+
+SHARED = "assembling.js", "plan/colours.js", "plan/drawing.js"
 
 
 def canvas_component(
@@ -21,12 +26,12 @@ def canvas_component(
 
     Args:
         file: name of the Vue file; the arguments of the decorated function are its properties.
-        scripts: names of what it uses beside ``assembling.js``, ``colours.js`` and
-            ``drawing.js``.
+        scripts: names of what it uses beside ``SHARED``, in ``browser`` or in the viewer that
+            plays saved runs.
     """
+    paths = [(_FOLDER / name, VIEWER / name) for name in (*SHARED, *scripts)]
     shared = "\n".join(
-        (_FOLDER / name).read_text(encoding="utf-8")
-        for name in ("assembling.js", "colours.js", "drawing.js", *scripts)
+        (own if own.is_file() else other).read_text(encoding="utf-8") for own, other in paths
     )
     own = (_FOLDER / file).read_text(encoding="utf-8")
     template = own.replace("<script>\n", f"<script>\n{shared}\n", 1)

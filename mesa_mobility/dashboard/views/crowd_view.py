@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from mesa_mobility.dashboard.views.canvases import canvas_component
+from mesa_mobility.results.engineering.service import service_limits
+
+SERVICE = service_limits().tolist()
 
 
 @canvas_component(
     "crowd_view.vue",
-    "floor.js",
+    "plan/floor.js",
     "frames.js",
-    "gestures.js",
-    "people.js",
-    "plane.js",
+    "mapped.js",
+    "past.js",
+    "plan/layer.js",
+    "plan/curves.js",
+    "plan/gestures.js",
+    "plan/people.js",
+    "plan/plane.js",
     "sheets.js",
     "steering.js",
     "storeys.js",
@@ -24,6 +31,7 @@ def CrowdCanvas(
     floor: dict[str, Any],
     frame: dict[str, Any] = {},  # noqa: B006
     selected: int = -1,
+    service: Sequence[float] = SERVICE,
     height: str = "62vh",
     shortcuts: bool = False,
     event_seen: Callable[[int], None] | None = None,
@@ -38,6 +46,7 @@ def CrowdCanvas(
         floor: what ``serialization.floor`` makes.
         frame: what ``serialization.frame`` makes; left out where a feed writes it.
         selected: row of the person to mark, or -1.
+        service: greatest densities of the levels of service A to E, persons/m2.
         height: of the canvas, as CSS says it.
         shortcuts: whether keys count also where nothing on the page has the focus.
         event_seen: called with the number of a frame when the page has got it.

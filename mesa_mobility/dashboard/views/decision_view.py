@@ -7,7 +7,7 @@ from typing import Any
 from mesa_mobility.dashboard.views.canvases import canvas_component
 
 
-@canvas_component("decision_view.vue", "floor.js", "options.js")
+@canvas_component("decision_view.vue", "plan/floor.js", "options.js")
 def DecisionCanvas(
     floor: dict[str, Any],
     decision: dict[str, Any] = {},  # noqa: B006

@@ -1,7 +1,5 @@
 // What comes from the server, and everybody's place between two pictures: a part of the crowd's view.
 
-const FIELDS = 6; // row, x, y, heading, value, metres that a lift has carried: see serialization.py
-
 const FRAMES = {
   created() {
     // Kept from Vue, which would wrap every array and look at it at each change.
@@ -33,6 +31,7 @@ const FRAMES = {
       }
       this.arrived = time;
       this.to = next;
+      this.keepPast(next, frame.passed);
       this.number(this.from ? this.from.people : new Float32Array(0));
       this.fresh = true;
       this.seen(next.number);
@@ -64,6 +63,8 @@ const FRAMES = {
       return { ...to, people,
         elapsed: this.from.elapsed + share * (to.elapsed - this.from.elapsed) };
     },
+    // What is drawn: the present, or the time that is looked at.
+    pictureAt(time) { return this.cursor === null ? this.between(time) : this.past.at(this.cursor); },
     moving(time) {
       return this.from !== null && time - this.arrived < this.interval + 40;
     },

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mesa_mobility.animation.figure import Figure, Tube, human_figure, joined
+from mesa_mobility.animation.figures.figure import Figure, Tube, human_figure, joined
 from mesa_mobility.bodies.seated import SEATED_PELVIS
 from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, LEG_LENGTH
 from mesa_mobility.mobility import WHEELCHAIRS
@@ -50,7 +50,7 @@ def _bar(
     if axis == 0:
         radii = radii[::-1]  # tubes along x have the radius along z first
     rings = [(place, *radii, {joint: 1.0}) for place in (start, end)]
-    return rings, axis
+    return rings, axis, "aid"
 
 
 def _stick(side: str) -> Tube:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.animation.figures.clothes import PARTS
 from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, HEEL_BACK, JOINT, OFFSETS, PARENTS
 
 AROUND = 10
@@ -17,18 +18,24 @@ FEWER_AROUND = 4
 """The same of a figure seen from afar."""
 
 _FEWER_RINGS = {
-    "trunk": (0, 1, 6, 9),
+    "hips": (0, 2),
+    "torso": (1, 5, 6),
+    "neck": (),
     "head": (1, 4, 7),
+    "hair": (0, 3, 5),
     "leg": (0, 4, 8),
     "foot": (0, 3),
-    "arm": (2, 5, 9),
+    "sleeve": (2, 5),
+    "forearm": (0, 3),
+    "hand": (0, 2),
 }
+"""Those of each tube that are left of a figure seen from afar."""
 
 Ring = tuple[tuple[float, float, float], float, float, dict[str, float]]
 """Centre in metres from a joint, radii along and across, and the joints that move it."""
 
-Tube = tuple[list[Ring], int]
-"""Rings, and the axis along which they follow each other."""
+Tube = tuple[list[Ring], int, str]
+"""Rings, the axis along which they follow each other, and which of ``PARTS`` they are."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,7 @@ class Figure:
         triangles: (t, 3) int of vertices.
         joints: (v, 4) uint8; joints that move each vertex.
         weights: (v, 4) float32; their shares.
+        parts: (v,) uint8; which of ``clothes.PARTS`` each vertex is; each triangle is of one part.
     """
 
     vertices: NDArray[np.float32]
@@ -48,6 +56,7 @@ class Figure:
     triangles: NDArray[np.uint16]
     joints: NDArray[np.uint8]
     weights: NDArray[np.float32]
+    parts: NDArray[np.uint8]
 
 
 def rest_positions() -> NDArray[np.float64]:
@@ -65,10 +74,12 @@ def human_figure(around: int = AROUND, more: Sequence[Tube] = ()) -> Figure:
 
 def distant_figure() -> Figure:
     """The figure of an adult seen from afar: fewer rings, fewer corners."""
-    return joined(
-        [([rings[k] for k in _FEWER_RINGS[name]], axis) for name, (rings, axis) in _tubes()],
-        FEWER_AROUND,
-    )
+    fewer = [
+        ([rings[k] for k in _FEWER_RINGS[name]], axis, part)
+        for name, (rings, axis, part) in _tubes()
+        if _FEWER_RINGS[name]
+    ]
+    return joined(fewer, FEWER_AROUND)
 
 
 def pawn() -> Figure:
@@ -77,28 +88,44 @@ def pawn() -> Figure:
     def rings(*each: tuple[float, float, float]) -> list[Ring]:
         return [((0.0, 0.0, z), deep, wide, {"pelvis": 1}) for z, deep, wide in each]
 
-    body = rings((0.0, 0.09, 0.13), (0.9, 0.11, 0.17), (1.38, 0.12, 0.22), (1.5, 0.05, 0.06))
-    head = rings((1.5, 0.04, 0.04), (1.63, 0.10, 0.08), (1.75, 0.03, 0.03))
-    return joined([(body, 2), (head, 2)], 6)
+    legs = rings((0.0, 0.07, 0.13), (0.9, 0.10, 0.16))
+    body = rings((0.86, 0.11, 0.17), (1.38, 0.12, 0.22), (1.5, 0.05, 0.06))
+    head = rings((1.5, 0.04, 0.04), (1.63, 0.10, 0.08), (1.72, 0.06, 0.05))
+    hair = rings((1.64, 0.09, 0.085), (1.72, 0.08, 0.07), (1.76, 0.03, 0.03))
+    parts = ((legs, "trousers"), (body, "top"), (head, "skin"), (hair, "hair"))
+    return joined([(each, 2, part) for each, part in parts], 6)
 
 
 def _tubes() -> list[tuple[str, Tube]]:
-    tubes = [("trunk", _trunk()), ("head", _head())]
+    tubes: list[tuple[str, Tube]] = [
+        ("hips", (_hips(), 2, "trousers")),
+        ("torso", (_torso(), 2, "top")),
+        ("neck", (_neck(), 2, "skin")),
+        ("head", (_head(), 2, "skin")),
+        ("hair", (_hair(), 2, "hair")),
+    ]
     for side in ("left", "right"):
-        tubes += [("leg", _leg(side)), ("foot", _foot(side)), ("arm", _arm(side))]
+        tubes += [
+            ("leg", (_leg(side), 2, "trousers")),
+            ("foot", (_foot(side), 0, "shoes")),
+            ("sleeve", (_sleeve(side), 2, "top")),
+            ("forearm", (_forearm(side), 2, "forearm")),
+            ("hand", (_hand(side), 2, "skin")),
+        ]
     return tubes
 
 
 def joined(tubes: list[Tube], around: int) -> Figure:
     """One mesh of tubes, each with so many vertices round it."""
-    vertices, normals, triangles, joints, weights, count = [], [], [], [], [], 0
-    for rings, axis in tubes:
+    vertices, normals, triangles, joints, weights, parts, count = [], [], [], [], [], [], 0
+    for rings, axis, part in tubes:
         v, n, t, j, w = _tube(rings, axis, around)
         vertices.append(v)
         normals.append(n)
         triangles.append(t + count)
         joints.append(j)
         weights.append(w)
+        parts.append(np.full(len(v), PARTS.index(part)))
         count += len(v)
     return Figure(
         np.concatenate(vertices).astype(np.float32),
@@ -106,6 +133,7 @@ def joined(tubes: list[Tube], around: int) -> Figure:
         np.concatenate(triangles).astype(np.uint16),
         np.concatenate(joints).astype(np.uint8),
         np.concatenate(weights).astype(np.float32),
+        np.concatenate(parts).astype(np.uint8),
     )
 
 
@@ -114,31 +142,57 @@ def _at(joint: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> tuple[flo
     return float(place[0]), float(place[1]), float(place[2])
 
 
-def _trunk() -> Tube:
+def _hips() -> list[Ring]:
     return [
         (_at("pelvis", z=-0.09), 0.075, 0.10, {"pelvis": 1}),
-        (_at("pelvis", z=-0.02), 0.105, 0.165, {"pelvis": 1}),
-        (_at("pelvis", z=0.10), 0.095, 0.145, {"pelvis": 0.6, "spine": 0.4}),
-        (_at("pelvis", z=0.20), 0.090, 0.135, {"spine": 1}),
-        (_at("chest"), 0.105, 0.155, {"spine": 0.5, "chest": 0.5}),
-        (_at("chest", z=0.10), 0.110, 0.170, {"chest": 1}),
+        (_at("pelvis", z=-0.02), 0.104, 0.163, {"pelvis": 1}),
+        (_at("pelvis", z=0.08), 0.092, 0.145, {"pelvis": 0.6, "spine": 0.4}),
+    ]
+
+
+def _torso() -> list[Ring]:
+    return [
+        (_at("pelvis", z=-0.05), 0.106, 0.166, {"pelvis": 1}),
+        (_at("pelvis", z=-0.02), 0.112, 0.170, {"pelvis": 1}),
+        (_at("pelvis", z=0.10), 0.100, 0.150, {"pelvis": 0.6, "spine": 0.4}),
+        (_at("pelvis", z=0.20), 0.094, 0.140, {"spine": 1}),
+        (_at("chest"), 0.106, 0.157, {"spine": 0.5, "chest": 0.5}),
+        (_at("chest", z=0.10), 0.112, 0.172, {"chest": 1}),
         (_at("neck", z=-0.05), 0.085, 0.165, {"chest": 1}),
-        (_at("neck", z=-0.005), 0.060, 0.090, {"chest": 1}),
-        (_at("neck", z=0.03), 0.052, 0.052, {"chest": 0.5, "neck": 0.5}),
+        (_at("neck", z=-0.005), 0.062, 0.092, {"chest": 1}),
+        (_at("neck", z=0.012), 0.056, 0.062, {"chest": 0.7, "neck": 0.3}),
+    ]
+
+
+def _neck() -> list[Ring]:
+    return [
+        (_at("neck", z=-0.01), 0.050, 0.052, {"chest": 0.6, "neck": 0.4}),
+        (_at("neck", z=0.04), 0.050, 0.050, {"chest": 0.5, "neck": 0.5}),
         (_at("head"), 0.050, 0.050, {"neck": 1}),
-    ], 2
+    ]
 
 
-def _head() -> Tube:
+def _head() -> list[Ring]:
     rings: list[Ring] = []
     for share in np.linspace(-1.0, 1.0, 9):
         wide = max(float(np.sqrt(1.0 - share * share)), 0.02)
         centre = _at("head", x=0.02, z=0.07 + 0.125 * float(share))
         rings.append((centre, 0.098 * wide, 0.076 * wide, {"head": 1}))
-    return rings, 2
+    return rings
 
 
-def _leg(side: str) -> Tube:
+def _hair() -> list[Ring]:
+    """A cap a little wider than the head, set back so that the face is free."""
+    rings: list[Ring] = []
+    for share in np.linspace(-0.35, 1.0, 6):
+        wide = max(float(np.sqrt(1.0 - share * share)), 0.02)
+        back = 0.022 * (1.0 - float(share)) / 1.35
+        centre = _at("head", x=0.02 - back, z=0.082 + 0.125 * float(share))
+        rings.append((centre, 0.104 * wide, 0.083 * wide, {"head": 1}))
+    return rings
+
+
+def _leg(side: str) -> list[Ring]:
     hip, knee, ankle = (f"{side}_{joint}" for joint in ("hip", "knee", "ankle"))
     return [
         (_at(hip, z=0.02), 0.095, 0.085, {"pelvis": 0.6, hip: 0.4}),
@@ -149,33 +203,48 @@ def _leg(side: str) -> Tube:
         (_at(knee, z=-0.05), 0.056, 0.052, {hip: 0.15, knee: 0.85}),
         (_at(knee, x=-0.012, z=-0.15), 0.060, 0.052, {knee: 1}),
         (_at(knee, z=-0.32), 0.042, 0.038, {knee: 1}),
-        (_at(ankle, z=0.02), 0.040, 0.036, {knee: 0.7, f"{side}_ankle": 0.3}),
-    ], 2
+        (_at(ankle, z=0.02), 0.044, 0.040, {knee: 0.7, f"{side}_ankle": 0.3}),
+    ]
 
 
-def _foot(side: str) -> Tube:
+def _foot(side: str) -> list[Ring]:
     ankle = f"{side}_ankle"
     rings: list[Ring] = []
     low = -ANKLE_HEIGHT
     for x, top in ((-HEEL_BACK, 0.055), (0.0, 0.085), (0.07, 0.065), (0.13, 0.045), (0.19, 0.030)):
         rings.append((_at(ankle, x=x, z=low + top / 2), top / 2, 0.040, {ankle: 1}))
-    return rings, 0
+    return rings
 
 
-def _arm(side: str) -> Tube:
-    shoulder, elbow, wrist = (f"{side}_{joint}" for joint in ("shoulder", "elbow", "wrist"))
+def _sleeve(side: str) -> list[Ring]:
+    shoulder, elbow = f"{side}_shoulder", f"{side}_elbow"
     return [
         (_at(shoulder, z=0.035), 0.012, 0.012, {f"{side}_collar": 0.6, shoulder: 0.4}),
         (_at(shoulder, z=0.022), 0.038, 0.034, {f"{side}_collar": 0.5, shoulder: 0.5}),
         (_at(shoulder, z=-0.02), 0.054, 0.048, {f"{side}_collar": 0.3, shoulder: 0.7}),
-        (_at(shoulder, z=-0.10), 0.048, 0.045, {shoulder: 1}),
-        (_at(elbow, z=0.04), 0.040, 0.038, {shoulder: 0.85, elbow: 0.15}),
-        (_at(elbow), 0.039, 0.037, {shoulder: 0.5, elbow: 0.5}),
+        (_at(shoulder, z=-0.10), 0.049, 0.046, {shoulder: 1}),
+        (_at(elbow, z=0.06), 0.043, 0.041, {shoulder: 0.9, elbow: 0.1}),
+        (_at(elbow, z=0.03), 0.042, 0.040, {shoulder: 0.8, elbow: 0.2}),
+    ]
+
+
+def _forearm(side: str) -> list[Ring]:
+    shoulder, elbow, wrist = (f"{side}_{joint}" for joint in ("shoulder", "elbow", "wrist"))
+    return [
+        (_at(elbow, z=0.05), 0.038, 0.036, {shoulder: 0.85, elbow: 0.15}),
+        (_at(elbow), 0.038, 0.036, {shoulder: 0.5, elbow: 0.5}),
         (_at(elbow, z=-0.05), 0.039, 0.036, {elbow: 1}),
-        (_at(wrist), 0.028, 0.024, {elbow: 1}),
+        (_at(wrist, z=0.01), 0.030, 0.026, {elbow: 1}),
+    ]
+
+
+def _hand(side: str) -> list[Ring]:
+    elbow, wrist = f"{side}_elbow", f"{side}_wrist"
+    return [
+        (_at(wrist, z=0.02), 0.026, 0.022, {elbow: 1}),
         (_at(wrist, z=-0.06), 0.042, 0.022, {elbow: 1}),
         (_at(wrist, z=-0.17), 0.022, 0.012, {elbow: 1}),
-    ], 2
+    ]
 
 
 def _tube(

@@ -20,6 +20,9 @@ function pixelRatio() {
   return window.devicePixelRatio || 1;
 }
 
+// Many small pictures are slow where a graphics card is only stood in for; they are quick without.
+function drawnByProcessor(canvas) { return canvas.getContext("2d", { willReadFrequently: true }); }
+
 // Gives canvases a size in pixels of the screen; tells whether it was another one.
 function resizeTo(canvases, width, height) {
   if (canvases.every((canvas) => canvas.width === width && canvas.height === height)) return false;
@@ -43,4 +46,20 @@ function savePicture(canvas, name) {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   });
+}
+
+function saveText(text, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+// A file of the reader's choice.
+function readText(take) {
+  const input = document.createElement("input");
+  input.type = "file";
+  input.onchange = async () => take(await input.files[0].text());
+  input.click();
 }

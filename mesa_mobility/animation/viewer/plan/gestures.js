@@ -3,7 +3,8 @@
 const CLICK_REACH = 4; // pixels within which a press is a click
 
 class Gestures {
-  // `view` has zoomAt(x, y, factor), pan(dx, dy), click(event) and remind(), in pixels of the page.
+  // `view` has zoomAt(x, y, factor), pan(dx, dy), click(event) and remind(), in pixels of the page. With
+  // `fixed`, where nothing scrolls, the wheel zooms and a finger moves the floor without more.
   constructor(canvas, view) {
     this.view = view;
     this.canvas = canvas;
@@ -33,7 +34,7 @@ class Gestures {
     const dx = event.clientX - grip.x, dy = event.clientY - grip.y;
     if (!grip.moved && Math.hypot(dx, dy) < CLICK_REACH) return;
     Object.assign(grip, { moved: true, x: event.clientX, y: event.clientY });
-    if (event.pointerType !== "touch") this.view.pan(dx, dy);
+    if (event.pointerType !== "touch" || this.view.fixed) this.view.pan(dx, dy);
   }
 
   release(event) {
@@ -48,7 +49,7 @@ class Gestures {
   }
 
   wheel(event) {
-    if (!event.ctrlKey && !event.metaKey) {
+    if (!event.ctrlKey && !event.metaKey && !this.view.fixed) {
       this.view.remind();
       return;
     }

@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesa_mobility.animation.aids import aid_figure
-from mesa_mobility.animation.figure import (
+from mesa_mobility.animation.figures.aids import aid_figure
+from mesa_mobility.animation.figures.figure import (
     Figure,
     distant_figure,
     human_figure,

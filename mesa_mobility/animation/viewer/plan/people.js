@@ -1,17 +1,16 @@
 // People on the canvas, time, scale and legend: a part of the crowd's view.
 
+const FIELDS = 6; // row, x, y, heading, value, metres that a lift has carried
 const SHADES = 32, TURNS = 64;
-const VIRIDIS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962",
-  "#addc30", "#fde725"];
 // Told apart with every kind of colour vision as far as twelve can be; those of the pictures.
 const TYPES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#999999", "#5b3a93",
   "#8c510a", "#b5a300", "#00a6a6", "#b2182b"];
 
 function shade(share) {
-  return blend(VIRIDIS, share);
+  return blend(HEAT, share);
 }
 
-// The number of the colour of a value, and the colour.
+// The number of the colour of a value, and the colour. The brightest is that of `high`, which may be the lesser end.
 function shadeOf(value, { low, high, names }) {
   const steps = names.length ? 1 : SHADES / (high - low);
   return Math.max(0, Math.min(SHADES - 1, Math.floor(steps * (value - low))));
@@ -20,6 +19,15 @@ function shadeOf(value, { low, high, names }) {
 function colourOf(value, legend) {
   const number = shadeOf(value, legend);
   return legend.names.length ? TYPES[number % TYPES.length] : shade(number / (SHADES - 1));
+}
+
+// The same as red, green and blue from 0 to 1.
+const CHANNELS = new Map();
+
+function channelsOf(value, legend) {
+  const number = shadeOf(value, legend), key = legend.names.length ? -1 - (number % TYPES.length) : number;
+  if (!CHANNELS.has(key)) CHANNELS.set(key, channels(colourOf(value, legend)));
+  return CHANNELS.get(key);
 }
 
 const PEOPLE = {
@@ -66,7 +74,7 @@ const PEOPLE = {
       }
     },
     sprite(fill, heading, size, half) {
-      const canvas = new OffscreenCanvas(2 * half, 2 * half), ctx = canvas.getContext("2d");
+      const canvas = new OffscreenCanvas(2 * half, 2 * half), ctx = drawnByProcessor(canvas);
       ctx.translate(half, half);
       ctx.rotate(-heading);
       ctx.fillStyle = fill;
@@ -130,9 +138,10 @@ const PEOPLE = {
       }
       ctx.fillStyle = this.colours.text;
       ctx.fillText(legend.label, right, bottom - 28 * r);
-      ctx.fillText(`${legend.high} or more`, right, bottom);
+      const end = (value, other) => (value > other ? `${value} or more` : `${value}`);
+      ctx.fillText(end(legend.high, legend.low), right, bottom);
       ctx.textAlign = "left";
-      ctx.fillText(`${legend.low}`, right - long, bottom);
+      ctx.fillText(end(legend.low, legend.high), right - long, bottom);
     },
   },
 };

@@ -9,14 +9,33 @@ function outlined(ctx, rings, place) {
 }
 
 // `place` turns metres into pixels, `r` is the number of pixels in one of the page.
-function paintFloor(ctx, floor, place, r, colours) {
+// What `over` paints lies on the free floor, and on it alone.
+function paintFloor(ctx, floor, place, r, colours, over = null) {
+  const solids = floor.solids || [], seats = solids.filter(({ kind }) => kind === "seat");
   outlined(ctx, floor.outline, place);
   ctx.fillStyle = colours.solid;
   ctx.fill();
+  for (const { kind, rings } of solids) {
+    if (kind !== "wall") continue;
+    outlined(ctx, rings, place);
+    ctx.fill("evenodd");
+  }
   ctx.fillStyle = colours.free;
   for (const rings of floor.free) {
     outlined(ctx, rings, place);
     ctx.fill("evenodd");
+  }
+  if (over) {
+    ctx.save();
+    outlined(ctx, floor.free.flat(), place);
+    ctx.clip("evenodd");
+    over(ctx);
+    ctx.restore();
+  }
+  ctx.fillStyle = colours.seat;
+  for (const { rings } of seats) {
+    outlined(ctx, rings, place);
+    ctx.fill();
   }
   ctx.fillStyle = "rgba(255, 193, 7, 0.25)"; // slow zones
   for (const zone of floor.zones) {

@@ -1,0 +1,1 @@
+"""Figures of people, what they wear, and what they hold or sit in."""
