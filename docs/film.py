@@ -55,6 +55,7 @@ def pictures(page: Page, given: argparse.Namespace) -> Iterator[Image.Image]:
     page.goto(given.page.resolve().as_uri())
     page.wait_for_selector("body[data-ready=yes]", timeout=300_000)
     page.add_style_tag(content=ONLY_THE_VIEW)
+    page.select_option("#colour", "clothes")
     page.evaluate("play(false); state.stage.detail = 0; state.stage.resize(true)")
     count = round((given.to - given.begin) * given.rate / given.speed_up)
     target = (given.at[0], given.at[1], 0.8)

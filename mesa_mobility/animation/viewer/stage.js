@@ -71,7 +71,7 @@ class Stage {
   fit() {
     this.resize(true);
     const [x0, y0, x1, y1] = this.bounds, { top } = this.scenery, { orbit, perspective } = this;
-    orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, top / 2);
+    orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, 0.8 + top / 2);
     const away = new THREE.Vector3(...FROM).normalize();
     perspective.position.copy(away).add(orbit.target);
     perspective.lookAt(orbit.target);
