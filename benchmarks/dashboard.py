@@ -218,7 +218,7 @@ def screenshots(browser: Browser, folder: Path) -> None:
         # Somebody in the crowd in front of the left hall door.
         nearest = page.evaluate(
             f"() => {{const p = {CANVAS}.shown().people; let best = [1e9, 0];"
-            "for (let k = 0; k < p.length; k += 5) {"
+            "for (let k = 0; k < p.length; k += 6) {"
             "const d = Math.hypot(p[k + 1] - 9.6, p[k + 2] - 22.3);"
             "if (d < best[0]) best = [d, p[k]];}"
             "return best[1];}"

@@ -26,6 +26,8 @@ ARGUMENTS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftsh
 
 ONLY_THE_VIEW = "#view { position: fixed !important; inset: 0; z-index: 9; }"
 
+SHARP = "play(false); Object.assign(state.stage, {detail: 0, sharp: 2}); state.stage.resize(true)"
+
 # The picture is read in the task that draws it, while the drawing buffer still holds it.
 DRAW = """([frame, target, eye]) => {
   const { stage } = state;
@@ -55,14 +57,16 @@ def pictures(page: Page, given: argparse.Namespace) -> Iterator[Image.Image]:
     page.goto(given.page.resolve().as_uri())
     page.wait_for_selector("body[data-ready=yes]", timeout=300_000)
     page.add_style_tag(content=ONLY_THE_VIEW)
-    page.evaluate("play(false); state.stage.detail = 0; state.stage.resize(true)")
+    page.select_option("#colour", "clothes")
+    page.evaluate(SHARP)
     count = round((given.to - given.begin) * given.rate / given.speed_up)
     target = (given.at[0], given.at[1], 0.8)
     for k in range(count):
         frame = 30.0 * (given.begin + k * given.speed_up / given.rate)
         where = eye(target, given.distance, k / count)
         drawn = base64.b64decode(page.evaluate(DRAW, [frame, list(target), list(where)]))
-        yield Image.open(io.BytesIO(drawn)).convert("RGB")
+        picture = Image.open(io.BytesIO(drawn)).convert("RGB")
+        yield picture.resize(tuple(given.size), Image.Resampling.LANCZOS)
 
 
 def still(page: Page, given: argparse.Namespace) -> None:
@@ -71,7 +75,7 @@ def still(page: Page, given: argparse.Namespace) -> None:
     page.wait_for_selector("body[data-ready=yes]", timeout=300_000)
     page.select_option("#person", "3")
     target = (given.at[0] + 0.5, given.at[1], 0.8)
-    page.evaluate("play(false); state.stage.detail = 0; state.stage.resize(true)")
+    page.evaluate(SHARP)
     page.evaluate(DRAW, [300.0, list(target), list(eye(target, 1.2 * given.distance, 0.25))])
     page.screenshot(path=given.folder / "replay.png")
 
@@ -96,7 +100,7 @@ def main() -> None:
         width, height = given.size
         page = browser.new_page(viewport={"width": width, "height": height})
         first, *others = pictures(page, given)
-        still(browser.new_page(viewport={"width": 1000, "height": 560}), given)
+        still(browser.new_page(viewport={"width": 1366, "height": 768}), given)
         browser.close()
     first.save(
         given.folder / "walking.webp",

@@ -6,7 +6,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ FASTEST = 1.6
 SPEED_OVER = 15
 """Frames over which a person's speed is taken."""
 
-DPI = 100
+DPI = 80
 
 
 PLAN, BODIES = "plan", "bodies"
@@ -181,34 +181,56 @@ def write_film(
     Raises:
         ResultsError: another suffix, no ffmpeg, nobody to show, or the file cannot be written.
     """
-    # Matplotlib takes half a second to load.
-    from matplotlib.animation import FFMpegWriter, PillowWriter
-
-    from mesa_mobility.results.floor import panels_of, storeys_of
+    from mesa_mobility.animation.reels import still, write_reel
 
     selection = selection or Selection()
     suffix = _checked(path, speed)
     shown = np.isin(trajectories.person, selection.people_of(trajectories))
     frames = _frames(trajectories, selection, speed)
+    pictures = _pictures(trajectories, plan, shown, frames, progress)
+    with replacing(path, ResultsError) as temporary:
+        coded = (still(picture, suffix) for picture in pictures)
+        write_reel(coded, temporary, suffix, PICTURES_A_SECOND)
+
+
+def _pictures(
+    trajectories: Tracks,
+    plan: FloorPlan | Building,
+    shown: NDArray[np.bool_],
+    frames: list[int],
+    progress: Callable[[int, int], None] | None,
+) -> Iterator[NDArray[np.uint8]]:
+    """(high, wide, 4) colours of each picture; only people and titles are drawn anew."""
+    # Matplotlib takes half a second to load.
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    from mesa_mobility.results.floor import panels_of, storeys_of
+
     pace = _speeds(trajectories)
     figure, axes = panels_of(storeys_of(trajectories, plan))
     panels = [_Panel(each, storey) for each, storey in axes]
     figure.colorbar(panels[0].bodies, ax=figure.axes, label="speed (m/s)", shrink=0.8)
-    kind: Any = FFMpegWriter if suffix == ".mp4" else PillowWriter
-    writer = kind(fps=PICTURES_A_SECOND)
-    with replacing(path, ResultsError) as temporary:
-        # The layout is worked out once: it would take longer than all else in each picture.
-        figure.canvas.draw()
-        figure.set_layout_engine("none")
-        with writer.saving(figure, str(temporary), DPI):
-            for done, frame in enumerate(frames, start=1):
-                own = slice(*trajectories.frame_offsets[frame : frame + 2].tolist())
-                rows = np.arange(own.start, own.stop)[shown[own]]
-                for panel in panels:
-                    panel.show(trajectories, rows, pace, frame / trajectories.frame_rate)
-                writer.grab_frame()
-                if progress is not None:
-                    progress(done, len(frames))
+    figure.set_dpi(DPI)
+    for panel in panels:
+        panel.show(trajectories, np.zeros(0, dtype=np.int64), pace, 0.0)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    # The layout is worked out once: it would take longer than all else in each picture.
+    figure.set_layout_engine("none")
+    for panel in panels:
+        panel.set_animated()
+    canvas.draw()
+    still_parts = canvas.copy_from_bbox(figure.bbox)
+    for done, frame in enumerate(frames, start=1):
+        own = slice(*trajectories.frame_offsets[frame : frame + 2].tolist())
+        rows = np.arange(own.start, own.stop)[shown[own]]
+        canvas.restore_region(still_parts)
+        for panel in panels:
+            panel.show(trajectories, rows, pace, frame / trajectories.frame_rate)
+            panel.draw()
+        yield np.asarray(canvas.buffer_rgba())
+        if progress is not None:
+            progress(done, len(frames))
 
 
 class _Panel:
@@ -223,12 +245,30 @@ class _Panel:
         draw_floor(axes, storey.plan, storey.stairs, storey.refuges)
         self._axes, self._storey = axes, storey
         self.bodies = EllipseCollection(
-            [], [], [], units="xy", cmap="plasma_r", offset_transform=axes.transData, zorder=5
+            [],
+            [],
+            [],
+            units="xy",
+            cmap="plasma_r",
+            offset_transform=axes.transData,
+            zorder=5,
+            edgecolors="#333333",
+            linewidths=0.5,
         )
         self.bodies.set_clim(0.0, FASTEST)
         self._strokes = LineCollection([], colors="black", linewidths=0.8, zorder=6)
         axes.add_collection(self.bodies)
         axes.add_collection(self._strokes)
+
+    def set_animated(self) -> None:
+        """Leave people and title out of the picture of the rest."""
+        for each in (self._strokes, self.bodies, self._axes.title):
+            each.set_animated(True)
+
+    def draw(self) -> None:
+        """Draw people and title over the picture of the rest."""
+        for each in (self._strokes, self.bodies, self._axes.title):
+            self._axes.draw_artist(each)
 
     def show(
         self,

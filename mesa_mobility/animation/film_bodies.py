@@ -142,9 +142,7 @@ class _Studio(ThreadingHTTPServer):
                 return self.taken.get(timeout=1.0)
             except queue.Empty:
                 if process.poll() is not None:
-                    raise ResultsError(
-                        f"{process.args[0]}: ended, status {process.poll()}"
-                    ) from None  # type: ignore[index]
+                    raise ResultsError(f"the browser has ended, status {process.poll()}") from None
         raise ResultsError(f"the browser has drawn nothing for {_PATIENCE_S:g} s")
 
 

@@ -9,6 +9,9 @@ import subprocess
 from collections.abc import Iterable
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mesa_mobility.errors import ResultsError
 
 
@@ -25,6 +28,29 @@ def write_reel(pictures: Iterable[bytes], path: Path, suffix: str, rate: int) ->
         ResultsError: no ffmpeg, or it fails.
     """
     {".webp": _write_webp, ".gif": _write_gif, ".mp4": _write_mp4}[suffix](pictures, path, rate)
+
+
+def still(colours: NDArray[np.uint8], suffix: str) -> bytes:
+    """A picture as a file that ``write_reel`` takes.
+
+    Args:
+        colours: (high, wide, 4) red, green, blue and opacity.
+        suffix: of the film.
+    """
+    from PIL import Image
+
+    kind, options = _STILLS[suffix]
+    high, wide = (length - length % 2 for length in colours.shape[:2])  # as MP4 needs
+    out = io.BytesIO()
+    Image.fromarray(colours[:high, :wide]).convert("RGB").save(out, kind, **options)
+    return out.getvalue()
+
+
+_STILLS: dict[str, tuple[str, dict[str, int]]] = {
+    ".webp": ("WEBP", {"quality": 85, "method": 0}),
+    ".gif": ("PNG", {"compress_level": 1}),
+    ".mp4": ("JPEG", {"quality": 95}),
+}
 
 
 def _write_webp(pictures: Iterable[bytes], path: Path, rate: int) -> None:

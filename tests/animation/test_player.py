@@ -177,7 +177,7 @@ def test_legends_panel_and_curves_fold(page):
     assert page.evaluate("element('scene').clientWidth") == wide + 224
     high = page.evaluate("element('scene').clientHeight")
     page.click("#charted")
-    assert page.evaluate("element('scene').clientHeight") > high + 50
+    assert page.evaluate("element('scene').clientHeight") > high + 40
 
 
 @pytest.mark.slow

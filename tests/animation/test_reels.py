@@ -3,12 +3,16 @@
 import io
 import json
 
+import numpy as np
 import pytest
 from PIL import Image
 
+from mesa_mobility.animation import Selection
+from mesa_mobility.animation.film import write_film_of_bodies
 from mesa_mobility.animation.film_bodies import camera_path
 from mesa_mobility.animation.reels import write_reel
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.results import Excerpt
 
 COLOURS = [(200, 30, 30), (30, 180, 60), (40, 60, 210)]
 
@@ -61,3 +65,46 @@ def test_a_camera_path_is_checked(tmp_path):
             camera_path(path)
     with pytest.raises(ResultsError, match="cannot be read"):
         camera_path(tmp_path / "missing.json")
+
+
+def test_films_of_bodies_are_checked_first(run, plan, tmp_path, monkeypatch):
+    excerpt = Excerpt(run, plan, Selection(end=1.0))
+    for keywords, suffix, what in (
+        ({"size": (15, 100)}, ".webp", "even numbers from 16 to 4096"),
+        ({"size": (640, 361)}, ".webp", "even numbers"),
+        ({"speed": 0.0}, ".webp", "speed 0"),
+        ({"camera": tmp_path / "none.json"}, ".webp", "cannot be read as a camera path"),
+        ({}, ".avi", "films end with"),
+    ):
+        with pytest.raises(ResultsError, match=what):
+            write_film_of_bodies(excerpt, tmp_path / f"film{suffix}", **keywords)
+    monkeypatch.setenv("MESA_MOBILITY_BROWSER", "no-such-browser")
+    with pytest.raises(ResultsError, match="no browser to draw a film in three dimensions"):
+        write_film_of_bodies(excerpt, tmp_path / "film.webp")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_a_browser_draws_a_film_in_three_dimensions(run, plan, tmp_path, browser_program):
+    path, camera = tmp_path / "film.webp", tmp_path / "camera.json"
+    # From above the room, from beside it, and off it.
+    views = [
+        {"time": 0.0, "eye": [4, -6, 6], "target": [4, 2, 0]},
+        {"time": 1.0, "eye": [4, -60, 60], "target": [4, -120, 60]},
+    ]
+    camera.write_text(json.dumps({"views": views}))
+    told = []
+    excerpt = Excerpt(
+        run, plan, Selection(end=1.0), progress=lambda done, of: told.append((done, of))
+    )
+    write_film_of_bodies(excerpt, path, camera=camera, size=(320, 180))
+    assert told == [(k, 16) for k in range(1, 17)]
+    with Image.open(path) as film:
+        assert (film.size, film.n_frames) == ((320, 180), 16)
+        shown = []
+        for number in (0, 15):
+            film.seek(number)
+            # Below the caption: how much there is to see.
+            shown.append(np.asarray(film.convert("L").crop((0, 40, 320, 180)), dtype=float).std())
+    assert shown[0] > 15
+    assert shown[1] < 3

@@ -22,14 +22,15 @@ def known() -> Trajectories:
 
 
 def played(tab, seconds):
-    tab.set("seed", str(MADE["rng"]))
+    for name, value in (("seed", "rng"), ("pre movement", "pre_movement")):
+        before = tab.shown()["run"]
+        tab.set(name, str(MADE[value]))
+        tab.wait(f"(run) => {SHOWN}.run > run", before)
     tab.set("pedestrians", str(MADE["pedestrians"]))
     tab.wait(f"(n) => {SHOWN}.inside === n", MADE["pedestrians"])
-    tab.set("pre movement", str(MADE["pre_movement"]))
-    tab.wait(f"() => {SHOWN}.run > 3 || {SHOWN}.elapsed === 0")
     tab.choose("speed", "5 x")
     tab.play()
-    tab.wait(f"(t) => {SHOWN}.past[1] > t", seconds)
+    tab.page.wait_for_function(f"(t) => {SHOWN}.past[1] > t", arg=seconds, timeout=300_000)
 
 
 def off(people, known, elapsed):
@@ -80,7 +81,7 @@ def test_curves_count_who_has_passed_and_lead_to_a_time(tab, known):
     left = known.exit_frames[known.exit_frames >= 0] / 30
     times = np.array(passed["second door"])
     assert len(times) == np.count_nonzero(left <= last)
-    np.testing.assert_allclose(times, np.sort(left)[: len(times)], atol=0.35)
+    np.testing.assert_allclose(times, np.sort(left)[: len(times)], atol=1.0)
     box = tab.page.locator(".mm-curves").bounding_box()
     tab.page.mouse.click(box["x"] + 8 + 0.5 * (box["width"] - 16), box["y"] + 20)
     tab.wait(f"(t) => Math.abs({SHOWN}.elapsed - t) < 0.3", last / 2)
@@ -114,7 +115,8 @@ def test_in_three_dimensions_people_are_where_they_were(tab, known):
     tab.wait(f"() => {CANVAS}?.shown?.().drawn > 0")
     played(tab, 47.0)
     tab.button("three dimensions").click()
-    tab.wait(f"() => {BOX} && {BOX}.shown().past[1] > 52")
+    later = f"() => {BOX} && {BOX}.shown().past[1] > 52"
+    tab.page.wait_for_function(later, timeout=300_000)
     view = "document.querySelector('.mm-bodies').__vue__"
     # Seen in three dimensions, and from before.
     for asked, limbs in ((51.0, True), (20.0, False)):

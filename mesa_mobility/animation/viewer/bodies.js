@@ -2,7 +2,7 @@
 // feet.py do.
 "use strict";
 
-const STEP_FRAMES = 9, LANDING = 4, PAST = 45; // frames
+const STEP_FRAMES = 9, LANDING = 4, BEFORE = 45; // frames
 const FARTHEST = 0.15, STEP_LIFT = 0.03, STRAIGHT = 0.9995; // metres, metres, share of the leg
 
 // One body at a time: where its joints are, and how they are turned. Scratch arrays are shared.
@@ -184,8 +184,8 @@ class Body {
   // How far both feet are held away in this frame and the next one, from the past that matters.
   held(course, frame, track) {
     let feet = course.feet;
-    if (!feet || frame < feet.frame - 1 || frame > feet.frame + PAST) {
-      const first = Math.max(frame - PAST, Math.min(frame, Math.ceil(track.frames[0])));
+    if (!feet || frame < feet.frame - 1 || frame > feet.frame + BEFORE) {
+      const first = Math.max(frame - BEFORE, Math.min(frame, Math.ceil(track.frames[0])));
       course.feet = feet = { frame: first, now: this.skeleton.legs.map(() => startingFoot()), before: null };
       this.observe(course, first, track, feet.now, true);
       feet.before = feet.now.map((each) => ({ ...each }));

@@ -1,7 +1,7 @@
 // A film of the run, picture by picture, for the program that asks for it: see animation/film_bodies.py.
 "use strict";
 
-const CAPTION = 15; // pixels
+const CAPTION = 15, SHARP = 2; // pixels; pixels drawn for each one of the picture, along a side
 
 // asked: {frames, width, height, type, quality, path, glass, colour}.
 async function film(asked) {
@@ -11,7 +11,7 @@ async function film(asked) {
   element("view").style.cssText = `position: fixed; inset: auto; left: 0; top: 0; width: ${width}px; height: ${height}px`;
   element("camera").value = "orbit";
   element("colour").value = asked.colour;
-  stage.detail = 0;
+  Object.assign(stage, { detail: 0, sharp: SHARP });
   stage.resize(true);
   stage.fit();
   stage.scenery.setGlassy(asked.glass);

@@ -3,9 +3,10 @@
 
 const element = (id) => document.getElementById(id);
 const ASKED = null; // the film that a program asks for
+const AWAKE = 600; // milliseconds
 const PAPER = { ground: "#d9d9d4", free: "#f5f5f2" };
 const state = { frame: 0, playing: true, people: [], run: null, stage: null, plan: null, curves: null, below: Infinity,
-  path: new CameraPath(), along: false };
+  until: 0, path: new CameraPath(), along: false };
 
 const inPlan = () => element("camera").value === "plan";
 const chosen = () => Number(element("person").value);
@@ -114,7 +115,14 @@ function fill() {
   else document.documentElement.requestFullscreen();
 }
 
+// What somebody does is drawn for a moment; a page that stands still takes no time.
+function wake() { state.until = performance.now() + AWAKE; }
+
 function listen() {
+  for (const name of ["pointerdown", "pointermove", "wheel", "keydown", "change", "input", "click", "resize"]) {
+    window.addEventListener(name, wake, { capture: true, passive: true });
+  }
+  wake();
   const keys = { " ": () => play(!state.playing), ArrowLeft: () => step(-1), ArrowRight: () => step(1),
     PageUp: () => decision(-1), PageDown: () => decision(1), f: fill };
   element("play").onclick = keys[" "];
@@ -230,7 +238,7 @@ async function open() {
       if (state.frame > state.last) state.frame = state.first;
       if (!inPlan()) state.stage.adapt(passed);
     }
-    draw();
+    if (state.playing || now < state.until) draw();
   };
   requestAnimationFrame(loop);
   document.body.dataset.ready = "yes";

@@ -39,6 +39,7 @@ class Stage {
     this.scenery = new Scenery(this.scene);
     this.how = "orbit";
     this.missed = false; // whether somebody was to be followed who is not there
+    this.sharp = 1; // pixels drawn for each one shown, along a side
     this.detail = 0;
     this.pace = 0.03;
     this.since = 0;
@@ -71,7 +72,7 @@ class Stage {
   fit() {
     this.resize(true);
     const [x0, y0, x1, y1] = this.bounds, { top } = this.scenery, { orbit, perspective } = this;
-    orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, top / 2);
+    orbit.target.set((x0 + x1) / 2, (y0 + y1) / 2, 0.8 + top / 2);
     const away = new THREE.Vector3(...FROM).normalize();
     perspective.position.copy(away).add(orbit.target);
     perspective.lookAt(orbit.target);
@@ -94,7 +95,7 @@ class Stage {
 
   resize(always = false) {
     const { clientWidth: width, clientHeight: height } = this.holder;
-    const ratio = (window.devicePixelRatio || 1) * DETAIL[this.detail].share, size = `${width} ${height} ${ratio}`;
+    const ratio = (window.devicePixelRatio || 1) * this.sharp * DETAIL[this.detail].share, size = `${width} ${height} ${ratio}`;
     if (!width || !height || (size === this.size && !always)) return;
     this.size = size;
     this.renderer.setPixelRatio(ratio);

@@ -121,9 +121,9 @@ const PAST = {
     paintCurves() {
       const canvas = this.$refs.curves;
       if (!canvas || !canvas.clientWidth) return;
-      const doors = [...this.past.doors].map(([name, times]) => ({ name, times })), { first, last } = this.past;
-      const key = [this.past.run, last, doors.map(({ times }) => times.length)].join(" ");
-      if (key !== this.curvesKey) this.curves = new Curves(canvas, doors, first, Math.max(last, first + 1));
+      const doors = [...this.past.doors].map(([name, times]) => ({ name, times })), first = this.pastFirst, last = this.pastLast;
+      const key = [this.past.run, first, last, doors.map(({ times }) => times.length)].join(" ");
+      if (key !== this.curvesKey) this.curves = new Curves(canvas, doors, first, Math.max(last, first + 0.1));
       this.curvesKey = key;
       this.curves.draw(this.cursor === null ? last : this.cursor);
     },
