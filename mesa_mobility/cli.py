@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 from mesa_mobility.interrupts import end_on_interrupt, ignore_interrupts
@@ -36,7 +37,7 @@ def _run() -> int:
 
         try:
             check_environment()
-            warnings.showwarning = _warn
+            warnings.showwarning = _warner()
             # Commands answer with nothing, and `typer.Exit` with its status.
             return app(prog_name="mesa-mobility", standalone_mode=False) or 0
         except UsageError as error:
@@ -50,9 +51,17 @@ def _run() -> int:
         return _fail(f"unexpected {type(error).__name__}: {error} [{_place(error)}]")
 
 
-def _warn(message: Warning | str, *where: Any, **more: Any) -> None:
-    """A warning on one line, as errors are."""
-    print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
+def _warner() -> Callable[..., None]:
+    """A function that prints warnings on one line, as errors are, and each of them once."""
+    said: set[str] = set()
+
+    def warn(message: Warning | str, *where: Any, **more: Any) -> None:
+        text = " ".join(str(message).split())
+        if text not in said:
+            said.add(text)
+            print(f"warning: {text}", file=sys.stderr)
+
+    return warn
 
 
 def _wrong_usage(error: Any) -> int:

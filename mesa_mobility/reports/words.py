@@ -8,7 +8,7 @@ WORDS = {
     "egress_s": "time until everybody is out (s)",
     "flow_per_s": "mean flow (persons/s)",
     "flow_per_m_s": "specific flow (persons/(m s))",
-    "mean_speed_mps": "mean speed (m/s)",
+    "mean_speed_mps": "mean speed, waiting included (m/s)",
     "mean_time_inside_s": "mean time that a person is inside (s)",
     "simulated_s": "simulated time (s)",
     "pedestrians": "number of people",

@@ -46,7 +46,16 @@ def test_what_a_plan_holds(command, tmp_path):
         "gates": {},
         "obstacles": 1,
         "zones": [],
-        "rooms": [{"name": "room 1", "level": 0, "use": "", "area_m2": 24.0, "doors": ["street"]}],
+        "rooms": [
+            {
+                "name": "room 1",
+                "level": 0,
+                "use": "",
+                "area_m2": 24.0,
+                "stated_area_m2": None,
+                "doors": ["street"],
+            }
+        ],
     }
     assert "street (2.00 m)" in command("plan", str(tmp_path / "room.wkt")).out
     assert (tmp_path / "room_plan.png").read_bytes().startswith(b"\x89PNG")

@@ -35,7 +35,9 @@ def test_runs_in_a_building_and_their_report(tmp_path, office):
     assert hashlib.sha256(digest).hexdigest() in frame["inputs"][0]
     page = tmp_path / "report.html"
     write_report(store, page)
-    assert "level by level from the top" in page.read_text()
+    text = page.read_text()
+    assert "level by level from the top" in text
+    assert "Rooms</caption>" in text
 
 
 def test_a_run_that_fails_at_its_start_is_kept_as_failed(tmp_path, monkeypatch):

@@ -14,11 +14,13 @@ from mesa_mobility.reports.run.basis import (
     ASSUMPTIONS,
     LIMITS,
     add_plan_picture,
+    add_rooms,
     add_rules,
     add_types,
 )
 from mesa_mobility.reports.run.texts import count
 from mesa_mobility.reports.words import words_of
+from mesa_mobility.results import rooms_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,6 +59,8 @@ def add_basis(page: Page, store: Store, frame: pd.DataFrame) -> None:
     else:
         plan = getattr(model, "building", None) or model.floor_plan
         add_plan_picture(page, plan)
+        if len(rooms := rooms_of(plan)) > 1:
+            add_rooms(page, rooms)
         more = int(frame["inputs"].nunique()) - 1 if "inputs" in frame else 0
         page.text(
             "The plan and the people are those of the first run at its start"

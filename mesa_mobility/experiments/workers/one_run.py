@@ -207,7 +207,7 @@ def _warning(model: Any, said: Sequence[str]) -> str | None:
     """The warnings of a model: those that it gave when it was made, and of its weights."""
     from mesa_mobility.crowd.costs.terms import without_weight
 
-    found = list(said)
+    found: list[str | None] = list(said)
     if _has_pedestrians(model):
         found.append(without_weight(model.terms, [each.name for each in model.pedestrian_types]))
     return "; ".join(dict.fromkeys(filter(None, found))) or None
