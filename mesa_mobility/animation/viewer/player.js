@@ -3,10 +3,10 @@
 
 const element = (id) => document.getElementById(id);
 const ASKED = null; // the film that a program asks for
-const AWAKE = 600; // milliseconds
+const AWAKE = 600, SETTLED = 250; // milliseconds
 const PAPER = { ground: "#d9d9d4", free: "#f5f5f2" };
 const state = { frame: 0, playing: true, people: [], run: null, stage: null, plan: null, curves: null, below: Infinity,
-  until: 0, path: new CameraPath(), along: false };
+  until: 0, drawn: 0, still: false, path: new CameraPath(), along: false };
 
 const inPlan = () => element("camera").value === "plan";
 const chosen = () => Number(element("person").value);
@@ -21,7 +21,10 @@ function shown() {
   return present().filter(({ track }) => track.at(state.frame)[3] < state.below - CUT_ROUNDED);
 }
 
-function draw() {
+// A picture at which somebody looks for a while has all its detail.
+function draw(still = false) {
+  Object.assign(state, { still, drawn: performance.now() });
+  state.stage.still = still;
   const people = inPlan() ? peopleOn(storeyShown()) : shown(), map = mapNow();
   colour(people);
   if (inPlan()) drawPlan(people, map);
@@ -239,6 +242,7 @@ async function open() {
       if (!inPlan()) state.stage.adapt(passed);
     }
     if (state.playing || now < state.until) draw();
+    else if (!state.still && now - state.drawn > SETTLED) draw(true);
   };
   requestAnimationFrame(loop);
   document.body.dataset.ready = "yes";

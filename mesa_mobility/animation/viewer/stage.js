@@ -41,6 +41,7 @@ class Stage {
     this.missed = false; // whether somebody was to be followed who is not there
     this.sharp = 1; // pixels drawn for each one shown, along a side
     this.detail = 0;
+    this.still = false; // whether the next picture stays for a while
     this.pace = 0.03;
     this.since = 0;
     this.drawn = 0;
@@ -95,7 +96,7 @@ class Stage {
 
   resize(always = false) {
     const { clientWidth: width, clientHeight: height } = this.holder;
-    const ratio = (window.devicePixelRatio || 1) * this.sharp * DETAIL[this.detail].share, size = `${width} ${height} ${ratio}`;
+    const ratio = (window.devicePixelRatio || 1) * this.sharp * this.level.share, size = `${width} ${height} ${ratio}`;
     if (!width || !height || (size === this.size && !always)) return;
     this.size = size;
     this.renderer.setPixelRatio(ratio);
@@ -111,6 +112,8 @@ class Stage {
     this.above.lookAt((x0 + x1) / 2, (y0 + y1) / 2, 0);
     this.above.updateProjectionMatrix();
   }
+
+  get level() { return DETAIL[this.still ? 0 : this.detail]; }
 
   get camera() { return this.how === "plan" ? this.above : this.perspective; }
 
@@ -144,7 +147,7 @@ class Stage {
       : this.canvas.clientHeight / (2 * Math.tan((this.perspective.fov * Math.PI) / 360));
     this.troops.begin();
     this.ring.visible = Boolean(who);
-    const figures = [], least = FIGURE_PIXELS * DETAIL[this.detail].afar;
+    const figures = [], least = FIGURE_PIXELS * this.level.afar;
     let pawns = 0;
     for (const person of people) {
       const [x, y, heading, z] = person.track.at(frame), dx = x - cx, dy = y - cy;
