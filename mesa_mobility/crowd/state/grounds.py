@@ -57,6 +57,7 @@ class GroundMaps:
             up = first[round(zone.tread, _TREAD_DIGITS)]
             self.stairs.append((zone, up, up + 1))
         maps = [each.mobility_map for each in types]
+        numbers: dict[tuple[str, float], int] = {}
         used = [list(range(len(types)))]
         for tread in treads:
             for up in (True, False):
@@ -66,9 +67,11 @@ class GroundMaps:
                     if map_ is kind.mobility_map:
                         own.append(number)
                         continue
-                    if map_ not in maps[len(types) :]:
+                    # Types may have read the same map at different times.
+                    key = map_.digest, map_.lengths
+                    if numbers.setdefault(key, len(maps)) == len(maps):
                         maps.append(map_)
-                    own.append(maps.index(map_, len(types)))
+                    own.append(numbers[key])
                 used.append(own)
         self.maps: tuple[MobilityMap, ...] = tuple(maps)
         self.used = np.array(used, dtype=np.int64)
