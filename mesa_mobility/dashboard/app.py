@@ -141,18 +141,18 @@ def _Simulation(session: Session) -> None:
     folded, fold = solara.use_state(False)
     with solara.Div(classes=["mm-time"]):
         TimeControls(session)
-        solara.Button(
-            "Show decision and charts" if folded else "Crowd alone",
-            small=True,
-            on_click=lambda: fold(not folded),
-            attributes={
-                "title": "The crowd over the whole page, or beside decision and charts",
-                "aria-pressed": "true" if folded else "false",
-            },
-        )
     with solara.Div(classes=["mm-halves", "mm-folded"] if folded else ["mm-halves"]):
         with solara.Div(classes=["mm-left"]):
             _Crowd(session)
+            solara.Button(
+                "Show decision and charts" if folded else "Crowd alone",
+                small=True,
+                on_click=lambda: fold(not folded),
+                attributes={
+                    "title": "The crowd over the whole page, or beside decision and charts",
+                    "aria-pressed": "true" if folded else "false",
+                },
+            )
             _Messages(session)
         with solara.Div(classes=["mm-right"]):
             _Decision(session)
