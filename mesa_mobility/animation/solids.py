@@ -1,4 +1,4 @@
-"""What stands on a floor: walls and obstacles, cut at a height, and rows of seats."""
+"""Solids on a floor: walls and obstacles, cut at a height, and rows of seats."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Solid:
 
 
 def solids_of(plan: FloorPlan) -> list[Solid]:
-    """What stands on the floor of a plan."""
+    """Solids on the floor of a plan."""
     exits = [each.line for each in plan.exits if plan.is_open(each.name)]
     return solids(shapely.union_all(shapely.get_parts(plan.walkable)), plan.free, exits)
 

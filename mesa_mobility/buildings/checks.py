@@ -1,4 +1,4 @@
-"""What the parts of a building must be: of different names, and joined to an exit."""
+"""Checks of the parts of a building: they have different names, and ways lead to an exit."""
 
 from collections.abc import Sequence
 from itertools import pairwise

@@ -49,8 +49,8 @@ def in_threads(work: Callable[[Part], Result], parts: Sequence[Part]) -> list[Re
 def by_shares(work: Callable[[slice], Result], people: int) -> list[Result]:
     """``work`` of equal shares of so many people, in order, one by each thread.
 
-    ``work`` gets the slice of a share. What it does for one person must not depend on the others
-    in the share.
+    ``work`` gets the slice of a share. Its result for one person must not depend on the others in
+    the share.
     """
     return in_threads(work, shares(people))
 

@@ -185,7 +185,6 @@ STYLE = (
     ".mm-halves { display: flex; flex-wrap: wrap; gap: 12px; }"
     ".mm-left { flex: 5 1 480px; min-width: 0; } .mm-right { flex: 2 1 340px; min-width: 0; }"
     ".mm-folded .mm-right { display: none; }"
-    ".mm-time { display: flex; flex-wrap: wrap; gap: 8px; align-items: center; }"
     # In a low window they cover the lower end of the crowd.
     ".mm-messages { position: sticky; bottom: 0; background: #fff; }"
     ".theme--dark .mm-messages { background: #121212; }"

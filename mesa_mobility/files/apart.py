@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parents[2]
 def output_of(
     module: str, words: Sequence[str], seconds: float, given: bytes | None = None
 ) -> tuple[bytes, int]:
-    """What a module of this package prints that runs in another process, and its exit status.
+    """Output of a module of this package that runs in another process, and its exit status.
 
     Args:
         module: its name. It should import little, so that it starts at once.

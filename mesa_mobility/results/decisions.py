@@ -36,7 +36,7 @@ COLUMNS: dict[str, Array] = {
 """The columns, and what each of them is."""
 
 STAIRS = Several(Several(Each(Text(), Real(0.01, 100.0), of=list)))
-"""What a file says of maps for stairs."""
+"""Records of maps for stairs, in the metadata of a file."""
 
 SCHEMA = pa.schema([(name, pa.from_numpy_dtype(kind.dtype)) for name, kind in COLUMNS.items()])
 

@@ -1,4 +1,4 @@
-"""What people wear, and the colours of skin and hair: a few sober varieties."""
+"""Clothes, and the colours of skin and hair: a few sober varieties."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Repertoire:
 def within_maps(
     numbers: NDArray[np.integer], firsts: NDArray[np.integer]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """What numbers of clusters or options mean.
+    """Maps to which numbers of clusters or options belong, and the numbers there.
 
     Args:
         numbers: (n,) at least 0.

@@ -35,7 +35,7 @@ that has lost its processor takes milliseconds."""
 
 
 class Queue(NamedTuple):
-    """What threads know of one another's decisions.
+    """Decisions under way, as all threads see them.
 
     Attributes:
         taken: (n,) 0 for those whom no thread has taken.

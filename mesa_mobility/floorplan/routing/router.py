@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from mesa_mobility.compiled.threads import in_threads, shares
+from mesa_mobility.compiled.threads import by_shares, threads_for
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.floor.boundaries import opening_segments
 from mesa_mobility.floorplan.floor.checks import one_line
@@ -193,10 +193,12 @@ class Router:
             )
             return outcome
 
-        parts = shares(n)
-        if len(parts) > 1 and NO_TABLE in in_threads(lambda own: aims(own, False), parts):
+        def known(own: slice) -> int:
+            return aims(own, False)
+
+        if threads_for(n) > 1 and NO_TABLE in by_shares(known, n):
             self._tabulate(numbers)
-            in_threads(lambda own: aims(own, False), parts)
+            by_shares(known, n)
         while (outcome := aims(slice(n), True)) != ALL_FOUND:
             if outcome == NO_TABLE:
                 self._tabulate(numbers)
