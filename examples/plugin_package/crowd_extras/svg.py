@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Annotated
 from xml.etree import ElementTree
 
-import shapely
-from shapely import Polygon
+from shapely import Polygon, union_all
 
 from mesa_mobility import Exit, Gate, Range, Room
 from mesa_mobility.errors import FloorPlanError
@@ -28,12 +27,12 @@ class Svg(PlanFormat):
 
         Args:
             path: the file.
-            unit: metres in a unit of the drawing.
+            unit: metres in a unit of the drawing, whose y grows downwards.
 
         Raises:
             FloorPlanError: the file cannot be read, or a shape is not as it should be.
         """
-        rooms, found = [], Content(Polygon())
+        found = Content(Polygon())
         for number, each in enumerate(_root(path).iter(), start=1):
             kind = each.get("class", "")
             name = each.get("id") or f"{kind} {number}"
@@ -49,10 +48,11 @@ class Svg(PlanFormat):
                 found.exits.append(Exit(name, points[0], points[1]))
             elif kind == "gate":
                 found.gates.append(Gate(name, points[0], points[1]))
+            elif kind == "room":
+                found.rooms.append(Room(name, Polygon(points)))
             else:
-                (rooms if kind == "room" else found.obstacles).append(Polygon(points))
-                found.rooms += [Room(name, rooms[-1])] if kind == "room" else []
-        found.walkable = shapely.union_all(rooms)  # y grows downwards in SVG, upwards in a plan
+                found.obstacles.append(Polygon(points))
+        found.walkable = union_all([each.polygon for each in found.rooms])
         return found
 
 
