@@ -34,6 +34,9 @@ def pass_abreast(
     corner. People pass at the point of that line nearest to them.
     """
     clearance = ways.view_clearance
+    flight = np.zeros(len(ways.kind), np.bool_)
+    for corner in ways.flight_corners:
+        flight[corner] = True
     for k in range(len(corners)):
         if corners[k, 0] < 0 or areas[k] <= 0.0:
             continue
@@ -48,9 +51,12 @@ def pass_abreast(
         out = min((x - cx) * ux + (y - cy) * uy, areas[k] / away)
         if out <= 0.0:
             continue
-        room = _room(sight, (x, y), (cx, cy), (ux, uy))
+        beside = flight[corners[k, 0]]
+        room = _room(sight, (x, y), (cx, cy), (ux, uy), beside)
         out = min(out, room - clearance)
-        if out <= 0.0 or not _is_wide(sight, ways, (x, y), (cx, cy), (ux, uy), out, onward):
+        if out <= 0.0 or not (
+            beside or _is_wide(sight, ways, (x, y), (cx, cy), (ux, uy), out, onward)
+        ):
             continue
         qx, qy = cx + out * ux, cy + out * uy
         own = wall_distance(sight, x, y, clearance)
@@ -67,19 +73,21 @@ def _room(
     person: tuple[float, float],
     corner: tuple[float, float],
     along: tuple[float, float],
+    beside: bool,
 ) -> float:
     """How far from a corner people can pass it and then go on side by side, metres.
 
     It is the width of the way up to the corner, along the line ``along`` through it, as far as the
     way on is as wide, just past the corner. As much as the way on is narrower, they have less room:
-    they queue for what comes then. Where it is half as wide, all pass at the corner.
+    they queue for what comes then. Where it is half as wide, all pass at the corner. `beside` a
+    flight they have its whole width: they queue on the flight as they do before it.
     """
     (x, y), (cx, cy), (ux, uy) = person, corner, along
     before = free_length(sight, cx, cy, cx + _WIDEST * ux, cy + _WIDEST * uy)
     side = 1.0 if (x - cx) * uy - (y - cy) * ux > 0.0 else -1.0
     px, py = cx - _PAST * ux, cy - _PAST * uy
     on = free_length(sight, px, py, px - side * _WIDEST * uy, py + side * _WIDEST * ux)
-    return min(before, 2.0 * on - before)
+    return min(before, on) if beside else min(before, 2.0 * on - before)
 
 
 @internal()

@@ -5,18 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from mesa_mobility.floorplan.floor.boundaries import opening_segments
 from mesa_mobility.floorplan.floor.floor import Floor
 from mesa_mobility.floorplan.floor.openings import Exit, Gate
 from mesa_mobility.floorplan.routing.route_graph import Ways
-from mesa_mobility.floorplan.routing.route_nodes import VIEW_SHARE, Nodes
+from mesa_mobility.floorplan.routing.route_nodes import CORNER, VIEW_SHARE, Nodes
 
 if TYPE_CHECKING:
     import networkx as nx
 
 _KIND_NAMES = ("corner", "gate", "exit")
+
+_BESIDE = 1.5
+"""A corner of a right angle stands 1.41 clearances from the edge of the wall."""
 
 
 def ways_of(plan: Floor, nodes: Nodes, walls: int, clearance: float, beyond: float) -> Ways:
@@ -51,9 +55,25 @@ def ways_of(plan: Floor, nodes: Nodes, walls: int, clearance: float, beyond: flo
         ends,
         passable,
         curtains,
+        _flight_corners(plan, nodes, clearance),
         VIEW_SHARE * clearance,
         beyond,
     )
+
+
+def _flight_corners(plan: Floor, nodes: Nodes, clearance: float) -> NDArray[np.int64]:
+    """(k,) the corners beside flights of stairs: at newels, and where a flight begins in a wall."""
+    corners = np.flatnonzero(nodes.kind == CORNER)
+    flights = shapely.union_all(
+        [
+            seam.part(-seam.depth, seam.depth, second)
+            for seam in plan.seams
+            if not seam.stepless
+            for second in (False, True)
+        ]
+    )
+    near = shapely.dwithin(flights, shapely.points(nodes.xy[corners]), _BESIDE * clearance)
+    return corners[near]
 
 
 def network(

@@ -20,7 +20,8 @@ class Ways(NamedTuple):
     For every gate and exit, in the order of `FloorPlan.openings()`: `lines`
     (openings, 4) its line, `ends` (openings, 4) the line from its first to its last node,
     `passable` (openings,) whether it has nodes, `curtains` (openings,) its number
-    among the walls of the sight, -1 for gates.
+    among the walls of the sight, -1 for gates. `flight_corners` are the corners beside flights of
+    stairs, in order.
     """
 
     kind: NDArray[np.int64]
@@ -32,6 +33,7 @@ class Ways(NamedTuple):
     ends: NDArray[np.float64]
     passable: NDArray[np.bool_]
     curtains: NDArray[np.int64]
+    flight_corners: NDArray[np.int64]
     view_clearance: float
     beyond: float
 

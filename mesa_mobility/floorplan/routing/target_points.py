@@ -68,7 +68,29 @@ def aim_at(
         opening = gate
         px, py = _through(sight, ways, x, y, px, py, gate, own)
         corner = -1
+    if corner < 0:
+        corner = _flight_corner_passed(ways, x, y, px, py, after)
     return length, opening, px, py, corner
+
+
+@internal()
+def _flight_corner_passed(
+    ways: Ways, x: float, y: float, px: float, py: float, after: NDArray[np.int64]
+) -> int:
+    """The first corner beside a flight that a straight way to (px, py) passes, -1 for none.
+
+    Between the way and the corner there is no room for another person. Without these corners,
+    people who see a whole flight from a landing would pass its newel in single file.
+    """
+    passed = -1
+    least = np.hypot(px - x, py - y)
+    ux, uy = (px - x) / max(least, 1e-9), (py - y) / max(least, 1e-9)
+    for corner in ways.flight_corners:
+        dx, dy = ways.xy[corner, 0] - x, ways.xy[corner, 1] - y
+        along, aside = dx * ux + dy * uy, abs(dx * uy - dy * ux)
+        if after[corner] >= 0 and 0.0 < along < least and aside < 2.0 * ways.view_clearance:
+            passed, least = corner, along
+    return passed
 
 
 @internal()

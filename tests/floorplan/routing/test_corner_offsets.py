@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Polygon, box
 
+from mesa_mobility import Building, Level, Stairs
 from mesa_mobility.floorplan import Exit, FloorPlan, Router, Targets, line_of_sight
 
 # Two halls at a right angle, 20 m wide both. Round their corner, (20, 20), the way on leads to the
@@ -122,3 +123,59 @@ def test_what_is_aimed_at_is_in_view_and_the_more_the_farther_out(x, y, area):
     if near[1] < BEND[1] and far[1] < BEND[1]:
         assert passes_at((x, y), far) <= passes_at((x, y), near) + 1e-9
     assert hypot(near[0] - x, near[1] - y) > 0.0
+
+
+# The lower flight of a landing of 1.5 m leads to the left below y = 1.2, and the newel ends at
+# (0, 1.2). Routes that keep 0.2 m from walls bend at (0.2, 1.0).
+LANDING = box(0.0, 0.0, 1.5, 2.6)
+STOREYS = Building(
+    [
+        Level(0, box(0, 0, 3, 2.6), exits=[Exit("out", (3, 0), (3, 2.6))]),
+        Level(1, LANDING, 3.06),
+        Level(2, LANDING, 6.12),
+    ],
+    [
+        Stairs.dog_leg(
+            f"stair {k}", k, k - 1, ((0, 0), (0, 1.2)), risers=18, tread=0.29, turn="right"
+        )
+        for k in (1, 2)
+    ],
+)
+
+
+@pytest.mark.parametrize(
+    ("area", "out"),
+    # 0.6 m2 over the 1.5 m to the corner are 0.4 m. The flight is 1 m wide from the corner on.
+    [(0.3, 0.2), (0.6, 0.4), (1e6, 1.0)],
+)
+def test_those_who_see_a_flight_from_its_landing_pass_the_newel_abreast(area, out):
+    plan = STOREYS.floor_plan
+    places = STOREYS.places([(1.4, 1.9)], level=1)
+    origin = STOREYS.places([(0.0, 0.0)], level=1)[0]
+    router = Router(plan)
+    targets = router.targets(places, [0])
+    assert router.nodes.xy[targets.corners[0, 0]] - origin == pytest.approx([0.2, 1.0], abs=0.01)
+    x, y = router.abreast(places, targets, np.array([area]))[0] - origin
+    at = 1.4 + (1.9 - 1.0) / (1.9 - y) * (x - 1.4)
+    assert y < 1.0
+    # Up to a body's breadth of the wall.
+    assert at == pytest.approx(0.2 + out, abs=0.02 if out < 1.0 else 0.2)
+
+
+def test_those_whose_way_passes_no_newel_keep_it():
+    # Straight along the lower flight, 0.7 m from the newel.
+    places = STOREYS.places([(1.2, 0.4)], level=1)
+    router = Router(STOREYS.floor_plan)
+    targets = router.targets(places, [0])
+    assert targets.corners[0, 0] == -1
+    assert router.abreast(places, targets, np.array([9.0])).tolist() == targets.points.tolist()
+
+
+def test_round_the_end_of_a_wall_in_a_corridor_nobody_spreads():
+    # The same landing in one plane: corridors of 1.2 m do not count as wide.
+    plan = FloorPlan(
+        LANDING.union(box(-4, 0, 0, 1.2)).union(box(-4, 1.4, 0, 2.6)),
+        exits=[Exit("end", (-4, 0), (-4, 1.2))],
+    )
+    alone, point = aims(plan, (1.0, 2.2), 9.0)
+    assert point.tolist() == alone.tolist()
