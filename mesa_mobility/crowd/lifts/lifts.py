@@ -241,12 +241,14 @@ class Lifts(Saved):
         """Let people out, then in, then go."""
         stop = int(self.at[lift])
         there = self._in_car(lift, stop, inside, crowd)
-        if (self._rides[there] != lift).any():
+        comes = (self._calls[there] == lift) & (self._stop[there] == stop)
+        if ((self._rides[there] != lift) & ~comes).any():
             self._since[lift] = frame
             return
         if self._admit(lift, stop, inside, crowd, environment):
             self._since[lift] = frame
         # Doors do not close on somebody who has just set foot in the car, and may step back.
+        there = there[self._rides[there] == lift]
         ours = inside[self._rides[inside] == lift]
         points = np.column_stack([crowd.x[ours], crowd.y[ours]])
         outside = ours[~shaft.in_car(stop, points, CLEAR * crowd.core[ours])]

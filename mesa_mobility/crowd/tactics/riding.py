@@ -93,7 +93,7 @@ class RideLifts(Tactic):
         rows, lifts = deciding.pedestrians, self._lifts
         inside = lifts.car_of(deciding.positions) != NOBODY
         new = lifts.rides(rows) == NOBODY
-        number, stop, away = self._bound_for(deciding, desired, ~inside)
+        number, stop, away = self._bound_for(deciding, desired, new)
         lifts.call(rows[new], number[new], stop[new], deciding.frame)
         held = (number != NOBODY) & new
         held &= away < self._rims(number, stop, held, deciding)
@@ -124,7 +124,9 @@ class RideLifts(Tactic):
                     continue
                 before = shaft.before_door(k)[None].repeat(len(near), axis=0)
                 there = deciding.site.targets(before, deciding.destinations[near])
-                way = np.hypot(*(deciding.positions[near] - before).T) + there.distances
+                # Some stand nearer to the door than that place.
+                saved = np.hypot(*(shaft.before_door(k) - shaft.door(k)))
+                way = to_door[near] + there.distances - saved
                 by = (there.gates == opening) & (way < desired.targets.distances[near] + DETOUR)
                 number[near[by]], stop[near[by]], away[near[by]] = lift, k, to_door[near[by]]
         return number, stop, away

@@ -68,7 +68,7 @@ def _flight_corners(plan: Floor, nodes: Nodes, clearance: float) -> NDArray[np.i
         [
             seam.part(-seam.depth, seam.depth, second)
             for seam in plan.seams
-            if not seam.stepless
+            if not seam.stepless and seam.belt is None
             for second in (False, True)
         ]
     )

@@ -131,6 +131,19 @@ def test_who_steps_back_into_the_doorway_while_a_car_leaves_still_rides():
     assert (model.inside, model.lifts.carried.tolist(), model.lifts.trips.tolist()) == (0, [1], [2])
 
 
+@pytest.mark.parametrize("y", [6.3, 7.3])
+def test_who_stands_in_the_door_of_a_car_that_is_elsewhere_waits_for_it(y):
+    # 0.2 m before the line of the door, y = 6.5, and where the car will be.
+    building = office(stairs=False)
+    model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
+    model.add_pedestrians(building.places([(20.45, y)], level=1))
+    while model.lifts._rides[:1].max(initial=-1) < 0 and model.time < 60.0:
+        model.step()
+        assert len(riders(model)[1]) == (y > 6.5)
+    model.run(max_seconds=300)
+    assert (model.inside, model.lifts.carried.tolist(), model.lifts.trips.tolist()) == (0, [1], [2])
+
+
 def test_the_car_holds_no_more_than_its_capacity_and_they_ride_together():
     building = office(stairs=False, everybody=True, capacity=4)
     model = crowd(building, 10, "able_bodied: 1.0")
