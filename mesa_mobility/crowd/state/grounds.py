@@ -49,7 +49,7 @@ class GroundMaps:
     """
 
     def __init__(self, zones: Sequence[SpeedZone], types: Sequence[PedestrianType]) -> None:
-        stairs = [each for each in zones if each.tread > 0.0 and each.downhill is not None]
+        stairs = [each for each in zones if each.is_stair]
         treads = sorted({round(each.tread, _TREAD_DIGITS) for each in stairs})
         first = {tread: 1 + 2 * k for k, tread in enumerate(treads)}
         self.stairs = []

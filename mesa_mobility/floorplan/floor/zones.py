@@ -65,6 +65,11 @@ class SpeedZone:
         shapely.prepare(self.polygon)
 
     @property
+    def is_stair(self) -> bool:
+        """Whether it has a tread and a direction, so that people walk on it as on stairs."""
+        return self.tread > 0.0 and self.downhill is not None
+
+    @property
     def area(self) -> Polygon:
         """The polygon as a shapely geometry."""
         assert isinstance(self.polygon, Polygon)

@@ -64,14 +64,7 @@ def ways_of(plan: Floor, nodes: Nodes, walls: int, clearance: float, beyond: flo
 def _flight_corners(plan: Floor, nodes: Nodes, clearance: float) -> NDArray[np.int64]:
     """(k,) the corners beside flights of stairs: at newels, and where a flight begins in a wall."""
     corners = np.flatnonzero(nodes.kind == CORNER)
-    flights = shapely.union_all(
-        [
-            seam.part(-seam.depth, seam.depth, second)
-            for seam in plan.seams
-            if not seam.stepless and seam.belt is None
-            for second in (False, True)
-        ]
-    )
+    flights = shapely.union_all([each.polygon for each in plan.zones if each.is_stair])
     near = shapely.dwithin(flights, shapely.points(nodes.xy[corners]), _BESIDE * clearance)
     return corners[near]
 
