@@ -255,7 +255,8 @@ class Lifts(Saved):
         waited = frame - self._since[lift]
         if len(outside) and waited < GIVES_UP:
             return
-        self._rides[outside] = NOBODY
+        # Whoever has set foot in it still rides.
+        self._rides[np.setdiff1d(outside, there)] = NOBODY
         if len(there) and waited >= DWELL:
             rise = [
                 abs(shaft.stops[to].elevation - shaft.stops[stop].elevation)

@@ -77,7 +77,7 @@ class Rides(Saved):
             arrived = begun + round(shaft.ride_s(start, end) * FRAMES_A_SECOND)
             moved = -(-arrived // self._every) * self._every
             first, last = np.searchsorted(frames, (begun, moved + 1))
-            riding = first + np.flatnonzero(shaft.in_car(start, points[first:last]))
+            riding = first + np.flatnonzero(shaft.in_car(start, points[first:last], -shaft.before))
             seconds = (frames[riding] - begun) / FRAMES_A_SECOND - shaft.door_s
             share = np.clip(seconds * shaft.speed / abs(rise), 0.0, 1.0)
             found[riding] = rise * share
