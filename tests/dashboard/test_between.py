@@ -1,6 +1,7 @@
 """What a message tells of the time since the last one that the page has got."""
 
 import base64
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,11 +10,16 @@ pytest.importorskip("solara", reason="no solara: pip install 'mesa-mobility[viz]
 
 from mesa_mobility.models import Doorway
 
+from mesa_mobility import dashboard
 from mesa_mobility.dashboard.session import serialization
 from mesa_mobility.dashboard.session.colouring import COLOURINGS
 from mesa_mobility.dashboard.session.observer import Observer
+from mesa_mobility.dashboard.views.canvases import VIEWER
 from mesa_mobility.results import Trajectories
 from tests.fixtures.waiting import until
+
+PLACES = (Path(dashboard.__file__).parent / "views" / "browser", VIEWER)
+"""Where the page's scripts are."""
 
 
 def decoded(between):
@@ -137,3 +143,102 @@ def test_another_run_tells_nothing_of_the_one_before(session):
         session.step()
     until(lambda: told[-1]["elapsed"] > 0.39)
     assert told[-1]["between"]["frames"] == [0, 6]
+
+
+@pytest.fixture
+def scripted(browser):
+    """An empty page with what the views know of the past."""
+    page = browser.new_page()
+    for name in ("assembling.js", "plan/drawing.js", "plan/people.js", "sheets.js"):
+        page.add_script_tag(path=next(each / name for each in PLACES if (each / name).is_file()))
+    for name in ("between.js", "past.js"):
+        page.add_script_tag(path=PLACES[0] / name)
+    page.evaluate(
+        "() => { globalThis.picture = (elapsed, ...people) => ({ elapsed, inside: people.length,"
+        " legend: { low: 0, high: 1, names: [] }, people: Float32Array.from(people.flat()) }); }"
+    )
+    yield page
+    page.close()
+
+
+def rows_at(page, script):
+    found = page.evaluate(f"() => Array.from({script}.people)")
+    return {int(row): each for row, *each in np.array(found).reshape(-1, 6).tolist()}
+
+
+@pytest.mark.thorough
+def test_people_come_and_leave_between_two_pictures(scripted):
+    scripted.evaluate(
+        """() => {
+          const rows = [[7, 0, 2, 0, 0.5, 0], [9, 3, 3, 0, 0, 0], [5, 0, 0, 6.2, 0, 0]];
+          globalThis.a = picture(1.0, ...rows);
+          globalThis.b = picture(1.2, [5, 1, 0, 0.2, 0, 0], [8, 6, 0, 0, 0.7, 0]);
+          globalThis.passages = {
+            left: new Map([[7, { elapsed: 1.1, people: Float32Array.of(7, 1, 2, 0, 0, 0) }]]),
+            came: new Map([[8, { elapsed: 1.1, people: Float32Array.of(8, 5, 0, 0, 0, 0) }]]) };
+        }"""
+    )
+    early = rows_at(scripted, "mixed(a, b, 1.05, passages)")
+    assert sorted(early) == [5, 7, 9]
+    assert early[7] == pytest.approx([0.5, 2, 0, 0.5, 0], abs=1e-6)
+    assert early[5] == pytest.approx([0.25, 0, 6.2 + 0.25 * (2 * np.pi - 6.0), 0, 0], abs=1e-5)
+    late = rows_at(scripted, "mixed(a, b, 1.15, passages)")
+    # Nobody knows when 9 has left.
+    assert sorted(late) == [5, 8, 9]
+    assert late[8] == pytest.approx([5.5, 0, 0, 0.7, 0], abs=1e-6)
+    assert late[9] == pytest.approx([3, 3, 0, 0, 0])
+
+
+@pytest.mark.thorough
+def test_people_change_sheets_between_two_pictures(scripted):
+    # The upper level lies 44 m to the right, 3 m higher: somebody goes on from 9.0 to 9.4 m on a
+    # stair, and somebody has come down by a lift.
+    storeys = (
+        "{ sheets: [{ right: 34, shift: [0, 0], elevation: 0 },"
+        " { right: 1e9, shift: [44, 0], elevation: 3 }], flights: [] }"
+    )
+    scripted.evaluate(
+        """() => {
+          globalThis.a = picture(1.0, [1, 53.0, 0.6, 0, 0, 0], [2, 64.5, 4.5, 0, 0, -3]);
+          globalThis.b = picture(1.2, [1, 9.4, 0.6, 0, 0, 0], [2, 20.5, 4.5, 0, 0, 0]);
+          globalThis.none = { left: new Map(), came: new Map() };
+        }"""
+    )
+    early = rows_at(scripted, f"mixed(a, b, 1.05, none, {storeys})")
+    assert early[1][:2] == pytest.approx([53.1, 0.6])
+    assert early[2] == pytest.approx([64.5, 4.5, 0, 0, -3])
+    late = rows_at(scripted, f"mixed(a, b, 1.15, none, {storeys})")
+    assert late[1][:2] == pytest.approx([9.3, 0.6])
+    assert late[2] == pytest.approx([20.5, 4.5, 0, 0, 0], abs=1e-6)
+
+
+@pytest.mark.thorough
+def test_the_page_takes_in_each_sample_once_and_forgets_the_oldest(scripted):
+    model = Doorway(pedestrians=12, rng=3)
+    observer = Observer(model)
+    for _ in range(20):
+        model.step()
+    told = serialization.frame(model, COLOURINGS["speed"], observer, run=1, number=1)
+    times = scripted.evaluate(
+        """(told) => {
+          globalThis.past = new Past(1);
+          const next = { ...told, people: numbers(told.people) };
+          past.take(picture(0, [0, 0, 0, 0, 0, 0]), { passed: [], between: told.between });
+          for (let n = 0; n < 2; n += 1) past.take(next, told);
+          return past.pictures.map((each) => each.elapsed);
+        }""",
+        told,
+    )
+    assert times == pytest.approx([0.0, *np.arange(1, 11) * 0.2])
+    # Pictures of 41,667 people, 24 bytes each.
+    kept = scripted.evaluate(
+        """() => {
+          for (let n = 0; n < 150; n += 1) {
+            past.take({ ...picture(10 + n), people: new Float32Array(250002) },
+              { passed: [], between: { frames: [], came: "", left: "" } });
+          }
+          return [past.bytes, past.pictures.length, past.last];
+        }"""
+    )
+    assert 80e6 < kept[0] < 96e6
+    assert kept[1:] == [round(kept[0] / 1000264), 159]

@@ -1,4 +1,4 @@
-"""Where people have been in the last moments, compared with what a recorder keeps of every frame."""
+"""Where people have been in the last moments, compared with a recording of every frame."""
 
 import numpy as np
 import pytest
