@@ -100,19 +100,21 @@ def steps_between(traced: Traced, rides: Rides) -> dict[str, Any]:
     (float32) for everybody who has come or left: row, frame, x, y, heading and the metres carried.
     """
     inside, risen = traced.inside, _risen(traced.inside, rides)
-    points = np.column_stack([inside.x, inside.y])
-    low, high = (points.min(0), points.max(0)) if len(points) else (np.zeros(2), np.zeros(2))
-    step = max(LEAST_STEP, float((high - low).max()) / 65535)
-    places = np.empty((len(points), 3), dtype=np.uint16)
-    places[:, :2] = np.rint((points - low) / step)
-    places[:, 2] = np.rint(inside.heading * (65536 / (2.0 * np.pi))).astype(np.int64) % 65536
+    # Column by column, which is many times as fast as along the axis of an array.
+    origin = [float(each.min()) if len(inside) else 0.0 for each in (inside.x, inside.y)]
+    extent = max(float(np.ptp(each)) if len(inside) else 0.0 for each in (inside.x, inside.y))
+    step = max(LEAST_STEP, extent / 65535)
+    places = np.empty((len(inside), 3), dtype="<u2")
+    for k, each in enumerate((inside.x, inside.y)):
+        places[:, k] = np.rint((each - origin[k]) / step)
+    places[:, 2] = np.rint(inside.heading * (65536 / (2.0 * np.pi))).astype(np.int64) & 0xFFFF
     return {
         "frames": traced.frames,
         "counts": traced.counts,
         "rows": _base64(inside.person.astype("<i4")),
-        "places": _base64(places.astype("<u2")),
+        "places": _base64(places),
         "risen": packed(risen) if risen.any() else "",
-        "origin": low.tolist(),
+        "origin": origin,
         "step": step,
         "came": packed(_passages(traced.came, rides)),
         "left": packed(_passages(traced.left, rides)),
